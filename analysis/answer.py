@@ -46,8 +46,9 @@ class Finding:
         One shortest path, source first.
     steps
         The flows of the witness, one fewer than its elements.
-    disjoint_paths
-        How many paths share no flow; 1 for a finding of one element.
+    number_of_paths
+        How many paths share no flow, 1 for a finding of one element; None where nobody asked for it. Who tells it takes
+        ``disjoint_paths``.
     through
         Other leaks of the category on the witness; not empty only if dismissed.
     dismissed
@@ -72,7 +73,7 @@ class Finding:
     leak: Element
     witness: tuple[Element, ...]
     steps: tuple[Step, ...]
-    disjoint_paths: int
+    number_of_paths: int | None
     through: tuple[Element, ...] = ()
     dismissed: bool = False
     paths: tuple[tuple[Element, ...], ...] = ()
@@ -80,6 +81,19 @@ class Finding:
     why: Reason | None = None
     accepted: bool = False
     beside: bool = False
+
+    @property
+    def disjoint_paths(self) -> int:
+        """How many paths share no flow.
+
+        Raises
+        ------
+        ValueError
+            If they were not counted: then there is no number to tell.
+        """
+        if self.number_of_paths is None:
+            raise ValueError(f"nobody asked for the number of paths of finding {self.id}")
+        return self.number_of_paths
 
     @property
     def reason(self) -> str:

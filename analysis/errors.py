@@ -22,6 +22,7 @@ command line turns errors into exit codes::
       DatabaseError
       ClusterError
       MiddlewareError
+      ModelError
 """
 
 from __future__ import annotations
@@ -159,5 +160,11 @@ class ClusterError(RosPrivacyError):
 
 class MiddlewareError(RosPrivacyError):
     """A running ROS system that cannot be reached, or that does not answer."""
+
+    exit_code = 3
+
+
+class ModelError(RosPrivacyError):
+    """A language model whose server cannot be reached, or does not answer as such servers do."""
 
     exit_code = 3

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     Indices = NDArray[np.int64]
     Bits = NDArray[np.uint64]
 
+ROBOTS = 10_000  # of fewer, what the search touches fits into some processors' caches
 NODES, TOPICS = 20, 60  # of one robot
 NEXT, NEAR = 4, 15  # nodes that come next in the pipeline, and how much rather they subscribe than others
 CATEGORIES = 24
@@ -176,10 +177,9 @@ def renumbered(given: Fleet, number: Indices) -> Fleet:
 
 def rows(*, quick: bool) -> Iterator[Row]:
     """Declare what is measured: the fixpoint against one search, on several numberings, and its memory."""
-    robots = 1_000 if quick else 10_000
-    first = fleet(robots)
+    first = fleet(ROBOTS)
     for name, given in numberings(first).items():
-        bound = 7 if quick else 5 if given is first else 6  # a search of a small graph has less to do
+        bound = 7 if quick else 5 if given is first else 6  # in CI the types are checked beside it
         what = f"fixpoint of {CATEGORIES} kinds of data, {name}"
         yield Row(what, "one scipy BFS", partial(searched, given, 7 if quick else 21), bound)
     if quick:

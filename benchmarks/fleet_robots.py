@@ -21,11 +21,11 @@ from rosprivacy.analysis.findings.concerns import concerns
 from rosprivacy.analysis.fleet.patterns_of_pairs import Groups
 from rosprivacy.analysis.kernel.spreading import spread
 from rosprivacy.answering import answer
-from rosprivacy.fleet_system import fleet_system
 from rosprivacy.ingest.fleet.alike_robots import Alike
 from rosprivacy.ingest.fleet.fleet_graph import place
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.question import Question
+from rosprivacy.reading.fleet_system import fleet_system
 from rosprivacy.settings import Settings
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from turtlebot import POLICY, labels_of
 
 from rosprivacy.analysis.findings.findings import analyse
 from rosprivacy.analysis.findings.ledger import ledger
-from rosprivacy.robot_system import answer_robot
+from rosprivacy.reading.robot_system import answer_robot
 from rosprivacy.settings import Settings
 
 if TYPE_CHECKING:

@@ -17,7 +17,7 @@ from turtlebot import POLICY, chosen_categories, labels_of
 
 from rosprivacy.analysis.findings.findings import analyse
 from rosprivacy.analysis.findings.reliance import reliances
-from rosprivacy.robot_system import answer_robot
+from rosprivacy.reading.robot_system import answer_robot
 from rosprivacy.settings import Settings
 
 if TYPE_CHECKING:

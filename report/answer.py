@@ -123,7 +123,7 @@ class Answer:
             questions=tuple(q for q in row.questions if q[0].robot not in beside),
         )
 
-    @property
+    @cached_property
     def review_order(self) -> dict[tuple[str, str, str, str], Behind]:
         """Where data comes to each open element from, and what stands behind it."""
         return review_order(self.analysis)

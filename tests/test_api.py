@@ -348,3 +348,33 @@ def test_what_cannot_be_replaced_is_an_error(care: rosprivacy.Result) -> None:
     for change in (fleet.with_labels, partial(fleet.with_entry, "nodes", "/camera", "conduit")):
         with pytest.raises(rosprivacy.InputError, match="of a fleet or a database labels are not replaced; change"):
             change()
+
+
+# ---------------------------------------------------------------- suggestions
+
+
+def test_what_is_suggested_is_what_the_command_says(cli: Cli) -> None:
+    told = rosprivacy.suggest(str(POLICY), str(LABELS)).document()
+    assert told["suggestions"]
+    assert told == json.loads(cli("suggest", POLICY, "-l", LABELS, "-f", "json").stdout)
+    fleet = ROOT / "examples" / "fleet" / "fleet.yaml"
+    told = rosprivacy.suggest_fleet(fleet).document()
+    assert told == json.loads(cli("suggest", "--fleet", fleet, "-f", "json").stdout)
+
+
+def test_what_labels_from_memory_say_is_not_suggested_again() -> None:
+    def asked(labels: rosprivacy.Labels | str) -> set[str]:
+        found: rosprivacy.Suggested = rosprivacy.suggest(POLICY, labels)
+        return {one.label.kind for one in found.proposals if one.label.element.name == "/camera"}
+
+    assert "Video" not in asked(str(LABELS))
+    said = rosprivacy.parse_labels({"labels": 1, "nodes": {"/camera": {"source": ["PersonPointCloud"]}}})
+    assert "Video" in asked(said)
+    assert "PersonPointCloud" not in asked(said)
+
+
+def test_rules_that_cannot_be_read_are_errors_of_their_kind(tmp_path: Path) -> None:
+    (tmp_path / "own.yaml").write_text("package: 1\n", "utf-8")
+    for problem, named in (("no 'nodes'", {"packages": tmp_path / "own.yaml"}), ("not found", {"rules": "no.yaml"})):
+        with pytest.raises(rosprivacy.InputErrors, match=problem):
+            rosprivacy.suggest(POLICY, LABELS, **named)

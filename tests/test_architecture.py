@@ -62,6 +62,7 @@ OF_ITS_OWN = {  # modules that touch files in another way, and why none of these
     "report/compare/earlier.py": "notes what it reads",
     "report/atomic.py": "the one writer",
     "ingest/doors/zenoh_door.py": "opens a session, no file",
+    "ingest/language_model/model_server.py": "opens a connection, no file",
     "ingest/policies/policy_xml.py": "asks xinclude.py to open",
     "ingest/observe/earlier_files.py": "asks xinclude.py to open",
     "ingest/lint/include_rules.py": "asks xinclude.py to open what a policy was read from",
@@ -72,9 +73,13 @@ OF_ITS_OWN = {  # modules that touch files in another way, and why none of these
     "queries/library.py": "what is shipped",
     "report/compare/validity.py": "what is shipped",
     "ingest/policies/saved_graph.py": "what is shipped; bounded_file.py reads",
+    "src/rosprivacy/api.py": "begins a session, no file",
+    "src/rosprivacy/cli/explore.py": "begins a session, no file",
+    "src/rosprivacy/explorer/web/application.py": "what is shipped",
+    "src/rosprivacy/explorer/journal.py": "journals of sessions, in the user's state folder",
     "src/rosprivacy/cli/own_error.py": "the report of an error, a new file",
     "ontology/cache.py": "the cache of categories",
-    "src/rosprivacy/watching.py": "a policy in a folder of its own, gone at once",
+    "src/rosprivacy/running/watching.py": "a policy in a folder of its own, gone at once",
     "report/pictures/graphviz_worker.py": "a process that draws, with pipes only",
     "src/rosprivacy/cli/diff.py": "looks how a file begins; what then reads it notes it",
     "src/rosprivacy/cli/output.py": "the null device, when standard output is gone",
@@ -151,7 +156,7 @@ def test_a_start_imports_few_modules_and_makes_few_dataclasses() -> None:
     for _ in range(2):  # the first run writes the cache of the ontology
         done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
     modules, dataclasses = map(int, done.stdout.splitlines()[-1].split())
-    assert modules <= 190  # 179 when this was written
+    assert modules <= 195  # 191 when this was written
     assert dataclasses <= 40  # 121 before, 36 then
 
 

@@ -44,7 +44,7 @@ COMMAND_LINE = ROOT / "docs" / "command-line.md"
 DATABASE = ROOT / "docs" / "database.md"
 LINT = ROOT / "docs" / "lint.md"
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md"]
-NEEDS_SERVER = ("load", "query", "db")  # their tests are those of the database
+NEEDS_SERVER = ("load", "query", "db", "explore")  # their tests are those of the database; the last is one itself
 SECURITY = ROOT / "docs" / "security.md"
 PAGES.append(ROOT / "SECURITY.md")
 
@@ -183,6 +183,8 @@ def house() -> str:
         for _, wing, below in ladder:
             if wing and (folder / wing / "__init__.py").is_file():
                 rows.append(house_row(folder / wing, f"of its room: {', '.join(below) or 'no other wing'}"))
+                inner = sorted(file.parent for file in (folder / wing).glob("*/__init__.py"))
+                rows += [house_row(one, "as its wing") for one in inner]
     return "\n".join(["| folder | what it is | may import |", "| --- | --- | --- |", *rows, ""])
 
 

@@ -10,7 +10,7 @@ import pytest
 
 import rosprivacy
 from rosprivacy.analysis.model import ACCESS_GAP
-from rosprivacy.granted import read_granted
+from rosprivacy.reading.granted import read_granted
 from rosprivacy.settings import Settings
 from tests.helpers.command import cli
 from tests.helpers.keystores import Keystore, governance, grant, permissions, rule, topic_rule

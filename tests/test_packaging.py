@@ -29,6 +29,9 @@ def test_the_rooms_import_from_the_package_and_bring_their_data() -> None:
     assert files("rosprivacy.ingest.labels").joinpath("standard.yaml").is_file()
     assert files("rosprivacy.queries").joinpath("leak-paths.cypher").is_file()
     assert files("rosprivacy.report.page").joinpath("templates", "report.html.j2").is_file()
+    assert files("rosprivacy.explorer.web").joinpath("templates", "page.html.j2").is_file()
+    assert files("rosprivacy.explorer.web").joinpath("static", "explore.js").is_file()
+    assert files("rosprivacy.explorer.web").joinpath("static", "review.css").is_file()
     assert files("rosprivacy.report.rdf").joinpath("findings.shapes.ttl").is_file()
 
 

@@ -15,12 +15,12 @@ from rosprivacy.ingest.types.type_table import excluded, read_table
 from rosprivacy.ontology.iris import STORED
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.private_neo4j import connection
+from rosprivacy.reading.robot_system import robot_of
+from rosprivacy.reading.stored_system import answer_stored
 from rosprivacy.report.pictures import views
 from rosprivacy.report.pictures.dot import dot
 from rosprivacy.report.terminal.why_not import lines as why_not_lines
-from rosprivacy.robot_system import robot_of
 from rosprivacy.settings import Settings
-from rosprivacy.stored_system import answer_stored
 from tests.helpers.fleet_files import policy
 
 if TYPE_CHECKING:

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from rosprivacy.running.watching import Watch
 from rosprivacy.settings import Settings
-from rosprivacy.watching import Watch
 from tests.helpers.observed import endpoint, saw
 
 if TYPE_CHECKING:

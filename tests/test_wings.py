@@ -24,7 +24,7 @@ SAME_PART = {
         "report/terminal",
     },  # the answer about one system: keys, document, lines
     "answer": {"analysis", "report"},  # the answer, and the one that every format is made of
-    "bags": {"", "report/contract"},  # the answer about bags, and its keys
+    "bags": {"recordings", "report/contract"},  # the answer about bags, and its keys
     "categories": {"cli", "report/terminal"},  # the command, and what it prints
     "decisions": {"analysis", "report/document"},  # what they mean, and how the document tells them
     "findings": {"analysis/findings", "report/rdf"},  # findings, and findings as RDF
@@ -44,6 +44,7 @@ SAME_PART = {
     "non_ros": {"analysis", "report/document", "report/page"},  # what is told of non-ROS elements
     "robots": {"report", "report/sarif"},  # which robots a finding stands for, in words and in SARIF
     "why_not": {"analysis/findings", "cli", "report/document", "report/terminal"},  # the question, and its answer
+    "session": {"explorer", "spark"},  # what lasts from its begin to its end: of a person, and of a cluster
     "typed_channels": {"report/page", "report/rdf"},  # types of channels, as rows and as triples
     "unknown_ends": {"analysis/findings", "report/terminal"},  # what nobody knows the end of, and how it is told
 }
@@ -69,7 +70,7 @@ def all_imports() -> Mapping[str, frozenset[str]]:
 
 
 def room_and_wing(module: str) -> tuple[str, str]:
-    parts = module.split(".")[1:]
+    parts = module.split(".")[1:] or ["__init__"]
     room = parts.pop(0) if parts and parts[0] in ROOMS else "rosprivacy"
     package = MODULES[module].name == "__init__.py"
     wing = parts[0] if len(parts) > 1 or (package and parts) or (parts and parts[0] in WINGS[room]) else ""

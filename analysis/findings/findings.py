@@ -14,7 +14,7 @@ from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
-from rosprivacy.analysis.answer import Analysis, Carried, Finding, Step, Verdict
+from rosprivacy.analysis.answer import Analysis, Carried, Finding, Verdict
 from rosprivacy.analysis.bounds import BOUNDS, Tally
 from rosprivacy.analysis.case import Case
 from rosprivacy.analysis.findings.arrival import shown_arrivals
@@ -23,6 +23,7 @@ from rosprivacy.analysis.findings.grounds import grounds, lacking
 from rosprivacy.analysis.findings.open_questions import open_questions
 from rosprivacy.analysis.findings.paths_of_source import PathsOfSource
 from rosprivacy.analysis.findings.unknown_ends import unknown_ends
+from rosprivacy.analysis.findings.witness import witness_of
 from rosprivacy.analysis.kernel import spreading, standard_channels
 from rosprivacy.analysis.kernel.bits import bits_of
 from rosprivacy.analysis.kernel.search import START, Search, path_to, present, search
@@ -60,6 +61,9 @@ class Options(NamedTuple):
         ``witness``: no further paths; ``disjoint``: paths that share no flow; ``all``: simple paths.
     max_paths
         Bound on further paths per finding.
+    count_paths
+        Whether paths that share no flow are counted: most of the work in a large system. If not, no further ones are
+        listed either, and all else is the same.
     accepts
         Whether a person has accepted that a category of a source reaches a leak, in one form; such a leak hides
         nothing that lies behind it (rule S10).
@@ -77,6 +81,7 @@ class Options(NamedTuple):
     categories: Collection[str] | None = None
     paths: str = Paths.witness
     max_paths: int = MAX_PATHS
+    count_paths: bool = True
     accepts: Callable[[Case], bool] | None = None
     choose: Callable[[Spread, Sequence[Concern], int], Mapping[int, AbstractSet[Chosen]]] | None = None
     today: str = ""
@@ -263,12 +268,14 @@ def _findings_of(
                 dismissed = chosen is whole and concern.kind == DISCLOSURE
                 finding = _finding(net, chosen, source, leak, bit, concern, accepted, dismissed=dismissed)
                 finding = _beside(finding, options) if beside else finding
-                if len(finding.witness) > 1 and work.paths.met:
+                if not options.count_paths:
+                    finding = replace(finding, number_of_paths=None)
+                elif len(finding.witness) > 1 and work.paths.met:
                     work.left_out += 1
                     finding = replace(finding, bounded=options.paths != Paths.witness)
                 elif len(finding.witness) > 1:
                     more = paths.to(leak, i, chosen, stop)
-                    finding = replace(finding, disjoint_paths=more.disjoint, paths=more.paths, bounded=more.bounded)
+                    finding = replace(finding, number_of_paths=more.disjoint, paths=more.paths, bounded=more.bounded)
                 yield leak, i, finding
 
 
@@ -329,7 +336,7 @@ def _finding(
     path = [(START, source, bit)] if own else path_to(net, reach, leak, bit)
     through = _other_leaks(spread, path, i, accepted)
     category = spread.categories[i]
-    shown, steps = _shown(net, path)
+    witness = witness_of(net, path)
     return Finding(
         id=finding_id(category, elements[source], elements[leak], concern.kind),
         kind=concern.kind,
@@ -337,9 +344,9 @@ def _finding(
         pseudonymised=spread.bits.is_pseudonymised(bit),
         source=elements[source],
         leak=elements[leak],
-        witness=shown,
-        steps=steps,
-        disjoint_paths=1,
+        witness=witness.elements,
+        steps=witness.steps,
+        number_of_paths=1,
         through=tuple(elements[v] for v in dict.fromkeys(through)) if dismissed else (),
         dismissed=dismissed,
         why=concern.reasons.get((leak, category)),
@@ -368,21 +375,6 @@ def finding_id(category: str, source: Element, leak: Element, kind: str = DISCLO
     more += [*([leak.leg] if leak.leg else []), *leak.without]
     parts = [*more, category, *source.identity, *leak.identity]
     return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:16]
-
-
-def _shown(net: Net, path: list[tuple[int, int, int]]) -> tuple[tuple[Element, ...], tuple[Step, ...]]:
-    """Elements and steps of a path; the two sides of one wildcard are one element to the reader."""
-    graph, categories, bits = net.spread.graph, net.spread.categories, net.spread.bits
-    elements = [graph.elements[path[0][1]]]
-    steps: list[Step] = []
-    for index, vertex, bit in path[1:]:
-        flow, element = graph.flows[index], graph.elements[vertex]
-        if element.shown_as == elements[-1].shown_as:
-            continue
-        form = categories[bits.category(bit)], bits.is_pseudonymised(bit)
-        steps.append(Step(elements[-1], element, flow.role, *form, flow.grants))
-        elements.append(element)
-    return tuple(elements), tuple(steps)
 
 
 def _lacking(lacks: str, options: Options, spread: Spread) -> tuple[Diagnostic, ...]:

@@ -10,7 +10,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.answer import OpenQuestion
-from rosprivacy.analysis.kernel.search import present, search
+from rosprivacy.analysis.kernel.search import from_sources, present, search
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
@@ -52,9 +52,8 @@ def open_questions(net: Net, mask: int, unknown: Mapping[int, tuple[str, ...]] =
     uncovered = open_bits(spread, unknown)
     if not uncovered:
         return ()
-    sources = [vertex for vertex in spread.facts if spread.begins(vertex)]
-    nearest = search(net, sources, spread.all_bits, {})
-    first = _first(net, sources, uncovered)
+    _, nearest = from_sources(spread)
+    first = _first(net, nearest.begun, uncovered)
     merged: dict[tuple[str, str, str, str], OpenQuestion] = {}
     names = {bits: spread.names(bits & mask) for bits in set(uncovered.values())}
     for vertex, everything in sorted(uncovered.items()):

@@ -9,15 +9,16 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.kernel.states import Net
 from rosprivacy.analysis.many_flows import number
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from rosprivacy.analysis.kernel.spread import Spread
-    from rosprivacy.analysis.kernel.states import Net
 
 START = -1
 
@@ -130,6 +131,21 @@ def search(net: Net, starts: Iterable[int], allowed: int, stop: Mapping[int, int
         for vertex in sorted(read):
             _pass_on(spread, reach, vertex, read[vertex], allowed, stop.get(vertex, 0), leaving)
     return reach
+
+
+@lru_cache(maxsize=1)  # what is open, a page and its picture ask the same of one answer
+def from_sources(spread: Spread) -> tuple[Net, Search]:
+    """Search from all sources, past every leak; only of a spread that is whole, since the answer is kept.
+
+    >>> from rosprivacy.analysis.example import ARCHIVE, factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> carried = spread(*factory())
+    >>> _, reach = from_sources(carried)
+    >>> reach.level(ARCHIVE, carried.both("FaceTemplate"))
+    4
+    """
+    net = Net.of(spread)
+    return net, search(net, [vertex for vertex in spread.facts if spread.begins(vertex)], spread.all_bits, {})
 
 
 def _across_sides(net: Net, reach: Search, level: int, leaving: Mapping[int, int]) -> dict[int, int]:

@@ -74,11 +74,14 @@ def _matches(graph: FlowGraph, packages: Iterable[Package]) -> Iterator[_Match]:
                     made_up.append((name, (package, node)))
                 else:
                     named[name].append((package, node))
+    of_name: dict[str, list[tuple[Package, PackageNode]]] = {}
     for vertex, element in enumerate(graph.elements):
         if element.is_node:
             base = element.name.rpartition("/")[2]
-            more = [pair for name, pair in made_up if fnmatchcase(base, name)]
-            for package, node in (*named.get(base, ()), *more):
+            if base not in of_name:  # robots have nodes of the same names
+                more = [pair for name, pair in made_up if fnmatchcase(base, name)]
+                of_name[base] = [*named.get(base, ()), *more]
+            for package, node in of_name[base]:
                 yield _Match(vertex, package, node)
 
 
@@ -90,8 +93,10 @@ def _channels(graph: FlowGraph, types: Mapping[int, tuple[MessageType, ...]], wa
     flows, _ = parted(graph.flows)
     for _, flow in flows:
         for vertex, channel in ((flow.source, flow.target), (flow.target, flow.source)):
+            if vertex not in wanted:
+                continue
             element = graph.elements[channel]
-            if vertex in wanted and element.is_channel and not element.pattern:
+            if element.is_channel and not element.pattern:
                 known = found[vertex][element.kind, flow.role]
                 seen = frozenset(one.name for one in types.get(channel, ()))
                 known[element.name] = known.get(element.name, frozenset()) | seen
@@ -127,11 +132,51 @@ def _all_typed(channels: Channels) -> bool:
 
 
 def _confirmed(interface: Interface, base: str, channels: Channels) -> bool:
-    name = interface.name.removeprefix("/")
-    parts = (f"{base}/{name[2:]}" if name.startswith("~/") else name).split("/")
     for channel, types in channels.get(USES[interface.use], {}).items():
-        last = channel.split("/")[1:][-len(parts) :]
-        same = len(last) == len(parts) and all(map(fnmatchcase, last, parts))
-        if same and (not types or not interface.type or interface.type in types):
+        if is_called(interface, base, channel) and (not types or not interface.type or interface.type in types):
             return True
     return False
+
+
+def is_called(interface: Interface, base: str, channel: str) -> bool:
+    """Return whether a channel of a node is called like an interface, by the end of its name.
+
+    Parameters
+    ----------
+    base
+        The name of the node without namespace.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.suggesting.ros_package import Interface
+    >>> [is_called(Interface("replies", "~/map"), "server", name) for name in ("/home/server/map", "/map")]
+    [True, False]
+    """
+    name = interface.name.removeprefix("/")
+    parts = (f"{base}/{name[2:]}" if name.startswith("~/") else name).split("/")
+    last = channel.split("/")[1:][-len(parts) :]
+    return last == parts or (len(last) == len(parts) and all(map(fnmatchcase, last, parts)))
+
+
+def recognised(
+    graph: FlowGraph, types: Mapping[int, tuple[MessageType, ...]], packages: Sequence[Package]
+) -> Iterator[tuple[int, Package, PackageNode]]:
+    """Yield the vertices of nodes that have the name of a package's node, and at least half of its interfaces.
+
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.model import Place
+    >>> from rosprivacy.analysis.suggesting.ros_package import Interface, Package, PackageNode, Source
+    >>> graph, *_ = factory()
+    >>> nodes = [PackageNode(("camera",), (Interface("publishes", name),), ()) for name in ("video", "sound")]
+    >>> said = [(Source("a page", "2026-11-23", "1.0"),), Place("camera.yaml", 1)]
+    >>> packages = [Package(f"a {node.interfaces[0].name}", "", said[0], (node,), said[1]) for node in nodes]
+    >>> [(graph.elements[vertex].name, package.name) for vertex, package, _ in recognised(graph, {}, packages)]
+    [('/camera', 'a video')]
+    """
+    found = tuple(_matches(graph, packages))
+    channels = _channels(graph, types, {match.vertex for match in found})
+    for match in found:
+        base = graph.elements[match.vertex].name.rpartition("/")[2]
+        seen = sum(_confirmed(one, base, channels[match.vertex]) for one in match.node.interfaces)
+        if match.node.interfaces and 2 * seen >= len(match.node.interfaces):
+            yield match.vertex, match.package, match.node

@@ -5,7 +5,8 @@
    verbs, nor of a kind that the types cannot carry, nor where the types are known and suggest nothing, unless what the
    name says can have any type.
 3. Where the name says a narrower kind of what the type says, the type says that, too: both agree.
-4. Where the name says that it is something else (a depth image), what the type says of that (video) is ``may``.
+4. Where the name says that it is something else (a depth image), what the type says of that (video) is ``may``. If
+   the type itself leaves open which of both it is (a place of a person or of the robot), the name says it.
 """
 
 from __future__ import annotations
@@ -93,6 +94,41 @@ def cannot_carry(kind: str, element: Element, types: Sequence[str], rules: Rules
     return bool(types) and all(_excludes(kind, (interface_of(name), element.leg), rules) for name in types)
 
 
+def no_leg_carries(kind: str, type_: str, legs: Iterable[str], rules: Rules) -> bool:
+    """Return whether a type is not made for a kind, in none of its legs.
+
+    It excludes the kind, or suggests other kinds. Where the table limits one leg and not another, the other has a text
+    or a field that can carry anything.
+
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.suggesting.example_names import NAMES
+    >>> rules = Rules({("a/msg/Ids", ""): ()}, {}, NAMES, factory()[2])
+    >>> [no_leg_carries("Video", name, [""], rules) for name in ("a/msg/Ids", "a/msg/Other")]
+    [True, False]
+    """
+    name = interface_of(type_)
+    keys = [(name, leg) for leg in legs]
+    limited = [key in rules.limits and kind in rules.limits[key].kinds for key in keys]
+    return all(_excludes(kind, key, rules) for key in keys) and (all(limited) or not any(limited))
+
+
+def suggests_nothing(kind: str, type_: str, legs: Iterable[str], rules: Rules) -> bool:
+    """Return whether the table says of a type, in all legs, that it suggests no kind at all, or cannot carry this one.
+
+    A type that suggests another kind is not enough: in a map there is what a scanner saw.
+
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.suggesting.example_names import NAMES
+    >>> rules = Rules({("a/msg/Ids", ""): ()}, {}, NAMES, factory()[2])
+    >>> [suggests_nothing("Video", name, [""], rules) for name in ("a/msg/Ids", "a/msg/Other")]
+    [True, False]
+    """
+    keys = [(interface_of(type_), leg) for leg in legs]
+    return all(
+        rules.suggestions.get(key) == () or (key in rules.limits and kind in rules.limits[key].kinds) for key in keys
+    )
+
+
 def _excludes(kind: str, key: Key, rules: Rules) -> bool:
     limit = rules.limits.get(key)
     if limit and kind in limit.kinds:
@@ -102,13 +138,18 @@ def _excludes(kind: str, key: Key, rules: Rules) -> bool:
 
 
 def _clues(element: Element, types: Mapping[str, Place], rules: Rules) -> tuple[Clue, ...]:
-    by_type = [clue for name, place in sorted(types.items()) for clue in _by_type(name, place, element, rules)]
     spoken = of_topic(element.name, rules.names) if element.kind == "topic" else None
-    nothing = types and not by_type and all((interface_of(n), "") in rules.suggestions for n in types)
+    if not types:
+        return tuple(dict.fromkeys(_by_name(spoken, element))) if spoken else ()
+    by_type = [clue for name, place in sorted(types.items()) for clue in _by_type(name, place, element, rules)]
+    nothing = not by_type and all((interface_of(n), "") in rules.suggestions for n in types)
     if spoken is None or (nothing and not spoken.rule.any_type):
         return tuple(dict.fromkeys(by_type))
     by_name = [clue for clue in _by_name(spoken, element) if not _limited(clue.kind, types, rules)]
     kinds = {clue.kind for clue in by_name}
+    if any(clue.kind in kinds for clue in by_type):
+        others = spoken.rule.instead_of
+        by_type = [one for one in by_type if one.kind not in others or one.confidence is not Confidence.MAY]
     joined = [one for clue in by_type for one in _beside(clue, kinds, spoken if kinds else None, rules)]
     return tuple(dict.fromkeys([*joined, *by_name]))
 

@@ -14,7 +14,8 @@ TAKING_AWAY = frozenset([SANITIZER, MUNDANE, NEVER])  # a wrong one can hide a l
 HIDING = TAKING_AWAY | {CONDUIT}  # or that nobody looked
 OF_NODES = frozenset([SOURCE, LEAK, DERIVATION, SANITIZER, CONDUIT])  # the others are said of channels
 CODE, PACKAGE, TYPE, NAMED, DATA_FLOW, NEIGHBOUR = "code", "package", "type", "name", "data-flow", "neighbour"
-GROUNDS = (CODE, PACKAGE, TYPE, NAMED, DATA_FLOW, NEIGHBOUR)  # what evidence comes from, in the order of reasons
+MODEL = "model"  # a language model, which read names and types; it makes nothing surer than may
+GROUNDS = (CODE, PACKAGE, TYPE, NAMED, DATA_FLOW, NEIGHBOUR, MODEL)  # what evidence comes from, in the order of reasons
 INDEPENDENT = frozenset([CODE, TYPE, NAMED])  # the others know types and names, or are drawn from them
 
 
@@ -54,6 +55,9 @@ class Evidence(NamedTuple):
         shown as it is, so whoever prints it makes it harmless.
     place
         Of the rule, or the line of code.
+    family
+        Of what says that a channel is made for other things than any kind: the family of its types, or the package that
+        knows them. Of channels of one family it can be said in one list; empty if it is for each by itself.
     """
 
     label: Label
@@ -61,6 +65,7 @@ class Evidence(NamedTuple):
     confidence: Confidence
     reason: str
     place: Place
+    family: str = ""
 
 
 class Proposal(NamedTuple):

@@ -67,10 +67,16 @@ class NameRules(NamedTuple):
         Categories of which a type that says no more than ``may`` makes no source by itself.
     wanted
         Phrases: what a topic with them last carries is wished, such as ``goal_pose``, and was not measured.
+    commanding
+        Words: a topic that begins with one in its last part carries a command, such as ``cmd_audio``.
     reworked
-        Words: a topic with one of them in its last part carries what somebody made of other data, such as ``debug``.
+        Words: a topic with one of them carries what somebody made of other data, such as ``debug``.
+    reworking
+        Words: a node with one of them in its name works on what others bring in, such as ``detector``.
     simulated
-        Words: a node with one of them in its name brings in what nobody measured.
+        Words: a node or topic with one of them in its name stands for what nobody measured.
+    understood
+        Words: a topic with one of them carries what somebody wants, where its writer reads what somebody said.
     """
 
     carries: Mapping[Phrase, NameRule]
@@ -83,8 +89,11 @@ class NameRules(NamedTuple):
     computed: frozenset[str] = frozenset()
     not_by_type: frozenset[str] = frozenset()
     wanted: frozenset[Phrase] = frozenset()
+    commanding: frozenset[str] = frozenset()
     reworked: frozenset[str] = frozenset()
+    reworking: frozenset[str] = frozenset()
     simulated: frozenset[str] = frozenset()
+    understood: frozenset[str] = frozenset()
 
 
 class Spoken(NamedTuple):
@@ -113,11 +122,26 @@ def of_topic(name: str, rules: NameRules) -> Spoken | None:
     >>> [said and (said.rule.kinds, said.words) for said in (of_topic(name, NAMES) for name in names)]
     [(('Video',), ('image',)), (('DepthImage',), ('depth',)), None]
     """
-    parts = [words(part) for part in name.split("/")]
-    for part in reversed(parts):
-        if not set(part) <= rules.neutral:
-            return _instead(_last(part, rules.carries, rules.silent), parts, rules)
+    parts = name.split("/")[::-1]
+    for part in map(words, parts):
+        if not rules.neutral.issuperset(part):
+            spoken = _last(part, rules.carries, rules.silent)
+            commands = spoken and part[0] in rules.commanding and not spoken.rule.any_type
+            return None if commands else _instead(spoken, parts, rules)
     return None
+
+
+def is_silent(name: str, rules: NameRules) -> bool:
+    """Return whether a topic is called like a command or a state of the machine.
+
+    >>> from rosprivacy.analysis.suggesting.example_names import NAMES
+    >>> [is_silent(name, NAMES) for name in ("/camera/info", "/robot/cmd_vel", "/camera/image_raw", "/other")]
+    [True, True, False, False]
+    """
+    part = next((part for part in map(words, name.split("/")[::-1]) if not rules.neutral.issuperset(part)), ())
+    if not part or of_topic_nothing(name, rules):
+        return bool(part)
+    return part[0] in rules.commanding or any(phrase in rules.silent for phrase in _ending_at(part, len(part)))
 
 
 def of_topic_nothing(name: str, rules: NameRules) -> Spoken | None:
@@ -190,12 +214,12 @@ def _ending_at(part: Phrase, end: int) -> Iterator[Phrase]:
     return (part[start:end] for start in range(max(0, end - LONGEST_PHRASE), end))
 
 
-def _instead(spoken: Spoken | None, parts: Sequence[Phrase], rules: NameRules) -> Spoken | None:
+def _instead(spoken: Spoken | None, parts: Sequence[str], rules: NameRules) -> Spoken | None:
     """What another word of the name makes of what its last one says: a depth image is no video."""
     if spoken is None:
         return None
-    for part in reversed(parts):
-        for phrase in _phrases(part):
+    for part in parts:
+        for phrase in _phrases(words(part)):
             rule = rules.carries.get(phrase)
             if rule and not set(spoken.rule.kinds).isdisjoint(rule.instead_of):
                 return Spoken(rule, phrase)

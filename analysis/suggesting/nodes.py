@@ -3,17 +3,19 @@
 A source brings data in: it writes a kind that it does not read, nor makes of what it reads. A node that reads images
 and writes only identifiers derives them, and drops the images. A leak lets data out of the robot, whatever gets there.
 
-That it brings data in is in doubt, and no more than ``may``, where its name says that it simulates, and where the name
-of the topic says that somebody made it of other data (``debug_image``). Of a kind that programs work out (a pose, a
-map) the name of the topic says what goes through it, and not where it comes from: it agrees with nothing. A goal is
-where the robot shall go: who writes it is no source of where somebody is.
+That it brings data in is in doubt, and no more than ``may``, where its name says that it simulates or that it works on
+what others bring in (a detector), where the name of the topic says that somebody made it of other data
+(``debug_image``), and where it reads a topic of which nobody knows what goes through it. Of a kind that programs work
+out (a pose, a map) the name of the topic says what goes through it, and not where it comes from: it agrees with
+nothing, and no type makes its source certain. A goal is where the robot shall go: who writes it or asks for it is no
+source of where somebody is.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.model import Confidence, Method
+from rosprivacy.analysis.model import Confidence, Method, interface_of
 from rosprivacy.analysis.suggesting.carried_kinds import ANYTHING, Clue, cannot_carry
 from rosprivacy.analysis.suggesting.evidence import (
     DATA_FLOW,
@@ -26,20 +28,22 @@ from rosprivacy.analysis.suggesting.evidence import (
     Evidence,
     Label,
 )
-from rosprivacy.analysis.suggesting.name_rules import ends_with, has_word, of_node
+from rosprivacy.analysis.suggesting.name_rules import ends_with, has_word, is_silent, of_node, words
 from rosprivacy.analysis.suggesting.weighing import surer
 
+SAID, WANTED = "SpeechTranscript", "VoiceCommand"
+
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.model import Bound, Element, FlowGraph
     from rosprivacy.analysis.suggesting.carried_kinds import Rules
-    from rosprivacy.analysis.suggesting.name_rules import Spoken
+    from rosprivacy.analysis.suggesting.name_rules import NameRules, Spoken
     from rosprivacy.analysis.suggesting.traffic import Traffic
 
     Clues = Mapping[int, tuple[Clue, ...]]
     ByKind = dict[str, list[Clue]]
-    Typed = Sequence[tuple[Element, list[str]]]  # channels with the names of their types
+    Typed = Sequence[tuple[Element, Sequence[str]]]  # channels with the names of their types
 
 
 def of_nodes(graph: FlowGraph, bound: Bound, told: Traffic, clues: Clues, rules: Rules) -> Iterator[Evidence]:
@@ -66,83 +70,133 @@ def of_nodes(graph: FlowGraph, bound: Bound, told: Traffic, clues: Clues, rules:
     /camera source Video 'camera' in the name of the node: pictures
     /face_id derivation Video FaceTemplate
     """
+    names, types = rules.names, {at: [said.name for said in some] for at, some in bound.types.items()}
+    heard = {at: _of_node(some, names) for at, some in clues.items()}
+    sent = {at: _of_writer(graph.elements[at], some, names) for at, some in heard.items()}
+    unknown = _Unknown(graph, types, clues, rules)
+    brought = {at: _brought_in(graph.elements[at].name, some, names) for at, some in sent.items()}
     for vertex, element in enumerate(graph.elements):
         if not element.is_node:
             continue
         written, read = told.writes.get(vertex, ()), told.reads.get(vertex, ())
-        into = _by_kind([_of_node(clues[one], rules) for one in read if one in clues])
-        if read and (spoken := of_node(element.name, rules.names.lets_out)):
+        into = _by_kind(heard, read)
+        if read and (spoken := of_node(element.name, names.lets_out)):
             reason = f"'{'_'.join(spoken.words)}' in the name of the node: {spoken.rule.why}"
             label = Label(element, LEAK, ANYTHING)
             yield Evidence(label, NAMED, spoken.rule.confidence, reason, spoken.rule.place)
         if written:
-            typed = [(graph.elements[one], [said.name for said in bound.types.get(one, ())]) for one in written]
-            told_of = [(graph.elements[one].name, clues[one]) for one in written if one in clues]
-            carried = [(name, _of_writer(name, some, rules)) for name, some in told_of]
-            brought = _by_kind([_brought_in(element.name, name, some, rules) for name, some in carried])
-            node = _Node(element, rules, typed, _by_kind([some for _, some in carried]), brought, into)
+            typed = [(graph.elements[one], types.get(one, ())) for one in written]
+            out = _by_kind(sent, written), _by_kind(brought, written)
+            node = _Node(element, rules, typed, *out, into, unknown.reader(read))
             yield from node.outputs()
             yield from node.by_name()
+            yield from node.understood()
             yield from node.dropped()
 
 
-def _by_kind(clues: Sequence[tuple[Clue, ...]]) -> ByKind:
+def _by_kind(clues: Clues, channels: Sequence[int]) -> ByKind:
     """What channels are thought to carry; that they can carry anything says nothing of a node."""
     found: ByKind = {}
-    for some in clues:
-        for clue in some:
+    for channel in channels:
+        for clue in clues.get(channel, ()):
             if clue.kind != ANYTHING:
                 found.setdefault(clue.kind, []).append(clue)
     return found
 
 
-def _of_node(clues: tuple[Clue, ...], rules: Rules) -> tuple[Clue, ...]:
+def _of_node(clues: tuple[Clue, ...], names: NameRules) -> tuple[Clue, ...]:
     """What is thought of a topic, as far as it says something of who writes or reads it."""
-    alone = rules.names.not_by_type
+    alone = names.not_by_type
     if not any(clue.kind in alone for clue in clues):
         return clues
     alone -= {clue.kind for clue in clues if clue.ground == NAMED}
     return tuple(clue for clue in clues if clue.kind not in alone or clue.confidence is not Confidence.MAY)
 
 
-def _of_writer(topic: str, clues: tuple[Clue, ...], rules: Rules) -> tuple[Clue, ...]:
-    """What is thought of a topic, for who writes it: what a goal may carry, it does not bring in."""
-    if not ends_with(topic, rules.names.wanted):
-        return _of_node(clues, rules)
-    return tuple(clue for clue in _of_node(clues, rules) if clue.confidence is not Confidence.MAY)
+def _of_writer(channel: Element, clues: tuple[Clue, ...], names: NameRules) -> tuple[Clue, ...]:
+    """What is thought of a channel, for who writes it: what a goal or a request may carry, it does not bring in."""
+    if channel.leg != "request" and not ends_with(channel.name, names.wanted):
+        return clues
+    return tuple(clue for clue in clues if clue.confidence is not Confidence.MAY)
 
 
-def _brought_in(node: str, topic: str, clues: tuple[Clue, ...], rules: Rules) -> tuple[Clue, ...]:
+def _brought_in(topic: str, clues: tuple[Clue, ...], names: NameRules) -> tuple[Clue, ...]:
     """What is thought of a topic, as far as it says that who writes it brings it in."""
-    names = rules.names
-    if has_word(node, names.simulated) or has_word(topic, names.reworked):
-        return tuple(clue._replace(ground=DATA_FLOW, confidence=Confidence.MAY) for clue in clues)
-    return tuple(
-        clue._replace(ground=DATA_FLOW) if clue.ground == NAMED and clue.kind in names.computed else clue
-        for clue in clues
-    )
+    if any(word in names.reworked or word in names.simulated for part in topic.split("/") for word in words(part)):
+        return tuple(map(_doubtful, clues))
+    return tuple(_worked_out(clue) if clue.kind in names.computed else clue for clue in clues)
+
+
+def _worked_out(clue: Clue) -> Clue:
+    """A clue of a kind that programs work out, for a source of it."""
+    sure = Confidence.LIKELY if clue.confidence is Confidence.CERTAIN else clue.confidence
+    return clue._replace(ground=DATA_FLOW if sure is Confidence.MAY else clue.ground, confidence=sure)
+
+
+def _doubtful(clue: Clue) -> Clue:
+    return clue._replace(ground=DATA_FLOW, confidence=Confidence.MAY)
+
+
+class _Unknown:
+    """Topics of which nobody knows what goes through them, or that can carry anything; each is looked at once."""
+
+    def __init__(self, graph: FlowGraph, types: Mapping[int, Sequence[str]], clues: Clues, rules: Rules) -> None:
+        self._elements, self._types, self._clues, self._rules = graph.elements, types, clues, rules
+        self._holds: dict[int, bool] = {}
+
+    def reader(self, read: Sequence[int]) -> Callable[[], bool]:
+        """Return what tells of a node that reads some channels whether it reads one of these."""
+        return lambda: any(map(self._anything, read))
+
+    def _anything(self, channel: int) -> bool:
+        if channel not in self._holds:
+            self._holds[channel] = self._looked_at(channel)
+        return self._holds[channel]
+
+    def _looked_at(self, channel: int) -> bool:
+        element, types = self._elements[channel], self._types.get(channel, ())
+        if element.kind != "topic" or is_silent(element.name, self._rules.names):
+            return False
+        if any(clue.kind == ANYTHING for clue in self._clues.get(channel, ())):
+            return True
+        return not types or any((interface_of(name), "") not in self._rules.suggestions for name in types)
 
 
 class _Node:
     """One node: what it is thought to write, how far that speaks of a source, and what it is thought to read."""
 
     def __init__(
-        self, element: Element, rules: Rules, written: Typed, out: ByKind, brought: ByKind, into: ByKind
+        self,
+        element: Element,
+        rules: Rules,
+        written: Typed,
+        out: ByKind,
+        brought: ByKind,
+        into: ByKind,
+        reads_unknown: Callable[[], bool],
     ) -> None:
         self.element, self.rules, self.written = element, rules, written
-        self.out, self.brought, self.into = out, brought, into
+        self.out, self.brought, self.into, self.reads_unknown = out, brought, into, reads_unknown
 
     def outputs(self) -> Iterator[Evidence]:
         """Yield for each kind that is written whether the node brings it in or makes it of what it reads."""
         for kind, clues in self.out.items():
-            if self._reads(kind):
-                continue
             made_of = self._made_of(kind)
+            if self._reads(kind):
+                yield from self._made_again(kind, clues, made_of)
+                continue
             for one in made_of:
                 yield self._derived(one, kind, surest(clues))
             if not made_of:
-                for clue in self.brought[kind]:
+                for clue in map(_doubtful, self.brought[kind]) if self._in_doubt() else self.brought[kind]:
                     yield Evidence(self._label(SOURCE, kind), clue.ground, clue.confidence, clue.reason, clue.place)
+
+    def _made_again(self, kind: str, clues: Sequence[Clue], made_of: Sequence[str]) -> Iterator[Evidence]:
+        """Yield what is made of what sensors say and of the same kind: where the robot is, by a scan and its wheels."""
+        computed = self.rules.names.computed
+        for one in made_of:
+            if kind in computed and one not in computed:
+                yield self._derived(one, kind, surest(clues))._replace(confidence=Confidence.MAY)
 
     def _made_of(self, kind: str) -> list[str]:
         return [one for one in self.into if kind in self.rules.names.becomes.get(one, ())]
@@ -164,7 +218,9 @@ class _Node:
         names = self.rules.names
         spoken = of_node(self.element.name, names.brings_in, names.silent)
         for kind in spoken.rule.kinds if spoken else ():
-            if spoken and not self._reads(kind) and (spoken.rule.any_type or not self._cannot_write(kind)):
+            stays = self._stays(kind) and not self._made_of(kind)
+            able = spoken and (spoken.rule.any_type or not (self._cannot_write(kind) or stays))
+            if spoken and able and not self._reads(kind):
                 yield from self._by_its_name(kind, spoken)
 
     def _by_its_name(self, kind: str, spoken: Spoken) -> Iterator[Evidence]:
@@ -174,9 +230,21 @@ class _Node:
         for one in made_of:
             yield self._derived(one, kind, Clue(kind, NAMED, rule.confidence, reason, rule.place))
         if not made_of:
-            simulated = has_word(self.element.name, self.rules.names.simulated)
-            ground, sure = (DATA_FLOW, Confidence.MAY) if simulated else (NAMED, rule.confidence)
+            alone = kind in self.rules.names.computed or self._in_doubt()
+            ground, sure = (DATA_FLOW, Confidence.MAY) if alone else (NAMED, rule.confidence)
             yield Evidence(self._label(SOURCE, kind), ground, sure, reason, rule.place)
+
+    def understood(self) -> Iterator[Evidence]:
+        """Yield that what somebody said becomes a command, where a topic that is written is called so and can be it."""
+        names, rule = self.rules.names, self.rules.names.becomes.get(SAID, {}).get(WANTED)
+        if rule is None or SAID not in self.into or WANTED in self.out:
+            return
+        for element, types in self.written:
+            said = element.kind == "topic" and has_word(element.name, names.understood)
+            if said and not cannot_carry(WANTED, element, types, self.rules):
+                reason = f"its name, as who writes it reads {SAID}: {element.name}"
+                yield self._derived(SAID, WANTED, Clue(WANTED, NAMED, Confidence.MAY, reason, rule.place))
+                return
 
     def dropped(self) -> Iterator[Evidence]:
         """Yield the kinds that come in for sure enough and that nothing that is written is made for."""
@@ -186,6 +254,16 @@ class _Node:
                 reason = f"reads {kind} ({first.reason}), and no type of what it writes is made for it"
                 label = self._label(SANITIZER, kind)._replace(method=Method.DROP)
                 yield Evidence(label, DATA_FLOW, Confidence.MAY, reason, first.place)
+
+    def _in_doubt(self) -> bool:
+        """Whether what it writes was perhaps not measured by it, by its name or by what it reads."""
+        name, names = self.element.name, self.rules.names
+        return has_word(name, names.simulated) or has_word(name, names.reworking) or self.reads_unknown()
+
+    def _stays(self, kind: str) -> bool:
+        """Whether data seem to stay in the node: what it writes is made of them (a microphone that writes text)."""
+        writes_it = any(self.rules.related(kind, one) for one in self.out)
+        return not writes_it and any(one in self.rules.names.becomes.get(kind, ()) for one in self.out)
 
     def _reads(self, kind: str) -> bool:
         return any(self.rules.related(kind, one) for one in self.into)

@@ -1,8 +1,9 @@
 """What a person could say of elements that data reach and that nobody has reviewed (rule S11).
 
-A node there passes data on, or is an end of them: a conduit. If a person says that it lets another kind out, it may let
-this one out, too. A channel there is sensitive, since what arrives there may go through it; or it is made for other
-things than that kind, by its types or its name: never. All of it is ``may``.
+A node there passes data on: a conduit. Where no policy lets them go on, it lets them out, or is an end of them: a leak
+or a conduit, and no rule knows which. If a person says that it lets another kind out, it may let this one out, too. A
+channel there is sensitive, since what arrives there may go through it; or it is made for other things than that kind,
+by its types or its name: never. All of it is ``may``.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import Confidence, Place
-from rosprivacy.analysis.suggesting.carried_kinds import cannot_carry
+from rosprivacy.analysis.suggesting.carried_kinds import no_leg_carries, suggests_nothing
 from rosprivacy.analysis.suggesting.evidence import (
     CONDUIT,
     DATA_FLOW,
@@ -27,7 +28,7 @@ from rosprivacy.analysis.suggesting.evidence import (
 from rosprivacy.analysis.suggesting.name_rules import of_topic_nothing
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.answer import OpenQuestion
     from rosprivacy.analysis.model import Bound, Element, FlowGraph
@@ -35,9 +36,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.suggesting.traffic import Traffic
 
 FLOWS = Place("the policies", 0)  # where a reason stands that is drawn from who writes and reads what
-NOWHERE = (
-    "and no policy lets it go on: a conduit only if the node neither keeps it, nor shows it, nor sends it elsewhere"
-)
+NOWHERE = "and no policy lets it go on: a leak if the node keeps it, shows it, or sends it elsewhere, else a conduit"
 SHOWN = 3  # names in a reason
 
 
@@ -75,8 +74,10 @@ def of_open(
     ('sensitive', 'neighbour of /filter, which Video reaches')
     """
     at: dict[tuple[str, str, str, str], list[int]] = {}
+    legs: dict[tuple[str, str, str], set[str]] = {}
     for vertex, element in enumerate(graph.elements):
         at.setdefault(element.shown_as, []).append(vertex)
+        legs.setdefault(element.identity, set()).add(element.leg)
     for question in questions:
         vertices = at[question.element.shown_as]
         if question.element.is_node:
@@ -84,7 +85,7 @@ def of_open(
             let_out = sorted({kind for one in statements if one.role == LEAK for kind in one.categories})
             yield from _let_out(question, let_out) if let_out else _passed_on(question, vertices, graph, told)
         elif question.element.is_channel:
-            yield from _at_channel(question, vertices, graph, bound, told, rules)
+            yield from _at_channel(question, vertices, legs[question.element.identity], graph, bound, told, rules)
 
 
 def _let_out(question: OpenQuestion, kinds: Sequence[str]) -> Iterator[Evidence]:
@@ -97,22 +98,32 @@ def _passed_on(question: OpenQuestion, vertices: Sequence[int], graph: FlowGraph
     written = sorted({graph.elements[one].name for vertex in vertices for one in told.writes.get(vertex, ())})
     goes = f"which can go on to {_some(written)}" if written else NOWHERE
     for kind in question.categories:
-        label = Label(whole(question.element), CONDUIT, kind)
-        yield Evidence(label, DATA_FLOW, Confidence.MAY, f"it gets {kind}, {goes}", FLOWS)
+        for role in (CONDUIT,) if written else (LEAK, CONDUIT):
+            label = Label(whole(question.element), role, kind)
+            yield Evidence(label, DATA_FLOW, Confidence.MAY, f"it gets {kind}, {goes}", FLOWS)
 
 
 def _at_channel(
-    question: OpenQuestion, vertices: Sequence[int], graph: FlowGraph, bound: Bound, told: Traffic, rules: Rules
+    question: OpenQuestion,
+    vertices: Sequence[int],
+    legs: Collection[str],
+    graph: FlowGraph,
+    bound: Bound,
+    told: Traffic,
+    rules: Rules,
 ) -> Iterator[Evidence]:
+    """What is said of one leg is a label of the whole: never is proposed if no leg is made for the kind."""
     element = question.element
     types = sorted({said.name for vertex in vertices for said in bound.types.get(vertex, ())})
     nothing = of_topic_nothing(element.name, rules.names) if element.kind == "topic" else None
     writers = sorted({graph.elements[one].name for vertex in vertices for one in told.writers.get(vertex, ())})
     for kind in question.categories:
         never = Label(whole(element), NEVER, kind)
-        if cannot_carry(kind, element, types, rules):
+        if types and all(no_leg_carries(kind, name, legs, rules) for name in types):
             reason = f"type {_some(types)} of {element.name} is not made for {kind}"
-            yield Evidence(never, TYPE, Confidence.MAY, reason, _place(types, element, rules))
+            place = _place(types, element, rules)
+            family = str(place) if all(suggests_nothing(kind, name, legs, rules) for name in types) else ""
+            yield Evidence(never, TYPE, Confidence.MAY, reason, place, family)
         elif nothing:
             reason = f"'{'_'.join(nothing.words)}' is its name: {nothing.rule.why}"
             yield Evidence(never, NAMED, Confidence.MAY, reason, nothing.rule.place)

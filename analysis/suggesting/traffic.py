@@ -9,6 +9,7 @@ from collections import defaultdict
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.many_flows import parted
+from rosprivacy.analysis.model import CANNOT
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -36,7 +37,7 @@ def traffic(graph: FlowGraph, bound: Bound) -> Traffic:
     (['/video'], ['/video'], ['/face_id', '/filter'])
     """
     elements = graph.elements
-    standard = {vertex for vertex, said in bound.elements.items() if any(one.shipped for one in said)}
+    standard = standard_in(bound)
     found: list[dict[int, set[int]]] = [defaultdict(set) for _ in Traffic._fields]
     writes, reads, writers, readers = found
     for _, flow in parted(graph.flows)[0]:  # a meeting is one of channels
@@ -50,3 +51,16 @@ def traffic(graph: FlowGraph, bound: Bound) -> Traffic:
             reads[target].add(source)
             readers[source].add(target)
     return Traffic(*({at: tuple(sorted(ends)) for at, ends in sorted(one.items())} for one in found))
+
+
+def standard_in(bound: Bound) -> set[int]:
+    """Return the vertices of which a shipped file says that they are standard: nothing else decides the traffic.
+
+    >>> from rosprivacy.analysis.example import factory
+    >>> graph, bound, _ = factory()
+    >>> [graph.elements[vertex].name for vertex in standard_in(bound)]
+    ['/rosout']
+    """
+    return {
+        vertex for vertex, said in bound.elements.items() if any(one.shipped and one.role != CANNOT for one in said)
+    }

@@ -5,7 +5,7 @@ The rules, in full (docs/suggestions.md):
 1. A proposal is as sure as its surest evidence.
 2. Where two independent grounds (code, type, name) each say no more than ``may``, both together are ``likely``. Who
    wrote of a package that it ``may`` knew its types. Agreement never makes anything ``certain``: that is for one ground
-   to say.
+   to say. Of a leak it is none: a name that says cloud, and code that writes a file, speak of two ways out.
 3. What could hide a leak (sanitizer, conduit, mundane, never) is ``may``, whatever agrees; it is ``likely`` only if the
    catalogue of packages says so.
 4. What takes data away (all of these but conduit) is ``may`` also there, for a kind of which a finding is known.
@@ -21,6 +21,7 @@ from rosprivacy.analysis.suggesting.evidence import (
     GROUNDS,
     HIDING,
     INDEPENDENT,
+    LEAK,
     PACKAGE,
     ROLES,
     TAKING_AWAY,
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.suggesting.evidence import Evidence, Label
 
 _SURENESS = {confidence: place for place, confidence in enumerate(Confidence)}  # the surest first
+_PLACES = {role: place for place, role in enumerate(ROLES)}
 
 
 def proposals(evidence: Iterable[Evidence], found: Collection[str] = ()) -> tuple[Proposal, ...]:
@@ -58,9 +60,9 @@ def proposals(evidence: Iterable[Evidence], found: Collection[str] = ()) -> tupl
     >>> str(proposals([Evidence(relay, "data-flow", Confidence.LIKELY, "its types", rule)])[0].confidence)
     'may'
     """
-    of_labels: dict[Label, dict[Evidence, None]] = defaultdict(dict)
+    of_labels: dict[Label, list[Evidence]] = defaultdict(list)
     for one in evidence:
-        of_labels[one.label][one] = None
+        of_labels[one.label].append(one)
     groups = ((label, _in_order(of_labels[label])) for label in sorted(of_labels, key=_order))
     return tuple(Proposal(label, _confidence(label, reasons, found), reasons) for label, reasons in groups)
 
@@ -92,17 +94,18 @@ def _confidence(label: Label, reasons: Sequence[Evidence], found: Collection[str
         sure = any(surer(one, Confidence.MAY) for one in said) and not closes_finding(label, found)
         return Confidence.LIKELY if sure else Confidence.MAY
     surest = reasons[0].confidence
-    if surest is Confidence.MAY and len({one.ground for one in reasons} & INDEPENDENT) > 1:
+    several = len(reasons) > 1 and surest is Confidence.MAY and label.role != LEAK
+    if several and len({one.ground for one in reasons} & INDEPENDENT) > 1:
         return Confidence.LIKELY
     return surest
 
 
 def _order(label: Label) -> tuple[object, ...]:
-    return (label.element.sort_key(), ROLES.index(label.role), label.kind, label.method or "", label.to)
+    return (label.element.sort_key(), _PLACES[label.role], label.kind, label.method or "", label.to)
 
 
-def _in_order(reasons: Collection[Evidence]) -> tuple[Evidence, ...]:
-    return tuple(reasons) if len(reasons) == 1 else tuple(sorted(reasons, key=_evidence_order))
+def _in_order(reasons: Sequence[Evidence]) -> tuple[Evidence, ...]:
+    return tuple(reasons) if len(reasons) == 1 else tuple(sorted(dict.fromkeys(reasons), key=_evidence_order))
 
 
 def _evidence_order(one: Evidence) -> tuple[object, ...]:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from rosprivacy.analysis.errors import LabelError
 from rosprivacy.ingest.annotations.annotation_text import looks_like_one
 from rosprivacy.ingest.annotations.cpp_types import TypeNames
+from rosprivacy.ingest.annotations.cpp_uses import CppUses
 from rosprivacy.ingest.annotations.source_code import (
     NODE,
     NODE_CLASSES,
@@ -49,6 +50,7 @@ CLASSES = ("class_specifier", "struct_specifier")
 FUNCTIONS = ("function_definition", "lambda_expression")
 ARGUMENTS = ("argument_list", "initializer_list")
 TEXTS = ("string_literal", "raw_string_literal", "char_literal", "comment", "system_lib_string")
+NAMES = ("qualified_identifier", "type_identifier")
 SIGNS = "/*!< \t\r"  # of comments, at the beginning of a line
 NO_COMMENT = "an annotation stands in a macro or in code that cannot be read"
 ALONE = "put it on a line of its own above the call or class, or correct the code"
@@ -92,6 +94,8 @@ class _Reader:
         self.file = file
         self.data = data
         self.types = TypeNames()
+        self.used = CppUses(self.types)
+        self.parts_of_names: set[int] = set()
         self.comments: list[Comment] = []
         self.classes: list[NodeClass] = []
         self.sites: list[Site] = []
@@ -105,7 +109,11 @@ class _Reader:
             if kind == "comment":
                 self.comments += self._comment(node)
             elif kind in ("using_declaration", "alias_declaration", "namespace_alias_definition"):
-                self.types.add(kind, [text_of(child) for child in node.named_children])
+                names = [text_of(child) for child in node.named_children]
+                if any(child.type == "namespace" for child in node.children) and kind == "using_declaration":
+                    self.used.namespaces += names
+                else:
+                    self.types.add(kind, names)
             elif kind in CLASSES and node.child_by_field_name("body"):
                 self._class(node, where)
             elif kind == "field_initializer":
@@ -114,8 +122,12 @@ class _Reader:
                 self._declared(node, node.parent, where)
             elif kind == "call_expression":
                 self._call(node, where)
+                self._use_of_call(node, where)
+            elif kind in NAMES:
+                self._use_of_name(node, where)
         sites = tuple(site._replace(type=self.types.message(site.type)) for site in self.sites)
-        return Code(self.file, "c++", tuple(self.comments), tuple(self.classes), sites, tuple(self._lost()))
+        classes, lost = tuple(self.classes), tuple(self._lost())
+        return Code(self.file, "c++", tuple(self.comments), classes, sites, lost, self.used.uses())
 
     def _comment(self, node: Node) -> Iterator[Comment]:
         before = self.data[: node.start_byte].rpartition(b"\n")[2]
@@ -185,6 +197,21 @@ class _Reader:
             self._node(arguments, statement, owner, lines, "")
         elif last in CALLS:
             self._endpoint(path, template, receiver, _arguments(arguments), (lines, statement), where)
+
+    def _use_of_name(self, node: Node, where: _Where) -> None:
+        """A name as a whole; its parts are noted, since asking each for its parent takes time for each level."""
+        if node.id not in self.parts_of_names:
+            self.used.add("::".join(_names(node)), _line(node), where.of_class)
+        if node.type == "qualified_identifier":
+            self.parts_of_names.update(child.id for child in node.named_children)
+
+    def _use_of_call(self, node: Node, where: _Where) -> None:
+        """A call of a function by its plain name; the programs and the files that calls of C open."""
+        function, arguments = node.child_by_field_name("function"), node.child_by_field_name("arguments")
+        if function is None or arguments is None or function.type not in ("identifier", "qualified_identifier"):
+            return
+        texts = [_literal(one) for one in _arguments(arguments)]
+        self.used.add_call("::".join(_names(function)), texts, _line(node), where.of_class)
 
     def _endpoint(
         self, path: list[str], template: list[Node], receiver: str, given: list[Node], at: tuple[Lines, Lines],

@@ -19,6 +19,21 @@ class TypeNames:
         elif kind != "using_declaration" and len(names) > 1:
             self.meant[names[0]] = names[-1]
 
+    def meaning(self, name: str) -> str:
+        """Return what a name stands for, by what ``using`` says of its first part.
+
+        >>> types = TypeNames()
+        >>> types.add("namespace_alias_definition", ["b", "a::c"])
+        >>> types.meaning("b::D"), types.meaning("D")
+        ('a::c::D', 'D')
+        """
+        for _ in range(STEPS):
+            head, colons, rest = name.partition("::")
+            if head not in self.meant or self.meant[head] == name:
+                break
+            name = self.meant[head] + colons + rest
+        return name
+
     def message(self, written: str) -> str:
         """Return the type in ROS's spelling; empty where the file does not say.
 
@@ -27,12 +42,7 @@ class TypeNames:
         >>> types.message("Image"), types.message("Other"), types.message("std_msgs::msg::String")
         ('sensor_msgs/msg/Image', '', 'std_msgs/msg/String')
         """
-        name = written.removeprefix("const ").strip()
-        for _ in range(STEPS):
-            head, colons, rest = name.partition("::")
-            if head not in self.meant or self.meant[head] == name:
-                break
-            name = self.meant[head] + colons + rest
+        name = self.meaning(written.removeprefix("const ").strip())
         parts = [part.strip() for part in name.replace("/", "::").split("::") if part.strip()]
         known = len(parts) >= len(("package", "msg", "Name")) and parts[1] in INTERFACES
         return "/".join(parts[:3]) if known and all(part.isidentifier() for part in parts[:3]) else ""

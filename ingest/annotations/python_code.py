@@ -13,6 +13,8 @@ import warnings
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import LabelError, shown
+from rosprivacy.ingest.annotations.python_launch import launched
+from rosprivacy.ingest.annotations.python_uses import PythonUses, imported
 from rosprivacy.ingest.annotations.source_code import (
     NODE,
     NODE_CLASSES,
@@ -83,7 +85,8 @@ def read_python(file: str, data: bytes) -> Code:
         line = (isinstance(error, SyntaxError) and error.lineno) or 1
         what = error.msg if isinstance(error, SyntaxError) else str(error) or type(error).__name__
         return Code(file, "python", problems=(LabelError(file, line, f"not Python {VERSION}: {shown(what)}", CORRECT),))
-    imports = dict(_imports(tree))
+    imports = dict(imported(tree))
+    used = PythonUses(tree, file)
     classes, sites = [], []
     for node, where in _walk(tree):
         if isinstance(node, ast.ClassDef):
@@ -92,7 +95,7 @@ def read_python(file: str, data: bytes) -> Code:
             sites.append(Site(NODE, None, lines, lines, class_owner(node.name), head=True))
         elif isinstance(node, ast.Call) and (site := _site(node, where, imports)):
             sites.append(site)
-    return Code(file, "python", comments, tuple(classes), tuple(sites))
+    return Code(file, "python", comments, tuple(classes), tuple(sites), (), used.uses(), used.units, *launched(tree))
 
 
 def _comments(text: str) -> Iterator[Comment]:
@@ -144,17 +147,6 @@ def _dotted(node: ast.AST) -> str:
         parts.append(node.attr)
         node = node.value
     return ".".join([node.id, *reversed(parts)]) if isinstance(node, ast.Name) else ""
-
-
-def _imports(tree: ast.Module) -> Iterator[tuple[str, str]]:
-    """Names and what they stand for."""
-    for node in ast.walk(tree):
-        if isinstance(node, ast.ImportFrom):
-            yield from ((alias.asname or alias.name, f"{node.module}.{alias.name}") for alias in node.names)
-        elif isinstance(node, ast.Import):
-            for alias in node.names:
-                name = alias.name if alias.asname else alias.name.partition(".")[0]
-                yield alias.asname or name, name
 
 
 def _site(call: ast.Call, where: _Where, imports: Mapping[str, str]) -> Site | None:

@@ -1,4 +1,4 @@
-"""What is read in one file of source code: comments, classes, and calls that make a node or an end of a channel.
+"""What is read in one file of source code: comments, classes, calls that make a node or an end of a channel, and uses.
 
 Made by ``python_code.py`` and ``cpp_code.py``. Nothing is run, built or guessed: what is no literal has no name.
 """
@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 NODE = "node"
 CLASS = "class "
 NODE_CLASSES = ("Node", "LifecycleNode")  # of rclpy, rclcpp, rclcpp_lifecycle, nav2_util
+LONGEST_USE = 200  # signs of a name that is used: no library has a longer one
 WRITES = ("publish", "reply", "request", "execute", "call")  # roles of what sends something into its channel
 
 
@@ -93,6 +94,45 @@ class Site(NamedTuple):
     head: bool = False
 
 
+class Use(NamedTuple):
+    """One name that code uses, as the imports of the file resolve it.
+
+    Attributes
+    ----------
+    name
+        ``cv2.VideoCapture``, ``cv::VideoCapture``, ``open(w)``; of a program that is started, ``$ espeak``; of what
+        stands in the file itself or beside it, in Python, with a dot before it: ``.camera.Camera``.
+    unit
+        The class or function, at the top of the file, that it stands in; empty outside of all.
+    """
+
+    name: str
+    line: int
+    unit: str = ""
+
+
+class Unit(NamedTuple):
+    """A class or function at the top of a file."""
+
+    name: str
+    lines: Lines
+
+
+class Launch(NamedTuple):
+    """What a launch file calls an executable: by literals; a name that is none is empty."""
+
+    package: str
+    executable: str
+    name: str
+
+
+class Script(NamedTuple):
+    """An executable of a package, and the module that is run: ``talker = demo.talker:main``."""
+
+    executable: str
+    module: str
+
+
 class Code(NamedTuple):
     """A file of source code.
 
@@ -100,6 +140,8 @@ class Code(NamedTuple):
     ----------
     language
         ``python`` or ``c++``; empty for what could not be read.
+    uses
+        What it uses of libraries, and of itself and its neighbours; each name once in a unit.
     """
 
     file: str
@@ -108,6 +150,10 @@ class Code(NamedTuple):
     classes: tuple[NodeClass, ...] = ()
     sites: tuple[Site, ...] = ()
     problems: tuple[InputError, ...] = ()
+    uses: tuple[Use, ...] = ()
+    units: tuple[Unit, ...] = ()
+    launches: tuple[Launch, ...] = ()
+    scripts: tuple[Script, ...] = ()
 
 
 def class_owner(name: str) -> str:

@@ -1,7 +1,9 @@
 """Files and folders that a user names -> the source code in them, read by its language.
 
-What a folder holds is found as policies are found (rule S11). Left out are, as colcon does it, hidden folders and
-folders with a file ``COLCON_IGNORE`` or ``AMENT_IGNORE``; and what is no Python and no C++ by its name or first line.
+What a folder holds is found as policies are found (rule S11). Left out are hidden folders, and what is no Python and no
+C++ by its name or first line. Code below what was named that is not built here, by a file ``COLCON_IGNORE`` or
+``AMENT_IGNORE``, and code of others (``third_party``, ``node_modules``, ``build`` …) are no code of the nodes: they are
+left out, and that is told.
 """
 
 from __future__ import annotations
@@ -9,9 +11,9 @@ from __future__ import annotations
 import os
 from functools import cache, partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
-from rosprivacy.analysis.errors import LabelError
+from rosprivacy.analysis.errors import LabelError, shown
 from rosprivacy.ingest.annotations.cpp_code import read_cpp
 from rosprivacy.ingest.annotations.python_code import read_python
 from rosprivacy.ingest.annotations.source_code import Code
@@ -26,21 +28,37 @@ if TYPE_CHECKING:
 PYTHON = (".py", ".pyi")
 CPP = (".c++", ".cc", ".cpp", ".cxx", ".h", ".h++", ".hh", ".hpp", ".hxx", ".inl", ".ipp", ".tpp")
 IGNORED = ("COLCON_IGNORE", "AMENT_IGNORE")
+OF_OTHERS = frozenset(
+    ["third_party", "thirdparty", "3rdparty", "vendor", "vendored", "node_modules", "site-packages", "build", "install"]
+)
 MAX_BYTES = 4 * 2**20
 FIRST_LINE = 200
 MISSING = "install the extra [code] from where rosprivacy came from"
 
 
-def read_sources(sources: Iterable[str]) -> tuple[Code, ...]:
-    """Read all source code that some files and folders hold, sorted by file.
+class Sources(NamedTuple):
+    """What was read.
 
-    What cannot be read is in the result too, with its problem.
+    Attributes
+    ----------
+    codes
+        Sorted by file; what cannot be read is among them, with its problem.
+    of_others
+        Folders with code of others, or that is not built, that were left out; sorted.
     """
+
+    codes: tuple[Code, ...]
+    of_others: tuple[str, ...]
+
+
+def read_sources(sources: Iterable[str]) -> Sources:
+    """Read all source code that some files and folders hold."""
     problems: list[InputError] = []
     files: set[str] = set()
+    of_others: set[str] = set()
     for source in sources:
         try:
-            files.update(_files(source, problems))
+            files.update(_files(source, problems, of_others))
         except (OSError, ValueError):
             problems.append(LabelError(source, 0, "cannot be a path", "correct it"))
     codes = [Code(error.file, "", problems=(error,)) for error in problems]
@@ -55,21 +73,27 @@ def read_sources(sources: Iterable[str]) -> tuple[Code, ...]:
             refused = LabelError(file, 0, f"C++ needs a library that is not installed ({error})", MISSING)
             codes += [] if lacking else [Code(file, "c++", problems=(refused,))]
             lacking = True
-    return tuple(sorted(codes, key=lambda code: code.file))
+    return Sources(tuple(sorted(codes, key=lambda code: code.file)), tuple(sorted(of_others)))
 
 
-def _files(source: str, problems: list[InputError]) -> set[str]:
+def _files(source: str, problems: list[InputError], of_others: set[str]) -> set[str]:
     found = contents(source)
     if found is None:
         if Path(source).is_file() and not _language(source):
             problems.append(LabelError(source, 0, "no Python and no C++ by its name", "name source code, or a folder"))
             return set()
         return {source}  # one that is not there is told when it is read
-    problems += [one for one in found.problems if not _left_out(source, one.file)]
-    files = {file for file in (*found.files, *found.others) if not _left_out(source, file) and _language(file)}
+    problems += [one for one in found.problems if not (_hidden(source, one.file) or _left_out(source, one.file))]
+    files = {file for file in (*found.files, *found.others) if not _hidden(source, file) and _language(file)}
+    folders = {file: _left_out(source, file) for file in files}
+    others = {folder for folder in folders.values() if folder}
     if not files:
         problems.append(LabelError(source, 0, "no Python and no C++ in it", "name the folder of a package"))
-    return files
+    elif all(folders.values()):
+        what = f"no Python and no C++ in it but what is not read as code of others: {shown(', '.join(sorted(others)))}"
+        problems.append(LabelError(source, 0, what, "name such a folder by itself to have it read"))
+    of_others |= others
+    return {file for file, folder in folders.items() if not folder}
 
 
 def _language(file: str) -> str:
@@ -88,14 +112,26 @@ def _language(file: str) -> str:
     return "python" if first.startswith(b"#!") and b"python" in first else ""
 
 
-def _left_out(source: str, file: str) -> bool:
-    """Whether a file stands in a folder, below what was named, that is left out."""
+def _hidden(source: str, file: str) -> bool:
+    """Whether a file stands in a hidden folder, below what was named, or is hidden itself."""
+    return any(part.startswith(".") and part.strip(".") for part in _below(source, file)[1])
+
+
+def _left_out(source: str, file: str) -> str:
+    """The folder, below what was named, that a file stands in and that is left out; empty if there is none."""
+    above, parts = _below(source, file)
+    for at, part in enumerate(parts[:-1]):
+        folder = str(above.joinpath(*parts[: at + 1]))
+        if part in OF_OTHERS or _ignored(folder):
+            return folder
+    return ""
+
+
+def _below(source: str, file: str) -> tuple[Path, tuple[str, ...]]:
+    """The folder that was named, and the parts of the path from there."""
     folder = source if Path(source).is_dir() else ""
     parts = Path(os.path.relpath(file, folder)).parts if folder else Path(file).parts[len(Path(source).parts) - 1 :]
-    above = Path(folder) if folder else Path(file).parents[len(parts) - 1]
-    if any(part.startswith(".") and part.strip(".") for part in parts):
-        return True
-    return any(_ignored(str(above.joinpath(*parts[:count]))) for count in range(1, len(parts)))
+    return Path(folder) if folder else Path(file).parents[len(parts) - 1], parts
 
 
 @cache

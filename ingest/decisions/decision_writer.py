@@ -16,10 +16,13 @@ from ruamel.yaml.comments import CommentedMap, CommentedSeq
 from rosprivacy.analysis.errors import DecisionError, InputError, shown
 from rosprivacy.analysis.model import Place
 from rosprivacy.ingest.decisions.decisions_file import TARGET, parse_decisions
+from rosprivacy.ingest.reading.bounded_file import read_regular
 from rosprivacy.ingest.reading.kept_yaml import FAILURES, changed, keeps_comments
+from rosprivacy.ingest.reading.yaml_values import MAX_BYTES
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
+    from pathlib import Path
 
     from rosprivacy.analysis.decisions import Decision
     from rosprivacy.ontology.vocabulary import Vocabulary
@@ -68,6 +71,26 @@ def with_decision(file: str, text: str | None, entry: Mapping[str, Any], remark:
     if not keeps_comments(old, new):
         raise _by_hand(file, "cannot be changed without losing a comment")
     return new
+
+
+def text_in(file: Path) -> str | None:
+    """Return what is in a decisions file; None if it is not there.
+
+    Raises
+    ------
+    DecisionError
+        If it cannot be read.
+    """
+    if not file.exists() and not file.is_symlink():
+        return None
+
+    def fail(line: int, problem: str, hint: str) -> InputError:
+        return DecisionError(str(file), line, problem, hint)
+
+    try:
+        return read_regular(str(file), MAX_BYTES, fail).decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise fail(1, "not UTF-8", "save the file as UTF-8") from None
 
 
 def _by_hand(file: str, problem: str) -> InputError:

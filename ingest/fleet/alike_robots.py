@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import hashlib
 from collections import Counter, defaultdict
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -26,7 +26,7 @@ from rosprivacy.ingest.policies.xinclude import stands_alone
 from rosprivacy.ingest.reading.bounded_file import contents
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Collection, Iterable
 
     from rosprivacy.analysis.model import Policy
     from rosprivacy.ingest.fleet.fleet_file import Fleet, Robot
@@ -60,6 +60,13 @@ class Alike:
         instead, step by step.
         """
         return self.robots[: 2 if self.joined else 1]
+
+    def apart(self, files: Collection[str]) -> list[Alike]:
+        """Return them in parts: together are those that read the same ones of some label files."""
+        parts: dict[object, list[Robot]] = defaultdict(list)
+        for robot in self.robots:
+            parts[tuple(file for file in (*robot.labels, *robot.own) if file in files)].append(robot)
+        return [replace(self, robots=tuple(robots)) for robots in parts.values()]
 
 
 def alike(fleet: Fleet, told_apart: Callable[[str], object] = lambda _: None) -> tuple[Alike, ...]:

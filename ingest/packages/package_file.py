@@ -35,24 +35,27 @@ CHANNEL_NAME = re.compile(r"(~/|/)?[A-Za-z0-9_*]+(/[A-Za-z0-9_*]+)*")
 DAY = re.compile(r"\d{4}-\d\d-\d\d")
 
 
-def read_package(file: str, vocabulary: Vocabulary, shown_as: str = "", bounds: Bounds = BOUNDS) -> Package:
-    """Read a file of a package.
-
-    Parameters
-    ----------
-    shown_as
-        The name of the file in messages and reasons; the path by default.
+def read_package(file: str, vocabulary: Vocabulary, bounds: Bounds = BOUNDS) -> Package:
+    """Read a user's file of a package.
 
     Raises
     ------
     InputErrors
         With every problem of the file, each a ``PackageError`` of one line.
     """
-    name = shown_as or file
     try:
-        top, data = yaml_values.read(file, partial(PackageError, name), bounds)
+        top, data = yaml_values.read(file, partial(PackageError, file), bounds)
     except InputError as error:
         raise InputErrors([error]) from None
+    return _package(file, top, data, vocabulary, bounds)
+
+
+def read_shipped(file: str, vocabulary: Vocabulary, name: str) -> Package:
+    """Read a file of the shipped catalogue, which messages and reasons call by a name."""
+    return _package(name, *yaml_values.read_shipped(file, PackageError, name), vocabulary, BOUNDS)
+
+
+def _package(name: str, top: Value, data: bytes, vocabulary: Vocabulary, bounds: Bounds) -> Package:
     reader = _Reader(name, error=PackageError, bounds=bounds, vocabulary=vocabulary)
     package = reader.document(top)
     if reader.problems or package is None:

@@ -1,26 +1,30 @@
 """Which files of packages are read: the shipped catalogue, a file or a folder, those of installed packages.
 
 In: what ``--packages`` names. Out: packages, sorted by name; a user's file stands in place of a shipped one of the same
-name. ``ament`` means ``share/<package>/rosprivacy/package.yaml`` below every prefix of ``AMENT_PREFIX_PATH``, where the
-first prefix wins, as an overlay does in ROS: the way for a vendor to ship such a file (docs/packages.md).
+name, of which only ends that the user's does not state are left (``replaced_package.py``). ``ament`` means
+``share/<package>/rosprivacy/package.yaml`` below every prefix of ``AMENT_PREFIX_PATH``, where the first prefix wins, as
+an overlay does in ROS: the way for a vendor to ship such a file (docs/packages.md).
 """
 
 from __future__ import annotations
 
 import hashlib
 import os
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import InputError, InputErrors, PackageError, shown
-from rosprivacy.ingest.packages.package_file import read_package
+from rosprivacy.ingest.packages.package_file import read_package, read_shipped
+from rosprivacy.ingest.packages.replaced_package import left_of, replacing
 from rosprivacy.ontology.vocabulary import FOLDER
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from rosprivacy.analysis.bounds import Bounds
+    from rosprivacy.analysis.model import Diagnostic
     from rosprivacy.analysis.suggesting.ros_package import Package
     from rosprivacy.ontology.vocabulary import Vocabulary
 
@@ -39,11 +43,11 @@ def catalogue(vocabulary: Vocabulary) -> tuple[Package, ...]:
     True
     """
     files = sorted((FOLDER / "packages").glob("*.yaml"))
-    return tuple(read_package(str(file), vocabulary, SHIPPED + file.name) for file in files)
+    return tuple(read_shipped(str(file), vocabulary, SHIPPED + file.name) for file in files)
 
 
 def read_packages(named: Iterable[str], vocabulary: Vocabulary, bounds: Bounds = BOUNDS) -> tuple[Package, ...]:
-    """Return the shipped packages with those of a user.
+    """Return the shipped packages with those of a user; after one of a user what is left of a shipped one of its name.
 
     Parameters
     ----------
@@ -72,8 +76,16 @@ def read_packages(named: Iterable[str], vocabulary: Vocabulary, bounds: Bounds =
         own.setdefault(package.name, package)
     if problems:
         raise InputErrors(problems)
-    known = {package.name: package for package in catalogue(vocabulary)} | own
-    return tuple(known[name] for name in sorted(known))
+    known = list(own.values())
+    for package in catalogue(vocabulary):
+        replaced = package.name in own
+        known.append(left_of(package, own[package.name], vocabulary.hierarchy) if replaced else package)
+    return tuple(sorted(known, key=lambda package: package.name))  # stable: a user's first
+
+
+def replacements(packages: Iterable[Package]) -> tuple[Diagnostic, ...]:
+    """Return a notice for each file of a user that stands in place of a shipped one; packages as they were read."""
+    return tuple(replacing(one, other) for one, other in pairwise(packages) if one.name == other.name)
 
 
 def rests_on(packages: Iterable[Package]) -> tuple[tuple[str, str], ...]:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 import re
 from dataclasses import dataclass, field
+from functools import lru_cache, partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import yaml
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 MAX_BYTES = 64 * 2**20
 _LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _RESOLVER: Any = yaml.resolver.Resolver()
+_KINDS = {"tag:yaml.org,2002:str": "text", "tag:yaml.org,2002:null": "empty"}
 _JSON_TOKEN = re.compile(r'[{}\[\]]|"(?:[^"\\]|\\.)*"|[^\s{}\[\]",:]+')
 _XML = re.compile(r"\s*<[?!A-Za-z]")
 _EMPTY = ("the file is empty", "write at least 'labels: 1'")
@@ -82,6 +84,12 @@ def read(file: str, fail: Callable[[int, str, str], InputError], bounds: Bounds 
     return parse(text, fail, bounds), data
 
 
+@lru_cache(maxsize=256)
+def read_shipped(file: str, error: type[InputError], name: str) -> tuple[Value, bytes]:
+    """Read a file that ships with the program, once in a process; ``name`` stands for it in errors. See ``read``."""
+    return read(file, partial(error, name))
+
+
 def parse(text: str, fail: Callable[[int, str, str], InputError], bounds: Bounds = BOUNDS) -> Value:
     """Read YAML or JSON text; see ``read``."""
     if not text.strip():
@@ -120,7 +128,8 @@ class Builder:
 
     def scalar(self, line: int, kind: str, text: str) -> None:
         """A scalar, or the key of a map."""
-        text = text.encode("utf-16", "surrogatepass").decode("utf-16", "replace")  # half a pair is none
+        if not text.isascii():
+            text = text.encode("utf-16", "surrogatepass").decode("utf-16", "replace")  # half a pair is none
         here = self.open[-1] if self.open else None
         if here and here.kind == "map" and here.key is None:
             if text in here.entries:
@@ -177,16 +186,16 @@ def _feed_event(event: yaml.Event, builder: Builder, fail: Callable[[int, str, s
     line = event.start_mark.line + 1 if event.start_mark else 1
     if getattr(event, "anchor", None):
         raise fail(line, "anchors and aliases are not read", "write the value out where it is used")
-    if isinstance(event, yaml.DocumentStartEvent) and builder.top is not None:
-        raise fail(line, "not YAML: a second document", "keep one")
-    if isinstance(event, yaml.ScalarEvent):
+    if isinstance(event, yaml.ScalarEvent):  # most of all events
         builder.scalar(line, _scalar_kind(event), event.value)
-    elif isinstance(event, yaml.SequenceStartEvent):
-        builder.begin(line, "list")
-    elif isinstance(event, yaml.MappingStartEvent):
-        builder.begin(line, "map")
     elif isinstance(event, yaml.CollectionEndEvent):
         builder.end()
+    elif isinstance(event, yaml.MappingStartEvent):
+        builder.begin(line, "map")
+    elif isinstance(event, yaml.SequenceStartEvent):
+        builder.begin(line, "list")
+    elif isinstance(event, yaml.DocumentStartEvent) and builder.top is not None:
+        raise fail(line, "not YAML: a second document", "keep one")
 
 
 def _scalar_kind(event: yaml.ScalarEvent) -> str:
@@ -194,7 +203,7 @@ def _scalar_kind(event: yaml.ScalarEvent) -> str:
     tag = event.tag
     if tag in (None, "!"):
         tag = _RESOLVER.resolve(yaml.ScalarNode, event.value, event.implicit)
-    return {"tag:yaml.org,2002:str": "text", "tag:yaml.org,2002:null": "empty"}.get(tag, "number")
+    return _KINDS.get(tag, "number")
 
 
 def _is_json(text: str, fail: Callable[[int, str, str], InputError]) -> bool:

@@ -4,39 +4,39 @@ In: the text of a label file with suggestions as comments. Out: the text with th
 Only the entries that they are about change; what comes out is read anew before it is given out.
 
 What takes data away (a sanitizer, never) is never accepted by its confidence, whoever says so: a finding that it would
-close may not be known yet. A person names the element, and gets it after what else is as sure. A conduit is accepted by
-its confidence if it is ``likely``, which only the catalogue of packages makes it. Neither is put beside a source or a
-leak of such data.
+close may not be known yet. A person names the element, and gets it after what else is as sure; and only where the
+policies are given as well, and no finding of such data is known, with what is accepted beside it. A conduit is accepted
+by its confidence if it is ``likely``, which only the catalogue of packages makes it. Neither is put beside a source or
+a leak of such data.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
 from ruamel.yaml.scalarstring import DoubleQuotedScalarString
 
 from rosprivacy.analysis.errors import InputErrors, LabelError, shown
-from rosprivacy.analysis.model import Confidence
-from rosprivacy.analysis.suggesting.weighing import surer
-from rosprivacy.analysis.text import blanked, counted
-from rosprivacy.analysis.written_names import literal, meant
+from rosprivacy.analysis.text import blanked
+from rosprivacy.analysis.written_names import meant
 from rosprivacy.ingest.labels.label_file import parse_labels
 from rosprivacy.ingest.labels.label_reader import SECTIONS
 from rosprivacy.ingest.labels.label_writer import NewLine, add_line, facts_of
 from rosprivacy.ingest.policies.names import covered
 from rosprivacy.ingest.reading.kept_yaml import FAILURES, changed, keeps_comments
-from rosprivacy.ingest.suggestions.comments import as_written, taken_apart, with_comments
+from rosprivacy.ingest.suggestions.choosing import BRINGS_OR_LETS_OUT, PASSES_OR_ENDS, chosen, overlap
+from rosprivacy.ingest.suggestions.comments import as_written, hides, taken_apart, with_comments
+from rosprivacy.ingest.suggestions.refusals import without_refusals
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Callable, Collection, Iterable, Sequence
 
     from rosprivacy.ingest.labels.entries import Entry
     from rosprivacy.ingest.suggestions.comments import Comment
     from rosprivacy.ontology.vocabulary import Vocabulary
-
-BRINGS_OR_LETS_OUT, PASSES_OR_ENDS = ("source", "leak"), ("conduit", "sanitizer")
+LIMITING = frozenset(["sanitizer", "never", "mundane", "only"])  # roles that take data away
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,91 +48,134 @@ class Accepted:
     remarks: tuple[str, ...]
 
 
-def accept(file: str, text: str, named: Sequence[str], who: str, day: str, vocabulary: Vocabulary) -> Accepted:
+class NewLabel(NamedTuple):
+    """One role of one element, as it is written, with a note.
+
+    Attributes
+    ----------
+    line
+        Of the suggestion that it comes from; 0 if from none.
+    """
+
+    section: str
+    name: str
+    said: dict[str, Any]
+    note: str
+    line: int = 0
+
+    @property
+    def hides(self) -> bool:
+        """Whether a wrong one could hide a leak, or that nobody has looked."""
+        return hides(self.said)
+
+
+def accept(
+    file: str,
+    text: str,
+    named: Sequence[str],
+    who: str,
+    day: str,
+    vocabulary: Vocabulary,
+    known: Callable[[str], Collection[tuple[str, str]]] | None = None,
+) -> Accepted:
     """Make labels of suggestions.
 
     Parameters
     ----------
     named
-        Confidences, of which all that are as sure or surer are meant; and names of elements, of which the surest are
-        meant, since others are often what it could be instead; of these what takes data away only when it stands alone.
+        Confidences, and names of elements; see ``chosen``.
     who, day
         For the note.
     vocabulary
         In whose words the file is written.
+    known
+        Returns the findings under a text of the file: (category, what to tell of it); None if nobody can look for any.
+        Asked only if it matters, with all that is accepted and takes nothing away.
 
     Raises
     ------
     InputErrors
-        If the file is no label file, or has comments that begin as suggestions and are none.
+        If the file is no label file, or has comments that begin as suggestions and are none; or nothing is suggested of
+        an element, or alternatives are.
     LabelError
-        If nothing is suggested of an element, or the file cannot be changed without losing something.
+        If the file cannot be changed without losing something.
+    """
+    _, comments = taken_apart(file, text)
+    chosen_ones, remarks = chosen(file, comments, named, vocabulary)
+    limiting = [one for one in chosen_ones if LIMITING & set(one.said)]
+    found = None
+    if limiting and known:
+        others = [_accepted(one, who, day) for one in chosen_ones if one not in limiting]
+        found = known(with_labels(file, text, others, vocabulary).text)
+    allowed = []
+    for one in chosen_ones:
+        refused = _closing(one, found, vocabulary) if one in limiting else ""
+        if refused:
+            remarks.append(f"{file}:{one.line}: {shown(one.name)} {refused}")
+        else:
+            allowed.append(_accepted(one, who, day))
+    done = with_labels(file, text, allowed, vocabulary)
+    return Accepted(done.text, done.count, (*remarks, *done.remarks))
+
+
+def _accepted(one: Comment, who: str, day: str) -> NewLabel:
+    note = f"accepted by {who} on {day} ({one.confidence}): {one.why}"
+    return NewLabel(one.section, one.name, one.said, note, one.line)
+
+
+def with_labels(file: str, text: str, labels: Sequence[NewLabel], vocabulary: Vocabulary) -> Accepted:
+    """Put labels into the text of a label file; suggestions in it that say the same are taken out.
+
+    Raises
+    ------
+    InputErrors
+        If the file is no label file.
+    LabelError
+        If it cannot be changed without losing something.
     """
     rest, comments = taken_apart(file, text)
     before = parse_labels(text, vocabulary, name=file).entries
     if facts_of(parse_labels(rest, vocabulary, name=file).entries) != facts_of(before):
         raise _by_hand(file, f"the suggestion of line {comments[0].line} is part of a text")
-    chosen, remarks = _chosen(file, comments, named)
-    taken: list[Comment] = []
+    rest, refusals = without_refusals(rest)
+    taken: list[NewLabel] = []
+    remarks: list[str] = []
 
     def change(top: Any) -> None:
-        for comment in chosen:
-            refused = _against(before, comment, vocabulary)
-            refused = refused or _put(top, comment, f"accepted by {who} on {day}", vocabulary)
+        for label in labels:
+            refused = _against(before, label, vocabulary) or _put(top, label, vocabulary)
             if refused:
-                remarks.append(f"{file}:{comment.line}: {shown(comment.name)} {refused}; change it by hand")
+                remarks.append(f"{file}:{label.line}: {shown(label.name)} {refused}; change it by hand")
             else:
-                taken.append(comment)
+                taken.append(label)
 
     try:
-        new = changed(rest, change) if chosen else rest
+        new = changed(rest, change) if labels else rest
     except FAILURES as error:
         raise _by_hand(file, f"cannot be changed: {shown(str(error).splitlines()[0])}") from None
     _check(file, rest, new, taken, vocabulary)
-    left = [as_written(comment) for comment in comments if comment not in taken]
-    return Accepted(with_comments(new, left), len(taken), tuple(remarks))
+    done = [(one.section, one.name, one.said) for one in taken]
+    left = [as_written(one) for one in comments if (one.section, one.name, one.said) not in done]
+    return Accepted(with_comments(new, [*refusals, *left]), len(taken), tuple(remarks))
 
 
-def _chosen(file: str, comments: Sequence[Comment], named: Sequence[str]) -> tuple[list[Comment], list[str]]:
-    """The suggestions that are accepted, in the order of the file."""
-    least = [Confidence(name) for name in named if name in tuple(Confidence)]
-    elements = {literal(name) if name.startswith("/") else name for name in named if name not in tuple(Confidence)}
-    there = {comment.name for comment in comments}
-    unknown = sorted(elements - there)
-    if unknown:
-        what = f"nothing is suggested of {', '.join(map(shown, unknown))}"
-        raise LabelError(file, 0, what, "name an element of a '# suggest:' line, or certain, likely or may")
-    chosen, by_name = [], 0
-    for comment in comments:
-        sure = any(not surer(one, comment.confidence) for one in least)
-        one_of = comment.name in elements and not any(
-            other.name == comment.name and _comes_before(other, comment) for other in comments
-        )
-        if one_of or (sure and not _needs_name(comment)):
-            chosen.append(comment)
-        elif sure:
-            by_name += 1
-    remarks = []
-    if by_name:
-        what = f"{counted(by_name, 'suggestion')} could hide a leak or what nobody looked at"
-        remarks.append(f"{file}: {what}: accept these one by one, by the name of the element")
-    return chosen, remarks
+def _closing(comment: Comment, known: Collection[tuple[str, str]] | None, vocabulary: Vocabulary) -> str:
+    """Why what takes data away is not accepted: a finding is known that it could close, or nobody has looked."""
+    if known is None:
+        hint = "name the policies as well, so that findings that it could close are known"
+        return f"would take data away; {hint}"
+    (value,) = comment.said.values()
+    closed = [told for kind, told in known if overlap(value, [kind], vocabulary) or "only" in comment.said]
+    if not closed:
+        return ""
+    return (
+        f"would take data away of which a finding is known ({shown('; '.join(closed))}); write it by hand if it is so"
+    )
 
 
-def _needs_name(comment: Comment) -> bool:
-    return comment.takes_away or (comment.hides and comment.confidence is Confidence.MAY)
-
-
-def _comes_before(other: Comment, comment: Comment) -> bool:
-    """Whether of two suggestions for an element the other is accepted first: what takes nothing away, if as sure."""
-    if other.confidence is comment.confidence:
-        return comment.takes_away and not other.takes_away
-    return surer(other.confidence, comment.confidence)
-
-
-def _put(top: Any, comment: Comment, how: str, vocabulary: Vocabulary) -> str:
+def _put(top: Any, comment: NewLabel, vocabulary: Vocabulary) -> str:
     """Write one label; return why not, if it cannot be joined to what the entry says."""
-    note = DoubleQuotedScalarString(blanked(f"{how} ({comment.confidence}): {comment.why}", "?"))
+    note = DoubleQuotedScalarString(blanked(comment.note, "?"))
     ((role, value),) = comment.said.items()
     section = _section_of(top, comment)
     if section is None:
@@ -147,7 +190,7 @@ def _put(top: Any, comment: Comment, how: str, vocabulary: Vocabulary) -> str:
     if not isinstance(entry, CommentedMap) or "absent" in entry:
         return f"is {shown(str(entry))} already"
     against = BRINGS_OR_LETS_OUT if comment.hides else PASSES_OR_ENDS if role in BRINGS_OR_LETS_OUT else ()
-    other = next((one for one in against if one in entry and _overlap(value, entry[one], vocabulary)), "")
+    other = next((one for one in against if one in entry and overlap(value, entry[one], vocabulary)), "")
     if other:
         return f"is a {other} of such data already"
     refused = _join(entry, role, value)
@@ -157,25 +200,18 @@ def _put(top: Any, comment: Comment, how: str, vocabulary: Vocabulary) -> str:
     return refused
 
 
-def _against(before: Iterable[Entry], comment: Comment, vocabulary: Vocabulary) -> str:
+def _against(before: Iterable[Entry], comment: NewLabel, vocabulary: Vocabulary) -> str:
     """Why one that hides is refused: a line, by a glob too, says that such data come in or go out there (rule S7)."""
     (value,) = comment.said.values()
     for entry in before if comment.hides else ():
         meant_too = set(SECTIONS[comment.section]) & set(entry.kinds) and covered(entry.name, [meant(comment.name)])
         for one in entry.statements if meant_too else ():
-            if one.role in BRINGS_OR_LETS_OUT and (not one.categories or _overlap(value, one.categories, vocabulary)):
+            if one.role in BRINGS_OR_LETS_OUT and (not one.categories or overlap(value, one.categories, vocabulary)):
                 return f"is a {one.role} of such data already, by line {entry.place.line}"
     return ""
 
 
-def _overlap(value: Any, other: Any, vocabulary: Vocabulary) -> bool:
-    """Whether two roles can be about the same data; where a name is not known, they can."""
-    kinds = [[vocabulary.find(str(one)) for one in ([v] if isinstance(v, str) else v)] for v in (value, other)]
-    pairs = ((a, b) for a in kinds[0] for b in kinds[1])
-    return any(not a or not b or vocabulary.hierarchy.overlap(a.name, b.name) is not None for a, b in pairs)
-
-
-def _section_of(top: Any, comment: Comment) -> Any:
+def _section_of(top: Any, comment: NewLabel) -> Any:
     """The section that has an entry of that name for elements of that kind; None if none has."""
     for name, kinds in SECTIONS.items():
         section = top.get(name)
@@ -215,7 +251,7 @@ def _flow(value: Any) -> Any:
     return value
 
 
-def _check(file: str, old: str, new: str, taken: Iterable[Comment], vocabulary: Vocabulary) -> None:
+def _check(file: str, old: str, new: str, taken: Iterable[NewLabel], vocabulary: Vocabulary) -> None:
     """Hold the new text against the old one: nothing is lost, and only the entries that are meant have changed."""
     touched = {(SECTIONS[comment.section], comment.name) for comment in taken}
 

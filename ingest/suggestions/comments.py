@@ -51,12 +51,21 @@ class Comment(NamedTuple):
     @property
     def hides(self) -> bool:
         """Whether a wrong one could hide a leak, or that nobody has looked."""
-        return not ADDING.issuperset(self.said)
+        return hides(self.said)
 
     @property
     def takes_away(self) -> bool:
         """Whether it says that data do not go on: a wrong one could hide a leak."""
         return self.hides and CONDUIT not in self.said
+
+
+def hides(said: Iterable[str]) -> bool:
+    """Return whether a wrong label of these roles could hide a leak, or that nobody has looked.
+
+    >>> hides({"leak": ["Video"]}), hides({"conduit": ["Video"]})
+    (False, True)
+    """
+    return not ADDING.issuperset(said)
 
 
 def comment_of(one: Proposal) -> str:

@@ -5,18 +5,15 @@ A phrase of a user's file stands for the same phrase of ours; of one file every 
 
 from __future__ import annotations
 
-import hashlib
 from dataclasses import dataclass, field
-from functools import partial
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import InputError, InputErrors, shown
 from rosprivacy.analysis.model import Confidence, Place
 from rosprivacy.analysis.suggesting.name_rules import LONGEST_PHRASE, NameRule, NameRules, words
-from rosprivacy.ingest.reading import yaml_values
 from rosprivacy.ingest.reading.format_reader import FileReader
-from rosprivacy.ontology.vocabulary import FOLDER
+from rosprivacy.ingest.suggestions.rule_text import read_rule_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -28,7 +25,18 @@ if TYPE_CHECKING:
 
 NAMES = "rosprivacy:names"  # the shipped file
 WITH_KINDS, WITHOUT_KINDS = ("carries", "brings_in"), ("nothing", "lets_out")
-LISTS = ("silent", "neutral", "computed", "not_by_type", "wanted", "reworked", "simulated")
+LISTS = (
+    "silent",
+    "neutral",
+    "computed",
+    "not_by_type",
+    "wanted",
+    "commanding",
+    "reworked",
+    "reworking",
+    "simulated",
+    "understood",
+)
 PARTS = ("name_rules", "version", *WITH_KINDS, *WITHOUT_KINDS, "becomes", *LISTS)
 OF_KINDS = ("kinds", "instead_of", "any_type")  # for rules that name kinds
 KEYS = ("words", "confidence", "why", "source", *OF_KINDS)
@@ -52,8 +60,11 @@ class NameFile:
     computed: frozenset[str]
     not_by_type: frozenset[str]
     wanted: frozenset[Phrase]
+    commanding: frozenset[str]
     reworked: frozenset[str]
+    reworking: frozenset[str]
     simulated: frozenset[str]
+    understood: frozenset[str]
     sections: dict[str, dict[Phrase, NameRule]]
 
 
@@ -99,8 +110,11 @@ def read_name_rules(
         computed=frozenset().union(*(one.computed for one in read)),
         not_by_type=frozenset().union(*(one.not_by_type for one in read)),
         wanted=frozenset().union(*(one.wanted for one in read)),
+        commanding=frozenset().union(*(one.commanding for one in read)),
         reworked=frozenset().union(*(one.reworked for one in read)),
+        reworking=frozenset().union(*(one.reworking for one in read)),
         simulated=frozenset().union(*(one.simulated for one in read)),
+        understood=frozenset().union(*(one.understood for one in read)),
     )
     return rules, tuple((one.file, one.sha256) for one in read)
 
@@ -112,13 +126,9 @@ def _silent(read: list[NameFile]) -> frozenset[Phrase]:
 
 
 def _read(file: str, vocabulary: Vocabulary, bounds: Bounds) -> NameFile:
-    path = str(FOLDER / "names.yaml") if file == NAMES else file
-    try:
-        top, data = yaml_values.read(path, partial(InputError, file), bounds)
-    except InputError as error:
-        raise InputErrors([error]) from None
+    top, digest = read_rule_text(file, NAMES, "names.yaml", bounds)
     reader = _Reader(file, vocabulary, error=InputError, bounds=bounds)
-    read = reader.document(top, hashlib.sha256(data).hexdigest())
+    read = reader.document(top, digest)
     if reader.problems:
         raise InputErrors(reader.problems)
     return read
@@ -153,8 +163,11 @@ class _Reader(FileReader):
             computed=frozenset(self._kinds(said, "computed")),
             not_by_type=frozenset(self._kinds(said, "not_by_type")),
             wanted=self._phrases(said, "wanted"),
+            commanding=self._words(said, "commanding"),
             reworked=self._words(said, "reworked"),
+            reworking=self._words(said, "reworking"),
             simulated=self._words(said, "simulated"),
+            understood=self._words(said, "understood"),
             sections=self.sections,
         )
 

@@ -15,7 +15,7 @@ from rosprivacy.analysis.model import Diagnostic, MessageType, Place, Severity
 from rosprivacy.analysis.text import counted
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Collection, Iterable, Mapping
 
     from rosprivacy.analysis.model import Element, FlowGraph
     from rosprivacy.ingest.types.types_file import SeenType, TypesFile
@@ -27,7 +27,7 @@ TYPES_OF_NOTHING = "types-of-nothing"
 
 
 def channel_types(
-    graph: FlowGraph, files: Iterable[TypesFile], written: Written = MappingProxyType({})
+    graph: FlowGraph, files: Collection[TypesFile], written: Written = MappingProxyType({})
 ) -> dict[int, tuple[MessageType, ...]]:
     """Return the observed types of the channels of a graph, by vertex; a wildcard has none.
 
@@ -38,6 +38,8 @@ def channel_types(
     written
         Elements that the files call otherwise -> the same under the names of the files.
     """
+    if not files:
+        return {}
     at, called = _vertices(graph, written), _Called(graph, written)
     found: dict[int, list[MessageType]] = defaultdict(list)
     for file in files:
@@ -48,9 +50,11 @@ def channel_types(
 
 
 def matching_nothing(
-    graph: FlowGraph, files: Iterable[TypesFile], written: Written = MappingProxyType({})
+    graph: FlowGraph, files: Collection[TypesFile], written: Written = MappingProxyType({})
 ) -> tuple[Diagnostic, ...]:
     """Return a notice for each file with names, of channels or of nodes, that nothing of the system is called."""
+    if not files:
+        return ()
     at = _vertices(graph, written)
     nodes = {written.get(element, element).name for element in graph.elements if not element.is_channel}
     said = []

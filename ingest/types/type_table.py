@@ -96,9 +96,11 @@ def read_table(file: str, vocabulary: Vocabulary, bounds: Bounds = BOUNDS) -> Ty
     >>> [(str(one.confidence), *one.kinds) for one in table.suggested("sensor_msgs/msg/Joy")]
     [('likely', 'OperatorInput')]
     """
-    path = str(FOLDER / "types.yaml") if file == TABLE else file
     try:
-        top, data = yaml_values.read(path, partial(TypesError, file), bounds)
+        if file == TABLE:
+            top, data = yaml_values.read_shipped(str(FOLDER / "types.yaml"), TypesError, file)
+        else:
+            top, data = yaml_values.read(file, partial(TypesError, file), bounds)
     except InputError as error:
         raise InputErrors([error]) from None
     reader = _Reader(file, error=TypesError, bounds=bounds)

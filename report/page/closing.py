@@ -82,15 +82,16 @@ def closing(index: Index, entries: Iterable[Entry], proposals: Mapping[str, Any]
         for row in last["statements"]
     }
     return Closing(
-        said=tuple(_said(last, steps, index)),
-        changes=tuple(_change(step, index) for step in steps[:SHOWN]),
+        said=tuple(proposal_told(last, steps, index)),
+        changes=tuple(change_told(step, index) for step in steps[:SHOWN]),
         more=words("z.more", n=len(steps) - SHOWN) if len(steps) > SHOWN else "",
         instead=tuple(sorted(instead)),
         stays=tuple(entry for entry in entries if stays.intersection((entry.id, *entry.others))),
     )
 
 
-def _said(last: Mapping[str, Any], steps: list[Any], index: Index) -> Iterator[str]:
+def proposal_told(last: Mapping[str, Any], steps: list[Any], index: Index) -> Iterator[str]:
+    """Yield what the changes of a proposal do together, and that they are proven."""
     words = index.words
     yield from _protect(last, index)
     if not steps:
@@ -113,7 +114,8 @@ def _protect(last: Mapping[str, Any], index: Index) -> Iterator[str]:
         yield index.words(f"z.protect.{row['cause']}", place=line(row), channels=named, removed=ended)
 
 
-def _change(step: Mapping[str, Any], index: Index) -> Proposed:
+def change_told(step: Mapping[str, Any], index: Index) -> Proposed:
+    """Return one change of a mitigation document in words."""
     places = [line(grant) for grant in step["policy"]]
     unique = tuple(dict.fromkeys(places))
     text = _TEXTS[step["kind"]](step, index)

@@ -14,7 +14,7 @@ from rosprivacy.report.pictures.looks import INK, LEAK, LINE_LOOKS, SHAPES, SHOR
 from rosprivacy.report.pictures.looks import legend as legend_of
 from rosprivacy.report.pictures.picture import PRIVACY, RECORD
 from rosprivacy.report.pictures.swatches import FRAME, PACKED, box_style, line_style, swatches
-from rosprivacy.report.pictures.wording import broken, quoted
+from rosprivacy.report.pictures.wording import LONGEST_LINE, broken, quoted
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -89,15 +89,21 @@ def _lines(texts: list[str]) -> str:
     return '"' + "\\n".join(quoted(text)[1:-1] or " " for text in texts) + '"'
 
 
-def label_lines(picture: Picture, box: Box) -> list[str]:
-    """Return what stands on a box: its name or names, the robot where there are several, and its words."""
+def label_lines(picture: Picture, box: Box, width: int = LONGEST_LINE) -> list[str]:
+    """Return what stands on a box: its name or names, the robot where there are several, and its words.
+
+    Parameters
+    ----------
+    width
+        Letters of a line of a name; names of several elements are a little longer.
+    """
     robots = len({box.robot for box in picture.boxes if box.robot}) > 1
     grouped = box.group.startswith((picture.say("pic.robot", robot=""), box.robot))
     lines = [shortened(box.robot, 28)] if robots and box.robot and not grouped else []
     if len(box.names) == 1:
-        lines += broken(box.names[0])
+        lines += broken(box.names[0], width)
     else:
-        lines += [shortened(name, 36) for name in box.names[:FOLDED_NAMES]]
+        lines += [shortened(name, width + 8) for name in box.names[:FOLDED_NAMES]]
         more = len(box.names) - FOLDED_NAMES
         lines += [picture.say("more", n=more)] if more > 0 else []
     return [*lines, *(line for word in box.words for line in wrap(shortened(word, LONGEST_WORDS), WIDEST_WORDS))]

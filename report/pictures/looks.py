@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from rosprivacy.report.pictures.picture import DRAWN, PRIVACY, RECORD, Picture
+from rosprivacy.report.pictures.picture import DRAWN, GROUP, PRIVACY, RECORD, Picture
 
 INK = "#000000"  # lines, outlines, and text on the paper
 TEXT = "#111111"  # text on a filled box
@@ -16,7 +16,7 @@ PAPER = "#ffffff"
 GRAY, PALE = "#d0d0d0", "#ffffff"
 QUIET = "#767676"
 ORANGE, SKY, GREEN, YELLOW = "#e69f00", "#56b4e9", "#009e73", "#f0e442"
-RED, PURPLE = "#d55e00", "#cc79a7"
+RED, PURPLE, BLUE = "#d55e00", "#cc79a7", "#0072b2"
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,6 +77,7 @@ SHAPES = {
     "participant": Shape(("septagon", ""), ("{{", "}}")),
     "person": Shape(("octagon", ""), ("((", "))")),
     RECORD: Shape(("note", ""), ("[", "]")),
+    GROUP: Shape(("folder", ""), ("[[", "]]")),
 }
 
 KIND_LOOKS = {
@@ -93,10 +94,11 @@ KIND_LOOKS = {
     "participant": Look("participant", YELLOW),
     "person": Look("person", YELLOW),
     RECORD: Look("other node, with its labels", PALE),
+    GROUP: Look("several elements drawn as one", PALE),
 }
 
 SOURCE, LEAK, DERIVATION, SANITIZER, END = "source", "leak", "derivation", "sanitizer", "end"
-REVIEWED, OPEN = "reviewed", "open"
+REVIEWED, OPEN, UNTOUCHED = "reviewed", "open", "untouched"
 ROLE_LOOKS = {
     SOURCE: Look("source: brings data in", SKY, width=3.0),
     LEAK: Look("leak: lets data out", RED, width=1.5, double=True),
@@ -105,12 +107,17 @@ ROLE_LOOKS = {
     REVIEWED: Look("reviewed: passes on what it gets", GRAY),
     OPEN: Look("not reviewed yet", PALE, style="dashed"),
 }
-# The privacy view leaves out what ends all data; a query can give it.
-DRAWN_ROLES = {**ROLE_LOOKS, END: Look("ends what comes to it", GREEN, width=1.5, double=True)}
+# The privacy view leaves out what ends all data, and what none gets to; a query can give the one, the explorer both.
+DRAWN_ROLES = {
+    **ROLE_LOOKS,
+    END: Look("ends what comes to it", GREEN, width=1.5, double=True),
+    UNTOUCHED: Look("carries none of it", PALE, width=0.8),
+}
 
 ALLOWED, MATCHES, DENIED = "allowed", "matches", "denied"
 CLEANED, DATA, WAY, SHORTEST, OTHER = "cleaned", "data", "way", "shortest", "other"
 BEYOND, ONWARD = "beyond", "onward"
+ASKED = "asked"
 LINE_LOOKS = {
     ALLOWED: Look("allowed, in the direction of the data", INK),
     MATCHES: Look("the wildcard covers it", INK, style="dotted"),
@@ -121,6 +128,7 @@ LINE_LOOKS = {
     SHORTEST: Look("on the shortest path to a leak", RED, width=4.5),
     BEYOND: Look("beyond the node's own profile: only its enclave allows it", PURPLE, 3.0, "dashed", head="vee"),
     ONWARD: Look("data can go here only then", PURPLE, width=1.5),
+    ASKED: Look("how data gets to what is asked about, step by step", BLUE, width=3.0),
     OTHER: Look("relationship of this type, no flow", QUIET, head="vee"),
 }
 

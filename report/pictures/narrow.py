@@ -126,11 +126,16 @@ def _as_one(some: Sequence[Box]) -> Box:
     return replace(some[0], names=tuple(n for box in some for n in box.names), types=types)
 
 
-def folded(picture: Picture) -> Picture:
+def folded(picture: Picture, apart: Collection[Key] = ()) -> Picture:
     """Return the picture with channels of one kind that have the same ends, lines and role drawn as one box.
 
     Every name is kept; the box names the first ones and how many more there are. No line goes from a wildcard to each
     name that it covers: it says how many there are.
+
+    Parameters
+    ----------
+    apart
+        Boxes that stay by themselves.
     """
     lines_kept = tuple(line for line in picture.lines if line.look != MATCHES)
     if len(lines_kept) < len(picture.lines):
@@ -142,7 +147,8 @@ def folded(picture: Picture) -> Picture:
     alike: dict[object, list[Box]] = defaultdict(list)
     for box in picture.boxes:
         same = (box.robot, box.kind, box.look, box.words, box.open, box.group, frozenset(joins[box.key]))
-        alike[same if box.is_channel and not box.pattern else box.key].append(box)
+        alone = box.pattern or box.key in apart or not box.is_channel
+        alike[box.key if alone else same].append(box)
     first = {box.key: boxes[0].key for boxes in alike.values() for box in boxes}
     boxes = tuple(_as_one(some) for some in alike.values())
     lines: dict[tuple[Key, Key, str], Line] = {}

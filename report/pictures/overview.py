@@ -7,9 +7,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rosprivacy.report.pictures.flow_lines import data_lines
 from rosprivacy.report.pictures.picture import PRIVACY, Picture, sorted_boxes
 from rosprivacy.report.pictures.privacy import Reached
-from rosprivacy.report.pictures.views import core, data_lines, in_words, pairs
+from rosprivacy.report.pictures.views import core, in_words, pairs
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

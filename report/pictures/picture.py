@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 Key = tuple[str, str, str]  # robot, kind, name: the identity of an element, rule S1
 ROS, PRIVACY = "ros", "privacy"
 RECORD = "record"  # what a query gives from the database that is no element
-DRAWN = (*KINDS, RECORD)
+GROUP = "group"  # several elements as one box
+DRAWN = (*KINDS, RECORD, GROUP)
 LEGIBLE = 40  # boxes of a picture that people read without being asked
 
 

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.many_flows import one_by_one
 from rosprivacy.analysis.model import CHANNELS, DISCLOSURE
-from rosprivacy.report.pictures.looks import DERIVATION, LEAK, OPEN, REVIEWED, SANITIZER, SOURCE
+from rosprivacy.report.pictures.looks import DERIVATION, END, LEAK, OPEN, REVIEWED, SANITIZER, SOURCE, UNTOUCHED
 from rosprivacy.report.pictures.phrases import Phrases
 from rosprivacy.report.pictures.picture import Box
 from rosprivacy.report.pictures.wording import listed
 from rosprivacy.report.words.typography import plain
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator
+    from collections.abc import Collection, Iterable, Iterator
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.report.pictures.picture import Key
@@ -79,6 +79,25 @@ class Reached:
             if self._drawn(key, vertices):
                 yield self._box(key, vertices)
 
+    def every_box(self, keys: Collection[Key]) -> Iterator[Box]:
+        """Some elements, also those that end what comes to them, and those that no data gets to."""
+        for key in keys:
+            vertices = self._of[key]
+            if self._drawn(key, vertices):
+                yield self._box(key, vertices)
+            else:
+                yield self._quiet(key, vertices)
+
+    def _quiet(self, key: Key, vertices: list[int]) -> Box:
+        """What data does not go on from."""
+        first, arrives = self.graph.elements[vertices[0]], 0
+        for vertex in vertices:
+            arrives |= self._found.arrives.get(vertex, 0) & self._mask
+        words = self._said(vertices, arrives)[1][:MOST]
+        types = self._types.get(first, ())
+        look = END if arrives else UNTOUCHED
+        return Box(key, (key[2],), look, tuple(words), pattern=first.pattern, types=types)
+
     def _drawn(self, key: Key, vertices: list[int]) -> bool:
         """Whether data goes on from there or gets out, or the element is open: a storage that cleans has a country."""
         return bool(self._open.get(key)) or any(self._goes_on(vertex) for vertex in vertices)
@@ -109,7 +128,11 @@ class Reached:
 
         Complexity: O(flows), once.
         """
-        found = {index: self._cleaned_along(index) for index, _ in enumerate(one_by_one(self.graph.flows))}
+        return self.cleaned_among(range(len(one_by_one(self.graph.flows))))
+
+    def cleaned_among(self, flows: Iterable[int]) -> dict[int, tuple[str, ...]]:
+        """The same of some flows."""
+        found = {index: self._cleaned_along(index) for index in flows}
         return {index: kinds for index, kinds in found.items() if kinds}
 
     def _cleaned_along(self, index: int) -> tuple[str, ...]:

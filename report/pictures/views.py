@@ -10,7 +10,7 @@ flows on paths to leaks are marked, not only of paths that share no edge, since 
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.answer import Verdict
@@ -21,19 +21,20 @@ from rosprivacy.analysis.model import DISCLOSURE, GOES_NOWHERE, NO_LEAK_NAMED
 from rosprivacy.analysis.text import shortened
 from rosprivacy.report.element_counts import count_elements
 from rosprivacy.report.made_of import making
-from rosprivacy.report.pictures.looks import ALLOWED, CLEANED, DATA, DENIED, MATCHES, SHORTEST, WAY
+from rosprivacy.report.pictures.flow_lines import Lines, data_lines, ends_of_flow
+from rosprivacy.report.pictures.looks import ALLOWED, DENIED, MATCHES, SHORTEST
 from rosprivacy.report.pictures.phrases import Phrases
-from rosprivacy.report.pictures.picture import PRIVACY, ROS, Box, Line, Picture, order, sorted_boxes, sorted_lines
+from rosprivacy.report.pictures.picture import PRIVACY, ROS, Box, Line, Picture, order, sorted_boxes
 from rosprivacy.report.pictures.privacy import Reached
 from rosprivacy.report.pictures.wording import listed
 from rosprivacy.report.words.typography import plain
 from rosprivacy.report.words.words import IN_ENGLISH, Words
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Iterator, Mapping
+    from collections.abc import Collection, Iterable, Iterator
 
     from rosprivacy.analysis.answer import Analysis, Finding
-    from rosprivacy.analysis.model import Flow, FlowGraph, Grant, Place
+    from rosprivacy.analysis.model import FlowGraph, Grant
     from rosprivacy.report.pictures.picture import Key
 
 PER_BOX = 12  # flows that are looked at for each box: channels with the same ends will be one
@@ -69,15 +70,15 @@ def ros_view(
         if element.identity in boxes:
             boxes[element.identity] = replace(boxes[element.identity], types=types)
     covered: dict[Key, set[Key]] = defaultdict(set)
-    lines = _Lines(boxes)
+    lines = Lines(boxes)
     for flow in graph.flows:
         if flow.role == "matches":
-            one, other = _ends(analysis, flow)
+            one, other = ends_of_flow(analysis, flow)
             covered[one].add(other)
             covered[other].add(one)
-        lines.add(*_ends(analysis, flow), MATCHES if flow.role == "matches" else ALLOWED, flow.role, flow.grants)
+        lines.add(*ends_of_flow(analysis, flow), MATCHES if flow.role == "matches" else ALLOWED, flow.role, flow.grants)
     for flow in graph.denied:
-        lines.add(*_ends(analysis, flow), DENIED, flow.role, flow.denials)
+        lines.add(*ends_of_flow(analysis, flow), DENIED, flow.role, flow.denials)
     effective = {grant for flow in graph.denied for grant in flow.denials}
     denying = [grant for grant in denials if not grant.allow and not grant.dead]
     undrawn = sum(not _deny(lines, grant, graph, hidden) and grant not in effective for grant in denying)
@@ -91,12 +92,7 @@ def ros_view(
     return Picture(ROS, title, sorted_boxes(boxes.values()), lines.made(), notes, words=words)
 
 
-def _ends(analysis: Analysis, flow: Flow) -> tuple[Key, Key]:
-    elements = analysis.graph.elements
-    return elements[flow.source].identity, elements[flow.target].identity
-
-
-def _deny(lines: _Lines, grant: Grant, graph: FlowGraph, hidden: Collection[Key]) -> bool:
+def _deny(lines: Lines, grant: Grant, graph: FlowGraph, hidden: Collection[Key]) -> bool:
     """A DENY by itself is no flow; it is drawn where there is a channel of that name. Return whether it was."""
     robots = {element.robot for element in graph.elements}
     if len(robots) > 1:  # a policy line does not say whose it is
@@ -123,67 +119,6 @@ def _left_out(hidden: Collection[Key], undrawn: int, words: Words, *, robots: in
     if undrawn:
         notes.append(words.count(undrawn, "pic.denies.idle" if robots > 1 else "pic.denies"))
     return tuple(map(plain, notes))
-
-
-@dataclass
-class _Lines:
-    """Lines in the making: flows with the same ends and the same look become one."""
-
-    boxes: Collection[Key]
-    lines: dict[tuple[Key, Key, str], Line] = field(default_factory=dict)
-
-    def add(
-        self,
-        source: Key,
-        target: Key,
-        look: str,
-        role: str,
-        grants: Iterable[Grant],
-        carries: Collection[str] = (),
-        *,
-        pseudonymised: bool = False,
-        length: int = 0,
-    ) -> None:
-        """Add a flow; the two sides of a wildcard are one element, and between them nothing is drawn."""
-        if source == target or source not in self.boxes or target not in self.boxes:
-            return
-        places = {grant.place for grant in grants}
-        old = self.lines.get((source, target, look))
-        new = Line(source, target, look, (role,), tuple(carries), pseudonymised, (), length)
-        if old:
-            places |= set(old.places)
-            roles, kinds = tuple(sorted({role, *old.roles})), tuple(sorted({*carries, *old.carries}))
-            lengths = [n for n in (length, old.length) if n]
-            hidden = pseudonymised and old.pseudonymised
-            new = Line(source, target, look, roles, kinds, hidden, (), min(lengths, default=0))
-        self.lines[source, target, look] = replace(new, places=tuple(sorted(places, key=_place)))
-
-    def made(self) -> tuple[Line, ...]:
-        """The lines; data that goes to a leak hides data that goes the same line to none, and this what ends there."""
-        ranks = {CLEANED: 0, DATA: 1, WAY: 2, SHORTEST: 3}
-        best: dict[tuple[Key, Key, str], Line] = {}
-        for (source, target, look), line in sorted(self.lines.items()):
-            slot = (source, target, look if look not in ranks else "")
-            old = best.get(slot)
-            if old:
-                upper, lower = (line, old) if ranks[look] > ranks[old.look] else (old, line)
-                line = upper if lower.look == CLEANED else _with(upper, lower)  # noqa: PLW2901 - the same line
-            best[slot] = line
-        return sorted_lines(best.values())
-
-
-def _with(line: Line, other: Line) -> Line:
-    """A line with what else goes along it."""
-    return replace(
-        line,
-        roles=tuple(sorted({*line.roles, *other.roles})),
-        carries=tuple(sorted({*line.carries, *other.carries})),
-        places=tuple(sorted({*line.places, *other.places}, key=_place)),
-    )
-
-
-def _place(place: Place) -> tuple[str, int]:
-    return place.file, place.line
 
 
 def privacy_view(
@@ -289,7 +224,7 @@ class FindingViews:
         lengths = found.flows
         keys = {element.identity for element in finding.witness}
         for index in lengths:
-            keys |= set(_ends(self._analysis, graph.flows[index]))
+            keys |= set(ends_of_flow(self._analysis, graph.flows[index]))
         boxes = {box.key: box for box in reached.boxes(keys)}
         lines = data_lines(reached, boxes, lengths, lengths, pairs([finding]))
         words = self._say.words
@@ -368,38 +303,6 @@ def pairs(findings: Iterable[Finding]) -> set[tuple[Key, Key]]:
 def core(findings: Iterable[Finding]) -> frozenset[Key]:
     """Return the elements of the shortest paths."""
     return frozenset(element.identity for finding in findings for element in finding.witness)
-
-
-def data_lines(
-    reached: Reached,
-    boxes: Collection[Key],
-    flows: Iterable[int],
-    lengths: Mapping[int, int],
-    shortest: Collection[tuple[Key, Key]],
-) -> _Lines:
-    """Return what goes along some flows, and between the boxes what ends where it gets, as a label says (users.md, A2).
-
-    Parameters
-    ----------
-    lengths
-        Flow on a path to a leak -> steps of the shortest one through it.
-    shortest
-        Ends of the steps of the shortest paths.
-    """
-    lines = _Lines(boxes)
-    for index in flows:
-        carries, pseudonymised = reached.along(index)
-        if not carries and index not in lengths:
-            continue
-        flow = reached.graph.flows[index]
-        ends = _ends(reached.analysis, flow)
-        look = DATA if index not in lengths else SHORTEST if ends in shortest else WAY
-        length = lengths.get(index, 0)
-        lines.add(*ends, look, flow.role, flow.grants, carries, pseudonymised=pseudonymised, length=length)
-    for index, cleaned in reached.cleaned.items():
-        flow = reached.graph.flows[index]
-        lines.add(*_ends(reached.analysis, flow), CLEANED, flow.role, flow.grants, cleaned)
-    return lines
 
 
 def in_words(finding: Finding, say: Phrases | None = None) -> str:

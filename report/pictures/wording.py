@@ -16,29 +16,29 @@ MOST_LINES = 3
 _PARTS = re.compile(r"/?[^/]*")
 
 
-def broken(name: str) -> tuple[str, ...]:
+def broken(name: str, width: int = LONGEST_LINE) -> tuple[str, ...]:
     """Return a name as a few lines, broken before a ``/`` where there is one.
 
     >>> broken("/perception/object_recognition/tracking/objects")
     ('/perception', '/object_recognition/tracking', '/objects')
     """
-    text = shortened(name, LONGEST_LINE * MOST_LINES)
+    text = shortened(name, width * MOST_LINES)
     lines = [""]
     for part in _PARTS.findall(text):
-        if len(lines[-1]) + len(part) <= LONGEST_LINE:
+        if len(lines[-1]) + len(part) <= width:
             lines[-1] += part
             continue
-        lines.extend(_cut(part))
+        lines.extend(_cut(part, width))
     full = [line for line in lines if line] or [""]
     if len(full) > MOST_LINES:
         full = [*full[: MOST_LINES - 2], "…", full[-1]]
     return tuple(full)
 
 
-def _cut(part: str) -> Iterator[str]:
+def _cut(part: str, width: int) -> Iterator[str]:
     """Cut a part of a name that is longer than a line, after a ``_`` where there is one."""
-    while len(part) > LONGEST_LINE:
-        at = part.rfind("_", LONGEST_LINE // 2, LONGEST_LINE) + 1 or LONGEST_LINE
+    while len(part) > width:
+        at = part.rfind("_", width // 2, width) + 1 or width
         yield part[:at]
         part = part[at:]
     yield part

@@ -4,15 +4,19 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.fleet.likeness import NO_ROBOTS
 from rosprivacy.analysis.suggesting.evidence import HIDING
 from rosprivacy.analysis.suggesting.written import written
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable
 
+    from rosprivacy.analysis.errors import InputError
+    from rosprivacy.analysis.model import Diagnostic
     from rosprivacy.analysis.suggesting.evidence import Evidence, Label, Proposal
+    from rosprivacy.analysis.suggesting.library_rules import NodeUse
     from rosprivacy.report.answer import Answer
-    from rosprivacy.report.contract.suggested import EvidenceEntry, ProposalEntry, SuggestionsDocument
+    from rosprivacy.report.contract.suggested import EvidenceEntry, ModelEntry, ProposalEntry, SuggestionsDocument
 
 FORMAT = "rosprivacy.suggestions/1"
 
@@ -23,6 +27,11 @@ def suggestions_document(
     by_hand: Collection[Label],
     answer: Answer,
     rules: Iterable[tuple[str, str]],
+    model: ModelEntry | None = None,
+    unplaced: Iterable[NodeUse] = (),
+    unread: Iterable[InputError] = (),
+    of_others: Iterable[str] = (),
+    notices: Iterable[Diagnostic] = (),
 ) -> SuggestionsDocument:
     """Return the document.
 
@@ -36,25 +45,48 @@ def suggestions_document(
         Under the labels that there are; suggestions change nothing of it.
     rules
         (file, SHA-256) of the rules.
+    model
+        What was asked of a language model.
+    unplaced
+        Uses of libraries that a rule speaks about, and that belong to no node that is known here.
+    unread
+        What source code could not be read.
+    of_others
+        Folders with code of others that were left out.
+    notices
+        What a reader has to know of the packages.
     """
     rests_on = answer.assumptions
+    likeness = answer.fleet.likeness if answer.fleet else NO_ROBOTS
     read = [one for key in ("policies", "labels", "types") for one in rests_on.get(key, ())]
-    return {
+    document: SuggestionsDocument = {
         "format": FORMAT,
         "suggestions": [
             _proposal(one, is_open=one.label.element.identity in open_elements, by_hand=one.label in by_hand)
             for one in proposals
         ],
+        "unplaced": [{"uses": one.name, "file": one.place.file, "line": one.place.line} for one in unplaced],
+        "unread": [{"file": one.file, "line": one.line, "problem": one.problem} for one in unread],
+        "of_others": [*of_others],
         "verdict": str(answer.analysis.verdict),
         "rules": [{"file": file, "sha256": digest} for file, digest in rules],
         "files": [{"file": one["file"], "sha256": one["sha256"]} for one in read],
+        "robots": [
+            {"robot": name, "model": likeness.models.get(name, ""), "alike": list(alike)}
+            for name, alike in sorted(likeness.members.items())
+        ],
+        "notices": [{"file": one.place.file, "line": one.place.line, "message": one.message} for one in notices],
         "rosprivacy": rests_on["rosprivacy"],
     }
+    if model:
+        document["model"] = model
+    return document
 
 
 def _proposal(one: Proposal, *, is_open: bool, by_hand: bool) -> ProposalEntry:
     at = written(one.label)
     return {
+        "robot": one.label.element.robot,
         "section": at.section,
         "name": at.name,
         "role": one.label.role,

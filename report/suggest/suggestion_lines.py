@@ -7,23 +7,28 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import Confidence
-from rosprivacy.analysis.text import counted
+from rosprivacy.analysis.suggesting.evidence import MODEL
+from rosprivacy.analysis.text import counted, printable
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Container, Iterable, Iterator, Sequence
 
-    from rosprivacy.report.contract.suggested import ProposalEntry, SuggestionsDocument
+    from rosprivacy.report.contract.suggested import NoticeEntry, ProposalEntry, RobotEntry, SuggestionsDocument
 
 NONE = "nothing to suggest: no rule speaks of what nobody has labelled"
 BY_HAND = ", and it would close a finding: only by hand"
+OF_ROBOTS = "Write what you accept into the label files of the robot, or of its model."
 WIDEST = 50  # signs of a column
+SHOWN = 3  # places of code in a line
 
 
 def suggestion_lines(document: SuggestionsDocument) -> Iterator[str]:
     """Yield open elements first, then sources and leaks, then the others; at last how many, and what to do."""
     rows = document["suggestions"]
+    yield from notice_lines(document["notices"])
     if not rows:
         yield NONE
+        yield from _not_looked_at(document)
         return
     first = [row for row in rows if row["open"]]
     rest = [row for row in rows if not row["open"]]
@@ -38,10 +43,38 @@ def suggestion_lines(document: SuggestionsDocument) -> Iterator[str]:
             yield title
             yield from _table(group)
             yield ""
+    yield from _not_looked_at(document)
+    yield from _robots(document["robots"], {row["robot"] for row in rows})
     times = Counter(row["confidence"] for row in rows)
     counts = ", ".join(f"{times[sure]} {sure}" for sure in Confidence if times[sure])
     yield f"{counted(len(rows), 'suggestion')} ({counts}): questions, no facts; nothing is applied that nobody accepts."
-    yield f"Write them into a label file with --into labels.yaml, then: rosprivacy labels --accept {_what(rows)}"
+    if alone := sum(all(reason["ground"] == MODEL for reason in row["evidence"]) for row in rows):
+        yield f"{counted(alone, 'suggestion')} of a language model alone: how good they are was not measured."
+    if any(row["robot"] for row in rows):
+        yield OF_ROBOTS
+    else:
+        yield "Answer them by single keys with --into labels.yaml --ask --by 'YOUR NAME'"
+        yield f"Or write them into a label file with --into labels.yaml, then: rosprivacy labels --accept {_what(rows)}"
+
+
+def _not_looked_at(document: SuggestionsDocument) -> Iterator[str]:
+    """Source code that suggests nothing, and why."""
+    unread = [f"{shown(one['file'])}:{one['line']}: {shown(one['problem'])}" for one in document["unread"]]
+    unplaced = [f"{shown(one['uses'])} ({shown(one['file'])}:{one['line']})" for one in document["unplaced"]]
+    if document["of_others"]:
+        what = counted(len(document["of_others"]), "folder")
+        told = _some([shown(one) for one in document["of_others"]])
+        yield f"{what} with code of others that is not looked at (name it with --source to have it read): {told}"
+    if unread:
+        yield f"{counted(len(unread), 'problem')} of source code that could not be read: {_some(unread)}"
+    if unplaced:
+        what = counted(len(unplaced), "use")
+        yield f"{what} of libraries in code that belongs to no node that is known here: {_some(unplaced)}"
+
+
+def _some(texts: Sequence[str]) -> str:
+    more = f" and {len(texts) - SHOWN} more (--format json has all)" if len(texts) > SHOWN else ""
+    return ", ".join(texts[:SHOWN]) + more
 
 
 def _what(rows: Sequence[ProposalEntry]) -> str:
@@ -51,12 +84,32 @@ def _what(rows: Sequence[ProposalEntry]) -> str:
 
 
 def _table(rows: Sequence[ProposalEntry]) -> Iterator[str]:
-    cells = [(shown(row["name"]), said_of(row), row["confidence"]) for row in rows]
+    cells = [(_named(row), said_of(row), row["confidence"]) for row in rows]
     widths = [min(WIDEST, max(len(row[at]) for row in cells)) for at in (0, 1)]
     for row, (name, said, sure) in zip(rows, cells, strict=True):
         kind = row["section"].removesuffix("s")
         yield f"  {kind:7} {name:{widths[0]}}  {said:{widths[1]}}  {sure}{BY_HAND if row['by_hand'] else ''}"
         yield from (f"            {shown(reason)}" for reason in _reasons(row))
+
+
+def _named(row: ProposalEntry) -> str:
+    return shown(f"{row['robot']}:{row['name']}" if row["robot"] else row["name"])
+
+
+def notice_lines(notices: Iterable[NoticeEntry]) -> Iterator[str]:
+    """Yield a line for each notice."""
+    for one in notices:
+        yield f"notice: {shown(one['file'])}:{one['line']}: {printable(one['message'])}"
+
+
+def _robots(robots: Iterable[RobotEntry], asked: Container[str]) -> Iterator[str]:
+    """What robots that are asked about stand for, where that is more than themselves."""
+    for one in robots:
+        if one["robot"] in asked:
+            model = f" of model {shown(one['model'])}" if one["model"] else ""
+            alike = f", which stands for {len(one['alike'])} that are alike" if len(one["alike"]) > 1 else ""
+            if model or alike:
+                yield f"{shown(one['robot'])} is a robot{model}{alike}."
 
 
 def said_of(row: ProposalEntry) -> str:

@@ -19,7 +19,15 @@ if TYPE_CHECKING:
 
 DATE = 3  # parts of one
 _ARTICLE = re.compile(r"(?P<article>\d+)(?:\((?P<paragraph>\d+)\))?(?:\((?P<point>[a-z])\))?")
-PARTS = ("", "cnil_", "terminal_", "pictures_")  # of a language's words, a module each
+PARTS = (
+    "",
+    "cnil_",
+    "terminal_",
+    "pictures_",
+    "explorer_",
+    "review_",
+    "trials_",
+)  # a module each
 
 
 @cache

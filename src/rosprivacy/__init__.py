@@ -33,6 +33,7 @@ if TYPE_CHECKING:
         LabelError,
         LimitsError,
         MiddlewareError,
+        ModelError,
         ObservationError,
         OntologyError,
         PackageError,
@@ -43,8 +44,10 @@ if TYPE_CHECKING:
     )
     from rosprivacy.analysis.model import Element
     from rosprivacy.analysis.modes import View
-    from rosprivacy.api import analyze, analyze_fleet, parse_labels
+    from rosprivacy.api import analyze, analyze_fleet, explore, parse_labels, suggest, suggest_fleet
+    from rosprivacy.explorer.session import Session
     from rosprivacy.ingest.labels.label_file import Labels
+    from rosprivacy.labelling.suggesting import Suggested
     from rosprivacy.result import Result
 
 __all__ = [
@@ -65,6 +68,7 @@ __all__ = [
     "Labels",
     "LimitsError",
     "MiddlewareError",
+    "ModelError",
     "ObservationError",
     "OntologyError",
     "PackageError",
@@ -72,13 +76,18 @@ __all__ = [
     "QueryError",
     "Result",
     "RosPrivacyError",
+    "Session",
+    "Suggested",
     "TypesError",
     "Verdict",
     "View",
     "__version__",
     "analyze",
     "analyze_fleet",
+    "explore",
     "parse_labels",
+    "suggest",
+    "suggest_fleet",
 ]
 _ERRORS = "analysis.errors"
 _MODULES = {  # where a name that is no error stands
@@ -88,11 +97,16 @@ _MODULES = {  # where a name that is no error stands
     "Finding": "analysis.answer",
     "Labels": "ingest.labels.label_file",
     "Result": "result",
+    "Suggested": "labelling.suggesting",
+    "Session": "explorer.session",
     "Verdict": "analysis.answer",
     "View": "analysis.modes",
     "analyze": "api",
     "analyze_fleet": "api",
+    "explore": "api",
     "parse_labels": "api",
+    "suggest": "api",
+    "suggest_fleet": "api",
 }
 
 

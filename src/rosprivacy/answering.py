@@ -34,8 +34,14 @@ if TYPE_CHECKING:
     from rosprivacy.system import System
 
 
-def answer(system: System, question: Question) -> Result:
+def answer(system: System, question: Question, *, count_paths: bool = True) -> Result:
     """Analyse a system and keep what the answer rests on.
+
+    Parameters
+    ----------
+    count_paths
+        As of ``Options``. Where people decided about findings, paths are counted in any case: a decision remembers how
+        many there were.
 
     Raises
     ------
@@ -49,6 +55,7 @@ def answer(system: System, question: Question) -> Result:
         categories=question.asked,
         paths=question.settings.paths,
         max_paths=question.settings.max_paths,
+        count_paths=count_paths or question.decisions is not None,
         accepts=accepts(question.decisions, system.likeness),
         choose=groups,
         today=question.today,

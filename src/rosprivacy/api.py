@@ -11,17 +11,19 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from rosprivacy.analysis.bounds import BOUNDS, Bounds
 from rosprivacy.analysis.findings.findings import MAX_PATHS
-from rosprivacy.fleet_system import answer_fleet
 from rosprivacy.ingest.labels import label_file
 from rosprivacy.ingest.labels.label_file import STANDARD, Labels
 from rosprivacy.ingest.policies.xinclude import MAX_BYTES
 from rosprivacy.ingest.types import TABLE
 from rosprivacy.ontology.vocabulary import TOP, load
-from rosprivacy.robot_system import answer_robot
+from rosprivacy.reading.fleet_system import answer_fleet
+from rosprivacy.reading.robot_system import answer_robot
 from rosprivacy.settings import Settings
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.modes import Article9Level, View
+    from rosprivacy.explorer.session import Session
+    from rosprivacy.labelling.suggesting import Suggested
     from rosprivacy.result import Result
 
 Path: TypeAlias = str | PathLike[str]
@@ -232,6 +234,146 @@ def analyze_fleet(
         today=today,
     )
     return answer_fleet(fspath(file), settings)
+
+
+def suggest(
+    policies: Paths = (),
+    labels: Path | Labels | Iterable[Path | Labels] = (),
+    *,
+    rules: Paths = (),
+    packages: Paths = (),
+    sources: Paths = (),
+    libraries: Paths = (),
+    settings: Settings | None = None,
+) -> Suggested:
+    """Say what the elements of a robot could be labelled as: questions with reasons; nothing is applied.
+
+    Parameters
+    ----------
+    policies
+        Files, folders and globs.
+    labels
+        What is said already, and is not asked again.
+    rules
+        Files of rules about names, beside those that come with the program.
+    packages
+        Files of packages or folders of them, or ``ament`` for those that installed packages ship.
+    sources
+        Source code of nodes: names and types in it, and the libraries that it uses, are evidence.
+    libraries
+        Files of rules about libraries, beside those that come with the program.
+    settings
+        How to read, as ``rosprivacy.settings.Settings``; by default as ``analyze`` does.
+
+    Returns
+    -------
+    Suggested
+        With ``proposals``, in the order in which a person reviews them.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of the input, one line each.
+
+    Examples
+    --------
+    >>> told = suggest("examples/care-home/care-home.policy.xml", "examples/care-home/care-home.labels.yaml")
+    >>> one = told.proposals[0]
+    >>> one.label.element.name, one.label.role, one.label.kind, str(one.confidence)
+    ('/camera', 'source', 'DepthImage', 'may')
+    """
+    from rosprivacy.labelling.suggesting import suggest_labels  # noqa: PLC0415 - light start
+
+    return suggest_labels(
+        _paths(policies),
+        _labels(labels),
+        settings or Settings(),
+        _paths(rules),
+        _paths(packages),
+        _paths(sources),
+        _paths(libraries),
+    )
+
+
+def suggest_fleet(
+    file: Path,
+    *,
+    rules: Paths = (),
+    packages: Paths = (),
+    sources: Paths = (),
+    libraries: Paths = (),
+    settings: Settings | None = None,
+) -> Suggested:
+    """Say what the elements of a fleet could be labelled as; of robots that are alike one is asked about.
+
+    Parameters
+    ----------
+    file
+        Fleet file, YAML or JSON; it names policies and labels.
+    rules, packages, sources, libraries, settings
+        As in ``suggest``.
+
+    Returns
+    -------
+    Suggested
+        With ``proposals``; the robot is that of ``label.element``, and ``result.fleet.likeness`` says for which ones
+        it stands.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of the input, one line each.
+
+    Examples
+    --------
+    >>> sorted({one.label.element.robot for one in suggest_fleet("examples/fleet/fleet.yaml").proposals})
+    ['carrier_01', 'carrier_lent', 'cleaner_1', 'guide_01']
+    """
+    from rosprivacy.labelling.suggesting import suggested  # noqa: PLC0415 - light start
+
+    settings = settings or Settings()
+    result = answer_fleet(fspath(file), settings)
+    return suggested(result, settings, _paths(rules), _paths(packages), _paths(sources), _paths(libraries))
+
+
+def explore(
+    policies: Paths = (),
+    labels: Path | Labels | Iterable[Path | Labels] = (),
+    *,
+    settings: Settings | None = None,
+) -> Session:
+    """Begin a session: label elements, and see what follows from each label at once.
+
+    Parameters
+    ----------
+    policies
+        Files, folders and globs; they are read once.
+    labels
+        Label files. What is said goes to the first of them, when the session is saved; it need not be there yet.
+    settings
+        How to read and what to ask, as ``rosprivacy.settings.Settings``; by default as ``analyze`` does.
+
+    Returns
+    -------
+    Session
+        With ``label``, ``undo``, ``questions()``, ``findings``, ``save()``.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of the input, one line each.
+
+    Examples
+    --------
+    >>> session = explore("examples/factory/before.policy.xml", "examples/factory/run2.labels.yaml")
+    >>> session.questions()[0].name
+    '/robot_arm_control'
+    >>> session.label("/robot_camera", conduit=True).closed
+    ('dc5715a35ba5591a',)
+    """
+    from rosprivacy.explorer.session import Session  # noqa: PLC0415 - light start
+
+    return Session.open(_paths(policies), _labels(labels), settings)
 
 
 def parse_labels(

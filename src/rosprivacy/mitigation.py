@@ -12,7 +12,7 @@ from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.mitigation.limits import CHANGES, DENY, Limits
 from rosprivacy.analysis.mitigation.propose import System, mitigate, open_findings
 from rosprivacy.analysis.model import UNPROTECTED
-from rosprivacy.granted import with_exposed
+from rosprivacy.ingest.keystore.exposed import with_exposed
 from rosprivacy.ingest.labels.binding import join
 from rosprivacy.ingest.mitigation.deny_lines import denials, with_denied
 from rosprivacy.ingest.mitigation.deny_patch import Patch, patch

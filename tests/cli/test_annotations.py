@@ -176,28 +176,53 @@ def test_names_and_notes_of_strangers_stay_text(tmp_path: Path, cli: Cli) -> Non
     assert cli("annotations", str(tmp_path), "--check", "l.yaml", cwd=tmp_path).returncode == 0
 
 
+NOT_READ = "not read, as code of others or not built here (name a folder by itself to have it read)"
+
+
+def test_code_of_others_below_what_is_named_is_left_out_and_told(tmp_path: Path, cli: Cli) -> None:
+    for name in ("own.py", "third_party/lib/x.py", "deep/vendor/y.cpp", "vendor.py"):
+        file = tmp_path / "p" / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(f"{'//' if file.suffix == '.cpp' else '#'} privacy(/{file.stem}): mundane\n", "utf-8")
+    told = f"{NOT_READ}: p/deep/vendor, p/third_party\n"
+    done = cli("annotations", "p", cwd=tmp_path)
+    assert done.stderr == f"2 annotations of 2 elements in 2 files; {told}"
+    assert "/x" not in done.stdout
+    done = cli("annotations", "p/third_party", "p/deep/vendor/y.cpp", cwd=tmp_path)
+    assert done.stderr == "2 annotations of 2 elements in 2 files\n"
+
+
+def test_a_folder_with_nothing_but_code_of_others_is_an_error(tmp_path: Path, cli: Cli) -> None:
+    file = tmp_path / "p" / "vendor" / "x.py"
+    file.parent.mkdir(parents=True)
+    file.write_text("# privacy(/x): mundane\n", "utf-8")
+    done = cli("annotations", "p", cwd=tmp_path)
+    what = "p: no Python and no C++ in it but what is not read as code of others: p/vendor"
+    assert (done.returncode, done.stderr) == (2, f"{what}; name such a folder by itself to have it read\n")
+
+
 def test_what_a_folder_holds(tmp_path: Path, cli: Cli) -> None:
     """Rule S11: links are followed, scripts without an ending count; hidden and ignored folders do not."""
     read = ["a.py", "deep/B.CPP", "deep/c.hpp", "script"]
-    unread = [".venv/d.py", "build/e.py", "build/deep/f.cpp", "g.txt", "h"]
+    unread = [".venv/d.py", "off/e.py", "off/deep/f.cpp", "g.txt", "h"]
     for number, name in enumerate([*read, *unread]):
         file = tmp_path / "p" / name
         file.parent.mkdir(parents=True, exist_ok=True)
         sign = "//" if file.suffix.lower() in (".cpp", ".hpp") else "#"
         start = "#!/usr/bin/env python3\n" if name == "script" else ""
         file.write_text(f"{start}{sign} privacy(/x{number}): mundane\n")
-    (tmp_path / "p" / "build" / "COLCON_IGNORE").touch()
+    (tmp_path / "p" / "off" / "COLCON_IGNORE").touch()
     (tmp_path / "far").mkdir()
     (tmp_path / "far" / "i.py").write_text("# privacy(/far): mundane\n")
     (tmp_path / "p" / "linked").symlink_to(tmp_path / "far", target_is_directory=True)
     done = cli("annotations", "p", cwd=tmp_path)
-    assert done.stderr == "5 annotations of 5 elements in 5 files\n"
+    assert done.stderr == f"5 annotations of 5 elements in 5 files; {NOT_READ}: p/off\n"
     assert [line.split(":")[0].strip() for line in done.stdout.splitlines()[3:]] == ["/far", "/x0", "/x1", "/x2", "/x3"]
     (tmp_path / "p" / "dangling.py").symlink_to(tmp_path / "nowhere")
-    for arguments in (["p"], ["p/g.txt"], ["far/nope.py"], ["p/build/nope"], ["no*such.py"]):
+    for arguments in (["p"], ["p/g.txt"], ["far/nope.py"], ["p/off/nope"], ["no*such.py"]):
         assert cli("annotations", *arguments, cwd=tmp_path).returncode == 2
     assert cli("annotations", "p/.venv/..", cwd=tmp_path).returncode == 2
-    assert cli("annotations", "p/build", cwd=tmp_path).stderr == "2 annotations of 2 elements in 2 files\n"  # named
+    assert cli("annotations", "p/off", cwd=tmp_path).stderr == "2 annotations of 2 elements in 2 files\n"  # named
 
 
 def test_the_namespace_is_that_of_the_option(tmp_path: Path, cli: Cli) -> None:
@@ -216,7 +241,7 @@ def test_cpp_without_its_library_is_told(tmp_path: Path, cli: Cli, monkeypatch: 
 
 
 def test_types_and_literal_names_are_evidence() -> None:
-    found = code_evidence(read_sources([str(EXAMPLE)]))
+    found = code_evidence(read_sources([str(EXAMPLE)]).codes)
     assert [one._replace(place=one.place._replace(file="")) for one in found] == [
         CodeEvidence(one.place._replace(file=""), "topic", role, name, kind, node)
         for one, (role, name, kind, node) in zip(
@@ -275,11 +300,15 @@ def test_long_names_are_told_at_their_line(tmp_path: Path, cli: Cli) -> None:
 
 
 def test_the_page_shows_what_is_so(tmp_path: Path, cli: Cli) -> None:
-    """Its commands run, and its table has every word, in examples that are read."""
+    """Its commands run and write what it shows of code that it shows; its table has every word, in what is read."""
     page = ROOT / "docs" / "annotations.md"
     (tmp_path / "examples").symlink_to(ROOT / "examples")
     for line in (line for block in blocks(page, "console") for line in block.splitlines()):
         assert cli(*shlex.split(line)[1:], cwd=tmp_path).returncode == 0, line
+    assert blocks(page, "yaml") == [(tmp_path / LABELS).read_text("utf-8")]
+    for language, file in (("python", "camera.py"), ("cpp", "blur.cpp")):
+        code = (EXAMPLE / file).read_text("utf-8")
+        assert [block for block in blocks(page, language) if block not in code] == []
     shown = re.findall(r"`(privacy(?:\(/\w+\))?: [^`]+)`", page.read_text("utf-8").partition("## What it is about")[0])
     read = [read_annotation(text, Place("a.py", 1), load()) for text in shown]
     assert {one.word for one in read if isinstance(one, Annotation)} == set(WORDS)

@@ -165,6 +165,25 @@ class TestLoad:
         assert "--fleet takes the names of the fleet file: no --robot" in done.stderr
         assert count(driver, "(:Robot {name: 'h1'})") == 1
 
+    def test_of_a_database_the_same_is_suggested_as_of_its_policies_and_nothing_is_written(
+        self, cli: Cli, driver: Driver
+    ) -> None:
+        alone = json.loads(cli("suggest", POLICY, "--labels", LABELS, "-f", "json").stdout)
+        assert cli(*LOAD).returncode == 0
+        written = "MATCH (n) OPTIONAL MATCH (n)-[r]->() RETURN properties(n) AS n, collect(properties(r)) AS r"
+        before = sorted(map(str, driver.execute_query(written).records))
+        stored = json.loads(cli("suggest", "--from-database", "-f", "json").stdout)
+        assert sorted(map(str, driver.execute_query(written).records)) == before
+        assert {one["robot"] for one in stored["suggestions"]} == {""}  # there is only one
+        told = [
+            {key: one[key] for key in ("section", "name", "label", "confidence", "open")}
+            for one in stored["suggestions"]
+        ]
+        assert told == [{key: one[key] for key in told[0]} for one in alone["suggestions"]]
+        done = cli("suggest", "--from-database", "--into", "l.yaml")
+        assert done.returncode == 2
+        assert "no --from-database" in " ".join(done.stderr.replace("│", " ").split())
+
     def test_unload(self, cli: Cli, driver: Driver) -> None:
         cli(*LOAD)
         done = cli("unload", "--robot", "h1", "--robot", "nobody")

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from rosprivacy.browser_files import QUERIES, STYLE
+from rosprivacy.outputs.browser_files import QUERIES, STYLE
 from rosprivacy.private_neo4j import connection
 from rosprivacy.queries.library import pack
 from rosprivacy.queries.run import run as ask
@@ -55,9 +55,6 @@ def loaded(private_neo4j: Connection) -> Connection:
 
 @pytest.fixture
 def page(tmp_path: Path) -> Iterator[WebDriver]:
-    missing = chrome.missing()
-    if missing:
-        pytest.skip(f"NO BROWSER ({', '.join(missing)} missing): apt-get install chromium chromium-driver")
     with chrome.chromium(tmp_path / "profile", chrome.HERE_ONLY) as found:
         yield found
 

@@ -226,8 +226,8 @@ def test_help_shows_the_commands_in_the_order_of_a_users_way(cli: Cli) -> None:
     shown = cli("--help").stdout
     names = re.findall(r"^│ ([a-z][a-z-]*) ", shown, re.MULTILINE)
     assert names == [
-        "observe", "labels", "suggest", "annotations", "categories", "law", "analyze", "show", "why-not", "diff", "bag",
-        "lint", "check", "report", "graph",
+        "observe", "labels", "explore", "suggest", "annotations", "categories", "law", "analyze", "show", "why-not",
+        "diff", "bag", "lint", "check", "report", "graph",
         "decide", "mitigate", "fleet", "load", "unload", "query", "db",
     ]  # fmt: skip
     panels = re.findall(r"^╭─ ([\w ]+) ─", shown, re.MULTILINE)

@@ -11,7 +11,7 @@ import rosprivacy
 from rosprivacy.analysis.errors import LabelError
 from rosprivacy.ingest.labels.label_file import parse_labels
 from rosprivacy.ingest.labels.label_writer import NewLine, with_lines
-from rosprivacy.label_lines import next_lines
+from rosprivacy.labelling.label_lines import next_lines
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.settings import Settings
 from tests.helpers.policies import policy

@@ -30,5 +30,5 @@ STILL_ENGLISH = {
 def test_every_command_that_prints_an_answer_takes_a_language_or_is_listed() -> None:
     commands = get_command(program()).commands  # type: ignore[attr-defined]
     speak = {name for name, command in commands.items() if any(one.name == "lang" for one in command.params)}
-    assert speak == {"analyze", "categories", "graph", "law", "report", "show"}
+    assert speak == {"analyze", "categories", "explore", "graph", "law", "report", "show"}
     assert commands.keys() - speak == STILL_ENGLISH.keys()

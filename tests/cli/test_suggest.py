@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 import jsonschema
@@ -11,15 +12,19 @@ import pytest
 
 import rosprivacy
 from rosprivacy.analysis.errors import InputErrors
+from rosprivacy.labelling.interview import Asking, Interview
+from rosprivacy.labelling.suggested_lines import with_accepted, with_suggestions
+from rosprivacy.labelling.suggesting import suggest_labels
 from rosprivacy.report.contract import suggested
 from rosprivacy.settings import Settings
-from rosprivacy.suggested_lines import with_accepted, with_suggestions
-from rosprivacy.suggesting import suggest_labels
 from tests.helpers.command import LINE, cli
+from tests.helpers.little_robots import HOSTILE, Nodes, policy_of
+from tests.helpers.model_server import answer, elements, said
 from tests.helpers.paths import ROOT
+from tests.helpers.planted_leaks import planted
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Sequence
     from pathlib import Path
 
     from tests.helpers.command import Cli
@@ -31,26 +36,12 @@ SCHEMA = json.loads((ROOT / "docs" / "suggestions.schema.json").read_text("utf-8
 IMAGE, IDS, STRING = "sensor_msgs/msg/Image", "hri_msgs/msg/IdsList", "std_msgs/msg/String"
 POSE, TWIST, CLOUD = "geometry_msgs/msg/PoseStamped", "geometry_msgs/msg/Twist", "sensor_msgs/msg/PointCloud2"
 DAY = "1767225600"
-Nodes = dict[str, tuple[list[str], list[str]]]  # node -> topics that it publishes, and those that it subscribes to
 ROBOT: Nodes = {
     "driver": (["/a", "/b"], []),
     "finder": (["/c"], ["/a"]),
     "mover": (["/d"], ["/c"]),
     "customer_bridge": ([], ["/c", "/d"]),
 }
-
-
-def policy_of(nodes: Nodes) -> str:
-    def granted(role: str, names: Iterable[str]) -> str:
-        lines = "".join(f"<topic>{name}</topic>" for name in names)
-        return f'<topics {role}="ALLOW">{lines}</topics>' if lines else ""
-
-    enclaves = "".join(
-        f'<enclave path="/{node}"><profiles><profile ns="/" node="{node}">\n'
-        f"{granted('publish', out)}{granted('subscribe', into)}</profile></profiles></enclave>\n"
-        for node, (out, into) in nodes.items()
-    )
-    return f'<policy version="0.2.0"><enclaves>\n{enclaves}</enclaves></policy>\n'
 
 
 def typed(**types: str) -> str:
@@ -99,7 +90,7 @@ def test_a_node_that_reads_what_it_writes_brings_nothing_in(cli: Cli, tmp_path: 
 @pytest.mark.parametrize(
     ("name", "type_", "expected"),
     [
-        ("person_pose", POSE, ("PersonTrack", "likely")),  # both say may
+        ("person_pose", POSE, ("PersonTrack", "may")),  # both say may; but programs work it out
         ("pose", POSE, ("RobotPosition", "may")),  # programs work it out: who writes it is seldom where it comes from
         ("x", POSE, ("RobotPosition", "may")),
         ("person", "", ("PersonTrack", "may")),  # a name alone
@@ -118,11 +109,43 @@ def test_a_name_and_a_type_that_agree_are_surer(
 
 
 @pytest.mark.parametrize(
+    ("read", "type_", "sure"),
+    [
+        ("speed", TWIST, "likely"),
+        ("mode", STRING, "likely"),  # a command by its name
+        ("other", STRING, "may"),  # it could be what the pictures are made of
+        ("other", "a/msg/Unknown", "may"),
+        ("other", "", "may"),
+    ],
+)
+def test_who_reads_what_nobody_knows_is_no_likely_source(
+    cli: Cli, tmp_path: Path, read: str, type_: str, sure: str
+) -> None:
+    (tmp_path / "p.xml").write_text(policy_of({"n": (["/image"], [f"/{read}"])}), "utf-8")
+    types = {"image": IMAGE} | ({read: type_} if type_ else {})
+    (tmp_path / "l.yaml").write_text(typed(**types), "utf-8")
+    assert ("/n", "source", "Video", sure) in rows(cli, tmp_path)
+
+
+def test_who_asks_for_a_place_is_no_source_of_it(cli: Cli, tmp_path: Path) -> None:
+    profile = '<profile ns="/" node="n"><actions call="ALLOW"><action>navigate_to_pose</action></actions></profile>'
+    enclave = f'<enclave path="/n"><profiles>{profile}</profiles></enclave>'
+    (tmp_path / "p.xml").write_text(f'<policy version="0.2.0"><enclaves>{enclave}</enclaves></policy>', "utf-8")
+    labels = "labels: 1\nactions: {/navigate_to_pose: {types: [nav2_msgs/action/NavigateToPose]}}\n"
+    (tmp_path / "l.yaml").write_text(labels, "utf-8")
+    assert [row for row in rows(cli, tmp_path) if row[1] == "source"] == []
+
+
+@pytest.mark.parametrize(
     ("node", "topic", "type_", "expected"),
     [
         ("camera", "image", IMAGE, ["Video likely"]),
         ("gazebo_camera", "image", IMAGE, ["Video may"]),  # nobody measured it
         ("camera", "image_annotated", IMAGE, ["Video may"]),  # made of another picture
+        ("person_detector", "image", IMAGE, ["Video may"]),  # of what others film
+        ("camera", "image_ground_truth", IMAGE, ["Video may"]),  # only who simulates knows it
+        ("mic_listener", "voice_text", STRING, ["SpeechTranscript may"]),  # the sound stays in it
+        ("n", "cmd_audio", "a/msg/Notes", []),  # it is to play
         ("n", "debug_image", IMAGE, ["Video may"]),
         ("n", "map", "nav_msgs/msg/OccupancyGrid", ["HomeMap may"]),  # worked out of other data
         ("n", "odom", "nav_msgs/msg/Odometry", ["RobotPosition may"]),
@@ -136,6 +159,8 @@ def test_a_name_and_a_type_that_agree_are_surer(
         ("camera", "cmd_vel", TWIST, []),
         ("n", "pir", "std_msgs/msg/Bool", ["Presence may"]),
         ("n", "face", "std_msgs/msg/Bool", []),
+        ("demo_camera", "image", IMAGE, ["Video may"]),  # nobody measured it either
+        ("n", "fire_alarm", "std_msgs/msg/Bool", ["SmartHomeSensorData may"]),
     ],
 )
 def test_what_puts_a_source_in_doubt(
@@ -145,6 +170,25 @@ def test_what_puts_a_source_in_doubt(
     (tmp_path / "l.yaml").write_text(typed(**{topic: type_}), "utf-8")
     found = [f"{kind} {sure}" for _, role, kind, sure in rows(cli, tmp_path) if role == "source"]
     assert [one for one in found if not one.startswith(("DepthImage", "ThermalImage"))] == expected
+
+
+@pytest.mark.parametrize(
+    ("read", "written", "type_", "expected"),
+    [
+        ("transcript", "agent/commands", STRING, True),
+        ("transcript", "planned_tasks", "a/msg/Tasks", True),
+        ("transcript", "cmd_vel", TWIST, False),
+        ("transcript", "command", TWIST, False),  # that type cannot be it
+        ("transcript", "status", STRING, False),
+        ("odom", "agent/commands", STRING, False),
+    ],
+)
+def test_what_somebody_said_becomes_a_command(
+    cli: Cli, tmp_path: Path, read: str, written: str, type_: str, *, expected: bool
+) -> None:
+    (tmp_path / "p.xml").write_text(policy_of({"n": ([f"/{written}"], [f"/{read}"])}), "utf-8")
+    (tmp_path / "l.yaml").write_text(typed(**{written.replace("/", "__"): type_}).replace("__", "/"), "utf-8")
+    assert (("/n", "derivation", "SpeechTranscript VoiceCommand", "may") in rows(cli, tmp_path)) is expected
 
 
 @pytest.mark.parametrize(
@@ -189,7 +233,51 @@ def test_where_data_end_it_is_asked_what_a_conduit_there_means(cli: Cli, tmp_pat
     (tmp_path / "p.xml").write_text(policy_of({"eye": (["/a"], []), "unknown": ([], ["/a"])}), "utf-8")
     (tmp_path / "l.yaml").write_text("labels: 1\nnodes:\n  /eye: {source: [Video]}\n", "utf-8")
     text = cli("suggest", "p.xml", "-l", "l.yaml", cwd=tmp_path).stdout
-    assert "a conduit only if the node neither keeps it, nor shows it, nor sends it elsewhere" in text
+    assert "a leak if the node keeps it, shows it, or sends it elsewhere, else a conduit" in text
+    assert [row[1:] for row in rows(cli, tmp_path) if row[0] == "/unknown"] == [
+        ("leak", "Video", "may"), ("conduit", "Video", "may"),
+    ]  # fmt: skip
+
+
+def test_of_a_leak_and_a_conduit_neither_is_accepted_before_a_person_says_which(cli: Cli, tmp_path: Path) -> None:
+    (tmp_path / "p.xml").write_text(policy_of({"eye": (["/a"], []), "unknown": ([], ["/a"])}), "utf-8")
+    (tmp_path / "l.yaml").write_text("labels: 1\nauthor: Ada\nnodes:\n  /eye: {source: [Video]}\n", "utf-8")
+    cli("suggest", "p.xml", "--into", "l.yaml", cwd=tmp_path)
+    by_word = cli("labels", "--accept", "may", "-l", "l.yaml", cwd=tmp_path)
+    assert "2 suggestions could hide a leak or what nobody looked at" in by_word.stderr
+    before = (tmp_path / "l.yaml").read_text("utf-8")
+    assert "/unknown:" not in before
+    by_name = cli("labels", "--accept", "/unknown", "-l", "l.yaml", cwd=tmp_path)
+    assert by_name.returncode == 2
+    assert re.fullmatch(
+        r"l.yaml: of /unknown alternatives are suggested: leak Video \(line \d+\), conduit Video \(line \d+\); "
+        r"say which, such as --accept /unknown=leak, or remove the lines that are wrong\n",
+        by_name.stderr,
+    )
+    assert (tmp_path / "l.yaml").read_text("utf-8") == before
+    assert cli("labels", "--accept", "/unknown=leak", "-l", "l.yaml", cwd=tmp_path).returncode == 0
+    assert "/unknown: {leak: [Video]" in (tmp_path / "l.yaml").read_text("utf-8")
+
+
+def test_of_what_a_camera_could_be_a_person_says_which(cli: Cli, robot: Path) -> None:
+    lines = [suggestion("nodes", "/driver", {"source": [kind]}) for kind in ("DepthImage", "ThermalImage")]
+    (robot / "l.yaml").write_text("labels: 1\nauthor: Ada\n" + "".join(lines), "utf-8")
+    refused = cli("labels", "--accept", "/driver", "-l", "l.yaml", cwd=robot)
+    assert (refused.returncode, refused.stderr) == (
+        2,
+        (
+            "l.yaml: of /driver alternatives are suggested: source DepthImage (line 3), source ThermalImage (line 4); "
+            "say which, such as --accept /driver=DepthImage, or remove the lines that are wrong\n"
+        ),
+    )
+    unknown = cli("labels", "--accept", "/driver=Voice", "-l", "l.yaml", cwd=robot)
+    assert (unknown.returncode, unknown.stderr.partition(";")[0]) == (2, "l.yaml: 'Voice' is not suggested of /driver")
+    assert cli("labels", "--accept", "/driver=ThermalImage", "-l", "l.yaml", cwd=robot).returncode == 0
+    text = (robot / "l.yaml").read_text("utf-8")
+    assert "source: [ThermalImage]" in text
+    assert text.endswith(lines[0])
+    assert cli("labels", "--accept", "/driver=*", "-l", "l.yaml", cwd=robot).returncode == 0
+    assert "source: [ThermalImage, DepthImage]" in (robot / "l.yaml").read_text("utf-8")
 
 
 def test_of_an_open_node_that_lets_data_out_no_conduit_is_suggested(cli: Cli, robot: Path) -> None:
@@ -247,6 +335,41 @@ def test_packages_take_part_and_a_users_own(cli: Cli, tmp_path: Path) -> None:
     assert cli("suggest", "p.xml", "--packages", "nope.yaml", cwd=tmp_path).returncode == 2
 
 
+def test_what_code_uses_is_told_with_its_line_and_what_is_nobodys_too(cli: Cli, robot: Path) -> None:
+    (robot / "l.yaml").write_text("labels: 1\n", "utf-8")
+    (robot / "code").mkdir()
+    (robot / "code" / "finder.py").write_text(
+        "import badge, requests\nfrom rclpy.node import Node\n\n\nclass Finder(Node):\n    def __init__(self):\n"
+        "        super().__init__('finder')\n        requests.post('x')\n        badge.show()\n",
+        "utf-8",
+    )
+    (robot / "code" / "tool.py").write_text("import cv2\ncv2.imshow('x', 1)\n", "utf-8")
+    (robot / "code" / "wrong.py").write_text("def\n", "utf-8")
+    (robot / "code" / "vendor").mkdir()
+    (robot / "code" / "vendor" / "lib.py").write_text("import cv2\ncv2.imshow('x', 1)\n", "utf-8")
+    (robot / "own.yaml").write_text(
+        "library_rules: 1\nlets_out:\n"
+        "  - {python: [badge.show], kinds: [StaffBadge], where: display, confidence: likely, why: ours}\n",
+        "utf-8",
+    )
+    own = ("--source", "code", "--libraries", "own.yaml")
+    assert ("/finder", "leak", "StaffBadge", "may") in rows(cli, robot, *own)
+    assert not [row for row in rows(cli, robot, *own[:2]) if row[2] == "StaffBadge"]
+    text = cli("suggest", "p.xml", *own, cwd=robot).stdout
+    assert "uses requests.post (code/finder.py:8): it talks to a server" in text
+    assert "1 problem of source code that could not be read: code/wrong.py:1: not Python" in text
+    assert "1 use of libraries in code that belongs to no node that is known here: cv2.imshow (code/tool.py:2)" in text
+    assert "1 folder with code of others that is not looked at" in text
+    assert "code/vendor\n" in text
+    assert (
+        "code/vendor" not in cli("suggest", "p.xml", "--source", "code/vendor", cwd=robot).stdout.partition("1 use")[0]
+    )
+    wrong = cli("suggest", "p.xml", "--libraries", "l.yaml", cwd=robot)
+    assert (wrong.returncode, wrong.stderr) == (
+        2, "l.yaml:1: no 'library_rules: 1'; say so on the first line: it is the format's version\n"
+    )  # fmt: skip
+
+
 def test_code_tells_types_with_its_line(cli: Cli, robot: Path) -> None:
     (robot / "l.yaml").write_text("labels: 1\n", "utf-8")
     (robot / "driver.py").write_text(
@@ -296,14 +419,94 @@ def test_the_document_has_the_keys_of_its_types() -> None:
         (suggested.ProposalEntry, entry),
         (suggested.EvidenceEntry, evidence),
         (suggested.FileOfRun, SCHEMA["properties"]["files"]["items"]),
+        (suggested.ModelEntry, SCHEMA["properties"]["model"]),
+        (suggested.RobotEntry, SCHEMA["properties"]["robots"]["items"]),
+        (suggested.NoticeEntry, SCHEMA["properties"]["notices"]["items"]),
     ):
-        assert hint.__required_keys__ == set(schema["required"]) == set(schema["properties"])
+        types = {name: str(type_) for name, type_ in hint.__annotations__.items()}
+        assert {name for name, type_ in types.items() if "NotRequired" not in type_} == set(schema["required"])
+        assert types.keys() == schema["properties"].keys()
 
 
 def test_nothing_to_suggest_is_said(cli: Cli, tmp_path: Path) -> None:
     (tmp_path / "p.xml").write_text(policy_of({"n": (["/x"], [])}), "utf-8")
     done = cli("suggest", "p.xml", cwd=tmp_path)
     assert (done.returncode, done.stdout) == (0, "nothing to suggest: no rule speaks of what nobody has labelled\n")
+
+
+OWN_CAMERA = """package: 1
+name: usb_cam
+about: Mine.
+sources: [{at: https://example.org, version: "1", read: 2026-11-23}]
+nodes: [{names: [usb_cam], says: [{conduit: all, why: it says so}]}]
+"""
+
+
+def test_a_package_in_place_of_a_shipped_one_is_told_and_takes_no_source_away(cli: Cli, tmp_path: Path) -> None:
+    (tmp_path / "p.xml").write_text(policy_of({"usb_cam": (["/x"], ["/y"])}), "utf-8")
+    (tmp_path / "mine.yaml").write_text(OWN_CAMERA, "utf-8")
+    told = (
+        "mine.yaml:1: it stands in place of the shipped package usb_cam; what it does not state of that is asked all "
+        "the same: source of Video at usb_cam, source of Video at usb_cam_node_exe"
+    )
+    done = cli("suggest", "p.xml", "--packages", "mine.yaml", cwd=tmp_path)
+    assert done.stdout.splitlines()[0] == f"notice: {told}"
+    assert "source Video" in done.stdout
+    assert told in cli("suggest", "p.xml", "--packages", "mine.yaml", "--into", "l.yaml", cwd=tmp_path).stderr
+    document = json.loads(cli("suggest", "p.xml", "--packages", "mine.yaml", "-f", "json", cwd=tmp_path).stdout)
+    jsonschema.validate(document, SCHEMA)
+    assert [f"{one['file']}:{one['line']}: {one['message']}" for one in document["notices"]] == [told]
+
+
+# ---------------------------------------------------------------- fleets and databases
+
+
+def test_of_a_fleet_robots_that_are_alike_are_asked_about_once(cli: Cli) -> None:
+    done = cli("suggest", "--fleet", "examples/fleet/fleet.yaml", "-f", "json", cwd=ROOT)
+    document = json.loads(done.stdout)
+    jsonschema.validate(document, SCHEMA)
+    asked = {one["robot"] for one in document["suggestions"]}
+    assert asked == {"carrier_01", "carrier_lent", "cleaner_1", "guide_01"}
+    stands = {one["robot"]: (one["model"], len(one["alike"])) for one in document["robots"]}
+    assert stands["carrier_01"] == ("carrier", 23)
+    lines = cli("suggest", "--fleet", "examples/fleet/fleet.yaml", cwd=ROOT).stdout.splitlines()
+    assert "carrier_01 is a robot of model carrier, which stands for 23 that are alike." in lines
+    assert [line for line in lines if line.startswith("  node    cleaner_1:/lidar ")]
+
+
+def test_of_each_robot_of_a_fleet_the_same_is_suggested_as_of_it_alone(cli: Cli, robot: Path) -> None:
+    """Two robots that share nothing with each other; differential."""
+    (robot / "f.yaml").write_text(
+        "fleet: 1\nmodels: {m: {policies: [p.xml], labels: [l.yaml]}}\ngroups: [{robots: 2, model: m}]\n"
+    )
+    alone, fleet = (
+        json.loads(cli("suggest", *named, "-f", "json", cwd=robot).stdout)["suggestions"]
+        for named in (("p.xml", "-l", "l.yaml"), ("--fleet", "f.yaml"))
+    )
+    assert alone
+    assert [one | {"robot": ""} for one in fleet] == alone
+
+
+def test_a_no_of_one_robot_of_a_fleet_is_none_of_another(cli: Cli, tmp_path: Path) -> None:
+    (tmp_path / "p.xml").write_text(policy_of({"camera": (["/front"], []), "box": ([], ["/front"])}), "utf-8")
+    no = '# not: {"nodes": {"/camera": {"source": ["Video"]}}} by Ada on 2026-01-01\n'
+    (tmp_path / "two.yaml").write_text(f"labels: 1\nnodes:\n  /box: conduit\n{no}", "utf-8")
+    (tmp_path / "fleet.yaml").write_text(
+        "fleet: 1\nmodels:\n  m: {policies: [p.xml]}\nrobots:\n  one: {model: m}\n"
+        "  two: {model: m, labels: [two.yaml]}\n",
+        "utf-8",
+    )
+    told = cli("suggest", "--fleet", "fleet.yaml", cwd=tmp_path).stdout
+    assert re.search(r"one:/camera +source Video ", told)
+    alone = cli("suggest", "p.xml", "-l", "two.yaml", cwd=tmp_path).stdout
+    assert not re.search(r"/camera +source Video ", alone)
+
+
+def test_suggestions_for_a_fleet_are_not_written_into_one_label_file(cli: Cli, tmp_path: Path) -> None:
+    done = cli("suggest", "--fleet", str(ROOT / "examples/fleet/fleet.yaml"), "--into", "l.yaml", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "--into takes the label file of one robot" in " ".join(done.stderr.replace("│", " ").split())
+    assert not (tmp_path / "l.yaml").exists()
 
 
 # ---------------------------------------------------------------- written into a label file, and accepted
@@ -350,7 +553,7 @@ def test_one_element_is_accepted_with_who_when_and_why(cli: Cli, robot: Path) ->
 
 def test_no_reason_is_cut(cli: Cli, tmp_path: Path) -> None:
     cli("suggest", str(CARE), "--into", "l.yaml", cwd=tmp_path)
-    cli("labels", "--accept", "/face_recognizer", "--by", "Ada", "-l", "l.yaml", cwd=tmp_path)
+    cli("labels", "--accept", "/face_recognizer=FaceImage", "--by", "Ada", "-l", "l.yaml", cwd=tmp_path)
     text = (tmp_path / "l.yaml").read_text("utf-8")
     assert "…" not in text
     assert "trackers and models that describe what they see make it of pictures" in text.partition("# suggest")[0]
@@ -368,8 +571,39 @@ def test_all_of_a_confidence_are_accepted_but_what_could_hide_a_leak(cli: Cli, r
     left = [line for line in (robot / "l.yaml").read_text("utf-8").splitlines() if line.startswith("# suggest")]
     assert left
     assert all(re.search(r'"(sanitizer|conduit|never)"', line) for line in left)
-    assert cli("labels", "--accept", "/finder", "-l", "l.yaml", cwd=robot).returncode == 0
+    (robot / "l.yaml").write_text(re.sub(r"^  /customer_bridge: .*\n", "", text, flags=re.MULTILINE), "utf-8")
+    assert cli("labels", "--accept", "/finder", "p.xml", "-l", "l.yaml", cwd=robot).returncode == 0
     assert "sanitizer: {Video: drop}" in (robot / "l.yaml").read_text("utf-8")
+
+
+def test_a_comment_that_is_older_than_a_finding_does_not_close_it(cli: Cli, robot: Path) -> None:
+    """Written when no leak was known; without the policies nobody knows, with them the finding is told."""
+    old = suggestion("nodes", "/finder", {"sanitizer": {"Video": "drop"}}, "may")
+    (robot / "l.yaml").write_text(LEAKS + old, "utf-8")
+    alone = cli("labels", "--accept", "/finder", "-l", "l.yaml", cwd=robot)
+    assert alone.stderr.startswith("l.yaml:9: /finder would take data away; name the policies as well")
+    told = cli("labels", "--accept", "/finder", "p.xml", "-l", "l.yaml", cwd=robot)
+    assert re.match(
+        r"l.yaml:9: /finder would take data away of which a finding is known "
+        r"\(Video: /driver -> /customer_bridge \[[0-9a-f]{16}\]\); write it by hand if it is so\n",
+        told.stderr,
+    )
+    assert (robot / "l.yaml").read_text("utf-8") == LEAKS + old
+
+
+def test_what_is_accepted_in_one_go_is_known_before_data_are_taken_away(cli: Cli, tmp_path: Path) -> None:
+    """The source makes a finding, which the channel would close: both stand in one command."""
+    (tmp_path / "p.xml").write_text(policy_of({"camera": (["/front"], []), "box": ([], ["/front"])}), "utf-8")
+    source = suggestion("nodes", "/camera", {"source": ["Video"]})
+    never = suggestion("topics", "/front", {"never": ["Video"]})
+    (tmp_path / "l.yaml").write_text(
+        f"labels: 1\nauthor: Ada\nnodes:\n  /box: {{leak: [Video]}}\n{source}{never}", "utf-8"
+    )
+    done = cli("labels", "p.xml", "-l", "l.yaml", "--accept", "likely", "--accept", "/front", cwd=tmp_path)
+    assert "/front would take data away of which a finding is known (Video: /camera -> /box" in done.stderr
+    assert "1 suggestion accepted" in done.stderr
+    assert (tmp_path / "l.yaml").read_text("utf-8").endswith(never)
+    assert cli("analyze", "p.xml", "-l", "l.yaml", cwd=tmp_path).returncode == 1
 
 
 BY_HAND = """labels: 1
@@ -402,8 +636,8 @@ def suggestion(section: str, name: str, said: dict[str, Any], sure: str = "likel
         (suggestion("nodes", "/relay", {"source": ["Voice"]}), "", "says source in another form already"),
         (suggestion("nodes", "/camera", {"conduit": ["Voice"]}), "", "is a leak of such data already"),
         (suggestion("nodes", "/camera", {"conduit": ["PersonalData"]}), "", "is a leak of such data already"),
-        (suggestion("nodes", "/camera", {"sanitizer": {"Voice": "drop"}}), "", "is a leak of such data already"),
-        (suggestion("nodes", "/relay", {"sanitizer": {"Video": "drop"}}), "", "is a source of such data already"),
+        (suggestion("nodes", "/camera", {"sanitizer": {"Voice": "drop"}}), "", "would take data away; name"),
+        (suggestion("nodes", "/relay", {"sanitizer": {"Video": "drop"}}), "", "would take data away; name"),
         (suggestion("nodes", "/passes", {"leak": ["PersonalData"]}), "", "is a conduit of such data already"),
         (
             suggestion("nodes", "/camera", {"conduit": ["Video"]}),
@@ -470,17 +704,6 @@ def test_json_has_no_room_for_comments(cli: Cli, robot: Path) -> None:
 # ---------------------------------------------------------------- hostile names
 
 
-HOSTILE = [
-    '/camera"}}} because x&#10;nodes: {/up: conduit}',
-    "/camera&#x2028;# x",
-    "/camera\u202e/image",
-    "/camera: {leak: none} #",
-    "/camera\\x1b[31m/image",
-    "/camera'; DROP/image",
-    "/камера/image",
-]
-
-
 @pytest.mark.parametrize("name", HOSTILE)
 def test_a_hostile_name_gets_into_neither_the_file_nor_the_terminal(cli: Cli, tmp_path: Path, name: str) -> None:
     (tmp_path / "p.xml").write_text(policy_of({"n": ([name], []), "up": ([], [name])}), "utf-8")
@@ -531,18 +754,26 @@ def test_what_takes_data_away_is_accepted_by_name_only_however_sure(cli: Cli, ro
 def test_by_its_name_too_what_takes_data_away_comes_last(cli: Cli, robot: Path) -> None:
     drop = suggestion("nodes", "/finder", {"sanitizer": {"Video": "drop"}}, "may")
     derives = suggestion("nodes", "/finder", {"derives": [{"from": "Video", "to": "FaceImage"}]}, "may")
-    (robot / "l.yaml").write_text(LEAKS + drop + derives, "utf-8")
-    assert "1 suggestion accepted" in cli("labels", "--accept", "/finder", "-l", "l.yaml", cwd=robot).stderr
+    (robot / "l.yaml").write_text(LEAKS.replace("leak:", "conduit:") + drop + derives, "utf-8")
+    assert "1 suggestion accepted" in cli("labels", "--accept", "/finder", "p.xml", "-l", "l.yaml", cwd=robot).stderr
     assert (robot / "l.yaml").read_text("utf-8").endswith(drop)
-    assert "1 suggestion accepted" in cli("labels", "--accept", "/finder", "-l", "l.yaml", cwd=robot).stderr
+    assert "1 suggestion accepted" in cli("labels", "--accept", "/finder", "p.xml", "-l", "l.yaml", cwd=robot).stderr
 
 
-@pytest.mark.parametrize("said", [{"conduit": ["Video"]}, {"sanitizer": {"PersonImage": "drop"}}])
-def test_nothing_that_hides_is_put_beside_a_leak_that_a_glob_says(cli: Cli, robot: Path, said: dict[str, Any]) -> None:
+@pytest.mark.parametrize(
+    ("said", "remark"),
+    [
+        ({"conduit": ["Video"]}, "is a leak of such data already, by line 5; change it by hand"),
+        ({"sanitizer": {"PersonImage": "drop"}}, "would take data away of which a finding is known"),
+    ],
+)
+def test_nothing_that_hides_is_put_beside_a_leak_that_a_glob_says(
+    cli: Cli, robot: Path, said: dict[str, Any], remark: str
+) -> None:
     text = LEAKS + suggestion("nodes", "/customer_bridge", said, "may")
     (robot / "l.yaml").write_text(text, "utf-8")
-    done = cli("labels", "--accept", "/customer_bridge", "-l", "l.yaml", cwd=robot)
-    assert "l.yaml:9: /customer_bridge is a leak of such data already, by line 5; change it by hand" in done.stderr
+    done = cli("labels", "--accept", "/customer_bridge", "p.xml", "-l", "l.yaml", cwd=robot)
+    assert f"l.yaml:9: /customer_bridge {remark}" in done.stderr
     assert (robot / "l.yaml").read_text("utf-8") == text
 
 
@@ -575,31 +806,50 @@ def test_a_file_that_is_no_utf_8_is_told_with_its_line(cli: Cli, tmp_path: Path)
 NAMED = re.compile(r'^# suggest: \w+ \{"\w+": \{("(?:[^"\\]|\\.)*")', re.MULTILINE)
 
 
-def accept_everything(policy: str, file: Path) -> None:
-    """All of a confidence, and then each by its name: what a person would do who accepts whatever is asked."""
+def hostile(kinds: Sequence[str], roles: Sequence[str]) -> Interview:
+    """A language model that says some roles of everything for some kinds, each with a quote."""
+
+    def reply(body: bytes) -> bytes:
+        return said(
+            *(
+                answer(one["id"], role, kind, one["name"], to="Voice")
+                for one in elements(body)
+                for kind in kinds
+                for role in roles
+            )
+        ).body
+
+    return Interview(Asking("m", "http://localhost/v1", masked=False, most=10_000), reply, lambda _: None)
+
+
+def accept_everything(policy: str, file: Path, model: Sequence[str] = ()) -> None:
+    """All of a confidence, and then each by its name, of alternatives first what hides more.
+
+    A model, if there is one, says these roles of everything.
+    """
     for _ in range(2):
+        interview = hostile(["Video", "PersonalData"], model) if model else None
+        asked = suggest_labels((policy,), (str(file),), Settings(), interview=interview)
+        write(file, with_suggestions(str(file), asked).text)
+        write(file, with_accepted((str(file),), ["may"], "anybody", Settings()).text)
+        for line, what in (('"conduit"', "=conduit"), ("# suggest", "=*")):
+            left = [one for one in file.read_text("utf-8").splitlines() if one.startswith("# suggest") and line in one]
+            names = [f"{json.loads(name)}{what}" for name in dict.fromkeys(NAMED.findall("\n".join(left)))]
+            write(file, with_accepted((str(file),), names, "anybody", Settings(), (policy,)).text)
+
+
+def accept_without_looking(policy: str, file: Path) -> None:
+    """By a word and by bare names, as far as the program takes it: what a person does who reads nothing."""
+    for _ in range(3):
         text = with_suggestions(str(file), suggest_labels((policy,), (str(file),), Settings())).text
-        what = ["may"]
-        while what:
-            file.write_text(text, "utf-8")
-            text = with_accepted((str(file),), what, "anybody", Settings()).text
-            left = list(map(json.loads, dict.fromkeys(NAMED.findall(text))))
-            what = left if left != what else []
-        file.write_text(text, "utf-8")
+        write(file, text)
+        for what in ("may", *map(json.loads, dict.fromkeys(NAMED.findall(text)))):
+            with suppress(InputErrors):  # alternatives, or nothing is suggested of it any more
+                write(file, with_accepted((str(file),), [what], "anybody", Settings(), (policy,)).text)
 
 
-def planted(policy: str, folder: Path, every: int, ends: int) -> Iterable[tuple[Path, str]]:
-    """A source and a leak at two nodes with a path between them, of each policy some."""
-    nodes = [one for one in rosprivacy.analyze(policy).analysis.graph.elements if one.is_node]
-    for source in nodes[::every]:
-        file = folder / "planted.yaml"
-        start = f'labels: 1\nnodes:\n  "{source.name}": {{source: [Video]}}\n'
-        file.write_text(start, "utf-8")
-        reached = rosprivacy.analyze(policy, str(file)).analysis.carried
-        arrived = [one.element for one in reached if one.element.is_node and one.element != source]
-        for leak in arrived[:: max(1, len(arrived) - 1)][-ends:]:
-            file.write_text(f'{start}  "{leak.name}": {{leak: [Video]}}\n', "utf-8")
-            yield file, f"{source.name} -> {leak.name}"
+def write(file: Path, text: str) -> None:
+    file.write_text(text, "utf-8")
 
 
 def test_accepting_every_suggestion_hides_no_planted_leak(tmp_path: Path) -> None:
@@ -617,10 +867,46 @@ def test_accepting_every_suggestion_hides_no_planted_leak(tmp_path: Path) -> Non
     assert rosprivacy.analyze(policy, str(tmp_path / "l.yaml"), type_limits=None).analysis.verdict == "leak"
 
 
+HIDES = ("never", "mundane", "sanitizer", "conduit")
+ADDS = ("derivation", "sensitive", "source", "leak")
+
+
+@pytest.mark.parametrize("roles", [HIDES, ADDS, (*HIDES, *ADDS)])
+def test_a_hostile_model_hides_no_planted_leak(tmp_path: Path, roles: Sequence[str]) -> None:
+    """Whatever it says of everything, with a quote, and whatever of that a person accepts."""
+    (tmp_path / "p.xml").write_text(policy_of(ROBOT), "utf-8")
+    file = tmp_path / "l.yaml"
+    file.write_text("labels: 1\nnodes:\n  /driver: {source: [Video]}\n  /customer_bridge: {leak: [Video]}\n", "utf-8")
+    accept_everything(str(tmp_path / "p.xml"), file, roles)
+    assert ("language model" in file.read_text("utf-8")) == (roles != HIDES)
+    assert rosprivacy.analyze(str(tmp_path / "p.xml"), str(file), type_limits=None).analysis.verdict == "leak"
+
+
+def test_a_leak_that_nobody_has_labelled_is_not_accepted_away_without_looking(tmp_path: Path) -> None:
+    """At an end of data, and at one behind a node that passes them on."""
+    nodes: Nodes = {"eye": (["/a"], []), "middle": (["/b"], ["/a"]), "here": ([], ["/a"]), "there": ([], ["/b"])}
+    (tmp_path / "p.xml").write_text(policy_of(nodes), "utf-8")
+    (tmp_path / "l.yaml").write_text("labels: 1\nnodes:\n  /eye: {source: [Video]}\n", "utf-8")
+    accept_without_looking(str(tmp_path / "p.xml"), tmp_path / "l.yaml")
+    assert "/middle: {conduit: [Video]" in (tmp_path / "l.yaml").read_text("utf-8")
+    analysis = rosprivacy.analyze(str(tmp_path / "p.xml"), str(tmp_path / "l.yaml")).analysis
+    assert analysis.verdict == "undetermined"
+    assert {one.element.name for one in analysis.open} == {"/here", "/there"}
+
+
+def test_at_care_home_the_uplink_is_a_leak_or_a_conduit_and_nobody_says_which(tmp_path: Path) -> None:
+    (tmp_path / "l.yaml").write_text("labels: 1\nnodes:\n  /microphone: {source: [Voice]}\n", "utf-8")
+    (tmp_path / "p.xml").write_text(policy_of({"microphone": (["/audio"], []), "uplink": ([], ["/audio"])}), "utf-8")
+    accept_without_looking(str(tmp_path / "p.xml"), tmp_path / "l.yaml")
+    assert rosprivacy.analyze(str(tmp_path / "p.xml"), str(tmp_path / "l.yaml")).analysis.verdict != "no-leak-found"
+
+
 @pytest.mark.corpus
+@pytest.mark.parametrize("model", [(), pytest.param((*HIDES, *ADDS), marks=pytest.mark.slow)])
 def test_accepting_every_suggestion_hides_no_planted_leak_of_the_corpus(
-    corpus: Path, tmp_path: Path, *, thorough: bool
+    corpus: Path, tmp_path: Path, model: Sequence[str], *, thorough: bool
 ) -> None:
+    """Also with a language model that says of everything all that it can, 'never' first."""
     tried = 0
     for file in sorted((corpus / "policies").rglob("*.xml")):
         try:
@@ -629,7 +915,7 @@ def test_accepting_every_suggestion_hides_no_planted_leak_of_the_corpus(
             continue
         for labels, path in planted(str(file), tmp_path, *((2, 2) if thorough else (1000, 1))):
             assert rosprivacy.analyze(str(file), str(labels)).analysis.verdict == "leak"
-            accept_everything(str(file), labels)
+            accept_everything(str(file), labels, model)
             verdict = rosprivacy.analyze(str(file), str(labels)).analysis.verdict
             assert verdict != "no-leak-found", f"{file}: {path}"
             tried += 1

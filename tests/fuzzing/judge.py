@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.errors import InputError, InputErrors, QueryError, RosPrivacyError
+from rosprivacy.analysis.errors import InputError, InputErrors, ModelError, QueryError, RosPrivacyError
 from tests.fuzz_corpus import SECRET, hide, mutate, plant, words
 from tests.fuzzing.choices import Choices
 from tests.fuzzing.label_texts import BASE, BASE_LABELS, EXAMPLE_FLEET, STAR_LABELS
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from tests.fuzzing.targets import Target
 
 MUTATED = 5  # one input in so many is mutated as text too
-REFUSALS = (InputErrors, InputError, QueryError)
+REFUSALS = (InputErrors, InputError, ModelError, QueryError)
 Files = dict[str, bytes]
 
 

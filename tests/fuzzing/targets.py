@@ -13,10 +13,13 @@ from typing import TYPE_CHECKING, Any
 import rosprivacy
 from rosprivacy.analysis import durations
 from rosprivacy.analysis.errors import InputError
-from rosprivacy.analysis.model import Confidence, Place, Profile
+from rosprivacy.analysis.model import Confidence, Element, Place, Profile
+from rosprivacy.analysis.suggesting.asked_elements import Asked
 from rosprivacy.analysis.suggesting.by_package import package_evidence
+from rosprivacy.analysis.suggesting.evidence import HIDING
+from rosprivacy.analysis.suggesting.library_rules import CPP, PYTHON, NodeUse
+from rosprivacy.analysis.suggesting.model_answers import judged
 from rosprivacy.analysis.suggesting.name_rules import of_topic
-from rosprivacy.annotating import annotated, differences
 from rosprivacy.ingest.bags.bag_folders import read_bags
 from rosprivacy.ingest.decisions.decisions_file import read_decisions
 from rosprivacy.ingest.doors.text_files import TextFiles
@@ -26,6 +29,8 @@ from rosprivacy.ingest.keystore.grants import policy_of
 from rosprivacy.ingest.keystore.open_topics import open_topics
 from rosprivacy.ingest.keystore.permissions_file import read_permissions
 from rosprivacy.ingest.labels.label_file import parse_labels, read_labels
+from rosprivacy.ingest.language_model.answer_text import answers_in
+from rosprivacy.ingest.language_model.exchange_file import read_exchanges
 from rosprivacy.ingest.mitigation.limits_file import read_limits
 from rosprivacy.ingest.packages.package_file import read_package
 from rosprivacy.ingest.policies import common_names, names
@@ -33,15 +38,17 @@ from rosprivacy.ingest.policies.policy_xml import read_policy
 from rosprivacy.ingest.policies.saved_graph import read_saved
 from rosprivacy.ingest.suggestions.accepting import accept
 from rosprivacy.ingest.suggestions.comments import taken_apart
+from rosprivacy.ingest.suggestions.library_file import read_library_rules
 from rosprivacy.ingest.suggestions.name_file import read_name_rules
 from rosprivacy.ingest.zenoh_access.zenoh_inputs import read_zenoh
+from rosprivacy.labelling.annotating import annotated, differences
 from rosprivacy.mitigation import run_mitigation
-from rosprivacy.observing import written
 from rosprivacy.ontology.own import with_own
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.queries.library import parse
 from rosprivacy.report.compare.earlier import read_earlier
 from rosprivacy.report.json_text import as_text
+from rosprivacy.running.observing import written
 from rosprivacy.spark import parquet
 from tests.fuzzing import (
     bag_texts,
@@ -129,6 +136,16 @@ def _named() -> None:
         assert all(one is None or one.rule.confidence is not Confidence.CERTAIN for one in (of_topic(name, rules),))
 
 
+def _used() -> None:
+    """No rule about a library is certain, and one that speaks is one of the file or of ours."""
+    rules, _ = read_library_rules(["libraries.yaml"], load())
+    for name in ("cv2.VideoCapture.read", "open(w)", "curl_easy_init", "$ ros2 bag record"):
+        for language in (PYTHON, CPP):
+            for section in (rules.brings_in, rules.lets_out, rules.makes):
+                one = rules.spoken(section, NodeUse(name, language, ANYBODY.place))
+                assert one is None or one.confidence is not Confidence.CERTAIN
+
+
 def _accepted() -> None:
     """What is accepted by its confidence hides nothing, and what is left says what it said."""
     text = Path("labels.yaml").read_bytes().decode()
@@ -143,6 +160,17 @@ def _accepted() -> None:
         if one.hides and one.confidence is Confidence.MAY
     )
     parse_labels(rest, load(), name="labels.yaml")
+
+
+def _answered() -> None:
+    """Whatever a language model answered, it takes nothing away, and is said of what was asked."""
+    asked = {"n1": Asked(Element("node", "/robot/eye"), "/robot/eye", (), (), (), ())}
+    asked["n2"] = Asked(Element("topic", "/c/image"), "/c/image", (), (), (), ())
+    for one in read_exchanges("asked.json").exchanges:
+        for said in judged(answers_in(one.answer or b"", "m").answers, asked, load().categories, "m").evidence:
+            assert said.confidence is Confidence.MAY
+            assert said.label.role not in HIDING
+            assert said.label.kind in load().categories
 
 
 def _since() -> Result:
@@ -302,7 +330,9 @@ TARGETS = {target.name: target for target in (
         ("analyze", "node.json5", "-l", "star.yaml"),
     ),
     Target("name-rules", 10, suggestion_texts.name_rules, _named),
+    Target("library-rules", 10, suggestion_texts.library_rules, _used),
     Target("suggestions", 10, suggestion_texts.suggested, _accepted),
+    Target("model-exchanges", 10, suggestion_texts.recorded, _answered),
     Target("package", 10, package_texts.package, _matched),
     Target(
         "python-code", 10, code_texts.python, lambda: _annotated("a.py"), arguments=("annotations", "a.py"),

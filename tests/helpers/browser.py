@@ -8,6 +8,8 @@ import shutil
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
+import pytest
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
@@ -35,8 +37,10 @@ def missing() -> list[str]:
 def chromium(folder: Path, *more: str) -> Iterator[WebDriver]:
     """A browser with logs of the console and of all requests, and a profile of its own in a folder.
 
-    ``more`` are further arguments, such as ``HERE_ONLY``.
+    ``more`` are further arguments, such as ``HERE_ONLY``. Where no browser is installed, the test is skipped.
     """
+    if absent := missing():
+        pytest.skip(f"NO BROWSER ({', '.join(absent)} missing): apt-get install chromium chromium-driver")
     from selenium import webdriver
     from selenium.webdriver.chrome.service import Service
 

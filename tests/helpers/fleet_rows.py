@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosprivacy.answering import answer
-from rosprivacy.fleet_system import fleet_system, rows_of_fleet
 from rosprivacy.ontology.vocabulary import load as load_vocabulary
 from rosprivacy.question import question_of
+from rosprivacy.reading.fleet_system import fleet_system, rows_of_fleet
 from rosprivacy.settings import Settings
 
 if TYPE_CHECKING:

@@ -8,8 +8,8 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import rosprivacy
-from rosprivacy.fleet_system import answer_fleet
 from rosprivacy.ingest.database.rows import robot_rows
+from rosprivacy.reading.fleet_system import answer_fleet
 from rosprivacy.settings import Settings
 from tests.helpers.paths import ROOT
 

@@ -24,6 +24,8 @@ ROOMS: dict[str, set[str]] = {
 MODEL = {"", "model"}
 FACTS = MODEL | {"kernel", "answer", "case", "decisions", "legal"}
 READING = {"reading", "policies"}
+ANSWERS = {"", "result", "answering"}
+WORK = ANSWERS | {"formats", "outputs", "mitigation", "reading", "views", "policies", "labelling"}
 WINGS: dict[str, dict[str, set[str]]] = {
     "analysis": {
         "durations": set(),
@@ -53,6 +55,7 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "labels": READING | {"bags"},
         "annotations": READING | {"labels"},
         "mitigation": READING,
+        "language_model": {"reading"},
         "keystore": READING,
         "zenoh_access": READING,
         "lint": READING,
@@ -70,6 +73,7 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "document": {"", "contract"},
         "terminal": {"", "document", "words"},
         "pictures": {"", "words"},
+        "explorer": {"", "pictures", "words"},
         "compare": {"", "contract", "document"},
         "page": {"", "document", "pictures", "compare", "words"},
         "bags": {"", "contract"},
@@ -82,9 +86,23 @@ WINGS: dict[str, dict[str, set[str]]] = {
     },
     "rosprivacy": {
         "": set(),
+        "outputs": {""},
+        "formats": {"", "outputs"},
+        "result": {"", "outputs", "formats"},
+        "mitigation": {"", "result"},
+        "answering": {"", "result", "mitigation"},
+        "reading": ANSWERS,
+        "api": {"", "result", "reading", "labelling", "explorer"},
+        "__init__": {"", "result", "api", "labelling", "explorer"},
+        "views": ANSWERS | {"reading"},
+        "policies": ANSWERS | {"reading"},
+        "labelling": ANSWERS | {"reading"},
+        "recordings": ANSWERS | {"reading"},
+        "running": ANSWERS | {"reading"},
+        "spark": ANSWERS | {"reading"},
         "private_neo4j": {""},
-        "spark": {""},
-        "cli": {"", "private_neo4j", "spark"},
+        "explorer": WORK,
+        "cli": WORK | {"recordings", "running", "private_neo4j", "spark", "explorer"},
         "__main__": {"cli"},
     },
 }

@@ -20,7 +20,7 @@ from rosprivacy.ingest.labels.label_file import parse_labels
 from rosprivacy.ingest.labels.label_template import template
 from rosprivacy.ingest.labels.shipped import infrastructure_of
 from rosprivacy.question import question_of
-from rosprivacy.robot_system import robot_system, standard_channels
+from rosprivacy.reading.robot_system import robot_system, standard_channels
 from rosprivacy.settings import Settings
 from tests.helpers.brute import Brute
 

@@ -13,11 +13,11 @@ from rosprivacy.analysis.findings.findings import Options, analyse
 from rosprivacy.analysis.fleet.counts import counted
 from rosprivacy.analysis.fleet.patterns_of_pairs import Groups
 from rosprivacy.analysis.model import LEGAL_BASIS
-from rosprivacy.fleet_system import answer_fleet
 from rosprivacy.ingest.fleet.alike_robots import alike
 from rosprivacy.ingest.fleet.fleet_file import read_fleet
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.question import Question
+from rosprivacy.reading.fleet_system import answer_fleet
 from rosprivacy.settings import Settings
 from rosprivacy.spark.distributed import Task, analyse_in_parts
 from rosprivacy.spark.fleet_on_spark import file_reader, result

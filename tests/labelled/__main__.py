@@ -1,20 +1,45 @@
-"""How good suggestions are on the labelled set: ``python -m tests.labelled [dev|held-out] [--wrong]``."""
+"""How good suggestions are on the labelled set: ``python -m tests.labelled [dev|held-out] [--wrong] [--missed]``.
+
+``python -m tests.labelled collect FOLDER BATCH DATE`` writes the system files of a new batch, and
+``python -m tests.labelled uses FOLDER`` what the code of all nodes uses, both from the sources in a folder.
+"""
 
 from __future__ import annotations
 
 import sys
 import tempfile
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rosprivacy.ontology.vocabulary import load
-from tests.labelled.labelled_set import READERS, judged, kappa, said, systems
+from tests.labelled.collecting import collect
+from tests.labelled.labelled_set import READERS, judged, kappa, labelled, said, systems
 from tests.labelled.measuring import LOOKS, Share, measured
+from tests.labelled.uses import write_uses
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from tests.labelled.labelled_set import Pair, System
 
 
 def main() -> None:
     """Print agreement, and precision and recall by what is looked at."""
+    if sys.argv[1:2] == ["collect"]:
+        folder, batch, date = sys.argv[2:]
+        print("".join(f"{one}: {told}\n" for one, told in collect(Path(folder), int(batch), date).items()), end="")
+        return
+    if sys.argv[1:2] == ["uses"]:
+        counts = write_uses(Path(sys.argv[2]))
+        print(f"{sum(counts.values())} nodes of {len(counts)} systems have uses")
+        return
     dev, held_out = systems()
-    some = held_out if "held-out" in sys.argv else dev
+    chosen = held_out if "held-out" in sys.argv else dev
+    some = labelled(chosen)
+    if len(some) < len(chosen):
+        print(f"{len(chosen) - len(some)} systems are collected and not labelled yet; they are not measured")
+    if not some:
+        return
     one, other = (said(reader, some) for reader in READERS)
     truth = judged(some, load().hierarchy.overlaps)
     print(f"{len(some)} systems, {sum(len(system.nodes) for system in some)} nodes")
@@ -26,9 +51,18 @@ def main() -> None:
             print(f"\n{look.name}")
             for title, shares in (("precision", result.precision), ("recall", result.recall)):
                 print(f"  {title}: " + "; ".join(f"{name} {_shown(share)}" for name, share in shares.items()))
+            print(f"  missed of nodes of which nothing is suggested: {_shown(result.unseen)}")
             if "--wrong" in sys.argv:
                 for name, pairs in result.wrong.items():
                     print("".join(f"    {name}: {' '.join(pair)}\n" for pair in pairs), end="")
+            if "--missed" in sys.argv:
+                print("".join(f"    missed: {' '.join(pair)}\n{_facts(some, pair)}" for pair in result.missed), end="")
+
+
+def _facts(some: Iterable[System], pair: Pair) -> str:
+    """What the program was told of a node."""
+    node = next(system.nodes[pair.node] for system in some if system.name == pair.system)
+    return "".join(f"        {key}: {node[key]}\n" for key in node if node[key])
 
 
 def _shown(share: Share) -> str:

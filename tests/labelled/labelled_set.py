@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 HERE = Path(__file__).parent
 # KINDS: what the protocol lets a reader say.
 READERS = ("reader_a", "reader_b")
+TUNED = (1, 2)  # batches that rules may be tuned on, whole since their held-out halves were opened
 SOURCE, DERIVES, LEAK = "source", "derives", "leak"
 KINDS = frozenset([
     "PersonImage", "DepthImage", "PersonPointCloud", "ThermalImage", "Voice", "SpeechTranscript", "VoiceCommand",
@@ -42,9 +43,9 @@ class System(NamedTuple):
     Attributes
     ----------
     batch
-        Each was collected, split and labelled by itself.
+        Each was collected and labelled by itself.
     nodes
-        Name -> ``publishes``, ``subscribes``, ``serves``, ``calls`` -> name -> type.
+        Name -> ``publishes``, ``subscribes``, ``serves``, ``calls`` -> name -> type; ``uses``: names of libraries.
     """
 
     name: str
@@ -61,13 +62,24 @@ class Judged(NamedTuple):
 
 
 def systems() -> tuple[Sequence[System], Sequence[System]]:
-    """Return those that rules may be tuned on, and those held out: every other one of its batch, by hash."""
-    read = [_read(file) for file in (HERE / "systems").glob("*.yaml")]
-    every = [System(one["system"], one["repository"], one["batch"], one["nodes"]) for one in read]
-    every.sort(key=lambda one: (one.batch, hashlib.sha256(one.repository.encode()).hexdigest()))
-    batches = [[one for one in every if one.batch == number] for number in sorted({one.batch for one in every})]
+    """Return those that rules may be tuned on, and those held out; each by batch, then by hash."""
+    every = _every()
+    return [one for one in every if one.batch in TUNED], [one for one in every if one.batch not in TUNED]
+
+
+def first_split() -> tuple[Sequence[System], Sequence[System]]:
+    """Return the halves of the tuned batches, tuned on and held out, as they were until 2026-11-23.
+
+    Every other system of a batch, by hash. The figures of that day are about them.
+    """
+    batches = [[one for one in _every() if one.batch == number] for number in TUNED]
     dev, held_out = ([one for batch in batches for one in batch[first::2]] for first in (0, 1))
     return dev, held_out
+
+
+def labelled(some: Iterable[System]) -> Sequence[System]:
+    """Return those that both readers answered for; a batch that was collected and not read yet has no answers."""
+    return [one for one in some if all((HERE / reader / f"{one.name}.yaml").exists() for reader in READERS)]
 
 
 def said(reader: str, some: Iterable[System]) -> frozenset[Pair]:
@@ -106,6 +118,12 @@ def kappa(some: Iterable[System]) -> float:
     equal = (cells - len(one ^ other)) / cells
     by_chance = (len(one) * len(other) + (cells - len(one)) * (cells - len(other))) / cells**2
     return (equal - by_chance) / (1 - by_chance)
+
+
+def _every() -> Sequence[System]:
+    read = [_read(file) for file in (HERE / "systems").glob("*.yaml")]
+    every = [System(one["system"], one["repository"], one["batch"], one["nodes"]) for one in read]
+    return sorted(every, key=lambda one: (one.batch, hashlib.sha256(one.repository.encode()).hexdigest()))
 
 
 def _pairs(system: System, answers: Mapping[str, Any]) -> Iterable[Pair]:

@@ -8,28 +8,31 @@ from __future__ import annotations
 from math import sqrt
 from typing import TYPE_CHECKING, NamedTuple
 
-from rosprivacy.analysis.model import Confidence
+from rosprivacy.analysis.model import Confidence, Place
 from rosprivacy.analysis.suggesting.carried_kinds import Rules
 from rosprivacy.analysis.suggesting.evidence import DERIVATION
 from rosprivacy.analysis.suggesting.evidence import LEAK as LEAKS
 from rosprivacy.analysis.suggesting.evidence import SOURCE as SOURCES
+from rosprivacy.analysis.suggesting.library_rules import PYTHON, NodeUse
 from rosprivacy.analysis.suggesting.name_rules import NameRules
 from rosprivacy.analysis.suggesting.unsaid import unsaid
 from rosprivacy.analysis.suggesting.weighing import proposals
 from rosprivacy.ingest.packages.package_folders import read_packages
+from rosprivacy.ingest.suggestions.library_file import read_library_rules
 from rosprivacy.ingest.suggestions.name_file import read_name_rules
 from rosprivacy.ingest.types import TABLE
 from rosprivacy.ingest.types.type_table import read_table
+from rosprivacy.labelling.suggesting import evidence
 from rosprivacy.ontology.vocabulary import load
-from rosprivacy.robot_system import answer_robot
+from rosprivacy.reading.robot_system import answer_robot
 from rosprivacy.settings import Settings
-from rosprivacy.suggesting import evidence
 from tests.labelled.labelled_set import DERIVES, LEAK, SOURCE, Pair, judged, met
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence
     from pathlib import Path
 
+    from rosprivacy.analysis.model import Element
     from tests.labelled.labelled_set import Judged, System
 
 ROLES = {SOURCES: SOURCE, DERIVATION: DERIVES, LEAKS: LEAK}
@@ -46,13 +49,15 @@ class Look(NamedTuple):
     types: bool = True
     names: bool = True
     packages: bool = True
+    code: bool = True
 
 
 LOOKS = (
     Look("everything"),
-    Look("without types", types=False),
-    Look("types alone", names=False, packages=False),
-    Look("names alone", types=False, packages=False),
+    Look("without code", code=False),
+    Look("without types", types=False, code=False),
+    Look("types alone", names=False, packages=False, code=False),
+    Look("names alone", types=False, packages=False, code=False),
 )
 
 
@@ -86,11 +91,18 @@ class Measured(NamedTuple):
         By role: of what both readers say, how much is suggested, as ``may`` or surer.
     wrong
         By confidence: what no reader says.
+    missed
+        What both readers say and nothing suggests.
+    unseen
+        Of what is not suggested: how much is of nodes of which nothing is suggested, so that no name, type or library
+        speaks about them.
     """
 
     precision: Mapping[str, Share]
     recall: Mapping[str, Share]
     wrong: Mapping[str, Sequence[Pair]]
+    missed: Sequence[Pair]
+    unseen: Share
 
 
 def measured(some: Iterable[System], look: Look, folder: Path) -> Measured:
@@ -107,7 +119,10 @@ def measured(some: Iterable[System], look: Look, folder: Path) -> Measured:
     for role in ROLES.values():
         known = [pair for pair in truth.agreed if pair.role == role]
         recall[role] = Share(sum(met(pair, asked, overlaps) for pair in known), len(known))
-    return Measured(precision, recall, wrong)
+    missed = sorted(pair for pair in truth.agreed if not met(pair, asked, overlaps))
+    told_of = {pair[:2] for pair in asked}
+    unseen = Share(sum(pair[:2] not in told_of for pair in missed), len(missed))
+    return Measured(precision, recall, wrong, missed, unseen)
 
 
 def table(some: Sequence[System], folder: Path) -> str:
@@ -131,7 +146,9 @@ def suggested(system: System, look: Look, folder: Path) -> Mapping[Pair, Confide
     names = read_name_rules((), vocabulary, bounds)[0] if look.names else NO_NAMES
     rules = Rules(table.suggestions, table.limits.of, names, vocabulary.hierarchy)
     packages = read_packages((), vocabulary, bounds) if look.packages else ()
-    made = proposals(evidence(result.analysis, result.bound, rules, packages))
+    libraries = read_library_rules((), vocabulary, bounds)[0]
+    uses = uses_of(system, result.analysis.graph.elements) if look.code else {}
+    made = proposals(evidence(result.analysis, result.bound, rules, packages, uses, libraries))
     asked = unsaid(made, result.analysis.graph, result.bound, vocabulary.hierarchy)
     found: dict[Pair, Confidence] = {}
     for one in asked:
@@ -141,6 +158,16 @@ def suggested(system: System, look: Look, folder: Path) -> Mapping[Pair, Confide
         pair = Pair(system.name, one.label.element.name, role, kind)
         found[pair] = min(one.confidence, found.get(pair, one.confidence), key=tuple(Confidence).index)
     return found
+
+
+def uses_of(system: System, elements: Iterable[Element]) -> Mapping[int, tuple[NodeUse, ...]]:
+    """Return what the code of a system's nodes uses, by vertex."""
+    nodes = {at: system.nodes.get(element.name, {}) for at, element in enumerate(elements) if element.is_node}
+    return {
+        at: tuple(NodeUse(name, PYTHON, Place(node["file"], 0)) for name in node["uses"])
+        for at, node in nodes.items()
+        if node.get("uses")
+    }
 
 
 def policy_text(system: System) -> str:
@@ -160,7 +187,7 @@ def types_text(system: System) -> str:
     for ends in system.nodes.values():
         for leg in (*LEGS, *ENDS):
             for name, type_ in ends.get(leg, {}).items():
-                if type_ and FOLDED not in name:
+                if type_ and FOLDED not in name and (leg in LEGS) == ("/msg/" in type_):  # code may name a wrong one
                     section = "topics" if leg in LEGS else "actions" if "/action/" in type_ else "services"
                     said[section].setdefault(name, set()).add(type_)
     lines = ["labels: 1\n"]

@@ -14,10 +14,10 @@ import pytest
 
 import rosprivacy
 from rosprivacy.answering import answer
-from rosprivacy.fleet_system import fleet_system, rows_of_fleet
 from rosprivacy.formats import FORMATS, Style, written
 from rosprivacy.private_neo4j import connection
 from rosprivacy.question import question_of
+from rosprivacy.reading.fleet_system import fleet_system, rows_of_fleet
 from rosprivacy.report.words.words import Words
 from rosprivacy.settings import Settings
 from tests.helpers.paths import ROOT
@@ -268,8 +268,8 @@ def fleet(tmp_path_factory: pytest.TempPathFactory) -> Result:
 @pytest.fixture(scope="module")
 def stored(neo4j_server: Connection, tmp_path_factory: pytest.TempPathFactory) -> Result:
     from rosprivacy.ingest.database.loading import load
-    from rosprivacy.robot_system import robot_of
-    from rosprivacy.stored_system import answer_stored
+    from rosprivacy.reading.robot_system import robot_of
+    from rosprivacy.reading.stored_system import answer_stored
 
     folder = robot_in(tmp_path_factory.mktemp("stored"))
     with chdir(folder), connection.open_driver(neo4j_server) as driver:

@@ -17,15 +17,15 @@ from hypothesis import Phase, given, settings
 import rosprivacy
 from rosprivacy.analysis.errors import ClusterError, InputError, InputErrors
 from rosprivacy.analysis.files_read import one_run
-from rosprivacy.fleet_system import answer_fleet
 from rosprivacy.private_neo4j import connection
+from rosprivacy.reading.fleet_system import answer_fleet
+from rosprivacy.reading.stored_system import answer_stored
 from rosprivacy.report.atomic import check_outputs
 from rosprivacy.report.installing import command_for
 from rosprivacy.settings import Settings
 from rosprivacy.spark import session as spark
 from rosprivacy.spark.fleet_on_spark import run_on_spark
 from rosprivacy.spark.parquet import check_new, read
-from rosprivacy.stored_system import answer_stored
 from tests.helpers.command import XI
 from tests.helpers.fleet_files import policy, write
 from tests.helpers.fleet_rows import rows as rows_in_memory

@@ -203,8 +203,8 @@ def _each_alone(
     inputs: Inputs, settings: Settings, form: Format, style: Style, output: Path | None, fail_on: FailOn
 ) -> int:
     from rosprivacy.cli import per_policy
+    from rosprivacy.reading.robot_system import answer_each
     from rosprivacy.report.json_text import as_text
-    from rosprivacy.robot_system import answer_each
 
     if form not in (Format.text, Format.json):
         raise typer.BadParameter("--per-policy writes text and json")

@@ -33,7 +33,7 @@ def annotations(
 
     Annotations that are wrong, attached to nothing or contradict each other are told, all at once.
     """
-    from rosprivacy.annotating import annotated, differences
+    from rosprivacy.labelling.annotating import annotated, differences
     from rosprivacy.ontology.vocabulary import load
 
     if check is not None and output is not None:
@@ -52,7 +52,7 @@ def annotations(
 
 def _not_by_hand(output: Path) -> None:
     """Refuse to write over a label file that somebody wrote."""
-    from rosprivacy.annotating import is_ours
+    from rosprivacy.labelling.annotating import is_ours
 
     if output.exists() and not is_ours(str(output)):
         hint = "name another file; commands take several: -l labels.yaml -l annotations.yaml"

@@ -23,6 +23,7 @@ from rosprivacy.version import __version__
 COMMANDS = {  # name -> its group in help; each stands in the module of its name
     "observe": OBSERVE,
     "labels": LABEL,
+    "explore": LABEL,
     "suggest": LABEL,
     "annotations": LABEL,
     "categories": LABEL,

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rosprivacy.analysis.errors import DecisionError, InputError, InputErrors, shown
+from rosprivacy.analysis.errors import DecisionError, InputErrors, shown
 from rosprivacy.cli.options import Ontologies, complete_category
 from rosprivacy.cli.output import emit
 
@@ -100,7 +100,7 @@ def decide(
 ) -> None:
     """Decide about findings, or about a pattern of them, in a file that analyze and mitigate take into account."""
     from rosprivacy.clock import today
-    from rosprivacy.ingest.decisions.decision_writer import with_decision
+    from rosprivacy.ingest.decisions.decision_writer import text_in, with_decision
     from rosprivacy.ontology.vocabulary import load
     from rosprivacy.report.editing import editing
 
@@ -124,7 +124,7 @@ def decide(
     about = "; ".join(", ".join(f"{key} {shown(str(value))}" for key, value in target.items()) for target in targets)
     answer = f"{shown(str(decisions))}: {choice.value} {about}\n"
     with editing(decisions):
-        text = _text(decisions)
+        text = text_in(decisions)
         for target in targets:
             whole = {**target, **said, **_made_about(findings, target)}
             text = with_decision(str(decisions), text, whole, _remark(findings, target), vocabulary)
@@ -160,23 +160,6 @@ def _targets(ids: list[str], findings: dict[str, dict[str, Any]] | None, report:
         hint = "write its 16 digits and letters, or give --report, and its beginning will do"
         raise InputErrors([DecisionError("ID", 0, f"{shown(short[0])!r} is not the id of a finding", hint)])
     return [{"id": one} for one in ids]
-
-
-def _text(file: Path) -> str | None:
-    """What is in the file; None if it is not there."""
-    from rosprivacy.ingest.reading.bounded_file import read_regular
-    from rosprivacy.ingest.reading.yaml_values import MAX_BYTES
-
-    if not file.exists() and not file.is_symlink():
-        return None
-
-    def fail(line: int, problem: str, hint: str) -> InputError:
-        return DecisionError(str(file), line, problem, hint)
-
-    try:
-        return read_regular(str(file), MAX_BYTES, fail).decode("utf-8-sig")
-    except UnicodeDecodeError:
-        raise fail(1, "not UTF-8", "save the file as UTF-8") from None
 
 
 def _findings(report: Path) -> dict[str, dict[str, Any]]:

@@ -104,9 +104,9 @@ def _usage(
     granted: str, observed: str, inputs: Inputs, form: DiffFormat, output: Path | None, patch: Path | None
 ) -> NoReturn:
     """What is granted against what was seen in use."""
+    from rosprivacy.policies.usage import usage_document
     from rosprivacy.report.compare.usage_lines import usage_lines, usage_markdown
     from rosprivacy.report.json_text import as_text
-    from rosprivacy.usage import usage_document
 
     saved = (_kind(granted) == "graph", _kind(observed) == "graph")
     document = usage_document(granted, observed, inputs.settings, saved=saved)
@@ -137,9 +137,9 @@ def _snapshot(state: str, labels: tuple[str, ...], settings: Settings) -> Snapsh
     """Read a state, whatever it is."""
     from dataclasses import replace
 
-    from rosprivacy.fleet_system import answer_fleet
+    from rosprivacy.reading.fleet_system import answer_fleet
+    from rosprivacy.reading.robot_system import answer_robot
     from rosprivacy.report.compare.snapshot import snapshot
-    from rosprivacy.robot_system import answer_robot
 
     kind = _kind(state)
     if kind == "analysis":

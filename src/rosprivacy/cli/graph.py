@@ -211,8 +211,8 @@ def _drawn_of(inputs: Inputs, *, both: bool) -> tuple[Result, dict[str, tuple[Pr
     if not inputs.fleet:
         return inputs.result(settings, both=both), {}
     from rosprivacy.answering import answer
-    from rosprivacy.fleet_system import fleet_system
     from rosprivacy.question import question_of
+    from rosprivacy.reading.fleet_system import fleet_system
 
     question = question_of(settings)
     system = fleet_system(inputs.fleet, question)

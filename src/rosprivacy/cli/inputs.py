@@ -125,20 +125,20 @@ class Inputs(NamedTuple):
         if both:
             return self._both(settings)
         if self.from_database:
-            from rosprivacy.stored_system import answer_stored
+            from rosprivacy.reading.stored_system import answer_stored
 
             with driver_of(self.neo4j) as driver:
                 return answer_stored(driver, settings)
         if self.fleet:
-            from rosprivacy.fleet_system import answer_fleet
+            from rosprivacy.reading.fleet_system import answer_fleet
 
             return answer_fleet(self.fleet, settings)
-        from rosprivacy.robot_system import answer_robot
+        from rosprivacy.reading.robot_system import answer_robot
 
         return answer_robot(self.named, tuple(self.labels or ()), settings)
 
     def _both(self, settings: Settings) -> Result:
-        from rosprivacy.both_views import both_views, both_views_of_fleet
+        from rosprivacy.views.both_views import both_views, both_views_of_fleet
 
         if self.fleet:
             return both_views_of_fleet(self.fleet, settings)

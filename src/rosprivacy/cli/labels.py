@@ -11,7 +11,7 @@ import typer
 from rosprivacy.analysis.errors import InputError
 from rosprivacy.analysis.text import counted
 from rosprivacy.cli.inputs import Inputs, reads_system, refuse
-from rosprivacy.cli.options import Output
+from rosprivacy.cli.options import PRINTED
 from rosprivacy.cli.output import emit
 
 
@@ -37,8 +37,9 @@ def labels(
         list[str] | None,
         typer.Option(
             metavar="WHAT",
-            help="Make labels of suggestions in the file of --labels: the surest of an element, by its name, or all "
-            "that are certain, likely or may, with those that are surer; may be repeated.",
+            help="Make labels of suggestions in the file of --labels: the surest of an element, by its name "
+            "(/camera=Video where there are several), or all that are certain, likely or may, with those that are "
+            "surer; what takes data away only if policies are given too; may be repeated.",
             show_default=False,
         ),
     ] = None,
@@ -46,7 +47,16 @@ def labels(
         str | None,
         typer.Option(metavar="NAME", help="Who accepts suggestions; by default the author of the file."),
     ] = None,
-    output: Output = None,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "--output",
+            "-o",
+            metavar="FILE",
+            help="Write to this file instead; - for standard output.",
+            show_default=False,
+        ),
+    ] = None,
 ) -> None:
     """Make a label file or add to one, or print the schema or the files that come with the program."""
     if [init, schema, standard, infrastructure, update, next_round, bool(accept)].count(True) != 1:
@@ -62,43 +72,41 @@ def labels(
     refuse("labels", "label files with --update, --next and --accept only", inputs.given("labels"))
     if init:
         _begin(inputs, output)
-    elif schema:
-        emit(_schema(inputs), output)
     else:
-        emit(_shipped("standard" if standard else "infrastructure"), output)
+        text = _schema(inputs) if schema else _shipped("standard" if standard else "infrastructure")
+        emit(text, None if output == PRINTED else output)
 
 
 def _add(inputs: Inputs, output: Path | None, *, update: bool) -> None:
     """Lines into the label file that is named, the one that people edit; remarks go to the terminal."""
-    from rosprivacy.label_lines import next_lines, own_file, updated
+    from rosprivacy.labelling.label_lines import next_lines, own_file, updated
     from rosprivacy.report.editing import editing
 
     labels = tuple(inputs.labels or ())
-    file = output or Path(own_file(labels))
+    file = output if output and output != PRINTED else Path(own_file(labels))
     with editing(file):
         written = (updated if update else next_lines)(inputs.named, labels, inputs.settings)
         for remark in written.remarks:
             typer.echo(remark, err=True)
         if written.added or output:
-            emit(written.text, file, edited=Path(written.file))
+            emit(written.text, None if output == PRINTED else file, edited=Path(written.file))
     typer.echo(f"{file}: {counted(written.added, 'line')} added", err=True)
 
 
 def _accept(inputs: Inputs, accepted: list[str], by: str | None, output: Path | None) -> None:
     """Suggestions that a person accepts become labels, in the file that people edit."""
-    from rosprivacy.label_lines import own_file
+    from rosprivacy.labelling.label_lines import own_file
+    from rosprivacy.labelling.suggested_lines import with_accepted
     from rosprivacy.report.editing import editing
-    from rosprivacy.suggested_lines import with_accepted
 
-    refuse("labels --accept", "the label file alone", inputs.given("policies", "add"))
     labels = tuple(inputs.labels or ())
-    file = output or Path(own_file(labels))
+    file = output if output and output != PRINTED else Path(own_file(labels))
     with editing(file):
-        written = with_accepted(labels, accepted, by, inputs.settings)
+        written = with_accepted(labels, accepted, by, inputs.settings, tuple(inputs.policies or ()))
         for remark in written.remarks:
             typer.echo(remark, err=True)
         if written.added or output:
-            emit(written.text, file, edited=Path(written.file))
+            emit(written.text, None if output == PRINTED else file, edited=Path(written.file))
     typer.echo(f"{file}: {counted(written.added, 'suggestion')} accepted", err=True)
 
 
@@ -106,6 +114,7 @@ def _begin(inputs: Inputs, output: Path | None) -> None:
     """A first label file where there is none, nor one that appears while the policies are read."""
     from rosprivacy.report.editing import editing
 
+    output = None if output == PRINTED else output
     with editing(output) if output else nullcontext():
         if output and output.is_file():
             raise InputError(str(output), 0, "is there already", "a label file is work: name another, or remove it")
@@ -118,7 +127,7 @@ def _first(inputs: Inputs, output: Path | None) -> tuple[str, Path | None, dict[
     from rosprivacy.ingest.labels.shipped import infrastructure_of
     from rosprivacy.ingest.policies.flow_graph import build
     from rosprivacy.ontology.vocabulary import load
-    from rosprivacy.robot_system import read_graphs, read_system, standard_channels
+    from rosprivacy.reading.robot_system import read_graphs, read_system, standard_channels
 
     settings = inputs.settings
     vocabulary = load(ontologies=settings.ontologies)

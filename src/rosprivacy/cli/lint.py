@@ -47,7 +47,7 @@ def lint(
     Ends with 1 if a rule is broken that is no mere notice. With labels it also tells of enclaves that mix sources and
     leaks.
     """
-    from rosprivacy.linting import lint_policies
+    from rosprivacy.policies.linting import lint_policies
     from rosprivacy.report.json_text import as_text
     from rosprivacy.report.lint.lint_document import lint_document
     from rosprivacy.report.lint.lint_lines import lint_lines

@@ -65,7 +65,7 @@ def load(
         refuse("--fleet", "the names of the fleet file", ["--robot"] if robot is not None else [])
         _load_fleet(inputs.fleet, settings, inputs.neo4j, both=both)
         return
-    from rosprivacy.robot_system import robot_of
+    from rosprivacy.reading.robot_system import robot_of
 
     name = database.check_robot_name(name_of(inputs) if robot is None else robot)
     result = inputs.result(settings, both=both)
@@ -120,16 +120,16 @@ def _tell_replaced(done: Loaded) -> None:
 def _load_fleet(file: str, settings: Settings, neo4j: str | None, *, both: bool) -> None:
 
     from rosprivacy.answering import answer
-    from rosprivacy.fleet_system import fleet_system, rows_of_fleet
     from rosprivacy.ingest.database import loading as database
     from rosprivacy.ingest.database.fleet_rows import MOST_ACROSS
     from rosprivacy.question import question_of
+    from rosprivacy.reading.fleet_system import fleet_system, rows_of_fleet
 
     question = question_of(settings)._replace(every=True)
     system = fleet_system(file, question)
     result = answer(system, question)
     if both:
-        from rosprivacy.both_views import both_views_of_fleet
+        from rosprivacy.views.both_views import both_views_of_fleet
 
         result = replace(result, enforced=both_views_of_fleet(file, settings).enforced)
     rows = rows_of_fleet(system, question, result)

@@ -95,7 +95,9 @@ FleetFile = Annotated[
 FromDatabase = Annotated[
     bool,
     typer.Option(
-        "--from-database", help="Read what is in Neo4j; the answer is written back there.", rich_help_panel=READ
+        "--from-database",
+        help="Read what is in Neo4j; the answer is written back there (suggest writes nothing).",
+        rich_help_panel=READ,
     ),
 ]
 Server = Annotated[
@@ -242,7 +244,21 @@ DecisionsFile = Annotated[
         rich_help_panel=ASKED,
     ),
 ]
+PRINTED = Path("-")  # as a name of an output: standard output
+
+
+def _but_printed(output: Path | None) -> Path | None:
+    return None if output == PRINTED else output
+
+
 Output = Annotated[
     Path | None,
-    typer.Option("--output", "-o", metavar="FILE", help="Write to this file instead.", show_default=False),
+    typer.Option(
+        "--output",
+        "-o",
+        metavar="FILE",
+        help="Write to this file instead; - for standard output.",
+        show_default=False,
+        callback=_but_printed,
+    ),
 ]

@@ -3,25 +3,44 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
-from rosprivacy.analysis.text import counted
-from rosprivacy.cli.inputs import Inputs, reads_system
+from rosprivacy.analysis.text import counted, printable
+from rosprivacy.cli.inputs import Inputs, reads_system, refuse
+from rosprivacy.cli.model_options import (
+    DryRun,
+    MaskNames,
+    Model,
+    ModelOptions,
+    ModelUrl,
+    Record,
+    Replay,
+    Requests,
+    Timeout,
+    Unencrypted,
+)
 from rosprivacy.cli.options import Output, TextOrJson
 from rosprivacy.cli.output import emit
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
-    from rosprivacy.suggesting import Suggested
+    from rosprivacy.labelling.suggesting import Suggested
+    from rosprivacy.result import Result
 
 
-@reads_system(
-    "the policies of one robot, and label files",
-    without=("fleet", "from_database", "neo4j", "no_type_limits", "categories", "decisions"),
-)
+class Sources(NamedTuple):
+    """What users add: rules, packages, source code, rules about libraries."""
+
+    rules: tuple[str, ...]
+    packages: tuple[str, ...]
+    source: tuple[str, ...]
+    libraries: tuple[str, ...]
+
+
+@reads_system("all kinds, types and findings", without=("no_type_limits", "categories", "decisions"))
 def suggest(
     inputs: Inputs,
     rules: Annotated[
@@ -45,7 +64,16 @@ def suggest(
         list[str] | None,
         typer.Option(
             metavar="SRC",
-            help="Python and C++ source code of nodes, whose literal names and types are evidence; may be repeated.",
+            help="Python and C++ source code of nodes, whose literal names and types, and uses of libraries, are "
+            "evidence; may be repeated.",
+            show_default=False,
+        ),
+    ] = None,
+    libraries: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="FILE",
+            help="More rules about libraries, in the format of ontology/libraries.yaml; may be repeated.",
             show_default=False,
         ),
     ] = None,
@@ -57,29 +85,108 @@ def suggest(
             show_default=False,
         ),
     ] = None,
+    ask: Annotated[
+        bool,
+        typer.Option(
+            "--ask",
+            help="Ask one question at a time, answered by single keys, and write each answer into the file of --into. "
+            "Keys come from the terminal, or from standard input if it is none.",
+        ),
+    ] = False,
+    by: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="Who answers with --ask; by default the author of the file."),
+    ] = None,
+    model: Model = None,
+    model_url: ModelUrl = None,
+    mask: MaskNames = False,
+    dry_run: DryRun = False,
+    record: Record = None,
+    replay: Replay = None,
+    model_requests: Requests = 20,
+    model_timeout: Timeout = 300,
+    model_unencrypted: Unencrypted = False,
     format: Annotated[TextOrJson, typer.Option("--format", "-f", help="Of the answer.")] = TextOrJson.text,  # noqa: A002 - the option's name
     output: Output = None,
 ) -> None:
     """Say what nodes and channels could be labelled as, with reasons: questions, in the order of review.
 
-    Nothing is applied. 'rosprivacy labels --accept' makes labels of those that a person accepts.
+    Nothing is applied, in a database neither. 'rosprivacy labels --accept' makes labels of those that a person accepts.
     """
-    from rosprivacy.report.json_text import as_text
-    from rosprivacy.report.suggest.suggestion_document import suggestions_document
-    from rosprivacy.report.suggest.suggestion_lines import suggestion_lines
-    from rosprivacy.suggesting import suggest_labels
+    from rosprivacy.labelling.suggesting import suggested
 
-    def told() -> Suggested:
-        labels = _with_own(tuple(inputs.labels or ()), into)
-        return suggest_labels(inputs.named, labels, inputs.settings, rules or (), packages or (), source or ())
-
+    options = ModelOptions(
+        model, model_url, dry_run, mask, record, replay, model_requests, model_timeout, model_unencrypted
+    )
+    options.check(into)
+    refuse("suggest", "--by with --ask only", ["--by"] if by and not ask else [])
+    if ask and (into is None or output or format is TextOrJson.json or model or replay or dry_run):
+        raise typer.BadParameter("--ask needs --into FILE; it takes neither --output, --format json nor a model")
+    stored = inputs.given("fleet", "from_database")
+    if model or replay:
+        refuse("--model" if model else "--replay", "the policies of one robot", stored)
     if into:
-        _write(into, told)
+        refuse("--into", "the label file of one robot (what you accept of a fleet's, write into its own)", stored)
+    labels = _with_own(tuple(inputs.labels or ()), into)
+    if ask and into:
+        known = Sources(tuple(rules or ()), tuple(packages or ()), tuple(source or ()), tuple(libraries or ()))
+        _ask(into, inputs, known, by)
         return
-    found = told()
-    document = suggestions_document(found.proposals, found.open, found.by_hand, found.result, found.rules)
-    lines = "".join(f"{line}\n" for line in suggestion_lines(document))
-    emit(as_text(document) if format is TextOrJson.json else lines, output)
+    if dry_run:
+        emit(_would_be_sent(inputs, labels, source or (), options), output)
+        return
+    with options.interview(output) as interview:
+
+        def told() -> Suggested:
+            result = _result(inputs._replace(labels=list(labels)))
+            return suggested(
+                result,
+                inputs.settings,
+                rules=rules or (),
+                packages=packages or (),
+                sources=source or (),
+                libraries=libraries or (),
+                interview=interview,
+            )
+
+        if into:
+            _write(into, told)
+        else:
+            emit(_answer(told(), format), output)
+
+
+def _answer(found: Suggested, format_: TextOrJson) -> str:
+    from rosprivacy.report.json_text import as_text
+    from rosprivacy.report.suggest.suggestion_lines import suggestion_lines
+
+    document = found.document()
+    return (
+        as_text(document) if format_ is TextOrJson.json else "".join(f"{line}\n" for line in suggestion_lines(document))
+    )
+
+
+def _would_be_sent(inputs: Inputs, labels: tuple[str, ...], sources: Sequence[str], options: ModelOptions) -> str:
+    """Every request as it would go out, but for the key."""
+    from rosprivacy.labelling.interview import NOTHING_ASKED, asked_of, mask_of
+    from rosprivacy.labelling.suggesting import basis_of
+    from rosprivacy.reading.robot_system import answer_robot
+
+    asking = options.asking
+    basis = basis_of(answer_robot(inputs.named, labels, inputs.settings), sources)
+    asked = asked_of(basis, asking, mask_of(basis.result.vocabulary) if asking.masked else None)
+    texts = (f"POST {asking.url}\n{one.body.decode('ascii')}\n" for one in asked)
+    return "".join(texts) or f"{NOTHING_ASKED}\n"
+
+
+def _result(inputs: Inputs) -> Result:
+    """The answer about the system that is named; a database is read, and nothing is written there."""
+    if not inputs.from_database:
+        return inputs.result(inputs.settings)
+    from rosprivacy.cli.driver import driver_of
+    from rosprivacy.reading.stored_system import answer_unwritten
+
+    with driver_of(inputs.neo4j) as driver:
+        return answer_unwritten(driver, inputs.settings)
 
 
 def _with_own(labels: tuple[str, ...], into: Path | None) -> tuple[str, ...]:
@@ -91,10 +198,25 @@ def _with_own(labels: tuple[str, ...], into: Path | None) -> tuple[str, ...]:
 
 def _write(file: Path, told: Callable[[], Suggested]) -> None:
     """The suggestions into a label file, in place of those that an earlier run has written there."""
+    from rosprivacy.labelling.suggested_lines import with_suggestions
     from rosprivacy.report.editing import editing
-    from rosprivacy.suggested_lines import with_suggestions
 
     with editing(file):
-        written = with_suggestions(str(file), told())
+        found = told()
+        written = with_suggestions(str(file), found)
         emit(written.text, file, edited=file)
+    for notice in found.notices:
+        typer.echo(f"{notice.place}: {printable(notice.message)}", err=True)
     typer.echo(f"{file}: {counted(written.added, 'suggestion')}, as comments", err=True)
+
+
+def _ask(file: Path, inputs: Inputs, known: Sources, by: str | None) -> None:
+    """Questions until nothing is left to ask; each answer is in the file before the next one is asked."""
+    from rosprivacy.cli.dialogue import ask
+    from rosprivacy.labelling.suggesting import suggest_labels
+
+    def told() -> Suggested:
+        labels = _with_own(tuple(inputs.labels or ()), file)
+        return suggest_labels(inputs.named, labels, inputs.settings, *known)
+
+    ask(file, told, by, inputs.settings)

@@ -19,7 +19,6 @@ from rosprivacy.analysis.model import Diagnostic, Place, Severity
 from rosprivacy.answering import concluded
 from rosprivacy.assumptions import named_files, types_read
 from rosprivacy.clock import judged_on
-from rosprivacy.fleet_system import Reader
 from rosprivacy.ingest.fleet.alike_robots import alike
 from rosprivacy.ingest.fleet.fleet_file import read_fleet
 from rosprivacy.ingest.fleet.joins import joins_nothing
@@ -27,6 +26,7 @@ from rosprivacy.ingest.labels.countries import countries
 from rosprivacy.ingest.labels.label_file import read_labels
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.question import in_contexts, question_of
+from rosprivacy.reading.fleet_system import Reader
 from rosprivacy.spark.distributed import Task, analyse_in_parts
 from rosprivacy.spark.parquet import check_new, write
 from rosprivacy.spark.session import scatter, session

@@ -3,6 +3,7 @@ planes."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -214,6 +215,21 @@ def test_paths_that_are_only_counted_are_as_many_as_those_that_are_listed(system
 
 
 COUNTED = (Paths.witness, Paths.disjoint)
+
+
+@given(st.one_of(systems(), ranked(), wildcards()), st.data())
+def test_without_counting_paths_all_else_is_the_same(system: System, data: st.DataObject) -> None:
+    """Also where leaks are accepted; a number that nobody worked out is none."""
+    try:
+        case = st.sampled_from(sorted({finding.id for finding in system.analyse().findings}) or [""])
+        ids = data.draw(st.sets(case, max_size=2))
+        both = (Options(count_paths=counts, accepts=lambda c: c.id in ids) for counts in (True, False))
+        whole, uncounted = map(system.analyse, both)
+    except InputErrors:
+        return
+    assert [replace(f, number_of_paths=None) for f in whole.findings] == list(uncounted.findings)
+    for name in ("verdict", "open", "carried", "roles", "unknown_ends", "lacking", "diagnostics"):
+        assert getattr(whole, name) == getattr(uncounted, name), name
 
 
 def test_what_comes_back_to_a_source_takes_no_flow_twice() -> None:

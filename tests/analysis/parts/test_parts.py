@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given
 
 from rosprivacy.analysis.errors import InputErrors
-from rosprivacy.fleet_system import answer_fleet
+from rosprivacy.reading.fleet_system import answer_fleet
 from rosprivacy.settings import Settings
 from tests.helpers.fleet_files import write
 from tests.helpers.parts import FLEET, documents, fleet_file, in_list, same, scattered

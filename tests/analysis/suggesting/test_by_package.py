@@ -13,7 +13,7 @@ from rosprivacy.analysis.suggesting.by_package import package_evidence
 from rosprivacy.ingest.packages.package_folders import catalogue
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.question import question_of
-from rosprivacy.robot_system import robot_system
+from rosprivacy.reading.robot_system import robot_system
 from rosprivacy.settings import Settings
 from tests.helpers.fleet_files import policy
 

@@ -17,8 +17,8 @@ from rosprivacy.ingest.database.loading import load, unload
 from rosprivacy.private_neo4j import connection
 from rosprivacy.queries.library import find
 from rosprivacy.queries.run import run
+from rosprivacy.reading.stored_system import answer_stored
 from rosprivacy.settings import Settings
-from rosprivacy.stored_system import answer_stored
 from tests.helpers.fleet_rows import VOCABULARY, rows
 from tests.helpers.graphs import dump
 from tests.helpers.paths import ROOT

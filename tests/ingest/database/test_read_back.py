@@ -24,9 +24,9 @@ from rosprivacy.ingest.observe.node_info import read_node_info
 from rosprivacy.ingest.observe.observed_policy import policy_xml, prepared
 from rosprivacy.ontology.vocabulary import load as load_vocabulary
 from rosprivacy.private_neo4j import connection
-from rosprivacy.robot_system import robot_of
+from rosprivacy.reading.robot_system import robot_of
+from rosprivacy.reading.stored_system import answer_stored
 from rosprivacy.settings import Settings
-from rosprivacy.stored_system import answer_stored
 from tests.helpers.additions import ADD_STORAGE
 from tests.helpers.cases import CASES
 from tests.helpers.daily import one_in

@@ -15,7 +15,7 @@ import pytest
 from rosprivacy.ingest.doors.dds_door import DdsDoor
 from rosprivacy.ingest.observe.declared import DDS_TYPE, Declared
 from rosprivacy.ingest.policies.observed_metadata import HIDDEN, NO_NODE, REFUSED, STILL_CHANGING
-from rosprivacy.observing import now
+from rosprivacy.running.observing import now
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

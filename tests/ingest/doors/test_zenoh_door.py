@@ -14,7 +14,7 @@ from rosprivacy.analysis.errors import MiddlewareError, ObservationError
 from rosprivacy.ingest.doors.zenoh_door import ZenohDoor
 from rosprivacy.ingest.observe.declared import DDS_TYPE, Declared
 from rosprivacy.ingest.policies.observed_metadata import HIDDEN, REFUSED, STILL_CHANGING
-from rosprivacy.observing import now
+from rosprivacy.running.observing import now
 from tests.helpers.zenoh_tokens import HASH, endpoint, free_endpoint, node, router, session
 
 if TYPE_CHECKING:

@@ -15,11 +15,11 @@ from jsonschema import Draft202012Validator
 import rosprivacy
 from rosprivacy.analysis.errors import FleetError, InputErrors
 from rosprivacy.answering import answer
-from rosprivacy.fleet_system import answer_fleet, fleet_system
 from rosprivacy.ingest.fleet.alike_robots import alike
 from rosprivacy.ingest.fleet.fleet_schema import fleet_schema
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.question import Question
+from rosprivacy.reading.fleet_system import answer_fleet, fleet_system
 from rosprivacy.settings import Settings
 from tests.helpers.fleet_files import MODELS, folder, policy, read, write
 from tests.helpers.paths import ROOT

@@ -15,9 +15,9 @@ from rosprivacy.ingest.labels.label_schema import label_schema
 from rosprivacy.mitigation import run_mitigation
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.private_neo4j import connection
-from rosprivacy.robot_system import robot_of
+from rosprivacy.reading.robot_system import robot_of
+from rosprivacy.reading.stored_system import answer_stored
 from rosprivacy.settings import Settings
-from rosprivacy.stored_system import answer_stored
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -13,7 +13,7 @@ from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.ingest.lint.enclave_rules import MOST, permissions_sizes
 from rosprivacy.ingest.lint.rule_table import OF_LABELS, RULES
 from rosprivacy.ingest.policies.policy_xml import read_policy
-from rosprivacy.linting import lint_policies
+from rosprivacy.policies.linting import lint_policies
 from rosprivacy.settings import Settings
 from tests.helpers.command import cli
 from tests.helpers.keystores import Keystore, grant, permissions, rule

@@ -14,7 +14,7 @@ from rosprivacy.ingest.observe.earlier_files import EarlierFiles
 from rosprivacy.ingest.observe.observation import Observation, ObservedNode, Span, added_up
 from rosprivacy.ingest.observe.observed_policy import policy_xml, prepared
 from rosprivacy.ingest.observe.observed_types import types_yaml
-from rosprivacy.observing import declared_file
+from rosprivacy.running.observing import declared_file
 from tests.helpers.command import Cli, refused
 from tests.helpers.observed import AT, at, endpoint, looked, node_info, saw
 

@@ -11,9 +11,9 @@ from rosprivacy.ingest.database.loading import load
 from rosprivacy.ingest.observe.observed_policy import policy_xml, prepared
 from rosprivacy.ingest.observe.observed_types import types_yaml
 from rosprivacy.private_neo4j import connection
-from rosprivacy.robot_system import robot_of
+from rosprivacy.reading.robot_system import robot_of
+from rosprivacy.reading.stored_system import answer_stored
 from rosprivacy.settings import Settings
-from rosprivacy.stored_system import answer_stored
 from tests.helpers.command import run
 from tests.helpers.observed import endpoint, saw
 from tests.helpers.written_systems import told

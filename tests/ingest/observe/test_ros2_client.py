@@ -14,7 +14,7 @@ import pytest
 from rosprivacy.ingest.doors.dds_door import DdsDoor
 from rosprivacy.ingest.doors.zenoh_door import ZenohDoor
 from rosprivacy.ingest.policies.observed_metadata import NO_NODE
-from rosprivacy.observing import now
+from rosprivacy.running.observing import now
 from tests.helpers import zenoh_tokens
 from tests.helpers.command import run
 from tests.helpers.ros2_client import ENDPOINTS, LOGS, NODES, PARAMETERS, robot

@@ -4,12 +4,23 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 
 from rosprivacy.analysis.errors import InputErrors
-from rosprivacy.ingest.packages.package_folders import AMENT, PREFIXES, catalogue, read_packages, rests_on
+from rosprivacy.ingest.packages.package_folders import (
+    AMENT,
+    PREFIXES,
+    catalogue,
+    read_packages,
+    replacements,
+    rests_on,
+)
 from rosprivacy.ontology.vocabulary import load
+
+if TYPE_CHECKING:
+    from rosprivacy.analysis.suggesting.ros_package import Package
 
 TEXT = """package: 1
 name: {name}
@@ -60,12 +71,47 @@ def test_files_and_folders_are_read() -> None:
 
 def test_a_file_of_a_user_stands_in_place_of_a_shipped_one_of_the_same_name() -> None:
     own = write("usb_cam.yaml", "usb_cam", "my_camera")
-    assert len(read_packages((own,), load())) == len(catalogue(load()))
-    assert names_of(own) == ["usb_cam"]
-    (package,) = (one for one in read_packages((own,), load()) if one.name == "usb_cam")
-    assert package.nodes[0].names == ("my_camera",)
-    assert package.place.file == own
-    assert [file for file, _ in rests_on(read_packages((own,), load()))] == ["rosprivacy:packages", own]
+    read = read_packages((own,), load())
+    package, left = (one for one in read if one.name == "usb_cam")
+    assert (package.nodes[0].names, package.place.file) == (("my_camera",), own)
+    assert left.place.file == "rosprivacy:packages/usb_cam.yaml"
+    assert [file for file, _ in rests_on(read)] == ["rosprivacy:packages", own]
+
+
+def ends(package: Package) -> set[tuple[str, str, str]]:
+    return {(name, one.role, one.kind) for node in package.nodes for name in node.names for one in node.claims}
+
+
+@pytest.mark.parametrize(
+    ("node", "stated", "asked"),
+    [
+        ("camera", "leak: [Video], to: file", {("source", "Video"), ("leak", "DepthImage")}),
+        ("camera", "leak: [PersonalData], to: file", {("source", "Video")}),  # a broader kind states the narrower ones
+        ("camera", "leak: [FaceImage], to: file", {("source", "Video"), ("leak", "Video"), ("leak", "DepthImage")}),
+        ("camera", "source: [Video]", {("leak", "Video"), ("leak", "DepthImage")}),
+        ("camera", "conduit: all", {("source", "Video"), ("leak", "Video"), ("leak", "DepthImage")}),
+        ("other", "leak: [PersonalData], to: file", {("source", "Video"), ("leak", "Video"), ("leak", "DepthImage")}),
+    ],
+)
+def test_no_source_or_leak_of_a_shipped_file_vanishes(node: str, stated: str, asked: set[tuple[str, str]]) -> None:
+    own = write("mine.yaml", "orbbec_camera", node)
+    Path(own).write_text(Path(own).read_text("utf-8").replace("leak: [Video], to: display", stated), "utf-8")
+    read = read_packages((own,), load())
+    _, left = (one for one in read if one.name == "orbbec_camera")
+    watched = {("source", "Video"), ("leak", "Video"), ("leak", "DepthImage")}
+    assert {(role, kind) for name, role, kind in ends(left) if name == "camera"} & watched == asked
+    assert {role for _, role, _ in ends(left)} <= {"source", "leak"}
+    (said,) = replacements(read)
+    assert str(said.place) == f"{own}:1"
+    assert said.message.startswith("it stands in place of the shipped package orbbec_camera; what it does not state of")
+
+
+def test_what_is_replaced_whole_is_told_too() -> None:
+    own = write("mine.yaml", "usb_cam", "usb_cam, usb_cam_node_exe")
+    Path(own).write_text(Path(own).read_text("utf-8").replace("leak: [Video], to: display", "source: [Video]"), "utf-8")
+    (said,) = replacements(read_packages((own,), load()))
+    assert said.message == "it stands in place of the shipped package usb_cam"
+    assert replacements(read_packages((write("own.yaml"),), load())) == ()
 
 
 def test_installed_packages_ship_theirs_and_an_overlay_comes_first(

@@ -24,12 +24,12 @@ from rosprivacy.analysis.non_ros import EVERY
 from rosprivacy.ingest.database.loading import load as load_robots
 from rosprivacy.ontology.vocabulary import Vocabulary, load
 from rosprivacy.private_neo4j import connection
+from rosprivacy.reading.robot_system import robot_of
+from rosprivacy.reading.stored_system import answer_stored
 from rosprivacy.report.cnil import told
 from rosprivacy.report.cnil.pia import cnil_pia
 from rosprivacy.report.words.typography import plain
-from rosprivacy.robot_system import robot_of
 from rosprivacy.settings import Settings
-from rosprivacy.stored_system import answer_stored
 from tests.helpers.additions import ADD_STORAGE
 from tests.helpers.answers import accepting, answer_of, as_json
 from tests.helpers.graphs import care_home as analysed_care_home

@@ -1,0 +1,141 @@
+"""Rules about libraries, as data, and which of them speak about what code uses.
+
+A use is a name as the code's imports resolve it: ``cv2.VideoCapture`` in Python, ``cv::VideoCapture`` in C++. A rule
+about a name speaks about all that is below it, too: one about ``whisper`` about ``whisper.load_model``. Of several such
+rules the one with the longest name speaks. What stands in brackets behind a name says how it is called: ``open(w)``
+opens a file to write; a rule about ``open`` speaks about it, too. A program that code starts is used as ``$ espeak``.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from rosprivacy.analysis.model import Confidence, Place
+
+PYTHON, CPP = "python", "c++"
+PROGRAM = "$ "  # before the name of a program that code starts
+_END = re.compile(r"(?:\.|::|[(]| )[^.:( ]*$")  # of a name: its last part, with the sign before it
+
+
+class NodeUse(NamedTuple):
+    """One thing that the code of a node uses.
+
+    Attributes
+    ----------
+    name
+        As the imports of its file resolve it.
+    language
+        ``python`` or ``c++``.
+    """
+
+    name: str
+    language: str
+    place: Place
+
+
+class LibraryRule(NamedTuple):
+    """What the use of a library suggests of a node.
+
+    Attributes
+    ----------
+    kinds
+        Names of categories: what it brings in, or lets out; of what it makes something.
+    why
+        The reason, in a few words.
+    to
+        The categories that are made; none where it makes nothing.
+    where
+        Of what lets data out: where they go.
+    any_type
+        Whether it can have any form, a flag or a velocity, so that no message type speaks against it.
+    by_itself
+        Of what makes something: whether it reads ROS by itself, as a listener of transforms does.
+    """
+
+    kinds: tuple[str, ...]
+    confidence: Confidence
+    why: str
+    place: Place
+    to: tuple[str, ...] = ()
+    where: str = ""
+    any_type: bool = False
+    by_itself: bool = False
+
+
+class Names(NamedTuple):
+    """Rules by name.
+
+    Attributes
+    ----------
+    starred
+        By what names begin with: what was written with ``*`` at its end.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.model import Confidence, Place
+    >>> rule = LibraryRule(("Voice",), Confidence.LIKELY, "a microphone", Place("libraries.yaml", 1))
+    >>> names = Names({"sounddevice.InputStream": rule}, {"Pa_Open": rule})
+    >>> [bool(names.of(name)) for name in ("sounddevice.InputStream.read", "sounddevice.play", "Pa_OpenStream")]
+    [True, False, True]
+    """
+
+    rules: Mapping[str, LibraryRule]
+    starred: Mapping[str, LibraryRule]
+
+    def of(self, name: str) -> tuple[str, LibraryRule] | None:
+        """Return the longest name that is this one, or above it, with its rule."""
+        for above in _above(name):
+            if above in self.rules:
+                return above, self.rules[above]
+        begins = [own for own in self.starred if name.startswith(own)]
+        longest = max(begins, key=len, default="")
+        return (longest, self.starred[longest]) if longest else None
+
+
+class LibraryRules(NamedTuple):
+    """The rules of all files, by language.
+
+    Attributes
+    ----------
+    brings_in, lets_out, makes
+        What a node brings in, lets out, or makes of another kind.
+    silent
+        Names that suggest nothing; they speak where no rule has a longer name.
+    """
+
+    brings_in: Mapping[str, Names]
+    lets_out: Mapping[str, Names]
+    makes: Mapping[str, Names]
+    silent: Mapping[str, frozenset[str]]
+
+    def spoken(self, section: Mapping[str, Names], use: NodeUse) -> LibraryRule | None:
+        """Return the rule of a section that speaks about a use, if there is one."""
+        said = section[use.language].of(use.name) if use.language in section else None
+        if said is None:
+            return None
+        name, rule = said
+        quiet = self.silent.get(use.language, frozenset())
+        return None if any(above in quiet for above in _above(use.name) if len(above) >= len(name)) else rule
+
+    def speaks(self, use: NodeUse) -> bool:
+        """Return whether any rule speaks about a use."""
+        return any(self.spoken(section, use) for section in (self.brings_in, self.lets_out, self.makes))
+
+
+NO_LIBRARIES = LibraryRules({}, {}, {}, {})
+
+
+def _above(name: str) -> Iterator[str]:
+    """A name and those above it, the longest first.
+
+    >>> list(_above("a.b.open(w)")), list(_above("$ ros2 bag"))
+    (['a.b.open(w)', 'a.b.open', 'a.b', 'a'], ['$ ros2 bag', '$ ros2'])
+    """
+    while name and name != PROGRAM.strip():
+        yield name
+        found = _END.search(name)
+        name = name[: found.start()] if found else ""

@@ -1,0 +1,185 @@
+"""What Python code uses: names of libraries, as its imports resolve them, where they are used; nothing is run.
+
+``import cv2 as cv`` and ``cv.VideoCapture(0)`` give ``cv2.VideoCapture``; ``from x import y`` gives ``x.y`` where ``y``
+is used. What a variable is that was made by such a call is known as far as all its values are made by the same:
+``self.client = mqtt.Client()`` and ``self.client.publish(…)``. No recursion: code may be nested as deep as it likes.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections import defaultdict
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rosprivacy.ingest.annotations.source_code import LONGEST_USE, Lines, Unit, Use
+from rosprivacy.ingest.annotations.started import program
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+LONGEST = 32  # names and calls of a chain: what is longer is nobody's
+BUILT_IN = ("open", "input")
+CALLED_WITH = ("input", "output")  # keywords that say whether a stream of sound comes in or goes out
+STARTERS = (  # what starts a program, and what looks for one that is started then
+    "subprocess.", "os.system", "os.popen", "os.exec", "os.spawn", "asyncio.create_subprocess_", "shutil.which",
+    "pexpect.",
+)  # fmt: skip
+MODE_SIGNS, WRITING = frozenset("rwaxbtU+"), frozenset("wax+")
+DEFINITIONS = (ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
+
+
+def imported(tree: ast.Module) -> Iterator[tuple[str, str]]:
+    """Yield names and what they stand for; what is imported from beside the file begins with a dot."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom):
+            module = "." * node.level + (node.module or "")
+            dot = "" if module.endswith(".") else "."
+            yield from ((alias.asname or alias.name, f"{module}{dot}{alias.name}") for alias in node.names)
+        elif isinstance(node, ast.Import):
+            for alias in node.names:
+                name = alias.name if alias.asname else alias.name.partition(".")[0]
+                yield alias.asname or name, name
+
+
+class PythonUses:
+    """Reads the uses of one file.
+
+    Attributes
+    ----------
+    units
+        Classes and functions at the top of the file.
+    """
+
+    def __init__(self, tree: ast.Module, file: str) -> None:
+        self.tree = tree
+        self.units = tuple(
+            Unit(one.name, Lines(_first(one), one.end_lineno or one.lineno))
+            for one in tree.body
+            if isinstance(one, DEFINITIONS)
+        )
+        own = {one.name: f".{Path(file).stem}.{one.name}" for one in self.units}
+        self._known = own | dict(imported(tree))
+        self._made: dict[tuple[str, str], set[str]] = defaultdict(set)  # by unit and variable: what makes its values
+        self._commands: dict[tuple[str, str], list[ast.expr]] = defaultdict(list)  # lists and texts that variables are
+
+    def uses(self) -> tuple[Use, ...]:
+        """Return what is used, each name once in a unit, in the order of the text."""
+        pieces = [(node, unit) for unit, top in self._tops() for node in ast.walk(top)]
+        for node, unit in pieces:
+            self._note(node, unit)
+        found: dict[tuple[str, str], Use] = {}
+        inside: set[int] = set()  # parts of what has been looked at as a whole
+        for node, unit in pieces:
+            if id(node) not in inside and isinstance(node, ast.Call | ast.Attribute | ast.Name):
+                for name in self._names(node, unit, inside):
+                    one = Use(name, node.lineno, unit)
+                    first = found.setdefault((unit, name), one)
+                    found[unit, name] = min(first, one, key=lambda use: use.line)
+        return tuple(sorted(found.values(), key=lambda use: (use.line, use.name)))
+
+    def _tops(self) -> Iterator[tuple[str, ast.stmt]]:
+        for one in self.tree.body:
+            yield one.name if isinstance(one, DEFINITIONS) else "", one
+
+    def _note(self, node: ast.AST, unit: str) -> None:
+        """Note what a variable is made by."""
+        pairs: list[tuple[ast.expr | None, ast.expr | None]] = []
+        if isinstance(node, ast.Assign):
+            pairs = [(target, node.value) for target in node.targets]
+        elif isinstance(node, ast.AnnAssign | ast.NamedExpr):
+            pairs = [(node.target, node.value)]
+        elif isinstance(node, ast.With | ast.AsyncWith):
+            pairs = [(item.optional_vars, item.context_expr) for item in node.items]
+        for target, value in pairs:
+            if target is not None and (name := _variable(target)):
+                made = isinstance(value, ast.Call | ast.Await)
+                if isinstance(value, ast.List | ast.Tuple | ast.Constant | ast.JoinedStr):
+                    self._commands[unit, name].append(value)
+                self._made[unit, name].add(self._chain(value, unit, set()) if value is not None and made else "")
+
+    def _names(self, node: ast.expr, unit: str, inside: set[int]) -> Iterator[str]:
+        """The names that one piece of code uses, from the outside: ``a.b().c`` is looked at once."""
+        name = self._chain(node, unit, inside)
+        if not name or len(name) > LONGEST_USE or not isinstance(getattr(node, "ctx", ast.Load()), ast.Load):
+            return
+        if not isinstance(node, ast.Call):
+            if name not in BUILT_IN:
+                yield name
+            return
+        hints = _hints(node, name)
+        yield from (f"{name}({hint})" for hint in hints)
+        if not hints:
+            yield name
+        if name.startswith(STARTERS) and node.args:
+            own = self._commands.get((unit, _variable(node.args[0])), ())
+            yield from filter(None, dict.fromkeys(program(_command(first)) for first in (node.args[0], *own)))
+
+    def _chain(self, node: ast.expr, unit: str, inside: set[int]) -> str:
+        """``cv2.VideoCapture`` of a chain of names and calls; empty for what begins with anything else."""
+        parts: list[str] = []
+        for _ in range(LONGEST):
+            made = self._by_variable(node, unit) if parts else ""
+            if made:
+                return ".".join([made, *reversed(parts)])
+            if isinstance(node, ast.Attribute):
+                parts.append(node.attr)
+                node = node.value
+            elif isinstance(node, ast.Call):
+                node = node.func
+            elif isinstance(node, ast.Await):
+                node = node.value
+            else:
+                break
+            if not isinstance(node, ast.Call):  # a call is looked at by itself, too: its arguments may say more
+                inside.add(id(node))
+        if not isinstance(node, ast.Name):
+            return ""
+        head = self._known.get(node.id) or (node.id if node.id in BUILT_IN else "")
+        return ".".join([head, *reversed(parts)]) if head else ""
+
+    def _by_variable(self, node: ast.expr, unit: str) -> str:
+        """What a variable is made by, if all its values are made by one."""
+        name = _variable(node)
+        made = (self._made.get((unit, name)) or self._made.get(("", name), set())) if name else set()
+        return next(iter(made)) if len(made) == 1 else ""
+
+
+def _variable(node: ast.expr) -> str:
+    """``x`` or ``self.x``; empty for anything else."""
+    if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
+        return f"{node.value.id}.{node.attr}"
+    return node.id if isinstance(node, ast.Name) else ""
+
+
+def _first(node: ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef) -> int:
+    return min([node.lineno, *(one.lineno for one in node.decorator_list)])
+
+
+def _hints(call: ast.Call, name: str) -> list[str]:
+    """What the arguments say of how it is used."""
+    hints = [one.arg for one in call.keywords if one.arg in CALLED_WITH and _is_true(one.value)]
+    if name.rpartition(".")[2] == "open":
+        place = 0 if name.endswith("Path.open") else 1
+        given = [*call.args[place : place + 1], *(one.value for one in call.keywords if one.arg == "mode")]
+        texts = [one.value for one in given if isinstance(one, ast.Constant) and isinstance(one.value, str)]
+        hints += ["w" for text in texts if text and set(text) <= MODE_SIGNS and WRITING & set(text)][:1]
+    return hints
+
+
+def _is_true(node: ast.expr) -> bool:
+    return isinstance(node, ast.Constant) and node.value is True
+
+
+def _command(first: ast.expr) -> list[str]:
+    """The words of a command, as far as they are literals."""
+    if isinstance(first, ast.JoinedStr) and first.values:
+        first = first.values[0]
+    if isinstance(first, ast.List | ast.Tuple):
+        words = []
+        for one in first.elts:
+            if not (isinstance(one, ast.Constant) and isinstance(one.value, str)):
+                break
+            words.append(one.value)
+        return words
+    return first.value.split() if isinstance(first, ast.Constant) and isinstance(first.value, str) else []

@@ -1,0 +1,212 @@
+"""Entries of a label file said anew, in memory: what the file would mean if somebody wrote them so (rule S7).
+
+In: a label file as it was read, and what some of its entries are to say. Out: the same labels with these entries in the
+place of those of the same name. Nothing is read from the disk.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from contextlib import suppress
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from rosprivacy.analysis.errors import InputErrors, LabelError
+from rosprivacy.analysis.model import NON_ROS
+from rosprivacy.analysis.text import counted
+from rosprivacy.analysis.written_names import is_glob, meant
+from rosprivacy.ingest.labels.entries import OWN, ROBOT
+from rosprivacy.ingest.labels.label_reader import SECTIONS, LabelReader
+from rosprivacy.ingest.reading.yaml_values import Value
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from rosprivacy.analysis.bounds import Bounds
+    from rosprivacy.ingest.labels.entries import Entry
+    from rosprivacy.ingest.labels.label_file import Labels
+    from rosprivacy.ingest.labels.non_ros_reader import Stated
+    from rosprivacy.ontology.vocabulary import Vocabulary
+
+KINDS = {**SECTIONS, "elements": NON_ROS}
+_WORDS = {"yes": "true", "on": "true", "no": "false", "off": "false"} | {word: word for word in ("true", "false")}
+
+
+class Said(NamedTuple):
+    """What an entry of a label file says.
+
+    Attributes
+    ----------
+    section
+        One of ``KINDS``.
+    name
+        As the file writes it: a glob stands for the entry of that glob.
+    value
+        As in a label file; None for nothing: of an element outside ROS the entry is taken away, of others an entry that
+        is there stays without a word, as ``labels --init`` writes it.
+    """
+
+    section: str
+    name: str
+    value: Any
+
+
+class Written(NamedTuple):
+    """How a label file is read.
+
+    Attributes
+    ----------
+    lines
+        How many lines it has.
+    author
+        Who wrote the file, as its top says.
+    root
+        Folder that the bags which it names may not leave; empty for its own.
+    own
+        It is about one robot of a fleet, and outranks what its model's files say.
+    """
+
+    file: str
+    vocabulary: Vocabulary
+    bounds: Bounds
+    lines: int = 0
+    author: str = ""
+    root: str = ""
+    own: bool = False
+
+
+def same_name(one: str, other: str) -> bool:
+    """Return whether two names of entries mean the same.
+
+    >>> same_name("/a", "=/a"), same_name("/*", "=/*")
+    (True, False)
+    """
+    return one == other or (not is_glob(one) and not is_glob(other) and meant(one) == meant(other))
+
+
+def edited(labels: Labels, said: Sequence[Said], how: Written) -> Labels:
+    """Return labels with entries said anew, each at the line of the one that it replaces, new ones below the last line.
+
+    The file's name and hash say that it is not what stands on the disk (rule S12).
+
+    Parameters
+    ----------
+    said
+        Of one name and section at most one.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of the new entries.
+    """
+    if not said:
+        return labels
+    entries, elements = list(labels.entries), list(labels.elements)
+    problems: list[LabelError] = []
+    diagnostics = list(labels.diagnostics)
+    below = how.lines + 1
+    for one in said:
+        at = next((i for i, entry in enumerate(entries) if speaks_of(entry, one)), len(entries))
+        if one.value is None and at == len(entries):
+            continue
+        line = entries[at].place.line if at < len(entries) else below
+        below += at == len(entries)
+        try:
+            reader = read_entry(one, line, how)
+        except InputErrors as error:
+            problems += (LabelError(e.file, e.line, e.problem, e.hint) for e in error.errors)
+            continue
+        gone = [entry for entry in entries if speaks_of(entry, one)]
+        diagnostics = [told for told in diagnostics if told.place not in {entry.place for entry in gone}]
+        diagnostics += reader.diagnostics
+        before, after = entries[:at], entries[at:]
+        entries = [*before, *reader.entries, *(entry for entry in after if entry not in gone)]
+        elements = _elements(elements, one, reader.elements)
+    if problems:
+        raise InputErrors(problems)
+    digest = hashlib.sha256(json.dumps([labels.sha256, said], sort_keys=True, default=str).encode()).hexdigest()
+    return replace(
+        labels,
+        file=f"{labels.file} with {counted(len(said), 'edit')} that {'is' if len(said) == 1 else 'are'} not saved",
+        sha256=digest,
+        entries=tuple(entries),
+        elements=tuple(elements),
+        diagnostics=tuple(diagnostics),
+    )
+
+
+def speaks_of(entry: Entry, said: Said) -> bool:
+    """Return whether an entry is the one that is said anew."""
+    there = entry.kinds[0] in NON_ROS if said.section == "elements" else entry.kinds == KINDS[said.section]
+    return there and same_name(entry.name, said.name)
+
+
+def _elements(elements: Iterable[Stated], said: Said, new: Iterable[Stated]) -> list[Stated]:
+    if said.section != "elements":
+        return list(elements)
+    return [*(one for one in elements if one.name != said.name), *new]
+
+
+def read_entry(said: Said, line: int, how: Written) -> LabelReader:
+    """Read one entry as if it stood in a file.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of it.
+    """
+    reader = LabelReader(how.file, how.vocabulary, "", OWN, ROBOT if how.own else 0, bounds=how.bounds, root=how.root)
+    if said.value is None and said.section == "elements":
+        return reader
+    content = Value(line, "map", entries=((said.name, line, value_of(said.value, line)),))
+    top = [("labels", line, Value(line, "number", "1")), (said.section, line, content)]
+    if how.author:
+        top.insert(1, ("author", line, Value(line, "text", how.author)))
+    reader.document(Value(line, "map", entries=tuple(top)))
+    if reader.problems:
+        raise InputErrors(reader.problems)
+    return reader
+
+
+def value_of(said: Any, line: int) -> Value:
+    """Return what Python says as if it was read from a line of a file.
+
+    >>> value_of({"source": ["Video"]}, 3).get("source").items[0].text
+    'Video'
+    """
+    if said is None:
+        return Value(line, "empty")
+    if isinstance(said, dict):
+        return Value(line, "map", entries=tuple((str(key), line, value_of(one, line)) for key, one in said.items()))
+    if isinstance(said, list | tuple):
+        return Value(line, "list", items=tuple(value_of(one, line) for one in said))
+    if isinstance(said, str):
+        return Value(line, "text", said)
+    return Value(line, "number", json.dumps(said, default=str))
+
+
+def plain(value: Value) -> Any:
+    """Return what was read as Python says it: the reverse of ``value_of``.
+
+    >>> plain(value_of({"source": ["Video"], "encrypted": True}, 3))
+    {'source': ['Video'], 'encrypted': True}
+    """
+    if value.kind == "map":
+        return {key: plain(one) for key, _, one in value.entries}
+    if value.kind == "list":
+        return [plain(one) for one in value.items]
+    if value.kind == "number":
+        with suppress(ValueError):
+            return json.loads(_WORDS.get(value.text.lower(), value.text))
+    return None if value.kind == "empty" else value.text
+
+
+def entries_of(top: Value) -> Mapping[tuple[str, str], Any]:
+    """Return what the entries of a label file say, by section and name."""
+    return {
+        (section, name): plain(value)
+        for section, _, content in top.entries
+        if section in KINDS and content.kind == "map"
+        for name, _, value in content.entries
+    }

@@ -1,0 +1,203 @@
+"""Rules about libraries: ``ontology/libraries.yaml`` and users' files of that format -> ``LibraryRules``.
+
+A name of a user's file stands for the same name of ours, in its section; of one file every name is said once in one.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.bounds import BOUNDS
+from rosprivacy.analysis.errors import InputError, InputErrors, shown
+from rosprivacy.analysis.model import Confidence, Place
+from rosprivacy.analysis.suggesting.carried_kinds import ANYTHING
+from rosprivacy.analysis.suggesting.library_rules import CPP, PROGRAM, PYTHON, LibraryRule, LibraryRules, Names
+from rosprivacy.analysis.suggesting.ros_package import WHERE
+from rosprivacy.ingest.reading.format_reader import FileReader
+from rosprivacy.ingest.suggestions.rule_text import read_rule_text
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from rosprivacy.analysis.bounds import Bounds
+    from rosprivacy.ingest.reading.yaml_values import Value
+    from rosprivacy.ontology.vocabulary import Vocabulary
+
+LIBRARIES = "rosprivacy:libraries"  # the shipped file
+BRINGS_IN, LETS_OUT, MAKES, SILENT = "brings_in", "lets_out", "makes", "silent"
+SECTIONS = (BRINGS_IN, LETS_OUT, MAKES)
+PARTS = ("library_rules", "version", *SECTIONS, SILENT)
+PROGRAMS = "programs"
+NAMED = {PYTHON: (PYTHON,), CPP: (CPP,), PROGRAMS: (PYTHON, CPP)}  # key of a rule -> languages of its names
+ALL = (*NAMED, "confidence", "why", "source")
+KEYS = {
+    BRINGS_IN: (*ALL, "kinds", "any_type"),
+    LETS_OUT: (*ALL, "kinds", "where"),
+    MAKES: (*ALL, "kinds", "to", "any_type", "by_itself"),
+    SILENT: (*NAMED, "why"),
+}
+NEEDED = {
+    BRINGS_IN: ("kinds", "confidence", "why"),
+    LETS_OUT: ("where", "confidence", "why"),
+    MAKES: ("kinds", "to", "confidence", "why"),
+    SILENT: (),
+}
+SURE = (Confidence.LIKELY, Confidence.MAY)  # a call that stands in code may never run, so no rule is certain
+NAME = re.compile(r"[A-Za-z_~][\w.:-]*(?: [\w-]+){0,2}(?:\((?:w|input|output)\)|\*)?", re.ASCII)
+Key = tuple[str, str]  # language, name
+
+
+@dataclass(frozen=True, slots=True)
+class LibraryFile:
+    """One file of rules; by section and language the rule of each name."""
+
+    file: str
+    sha256: str
+    sections: dict[str, dict[Key, LibraryRule]]
+    silent: dict[Key, int]
+
+
+def read_library_rules(
+    files: Iterable[str], vocabulary: Vocabulary, bounds: Bounds = BOUNDS
+) -> tuple[LibraryRules, tuple[tuple[str, str], ...]]:
+    """Read the shipped rules and a user's; return them joined, and (file, SHA-256) of each.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of the files, each of one line.
+
+    Examples
+    --------
+    >>> from rosprivacy.ontology.vocabulary import load
+    >>> rules, _ = read_library_rules((), load())
+    >>> rules.brings_in["python"].of("cv2.VideoCapture")[1].kinds
+    ('Video',)
+    """
+    read: list[LibraryFile] = []
+    problems: list[InputError] = []
+    for file in dict.fromkeys((LIBRARIES, *files)):
+        try:
+            read.append(_read(file, vocabulary, bounds))
+        except InputErrors as error:
+            problems += error.errors
+    if problems:
+        raise InputErrors(problems)
+    joined = {section: _joined(one.sections[section] for one in read) for section in SECTIONS}
+    spoken = {key for one in read[1:] for section in one.sections.values() for key in section}
+    silent = (read[0].silent.keys() - spoken).union(*(one.silent for one in read[1:]))
+    quiet = {language: frozenset(name for of, name in silent if of == language) for language in (PYTHON, CPP)}
+    return LibraryRules(**joined, silent=quiet), tuple((one.file, one.sha256) for one in read)
+
+
+def _joined(sections: Iterable[dict[Key, LibraryRule]]) -> dict[str, Names]:
+    every = {key: rule for section in sections for key, rule in section.items()}
+    languages = (PYTHON, CPP)
+    return {one: _names({name: rule for (of, name), rule in every.items() if of == one}) for one in languages}
+
+
+def _names(rules: dict[str, LibraryRule]) -> Names:
+    starred = {name[:-1]: rule for name, rule in rules.items() if name.endswith("*")}
+    return Names({name: rule for name, rule in rules.items() if not name.endswith("*")}, starred)
+
+
+def _read(file: str, vocabulary: Vocabulary, bounds: Bounds) -> LibraryFile:
+    top, digest = read_rule_text(file, LIBRARIES, "libraries.yaml", bounds)
+    reader = _Reader(file, vocabulary, error=InputError, bounds=bounds)
+    read = reader.document(top, digest)
+    if reader.problems:
+        raise InputErrors(reader.problems)
+    return read
+
+
+@dataclass(eq=False, repr=False)
+class _Reader(FileReader):
+    """One file."""
+
+    vocabulary: Vocabulary
+    lines: dict[str, dict[Key, int]] = field(default_factory=lambda: {name: {} for name in (*SECTIONS, SILENT)})
+
+    def document(self, top: Value, digest: str) -> LibraryFile:
+        sections: dict[str, dict[Key, LibraryRule]] = {name: {} for name in SECTIONS}
+        said: dict[str, Value] = {}
+        if top.kind != "map":
+            self.problem(
+                top.line, f"rules about libraries are a map, not a {top.kind}", "begin with 'library_rules: 1'"
+            )
+        else:
+            self.version(top, "library_rules", "rules")
+            said = {key: value for key, _, value in self.entries_of(top, PARTS)}
+        for section in (*SECTIONS, SILENT):
+            for item in self._items(said, section):
+                entry = self._entry(item, section)
+                rule = self._rule(entry, item.line)
+                for key in self._names(entry, section):
+                    if section != SILENT:
+                        sections[section][key] = rule
+        return LibraryFile(self.file, digest, sections, self.lines[SILENT])
+
+    def _items(self, said: dict[str, Value], key: str) -> tuple[Value, ...]:
+        return self.list_of(said[key], key) if key in said else ()
+
+    def _entry(self, item: Value, section: str) -> dict[str, Value]:
+        said = {key: value for key, _, value in self.entries_of(item, KEYS[section])}
+        for key in NEEDED[section]:
+            if key not in said or not (said[key].text or said[key].items):
+                self.problem(item.line, f"a rule without {key}", f"write {', '.join(NEEDED[section])}")
+        if not set(said) & set(NAMED):
+            self.problem(item.line, "a rule about no library", f"write {', '.join(NAMED)}, or one of them")
+        return said
+
+    def _rule(self, said: dict[str, Value], line: int) -> LibraryRule:
+        return LibraryRule(
+            self._kinds(said, "kinds") if "kinds" in said else (ANYTHING,),
+            Confidence(self._one_of(said, "confidence", SURE) or Confidence.MAY),
+            said["why"].text if "why" in said else "",
+            Place(self.file, line),
+            self._kinds(said, "to"),
+            self._one_of(said, "where", WHERE),
+            self._is_true(said, "any_type"),
+            self._is_true(said, "by_itself"),
+        )
+
+    def _names(self, said: dict[str, Value], section: str) -> Iterator[Key]:
+        known = self.lines[section]
+        for key, languages in NAMED.items():
+            for item in self._items(said, key):
+                if item.kind != "text" or not NAME.fullmatch(item.text):
+                    hint = "write names such as cv2.VideoCapture, cv::VideoCapture, curl_easy_*, open(w), or a program"
+                    self.problem(item.line, f"{shown(item.text or item.kind)!r} is no name of a library", hint)
+                    continue
+                ones = [(of, (PROGRAM if key == PROGRAMS else "") + item.text) for of in languages]
+                if ones[0] in known:
+                    what = f"{shown(item.text)} again, first in line {known[ones[0]]}"
+                    self.problem(item.line, what, f"say each name once in {section}")
+                known |= {one: item.line for one in ones if one not in known}
+                yield from ones
+
+    def _one_of(self, said: dict[str, Value], key: str, known: tuple[str, ...]) -> str:
+        if key not in said or not said[key].text or said[key].text in known:
+            return said[key].text if key in said else ""
+        value = said[key]
+        self.problem(value.line, f"{key} {shown(value.text)!r}", f"write {', '.join(known[:-1])} or {known[-1]}")
+        return ""
+
+    def _is_true(self, said: dict[str, Value], key: str) -> bool:
+        if key in said and said[key].text != "true":
+            value = said[key]
+            self.problem(value.line, f"{key} {shown(value.text or value.kind)!r}", "write true or leave it out")
+        return key in said
+
+    def _kinds(self, said: dict[str, Value], key: str) -> tuple[str, ...]:
+        found = (self._kind(item) for item in self._items(said, key))
+        return tuple(dict.fromkeys(name for name in found if name))
+
+    def _kind(self, item: Value) -> str:
+        category = self.vocabulary.find(item.text) if item.kind == "text" else None
+        if category is None:
+            hint = self.vocabulary.hint(item.text)
+            self.problem(item.line, f"unknown category {shown(item.text or item.kind)!r}", hint)
+            return ""
+        return category.name

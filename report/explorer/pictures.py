@@ -1,0 +1,160 @@
+"""The pictures of an explorer: an analysis, the element in hand and the kinds that are shown -> what a page puts in.
+
+In: an ``Analysis`` after each edit. Out: ``Shown``. What pictures of one analysis share is kept until another comes,
+and layouts are kept by what is drawn.
+"""
+
+from __future__ import annotations
+
+from threading import Lock
+from typing import TYPE_CHECKING, NamedTuple, Self
+
+from rosprivacy.report.explorer.drawing import ROOM, SECONDS, Drawing
+from rosprivacy.report.explorer.legend import legend
+from rosprivacy.report.explorer.scenes import Scenes
+from rosprivacy.report.explorer.style_sheet import style_sheet
+from rosprivacy.report.pictures.phrases import Phrases
+
+if TYPE_CHECKING:
+    from collections.abc import Collection
+    from types import TracebackType
+
+    from markupsafe import Markup
+
+    from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.analysis.findings.why_carried import WhyCarried
+    from rosprivacy.report.explorer.live_svg import Links
+    from rosprivacy.report.pictures.picture import Key
+
+
+class Shown(NamedTuple):
+    """What a page shows of a picture.
+
+    Attributes
+    ----------
+    svg
+        One ``<svg>`` element: ``live_svg.py`` says what a page can rely on, ``style_sheet.py`` how it looks.
+    legend
+        A list of HTML.
+    title
+        One sentence.
+    notes
+        What is not drawn.
+    ways
+        The paths to leaks that are drawn, in words.
+    """
+
+    svg: str
+    legend: Markup
+    title: str
+    notes: tuple[str, ...]
+    ways: tuple[str, ...]
+
+
+class Pictures:
+    """What draws the pictures of one explorer; threads may share it.
+
+    Use it in a ``with`` statement, or ``close`` it: the process of Graphviz lives as long as it does.
+
+    Parameters
+    ----------
+    say
+        The words on the boxes: of the reader's language, and what kinds of data are called.
+    seconds
+        For one layout; a picture that takes longer says so in its place.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.findings.findings import analyse
+    >>> with Pictures() as pictures:
+    ...     shown = pictures.of(analyse(*factory()), ("", "topic", "/filtered"))
+    >>> shown.notes
+    ('Not drawn: 1 standard ROS channel',)
+    """
+
+    def __init__(self, say: Phrases | None = None, seconds: float = SECONDS) -> None:
+        self._say, self._drawing, self._lock = say or Phrases(), Drawing(seconds), Lock()
+        self._seen: Scenes | None = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """End the process of Graphviz; the next picture starts another."""
+        self._drawing.close()
+
+    def of(
+        self,
+        analysis: Analysis,
+        focus: Key | None = None,
+        kinds: Collection[str] | None = None,
+        links: Links | None = None,
+        room: tuple[float, float] = ROOM,
+        *,
+        everything: bool = False,
+        why: WhyCarried | None = None,
+    ) -> Shown:
+        """Return a picture; the same for the same analysis, element and kinds, to the byte.
+
+        Parameters
+        ----------
+        focus
+            ``Element.identity`` of the element in hand. None, or one that is not there, for the paths to leaks; where
+            there are none, for where data goes first.
+        kinds
+            Names of emitted categories that are shown; None for all.
+        links
+            What leads to an element; None for a picture that leads nowhere.
+        room
+            As of ``Drawing.svg``.
+        everything
+            Draw the whole system, above some 150 boxes in groups, and not only what matters.
+        why
+            Of the analysis, by who has it already.
+        """
+        with self._lock:
+            if self._seen is None or self._seen.analysis is not analysis:
+                self._seen = Scenes(analysis, self._say, why)
+            scene = (self._seen.whole if everything else self._seen.of)(focus, kinds)
+        picture = scene.picture
+        return Shown(self._drawing.svg(scene, links, room), legend(scene), picture.title, picture.notes, picture.ways)
+
+
+class AlonePicture(NamedTuple):
+    """A picture that needs no page: its SVG carries its style. A notebook shows it.
+
+    Attributes
+    ----------
+    svg, title, notes
+        As of ``Shown``.
+    """
+
+    svg: str
+    title: str
+    notes: tuple[str, ...]
+
+    def _repr_svg_(self) -> str:
+        return self.svg
+
+
+def picture_alone(
+    analysis: Analysis, focus: Key | None = None, kinds: Collection[str] | None = None, *, everything: bool = False
+) -> AlonePicture:
+    """Return a picture for a notebook or a file; the parameters are those of ``Pictures.of``.
+
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.findings.findings import analyse
+    >>> picture = picture_alone(analyse(*factory()), ("", "topic", "/filtered"))
+    >>> picture.title, "<style>" in picture.svg
+    ('How Video gets to /filtered, and where it can go from there', True)
+    """
+    with Pictures() as pictures:
+        shown = pictures.of(analysis, focus, kinds, everything=everything)
+    head, end, rest = shown.svg.partition(">")
+    return AlonePicture(f"{head}{end}<style>{style_sheet()}</style>{rest}", shown.title, shown.notes)

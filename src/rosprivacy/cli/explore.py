@@ -1,0 +1,127 @@
+"""``rosprivacy explore``: label elements and see the effect at once, on a page of this machine."""
+
+from __future__ import annotations
+
+import os
+import sys
+from importlib.util import find_spec
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from rosprivacy.analysis.errors import InputError
+from rosprivacy.analysis.text import counted
+from rosprivacy.cli.inputs import Inputs, reads_system
+from rosprivacy.cli.options import Language
+from rosprivacy.report.installing import command_for
+
+if TYPE_CHECKING:
+    import socket
+    from pathlib import Path
+
+    from starlette.types import ASGIApp
+
+    from rosprivacy.explorer.session import Session
+
+NEEDS = ("starlette", "uvicorn")
+DISPLAYS = ("DISPLAY", "WAYLAND_DISPLAY")
+
+
+@reads_system(
+    "the policies of one robot with label files, a fleet, or what is in a database",
+)
+def explore(
+    inputs: Inputs,
+    port: Annotated[
+        int, typer.Option(min=0, max=65535, metavar="N", help="Port on this machine; 0 for one that is free.")
+    ] = 0,
+    open: Annotated[  # noqa: A002 - the option's name
+        bool, typer.Option("--open/--no-open", help="Open the page in a browser, where there is a desktop.")
+    ] = True,
+    read_only: Annotated[bool, typer.Option("--read-only", help="Nothing can be changed on the page.")] = False,
+    review: Annotated[
+        bool, typer.Option("--review", help="Ask one question at a time, in plain words, and end with the report.")
+    ] = False,
+    lang: Annotated[Language, typer.Option(help="Language of the page.")] = Language.en,
+) -> None:
+    """Label elements and see the effect at once, on a local page: what is left to decide, why, and five answers.
+
+    Edits go to the first label file (-l), when you save; it need not be there yet. Of a fleet they go to the label file
+    of the robot's model, or to that one robot's. What is in a database is shown only. Decisions go at once to the file
+    of --decisions, which need not be there yet either. Ctrl+C ends the program.
+    """
+    missing = [name for name in NEEDS if find_spec(name) is None]
+    if missing:
+        raise InputError(", ".join(missing), 0, "not installed", command_for("explore"))
+    from rosprivacy.explorer.journal import journal_folder
+    from rosprivacy.explorer.web.application import Site
+    from rosprivacy.explorer.web.guard import Door
+    from rosprivacy.explorer.web.review_site import ReviewSite
+    from rosprivacy.explorer.web.serving import bound_socket
+    from rosprivacy.report.words.words import Words
+
+    if review and (inputs.fleet or inputs.from_database):
+        hint = "leave --review away, or review the policies and label files of one robot"
+        raise InputError("--review", 0, "asks about one robot, and not about a fleet or a database", hint)
+    if inputs.decisions and (inputs.fleet or inputs.from_database):
+        hint = "leave it away, and use 'rosprivacy decide'"
+        raise InputError("--decisions", 0, "is for one robot, and not for a fleet or a database", hint)
+    read_only = read_only or inputs.from_database
+    settings = inputs.settings
+    journal = None if read_only else journal_folder()
+    session = _session(inputs, journal)
+    with bound_socket(port) as listening:
+        door = Door(listening.getsockname()[1], read_only)
+        site = (ReviewSite if review else Site)(session, settings, Words(lang.value), door)
+        _tell(door.link, door.port)
+        if open:
+            _open(door.link)
+        try:
+            _serve(site.application(), listening)
+        finally:
+            site.close()
+            session.close()
+    if session.unsaved:
+        print(f"Not saved: what was said of {counted(session.unsaved, 'element')}", file=sys.stderr)
+
+
+def _session(inputs: Inputs, journal: Path | None) -> Session:
+    """Read what is named."""
+    from rosprivacy.cli.driver import driver_of
+    from rosprivacy.explorer.fleet_session import FleetSession
+    from rosprivacy.explorer.session import Session
+    from rosprivacy.explorer.stored_session import StoredSession
+
+    if inputs.from_database:
+        with driver_of(inputs.neo4j) as driver:
+            return StoredSession.open_database(driver, inputs.settings)
+    if inputs.fleet:
+        return FleetSession.open_fleet(inputs.fleet, inputs.settings, journal=journal)
+    return Session.open(inputs.named, tuple(inputs.labels or ()), inputs.settings, journal=journal)
+
+
+def _tell(link: str, port: int) -> None:
+    """Say where the page is; the link opens it once."""
+    from rosprivacy.explorer.web.serving import tunnel
+
+    print(f"The page is at {link}\nThe link opens it once, in one browser. Ctrl+C ends the program.", flush=True)
+    line = tunnel(port)
+    if line:
+        print(f"From the machine that you came from by SSH, run this first: {line}", flush=True)
+
+
+def _open(link: str) -> None:
+    """Open the page on a desktop; a browser that takes over the terminal is none."""
+    import webbrowser
+
+    if sys.platform in ("win32", "darwin") or any(os.environ.get(name) for name in DISPLAYS):
+        webbrowser.open_new_tab(link)
+
+
+def _serve(app: ASGIApp, listening: socket.socket) -> None:
+    from contextlib import suppress
+
+    from rosprivacy.explorer.web.serving import server
+
+    with suppress(KeyboardInterrupt):  # that is how it ends
+        server(app).run(sockets=[listening])

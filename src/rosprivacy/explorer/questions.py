@@ -1,0 +1,104 @@
+"""What is left to decide, in the order in which a person reviews it (rule S11).
+
+In: a ``Result``. Out: ``Question`` facts, the first one first.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from rosprivacy.analysis.findings.review_order import Behind
+from rosprivacy.report.document.analysis import label_key
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Mapping
+
+    from rosprivacy.analysis.answer import OpenQuestion
+    from rosprivacy.analysis.findings.review_order import Shown
+    from rosprivacy.analysis.model import Element
+    from rosprivacy.result import Result
+
+FIRST, AT_CHANNELS, BEHIND, WAITS, PROPOSED = "first", "channels", "behind", "waits", "proposed"
+GROUPS = (FIRST, AT_CHANNELS, BEHIND, WAITS, PROPOSED)
+
+
+class Question(NamedTuple):
+    """An element of which a person has to say what it does.
+
+    Attributes
+    ----------
+    section, name
+        Under which a label file speaks of it, and of nothing else: what ``Session.label`` takes.
+    kinds
+        Names of the kinds of data that are open there, sorted.
+    steps
+        From the nearest source.
+    group
+        ``FIRST``: a node that data reaches before any other open node; ``AT_CHANNELS``; ``BEHIND``: a node behind
+        those; ``WAITS``: a channel past which data gets to no leak and no open node; ``PROPOSED``: a channel that the
+        program's own file proposes to take as mundane.
+    frontier
+        As of ``OpenQuestion``.
+    through
+        The element that the data comes from; None where it begins.
+    closes, leaks
+        How many other open elements, and how many leaks, data gets to past this one only, at least.
+    missing
+        What has to be known of an element outside ROS and is not stated.
+    """
+
+    element: Element
+    section: str
+    name: str
+    kinds: tuple[str, ...]
+    steps: int
+    group: str
+    frontier: bool
+    through: Element | None = None
+    closes: int = 0
+    leaks: int = 0
+    missing: tuple[str, ...] = ()
+
+    @property
+    def can_wait(self) -> bool:
+        """Whether nothing hangs on the answer now."""
+        return self.group in (WAITS, PROPOSED)
+
+
+def questions(result: Result, order: Mapping[Shown, Behind] | None = None) -> tuple[Question, ...]:
+    """Return what is left to decide: nodes that data reaches first, channels, what lies behind; what can wait last.
+
+    Parameters
+    ----------
+    order
+        ``result.review_order``, by who has it already.
+    """
+    shown = result.shown
+    order = result.review_order if order is None else order
+    rows = (_question(q, order.get(q.element.shown_as, Behind()), result.infrastructure) for q in shown.open)
+    asked: dict[tuple[str, str, str], Question] = {}
+    for one in sorted(rows, key=_urgency):
+        key = one.element.robot, one.section, one.name
+        first = asked.setdefault(key, one)
+        if first is not one:  # the other leg of a service or an action: one label answers for both
+            kinds = tuple(sorted({*first.kinds, *one.kinds}))
+            asked[key] = first._replace(kinds=kinds, steps=min(first.steps, one.steps))
+    return tuple(asked.values())
+
+
+def _question(asked: OpenQuestion, behind: Behind, proposed: Collection[tuple[str, str]]) -> Question:
+    element = asked.element
+    label = label_key(element)
+    group = FIRST if asked.frontier else BEHIND
+    if element.is_channel:
+        group = WAITS if behind.waits else AT_CHANNELS
+    if (element.kind, element.name) in proposed:
+        group = PROPOSED
+    return Question(
+        element, label["section"], label["name"], asked.categories, asked.distance, group, asked.frontier,
+        behind.through, behind.closes, behind.leaks, asked.missing,
+    )  # fmt: skip
+
+
+def _urgency(one: Question) -> tuple[int, int, int, int, object]:
+    return GROUPS.index(one.group), -one.leaks, -one.closes, one.steps, one.element.sort_key()

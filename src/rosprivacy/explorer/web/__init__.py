@@ -1,0 +1,1 @@
+"""The explorer's page on this machine: a session goes in, out come a server that one browser may ask, and its page."""

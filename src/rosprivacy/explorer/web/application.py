@@ -1,0 +1,300 @@
+"""What the page's server answers: a session goes in, out comes an application (ASGI) behind its guard.
+
+A GET changes nothing. A POST says which version of the session it saw; where another window was quicker, nothing is
+done, and the answer is the page as it stands (409). What a form says wrong is told in a sentence (422).
+"""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from importlib.resources import files
+from itertools import count
+from threading import RLock
+from typing import TYPE_CHECKING, NamedTuple, cast
+
+from starlette.applications import Starlette
+from starlette.concurrency import run_in_threadpool
+from starlette.responses import HTMLResponse, JSONResponse, PlainTextResponse, RedirectResponse, Response
+from starlette.routing import Route
+
+from rosprivacy.analysis.errors import RosPrivacyError, shown
+from rosprivacy.explorer.saving import Conflict
+from rosprivacy.explorer.web import forms
+from rosprivacy.explorer.web.beside import beside
+from rosprivacy.explorer.web.decision_form import decision_in
+from rosprivacy.explorer.web.guard import Guard
+from rosprivacy.explorer.web.kept_trials import Trials
+from rosprivacy.explorer.web.page import page_of
+from rosprivacy.explorer.web.page_picture import drawn, pictures_of
+from rosprivacy.explorer.web.rendering import Message, rendered
+from rosprivacy.explorer.web.saying import label_of
+from rosprivacy.explorer.web.standing import Standing
+from rosprivacy.explorer.web.trial_forms import tried_in
+from rosprivacy.explorer.web.view import trial_in, view_of
+from rosprivacy.explorer.web.whose import ROBOT, WHOSE
+from rosprivacy.labelling.suggesting import what_is_known
+from rosprivacy.labelling.suggesting_on_demand import Suggester
+from rosprivacy.report.explorer.style_sheet import style_sheet
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from starlette.requests import Request
+    from starlette.types import ASGIApp
+
+    from rosprivacy.explorer.edits import Label
+    from rosprivacy.explorer.session import Session
+    from rosprivacy.explorer.web.forms import Form
+    from rosprivacy.explorer.web.guard import Door
+    from rosprivacy.explorer.web.view import View
+    from rosprivacy.report.words.words import Words
+    from rosprivacy.settings import Settings
+
+STATIC = {
+    "explore.css": "text/css",
+    "explore.js": "text/javascript",
+    "picture.css": "text/css",
+    "review.css": "text/css",
+}
+PICTURE = "picture.css"  # of which the pictures themselves know what it says
+DONE, PROBLEM = "done", "problem"
+READING = ("/try", "/drop")  # what is tried is kept in memory only
+
+
+class Told(NamedTuple):
+    """What came of a request: a status of HTTP, what a person is told, and the trial that is looked at then."""
+
+    status: int
+    message: Message | None = None
+    trial: str = ""
+
+
+class Site:
+    """The pages of one session. Every answer is made by one thread at a time, since analyses are.
+
+    Parameters
+    ----------
+    settings
+        With which the session was opened.
+    words
+        Of the reader's language.
+    """
+
+    def __init__(self, session: Session, settings: Settings, words: Words, door: Door) -> None:
+        self.session, self.door = session, door
+        self._words = words
+        self._lock = RLock()
+        self._known = Suggester(what_is_known(session.uncounted.vocabulary, settings))
+        self._standing = Standing(session, self._known)
+        self._trials = Trials(session, self._known)
+        self._pictures = pictures_of(session.uncounted.vocabulary, words)
+        self._by = ""
+        self._message: Message | None = None
+
+    def application(self) -> ASGIApp:
+        """Return what a server runs."""
+        posts: dict[str, Callable[[Form], Told]] = {
+            "/label": self._label, "/undo": self._undo, "/redo": self._redo, "/save": self._save, "/merge": self._merge,
+            "/resume": self._resume, "/forget": self._forget, "/try": self._try, "/drop": self._drop,
+            "/decide": self._decide,
+        }  # fmt: skip
+        routes = [
+            Route("/", self._get),
+            Route("/now", self._now),
+            Route("/report", self._report),
+            Route("/static/{name}", _static),
+            *(Route(path, self._post(work), methods=["POST"]) for path, work in posts.items()),
+        ]
+        return Guard(Starlette(routes=routes), self.door, READING)
+
+    def close(self) -> None:
+        """End what draws the pictures."""
+        self._pictures.close()
+
+    @property
+    def standing(self) -> Standing:
+        """The session as it stands."""
+        if self._standing.version != self.session.version:
+            self._standing = Standing(self.session, self._known)
+        return self._standing
+
+    # --- what is asked ------------------------------------------------------------------------------------------
+
+    async def _get(self, request: Request) -> Response:
+        return await run_in_threadpool(self._page, request.url.query)
+
+    def _post(self, work: Callable[[Form], Told]) -> Callable[[Request], object]:
+        async def handle(request: Request) -> Response:
+            body = await request.body()
+            return await run_in_threadpool(self._changed, work, body, request.url.query)
+
+        return handle
+
+    async def _now(self, _: Request) -> Response:
+        """Tell the page whether another window, or somebody with an editor, was quicker."""
+        return await run_in_threadpool(self._news)
+
+    def _news(self) -> Response:
+        try:
+            changed = self.session.changed_on_disk() is not None
+        except RosPrivacyError:  # it cannot be read now: saving will say why
+            changed = True
+        return JSONResponse({"version": self.session.version, "disk": changed})
+
+    async def _report(self, _: Request) -> Response:
+        """Give the report of now as a file: a page of its own, with a style of its own, that is shown nowhere here."""
+        return await run_in_threadpool(self._reported)
+
+    def _reported(self) -> Response:
+        with self._lock:
+            text = self.session.result.to("html", language=self._words.language)
+        said = {"content-disposition": 'attachment; filename="privacy-report.html"'}
+        return Response(text, headers=said, media_type="application/octet-stream")
+
+    # --- what is answered ---------------------------------------------------------------------------------------
+
+    def _page(self, query: str, told: Told | None = None) -> Response:
+        with self._lock:
+            standing, view, problem = self._looked_at(query)
+            page = page_of(standing, view, self._words)
+            new = problem or self._message or self._changed_on_disk()
+            message, self._message = told.message if told else new, None
+            text = rendered(
+                page,
+                self._words,
+                drawn(self._pictures, standing, page),
+                beside(standing, self.standing, page, self._trials, self._words),
+                message=message,
+                left=self.session.unsaved_from_before,
+                remarks=self.session.remarks,
+                by=self._by,
+                read_only=self.door.read_only,
+            )
+        return HTMLResponse(text, told.status if told else 200)
+
+    def _looked_at(self, query: str) -> tuple[Standing, View, Message | None]:
+        """How it stands, or would stand under a trial; the view; why a trial cannot be looked at any more."""
+        trial, problem = trial_in(query, self._trials.names), None
+        standing = self.standing
+        if trial:
+            try:
+                standing = self._trials.standing(trial)
+            except RosPrivacyError as error:
+                what = self._words("x.trial.gone", name=trial)
+                problem = Message(PROBLEM, what, detail=tuple(str(error).splitlines()))
+                trial = ""
+        view = view_of(query, standing.elements, standing.vocabulary.categories, standing.findings, trial)
+        return standing, view, problem
+
+    def _changed_on_disk(self) -> Message | None:
+        """What somebody else did to the label file, and that it can be taken in."""
+        with suppress(RosPrivacyError):  # it cannot be read now: saving will say why
+            changed = self.session.changed_on_disk()
+            return Message(PROBLEM, self._words("x.disk"), diff=changed.diff) if changed else None
+        return None
+
+    def _changed(self, work: Callable[[Form], Told], body: bytes, query: str) -> Response:
+        """Do what a form says; a page that is loaded again does it no second time."""
+        with self._lock:
+            try:
+                form = forms.Form(body)
+                stale = form.number("version") != self.session.version
+                told = Told(409, Message(PROBLEM, self._words("x.stale"))) if stale else work(form)
+            except (forms.FormError, RosPrivacyError) as error:
+                told = Told(422, self._refused(error))
+            if told.status != 200:  # noqa: PLR2004 - of HTTP
+                return self._page(query, told)
+            self._message = told.message
+            address = self._address(query)
+            if told.trial:
+                address = self._looked_at(query)[1].to("")._replace(find="", trial=told.trial).address
+        return RedirectResponse(address, 303)
+
+    def _refused(self, error: Exception) -> Message:
+        """Why nothing was done; what readers of files and forms say is in English."""
+        return Message(PROBLEM, self._words("x.refused"), detail=tuple(str(error).splitlines()))
+
+    def _address(self, query: str) -> str:
+        """Where a window goes on after a change."""
+        return self._looked_at(query)[1].address
+
+    # --- what a form does ---------------------------------------------------------------------------------------
+
+    def _label(self, form: Form) -> Told:
+        standing = self.standing
+        answer = forms.answer_in(form, standing.elements, standing.vocabulary.categories)
+        alone = form.choice("whose", WHOSE) == ROBOT
+        label = None
+        if answer.role != forms.NOTHING:
+            label = cast("Label", label_of(answer, standing.entry(answer.element, only_this_robot=alone)))
+        self.session.answer_for(answer.element, label, only_this_robot=alone)
+        self._by = answer.by or self._by
+        what = f"{shown(answer.element.full_name)} – {self._words(f'x.answer.{answer.role}')}"
+        return Told(200, Message(DONE, self._words("x.changed", what=what)))
+
+    def _undo(self, _: Form) -> Told:
+        return Told(200, Message(DONE, self._words("x.undone")) if self.session.undo() else None)
+
+    def _redo(self, _: Form) -> Told:
+        return Told(200, Message(DONE, self._words("x.redone")) if self.session.redo() else None)
+
+    def _save(self, _: Form) -> Told:
+        done = self.session.save()
+        if isinstance(done, Conflict):
+            text = self._words("x.conflict", file=shown(done.file))
+            return Told(409, Message(PROBLEM, text, diff=done.diff))
+        text = self._words(f"x.saved.{'one' if done.lines == 1 else 'many'}", file=shown(done.file), n=done.lines)
+        return Told(200, Message(DONE, text, detail=done.remarks))
+
+    def _merge(self, _: Form) -> Told:
+        both = self.session.merge()
+        if both:
+            names = tuple(f"{edit.section}: {shown(edit.name)}" for edit in both)
+            return Told(200, Message(PROBLEM, self._words("x.merged.both"), names))
+        return Told(200, Message(DONE, self._words("x.merged")))
+
+    def _resume(self, _: Form) -> Told:
+        left = self.session.unsaved_from_before
+        refused = self.session.resume()
+        text = self._words("x.resumed", n=len(left.edits) if left else 0)
+        return Told(200, Message(PROBLEM if refused else DONE, text, detail=tuple(map(shown, refused))))
+
+    def _forget(self, _: Form) -> Told:
+        self.session.forget()
+        return Told(200, Message(DONE, self._words("x.forgotten")))
+
+    def _try(self, form: Form) -> Told:
+        """Try something; nothing that is kept anywhere changes."""
+        tried = tried_in(form, self.standing, self._words)
+        name = form.words("name") or self._new_name()
+        self._trials.keep(name, tried.what, tried.says)
+        return Told(200, trial=name)
+
+    def _new_name(self) -> str:
+        numbers = (self._words("x.trial.name", n=number) for number in count(1))
+        return next(name for name in numbers if name not in self._trials.names)
+
+    def _drop(self, form: Form) -> Told:
+        name = form.choice("name", self._trials.names)
+        self._trials.drop(name)
+        return Told(200, Message(DONE, self._words("x.trial.dropped", name=name)))
+
+    def _decide(self, form: Form) -> Told:
+        """Write a decision about a finding into the file that the command named."""
+        said = decision_in(form, self.standing.findings)
+        self.session.decide(said.finding, said.choice, **said.how)
+        self._by = said.how["owner"] or self._by
+        file, what = shown(str(self.session.decisions_file)), self._words(f"d.{said.choice}")
+        told = self._words("x.decided.to", file=file, what=what)
+        return Told(200, Message(DONE, told))
+
+
+async def _static(request: Request) -> Response:
+    """Our own style and script, by their names; a path from a browser opens nothing."""
+    name = request.path_params["name"]
+    if name not in STATIC:
+        return PlainTextResponse("There is no such file.", 404)
+    if name == PICTURE:
+        return Response(style_sheet(), media_type=STATIC[name])
+    text = files("rosprivacy.explorer.web").joinpath("static", name).read_text("utf-8")
+    return Response(text, media_type=STATIC[name])

@@ -1,0 +1,121 @@
+"""The pane of a finding: its path in sentences with policy lines, what the law says of its data, what is decided.
+
+In: a session as it stands, the id of a finding, a view. Out: a ``FindingPane``. The texts are those of the report.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from rosprivacy.analysis.decisions import Choice
+from rosprivacy.analysis.model import ARTICLE_10
+from rosprivacy.explorer.element_ids import element_id
+from rosprivacy.explorer.web.closes_pane import Closes, closes_pane
+from rosprivacy.explorer.web.trial_offers import flow_id, line_id
+from rosprivacy.report.page.finding_entries import finding_entries
+from rosprivacy.report.page.index import Index
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+    from typing import Any
+
+    from rosprivacy.analysis.answer import Finding
+    from rosprivacy.explorer.web.standing import Standing
+    from rosprivacy.explorer.web.view import View
+    from rosprivacy.report.page.finding_entries import Entry
+    from rosprivacy.report.page.finding_entries import Hop as Told
+    from rosprivacy.report.words.words import Words
+
+
+class Hop(NamedTuple):
+    """An element of the path, as the report tells it, and what can be tried behind it.
+
+    Attributes
+    ----------
+    flow
+        Of a filter between it and the next one; empty at the end.
+    lines
+        Of the lines that are told, what cuts each.
+    """
+
+    told: Told
+    address: str
+    flow: str
+    lines: tuple[str, ...]
+
+
+class FindingPane(NamedTuple):
+    """A finding.
+
+    Attributes
+    ----------
+    entry
+        As the report tells it.
+    law
+        Remarks: what can apply to its data.
+    closes
+        What would close it; None where that was not asked.
+    ask
+        Where it is told what would close it, and no more once it is.
+    file
+        The decisions file; empty where the program was started without one.
+    can_try
+        Whether something can be tried and decided: of one robot, and not within a trial.
+    element
+        Where its place of exit is in hand.
+    """
+
+    id: str
+    entry: Entry
+    law: tuple[str, ...]
+    hops: tuple[Hop, ...]
+    closes: Closes | None
+    ask: str
+    choices: tuple[str, ...]
+    file: str
+    element: str
+    can_try: bool
+
+
+def finding_pane(standing: Standing, finding: Finding, view: View, words: Words) -> FindingPane:
+    """Return what the page shows of a finding."""
+    document = standing.document
+    said = next(one for one in document["findings"] if one["id"] == finding.id)
+    index = Index({**document, "findings": [said]}, words)
+    (entry,) = finding_entries(index)
+    can_try = standing.session.of_one_robot and not view.trial
+    return FindingPane(
+        id=finding.id,
+        entry=entry,
+        law=tuple(_law(said, index)),
+        hops=tuple(_hops(finding, entry, view)),
+        closes=closes_pane(standing, finding, index) if view.closes and can_try else None,
+        ask=view._replace(closes=not view.closes).address,
+        choices=tuple(choice.value for choice in Choice),
+        file=standing.session.decisions_file or "",
+        element=view.to(element_id(finding.leak.identity)).address,
+        can_try=can_try,
+    )
+
+
+def _law(said: Mapping[str, Any], index: Index) -> Iterable[str]:
+    """What Articles 9 and 10 have to do with such data: a remark, no verdict."""
+    words = index.words
+    yield words.pair(words("c.article9"), words(f"article9.{said['article9']}"))
+    for row in said["law"]:
+        if row["provision"] == ARTICLE_10:
+            provision = index.provision(said["category"], row["provision"])
+            yield words.pair(provision, words.known(f"law.{row['verdict']}", row["verdict"]))
+
+
+def _hops(finding: Finding, entry: Entry, view: View) -> Iterable[Hop]:
+    """The hops of the report, with their elements."""
+    after = [*finding.witness[1:], None]
+    for number, (element, target, told) in enumerate(zip(finding.witness, after, entry.hops, strict=True)):
+        grants = finding.steps[number].grants if target else ()
+        yield Hop(
+            told,
+            view.to(element_id(element.identity)).address,
+            flow_id(element, target) if target else "",
+            tuple(line_id(grant.place) for grant, _ in zip(grants, told.lines, strict=False)),
+        )

@@ -1,0 +1,205 @@
+"""Posted forms: bytes from a browser go in, out comes what is asked, from closed lists, or one plain sentence.
+
+Nothing of a form is ever a name of a file. An element is named by its id (``element_ids.py``), a kind of data by a name
+that the vocabulary has. Forms are read with the standard library: they have text fields only, no files.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+from urllib.parse import parse_qsl
+
+from rosprivacy.analysis.model import Method
+from rosprivacy.analysis.text import printable
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Mapping
+
+    from rosprivacy.analysis.model import Element
+
+MOST_FIELDS = 1_000
+LONGEST = {
+    "note": 500,
+    "reason": 500,
+    "by": 100,
+    "owner": 100,
+    "ticket": 200,
+    "legal_basis": 200,
+    "expires": 10,
+    "name": 60,
+}
+EVERY = "*"  # in the place of kinds of data
+SOURCE, LEAK, SANITIZER, CONDUIT = "source", "leak", "sanitizer", "conduit"
+DERIVES, ABSENT, MUNDANE, SENSITIVE, NOTHING = "derives", "absent", "mundane", "sensitive", "nothing"
+OF_NODES = (SOURCE, LEAK, SANITIZER, CONDUIT, DERIVES, ABSENT, NOTHING)
+OF_CHANNELS = (MUNDANE, SENSITIVE, NOTHING)
+OF_OTHERS = (SOURCE, LEAK, SANITIZER, CONDUIT, DERIVES, NOTHING)  # outside ROS
+METHODS = tuple(one.value for one in (Method.ANONYMISE, Method.PSEUDONYMISE, Method.AGGREGATE, Method.DROP))
+
+
+class FormError(Exception):
+    """What is wrong with a form: a sentence for a person, and of what it speaks."""
+
+
+class Answer(NamedTuple):
+    """What a person says of one element.
+
+    Attributes
+    ----------
+    role
+        One of ``roles_of`` the element; ``NOTHING`` takes the label away.
+    kinds
+        Kinds of data that it is about; empty for every kind.
+    method
+        Of a sanitizer.
+    to
+        Of a derivation: the kind that is made.
+    note, by
+        Why, and who says so; empty where nothing is said.
+    """
+
+    element: Element
+    role: str
+    kinds: tuple[str, ...] = ()
+    method: str = ""
+    to: str = ""
+    note: str = ""
+    by: str = ""
+
+
+def roles_of(element: Element) -> tuple[str, ...]:
+    """Return what can be said of an element."""
+    return OF_NODES if element.is_node else OF_CHANNELS if element.is_channel else OF_OTHERS
+
+
+class Form:
+    """The fields of a form.
+
+    Raises
+    ------
+    FormError
+        If it cannot be read.
+    """
+
+    def __init__(self, body: bytes) -> None:
+        try:
+            fields = parse_qsl(
+                body.decode("ascii"), keep_blank_values=True, strict_parsing=bool(body), errors="strict",
+                max_num_fields=MOST_FIELDS,
+            )  # fmt: skip
+        except ValueError:
+            raise FormError("The form cannot be read.") from None
+        self._fields: dict[str, list[str]] = {}
+        for name, value in fields:
+            self._fields.setdefault(name, []).append(value)
+
+    def one(self, name: str) -> str:
+        """Return the value of a field; empty if it is not there.
+
+        Raises
+        ------
+        FormError
+            If it is there several times.
+        """
+        values = self._fields.get(name, [""])
+        if len(values) != 1:
+            raise FormError(f"The form says {name} several times.")
+        return values[0]
+
+    def several(self, name: str) -> tuple[str, ...]:
+        """Return all values of a field, each once."""
+        return tuple(dict.fromkeys(self._fields.get(name, ())))
+
+    def choice(self, name: str, allowed: Collection[str]) -> str:
+        """Return a value that is one of some.
+
+        Raises
+        ------
+        FormError
+            If it is none of them.
+        """
+        value = self.one(name)
+        if value not in allowed:
+            raise FormError(f"The form has no {name} that can be chosen here.")
+        return value
+
+    def number(self, name: str) -> int:
+        """Return a number, of at most nine digits.
+
+        Raises
+        ------
+        FormError
+            If it is none.
+        """
+        value = self.one(name)
+        if not (value.isascii() and value.isdigit() and len(value) < 10):  # noqa: PLR2004 - digits
+            raise FormError(f"The form has no {name}.")
+        return int(value)
+
+    def words(self, name: str) -> str:
+        """Return a text of one line.
+
+        Raises
+        ------
+        FormError
+            If it is too long, or has signs that cannot be printed.
+        """
+        value = " ".join(self.one(name).split())
+        if len(value) > LONGEST[name]:
+            raise FormError(f"The field {name} has at most {LONGEST[name]} letters.")
+        if printable(value) != value:
+            raise FormError(f"The field {name} has signs that cannot be printed.")
+        return value
+
+
+def answer_in(form: Form, elements: Mapping[str, Element], kinds: Collection[str]) -> Answer:
+    """Return what a form says of an element.
+
+    Parameters
+    ----------
+    elements
+        Those of the current version, by id.
+    kinds
+        Names of all kinds of data.
+
+    Raises
+    ------
+    FormError
+        If it says nothing that can be said.
+    """
+    chosen = form.one("element")
+    if chosen not in elements:
+        raise FormError("There is no such element any more; choose another one.")
+    element = elements[chosen]
+    role = form.choice("role", roles_of(element))
+    said = Answer(element, role, (), "", "", form.words("note"), form.words("by"))
+    if role == NOTHING:
+        return said
+    if role == ABSENT:
+        return said._replace(note=_reason(form))
+    if role == SOURCE:
+        return said._replace(kinds=(form.choice("brings", kinds),))
+    said = said._replace(kinds=_about(form, kinds, may_be_every=role in (CONDUIT, SENSITIVE, MUNDANE)))
+    if role == SANITIZER:
+        return said._replace(method=form.choice("method", METHODS))
+    return said._replace(to=form.choice("makes", kinds)) if role == DERIVES else said
+
+
+def _about(form: Form, kinds: Collection[str], *, may_be_every: bool) -> tuple[str, ...]:
+    """The kinds of data that an answer is about; empty for every kind."""
+    about = form.several("about")
+    if EVERY in about and may_be_every:
+        return ()
+    about = tuple(one for one in about if one not in ("", EVERY))
+    if not about:
+        raise FormError("Choose the kinds of data that the answer is about.")
+    if not set(about).issubset(kinds):
+        raise FormError("The form names a kind of data that is not known.")
+    return about
+
+
+def _reason(form: Form) -> str:
+    reason = form.words("reason")
+    if not reason:
+        raise FormError("Say why it is not on the robot.")
+    return reason

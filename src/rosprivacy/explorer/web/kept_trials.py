@@ -1,0 +1,93 @@
+"""What is tried on the page, kept by name: trials of a session, and how it would stand under each.
+
+In: a session, names and what is tried. Out: a ``Standing`` of each. A trial is made anew once the session has changed,
+so that it is always compared with how it stands now.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosprivacy.explorer.scenarios import told
+from rosprivacy.explorer.web.forms import FormError
+from rosprivacy.explorer.web.standing import Standing
+
+if TYPE_CHECKING:
+    from rosprivacy.explorer.scenarios import Scenario, WhatIf
+    from rosprivacy.explorer.session import Session
+    from rosprivacy.labelling.suggesting_on_demand import Suggester
+
+MOST = 20  # each keeps a whole answer
+
+
+class Trials:
+    """The trials of one session.
+
+    Parameters
+    ----------
+    known
+        What suggestions are made by.
+    """
+
+    def __init__(self, session: Session, known: Suggester) -> None:
+        self._session, self._known = session, known
+        self._says: dict[str, tuple[str, ...]] = {}
+        self._standing: Standing | None = None  # of the one that was looked at last
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Their names, in the order in which they were made."""
+        return tuple(self._session.scenarios)
+
+    def keep(self, name: str, what: WhatIf, says: tuple[str, ...]) -> None:
+        """Try something, and keep it under a name; another of that name is replaced.
+
+        Parameters
+        ----------
+        says
+            What is tried, in sentences.
+
+        Raises
+        ------
+        FormError
+            If there are too many.
+        InputErrors
+            If it names what is not there.
+        """
+        if name not in self.names and len(self.names) >= MOST:
+            raise FormError(f"There are {MOST} trials already: forget one.")
+        self._session.scenario(name, what)
+        self._says[name] = says
+
+    def drop(self, name: str) -> None:
+        """Forget one."""
+        self._session.drop_scenario(name)
+        self._says.pop(name, None)
+
+    def says(self, name: str) -> tuple[str, ...]:
+        """Return what is tried, in sentences."""
+        return self._says.get(name) or (told(self._session.scenarios[name].what),)
+
+    def scenario(self, name: str) -> Scenario:
+        """Return what follows, compared with how it stands now.
+
+        Raises
+        ------
+        InputErrors
+            If what is tried is not there any more.
+        """
+        found = self._session.scenarios[name]
+        return found if found.version == self._session.version else self._session.scenario(name, found.what)
+
+    def standing(self, name: str) -> Standing:
+        """Return how the session would stand.
+
+        Raises
+        ------
+        InputErrors
+            If what is tried is not there any more.
+        """
+        found = self.scenario(name)
+        if self._standing is None or self._standing.result is not found.result:
+            self._standing = Standing(self._session, self._known, found.result)
+        return self._standing

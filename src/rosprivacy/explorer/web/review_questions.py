@@ -1,0 +1,158 @@
+"""A review as questions, one at a time: a session as it stands goes in, out comes what a person is asked, and how far.
+
+First whatever perhaps brings data in, since nothing is followed that nobody names; then what is open, in the order of
+review (rule S11). What was left to the engineer is not asked again, and stays open.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING, NamedTuple
+
+from rosprivacy.analysis.errors import shown
+from rosprivacy.explorer.element_ids import element_id
+from rosprivacy.explorer.web.element_pane import pane_of
+from rosprivacy.explorer.web.left_open import brings_nothing, left_of, note_before, says_of_data
+from rosprivacy.explorer.web.review_answers import offered
+from rosprivacy.explorer.web.view import View
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from rosprivacy.analysis.model import Element
+    from rosprivacy.explorer.web.element_pane import Hop, Line, Pane
+    from rosprivacy.explorer.web.standing import Standing
+    from rosprivacy.report.words.words import Words
+
+ROS_STEPS = ("publish", "subscribe", "matches")  # that have a sentence of their own; data goes along all others
+
+
+class Asked(NamedTuple):
+    """An element that a person is asked about.
+
+    Attributes
+    ----------
+    left
+        What of it is left to the engineer; empty if nothing is.
+    can_wait
+        Whether nothing hangs on the answer now.
+    """
+
+    id: str
+    element: Element
+    left: str
+    can_wait: bool = False
+
+
+class Progress(NamedTuple):
+    """How many of the elements that are in question are decided."""
+
+    decided: int
+    all: int
+
+
+class Sentence(NamedTuple):
+    """A step of the way of data, with the policy lines that allow it."""
+
+    told: str
+    lines: tuple[Line, ...]
+    more: int
+
+
+class Way(NamedTuple):
+    """How a kind of data gets to an element; no sentences if it begins there."""
+
+    title: str
+    sentences: tuple[Sentence, ...]
+
+
+class Question(NamedTuple):
+    """What the page of one question shows.
+
+    Attributes
+    ----------
+    reached
+        Whether data gets to the element.
+    guesses
+        What the program takes for likely: what, and why (in English).
+    """
+
+    pane: Pane
+    text: str
+    ways: tuple[Way, ...]
+    guesses: tuple[tuple[str, str], ...]
+    roles: tuple[str, ...]
+    reached: bool
+    left: str
+    said: str
+
+
+def asked(standing: Standing) -> tuple[Asked, ...]:
+    """Return everything that is open, in the order in which it is asked."""
+    found: dict[str, Asked] = {}
+    for proposals in standing.suggestions.of_role("source"):
+        element = proposals[0].label.element
+        at = element_id(element.identity)
+        if at in standing.carried:
+            continue
+        entry = standing.entry(element)
+        if not says_of_data(entry) and (left_of(entry) or not brings_nothing(entry)):
+            found[at] = Asked(at, element, left_of(entry))
+    for question in standing.questions:
+        at = element_id(question.element.identity)
+        found[at] = Asked(at, question.element, left_of(standing.entry(question.element)), question.can_wait)
+    return tuple(found.values())
+
+
+def progress(standing: Standing, questions: Sequence[Asked]) -> Progress:
+    """Return how many elements are decided: data gets there, or somebody spoke of them, and nothing is open there."""
+    spoken = {standing.places[place] for place in standing.entries.keys() & standing.places.keys()}
+    decided = (standing.carried.keys() | spoken) - {one.id for one in questions}
+    return Progress(len(decided), len(decided) + len(questions))
+
+
+def question_of(standing: Standing, element: Element, words: Words) -> Question:
+    """Return what a person is asked about an element."""
+    pane = pane_of(standing, element, View(), words)
+    entry = standing.entry(element)
+    reached = bool(standing.carried.get(pane.id))
+    return Question(
+        pane=pane,
+        text=_text(element, pane, words, reached=reached),
+        ways=tuple(Way(way.title, tuple(_sentences(way.hops, words))) for way in pane.ways),
+        guesses=tuple((offer.told, "; ".join(offer.reasons)) for offer in pane.offers),
+        roles=offered(element, reached=reached),
+        reached=reached,
+        left=left_of(entry),
+        said=shown(note_before(entry)),
+    )
+
+
+def named(element: Element, words: Words) -> str:
+    """Return the name of an element and what it is, in plain words.
+
+    >>> from rosprivacy.analysis.model import Element
+    >>> from rosprivacy.report.words.words import IN_ENGLISH
+    >>> named(Element("topic", "/video"), IN_ENGLISH)
+    '“/video” (channel)'
+    """
+    return _named(shown(element.full_name), element.kind, words)
+
+
+def _named(name: str, kind: str, words: Words) -> str:
+    return words("rv.named", name=name, kind=words.known(f"rv.kind.{kind}", words.known(f"kind.{kind}", kind)))
+
+
+def _text(element: Element, pane: Pane, words: Words, *, reached: bool) -> str:
+    name = named(element, words)
+    if not reached:
+        return words("rv.ask.untouched.channel" if element.is_channel else "rv.ask.untouched", name=name)
+    return words("rv.ask.channel" if element.is_channel else "rv.ask", name=name, data=pane.asked)
+
+
+def _sentences(hops: Sequence[Hop], words: Words) -> Iterator[Sentence]:
+    for hop, after in pairwise(hops):
+        role = hop.role if hop.role in ROS_STEPS else "flow"
+        ends = {"one": _named(hop.name, hop.of, words), "other": _named(after.name, after.of, words)}
+        now = words("rv.now", data=hop.data) if hop.data and hop is not hops[0] else ""
+        yield Sentence(" ".join(filter(None, [words(f"rv.step.{role}", **ends), now])), hop.lines, hop.more)

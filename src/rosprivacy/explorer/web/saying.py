@@ -1,0 +1,106 @@
+"""An answer about some kinds of data -> what the label then says of the whole element.
+
+What the label file says of other kinds stays: an answer about voice leaves alone what was said of video.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.explorer.web import forms
+
+if TYPE_CHECKING:
+    from rosprivacy.explorer.web.forms import Answer
+
+WHOLE = ("conduit", "sensitive", "mundane")  # words that stand for an entry of a label file: about every kind
+PER_KIND = ("source", "leak", "sanitizer", "conduit", "sensitive", "only", "never")
+
+
+def label_of(answer: Answer, now: Any) -> dict[str, Any]:
+    """Return what ``Session.label`` is given.
+
+    Parameters
+    ----------
+    now
+        What the entry of the element says now; None if there is none.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.model import Element
+    >>> node = Element("node", "/recorder")
+    >>> label_of(forms.Answer(node, "leak", ("Voice",)), {"sanitizer": {"Video": "drop"}})
+    {'sanitizer': {'Video': 'drop'}, 'leak': ['Voice']}
+    >>> label_of(forms.Answer(node, "conduit"), {"leak": ["Voice"]})
+    {'conduit': True}
+    >>> label_of(forms.Answer(node, "conduit"), {"source": ["Voice"]})
+    {'source': ['Voice'], 'conduit': True}
+    >>> label_of(forms.Answer(node, "conduit", ("Video",)), "conduit")
+    {'conduit': True}
+    """
+    label = _source_of(now, answer) if _of_all(answer) else _without(now, answer)
+    role, kinds = answer.role, list(answer.kinds)
+    if role == forms.ABSENT:
+        label["absent"] = answer.note
+    elif role == forms.SANITIZER:
+        label["sanitizer"] = {**_as_map(label.get("sanitizer")), **dict.fromkeys(kinds, answer.method)}
+    elif role == forms.DERIVES:
+        label["derives"] = [*_as_list(label.get("derives")), *({"from": kind, "to": answer.to} for kind in kinds)]
+    elif role == forms.MUNDANE and kinds:
+        label["never"] = [*_as_list(label.get("never")), *kinds]
+    elif not kinds or label.get(role) is True:
+        label[role] = True
+    elif isinstance(label.get(role), dict):  # of a source: the channels that others go out through
+        raise forms.FormError("What the label file says there names channels: change it in the file.")
+    else:
+        label[role] = [*_as_list(label.get(role)), *kinds]
+    said = {"note": answer.note if role != forms.ABSENT else "", "by": answer.by}
+    return label | {key: text for key, text in said.items() if text}
+
+
+def _of_all(answer: Answer) -> bool:
+    """Whether nothing that was said before of data that gets there stays."""
+    return answer.role == forms.ABSENT or (not answer.kinds and answer.role != forms.SOURCE)
+
+
+def _source_of(now: Any, answer: Answer) -> dict[str, Any]:
+    """What an entry says that the element brings in: an answer about every kind that gets there takes none back."""
+    stays = isinstance(now, dict) and "source" in now and answer.role != forms.ABSENT
+    return {"source": now["source"]} if stays else {}
+
+
+def _without(now: Any, answer: Answer) -> dict[str, Any]:
+    """What an entry says of data, without what it says of the kinds that an answer is about."""
+    if isinstance(now, str):
+        return {now: True} if now in WHOLE and now in {answer.role, "conduit"} else {}
+    if not isinstance(now, dict):
+        return {}
+    left = {key: _less(now[key], answer) for key in PER_KIND if key in now}
+    both = {forms.SOURCE: "leak", forms.LEAK: "source"}.get(answer.role, "")  # it may bring in and let out the same
+    left |= {both: now[both]} if both in now else {}
+    if "derives" in now:
+        again = answer.role == forms.DERIVES
+        made = [one for one in _as_list(now["derives"]) if not again or _made(one) != (answer.kinds, answer.to)]
+        left["derives"] = made
+    return {key: said for key, said in left.items() if said}
+
+
+def _less(said: Any, answer: Answer) -> Any:
+    """Kinds that are said, without those of an answer."""
+    if said is True:
+        return True
+    if isinstance(said, dict):
+        return {kind: how for kind, how in said.items() if kind not in answer.kinds}
+    return [kind for kind in _as_list(said) if kind not in answer.kinds]
+
+
+def _made(one: Any) -> tuple[Any, Any]:
+    said = one if isinstance(one, dict) else {}
+    return tuple(_as_list(said.get("from"))), said.get("to")
+
+
+def _as_map(said: Any) -> dict[str, Any]:
+    return dict(said) if isinstance(said, dict) else dict.fromkeys(_as_list(said))
+
+
+def _as_list(said: Any) -> list[Any]:
+    return [] if said is None else list(said) if isinstance(said, list | tuple) else [said]

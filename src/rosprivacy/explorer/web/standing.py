@@ -1,0 +1,144 @@
+"""What stands in one version of a session: made when a page first asks for it, and kept until the next edit.
+
+In: a ``Session``. Out: elements by id, questions, suggestions, why data gets to an element.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.findings.why_carried import WhyCarried
+from rosprivacy.explorer.element_ids import by_id, element_id
+from rosprivacy.explorer.questions import questions
+from rosprivacy.mitigation import REPORTED, run_mitigation
+from rosprivacy.report.document.analysis import label_key
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from typing import Any
+
+    from rosprivacy.analysis.answer import Analysis, Finding
+    from rosprivacy.analysis.findings.review_order import Behind, Shown
+    from rosprivacy.analysis.model import Element
+    from rosprivacy.explorer.questions import Question
+    from rosprivacy.explorer.session import Session
+    from rosprivacy.labelling.suggesting_on_demand import Suggester, Suggestions
+    from rosprivacy.mitigation import Mitigation
+    from rosprivacy.ontology.vocabulary import Vocabulary
+    from rosprivacy.result import Result
+
+
+class Standing:
+    """A session as it stands at one version.
+
+    Parameters
+    ----------
+    known
+        What suggestions are made by.
+    trial
+        The answer of a trial that is looked at; None for that of now.
+    """
+
+    def __init__(self, session: Session, known: Suggester, trial: Result | None = None) -> None:
+        self.session, self._known, self._trial = session, known, trial
+        self.version = session.version
+        self.result: Result = trial or session.uncounted
+        self.analysis: Analysis = self.result.shown
+        self.vocabulary: Vocabulary = self.result.vocabulary
+
+    @cached_property
+    def elements(self) -> Mapping[str, Element]:
+        """All elements, by id."""
+        return by_id(self.analysis.graph)
+
+    @cached_property
+    def questions(self) -> Sequence[Question]:
+        """What is left to decide, of each element once: the legs of a service are one question to a person."""
+        seen: dict[tuple[str, str, str], Question] = {}
+        outliers = self.session.outliers  # robots that are not as their model
+        asked = questions(self.result, self.order)
+        for question in sorted(asked, key=lambda one: (one.can_wait, one.element.robot not in outliers)):
+            identity = question.element.identity
+            first = seen.setdefault(identity, question)
+            if first is not question:
+                seen[identity] = first._replace(kinds=tuple(sorted({*first.kinds, *question.kinds})))
+        return tuple(seen.values())
+
+    @property
+    def whole(self) -> Result:
+        """The whole answer, which takes longer."""
+        return self._trial or self.session.result
+
+    @cached_property
+    def findings(self) -> Mapping[str, Finding]:
+        """Findings by id."""
+        return {finding.id: finding for finding in self.analysis.findings}
+
+    @cached_property
+    def document(self) -> Mapping[str, Any]:
+        """The document of the answer, for texts that reports have too."""
+        return self.whole.document()
+
+    @cached_property
+    def mitigation(self) -> Mitigation | None:
+        """What would close the findings; None if they are too many to be asked about while a person waits."""
+        standing = sum(finding.stands for finding in self.analysis.findings)
+        return run_mitigation(self.whole, bounds=self.whole.options.bounds) if standing <= REPORTED else None
+
+    @cached_property
+    def open_kinds(self) -> Mapping[str, tuple[str, ...]]:
+        """Id of an open element -> the kinds that are open there."""
+        return {element_id(question.element.identity): question.kinds for question in self.questions}
+
+    @cached_property
+    def order(self) -> Mapping[Shown, Behind]:
+        """What stands behind each open element."""
+        return self.result.review_order
+
+    @cached_property
+    def suggestions(self) -> Suggestions:
+        """What could be said of elements."""
+        return self._known.under(self.result, self.order)
+
+    @cached_property
+    def carried(self) -> Mapping[str, tuple[str, ...]]:
+        """Id of an element -> kinds of data that are there, in whichever form."""
+        found: dict[str, set[str]] = {}
+        for one in self.analysis.carried:
+            kinds = found.setdefault(element_id(one.element.identity), set())
+            kinds.update(one.categories, one.pseudonymised)
+        return {name: tuple(sorted(kinds)) for name, kinds in found.items()}
+
+    @cached_property
+    def roles(self) -> Mapping[str, Mapping[str, tuple[str, ...]]]:
+        """Id of an element -> kind of data -> what labels say that it does with it."""
+        return {element_id(element.identity): roles for element, roles in self.analysis.roles.items()}
+
+    @cached_property
+    def parts(self) -> Mapping[tuple[str, str, str], Sequence[Element]]:
+        """Identity of an element -> its vertices: legs of services, sides of wildcards."""
+        found: dict[tuple[str, str, str], list[Element]] = {}
+        for element in self.analysis.graph.elements:
+            found.setdefault(element.identity, []).append(element)
+        return found
+
+    @cached_property
+    def why(self) -> WhyCarried:
+        """Shortest paths to elements."""
+        return WhyCarried(self.result.analysis)
+
+    @cached_property
+    def places(self) -> Mapping[tuple[str, str], str]:
+        """Section and name, as a label file says them -> id of the element."""
+        keys = ((at, label_key(element)) for at, element in self.elements.items())
+        return {(key["section"], key["name"]): at for at, key in keys}
+
+    @cached_property
+    def entries(self) -> Mapping[tuple[str, str], Any]:
+        """What the label file says with the edits: (section, name) -> entry; not what an edit took away."""
+        return {place: entry for place, entry in self.session.entries.items() if entry is not None}
+
+    def entry(self, element: Element, *, only_this_robot: bool = False) -> Any:
+        """Return what the label file, with the edits, says of an element; None for nothing."""
+        return self.session.said_of(element, only_this_robot=only_this_robot)

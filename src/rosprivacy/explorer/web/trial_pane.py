@@ -1,0 +1,115 @@
+"""What a trial does, in sentences and counts: in come how it stands and how it would, out a ``TrialPane``.
+
+Nothing of a trial is saved, and the pane is no verdict on the system: it says what would follow if it were so.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from rosprivacy.analysis.errors import shown
+from rosprivacy.report.page.finding_entries import sentence_of
+from rosprivacy.report.page.index import Index
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from rosprivacy.explorer.web.kept_trials import Trials
+    from rosprivacy.explorer.web.standing import Standing
+    from rosprivacy.explorer.web.view import View
+    from rosprivacy.report.words.words import Words
+
+MOST = 40  # sentences of one list
+
+
+class Told(NamedTuple):
+    """A finding that the trial opens or closes; one that it closes is to be found only where it stands."""
+
+    sentence: str
+    address: str
+
+
+class TrialPane(NamedTuple):
+    """What a trial does.
+
+    Attributes
+    ----------
+    says
+        What is tried.
+    verdicts
+        How it stands now, and how it would stand: keys of words.
+    counts
+        What opens and closes, in numbers.
+    closed, opened
+        The first findings; ``more`` tells how many others there are of each.
+    leads
+        Where the trial is left.
+    """
+
+    name: str
+    says: tuple[str, ...]
+    verdicts: tuple[str, str]
+    counts: tuple[str, ...]
+    closed: tuple[Told, ...]
+    opened: tuple[Told, ...]
+    more: tuple[int, int]
+    remarks: tuple[str, ...]
+    address: str
+    leads: str
+
+
+class Kept(NamedTuple):
+    """A trial in the list."""
+
+    name: str
+    told: str
+    address: str
+    current: bool
+
+
+def trial_pane(now: Standing, trials: Trials, view: View, words: Words) -> TrialPane:
+    """Return what the trial of a view does.
+
+    Raises
+    ------
+    InputErrors
+        If what is tried is not there any more.
+    """
+    name = view.trial
+    there, difference = trials.standing(name), trials.scenario(name).difference
+    out = view.to("")._replace(trial="", find="")
+    left = sum(finding.stands for finding in there.analysis.findings)
+    counts = [
+        words.count(len(difference.closed), "x.trial.closes"),
+        words.count(len(difference.opened), "x.trial.opens"),
+        words.count(left, "x.trial.left"),
+        *([words.count(difference.fewer, "x.trial.fewer")] if difference.fewer else []),
+        *([words.count(difference.more, "x.trial.more")] if difference.more else []),
+    ]
+    return TrialPane(
+        name=name,
+        says=trials.says(name),
+        verdicts=(f"code.{difference.before}", f"code.{difference.verdict}"),
+        counts=tuple(counts),
+        closed=tuple(_told(difference.closed[:MOST], now, out, words)),
+        opened=tuple(_told(difference.opened[:MOST], there, view.to("")._replace(find=""), words)),
+        more=(len(difference.closed[MOST:]), len(difference.opened[MOST:])),
+        remarks=tuple(map(shown, trials.scenario(name).remarks)),
+        address=view.to("")._replace(find="").address,
+        leads=out.address,
+    )
+
+
+def kept_trials(trials: Trials, view: View, words: Words) -> tuple[Kept, ...]:
+    """Return the list of trials."""
+    there = view.to("")._replace(find="")
+    return tuple(
+        Kept(name, words.row(words.first(trials.says(name), 1)), there._replace(trial=name).address, name == view.trial)
+        for name in trials.names
+    )
+
+
+def _told(ids: Iterable[str], standing: Standing, view: View, words: Words) -> Iterable[Told]:
+    index = Index(standing.document, words)
+    for one in ids:
+        yield Told(sentence_of(index.by_id[one], index), view._replace(finding=one).address)

@@ -1,0 +1,58 @@
+"""Of how many robots an answer is said: a fleet's session and an element in, out come label files to choose from."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from rosprivacy.analysis.errors import shown
+
+if TYPE_CHECKING:
+    from rosprivacy.analysis.model import Element
+    from rosprivacy.explorer.session import Session
+    from rosprivacy.report.words.words import Words
+
+MODEL, ROBOT = "model", "robot"
+WHOSE = ("", MODEL, ROBOT)  # what a form can say; the first where it says nothing
+
+
+class Whose(NamedTuple):
+    """A label file that an answer can go to.
+
+    Attributes
+    ----------
+    value
+        ``MODEL`` or ``ROBOT``.
+    """
+
+    value: str
+    told: str
+    chosen: bool
+
+
+def whose(session: Session, element: Element, words: Words) -> tuple[Whose, ...]:
+    """Return what can be chosen; nothing where a session edits one label file.
+
+    The robot's own file is chosen first where it already speaks of the element: there it outranks that of the model.
+    """
+    targets = session.targets_of(element)
+    alone = [one.alone for one in targets]
+    own = alone == [True] or (True in alone and session.said_of(element, only_this_robot=True) is not None)
+    found = []
+    for one in targets:
+        n, robot = len(one.robots), shown(one.robots[0])
+        value = ROBOT if one.alone else MODEL
+        told = words("x.whose.robot", robot=robot) if n == 1 else words("x.whose.robots", n=n)
+        if one.models and not one.alone:
+            told = words("x.whose.model", models=words.row(shown(model) for model in one.models), robots=told)
+        found.append(Whose(value, told, one.alone == own))
+    return tuple(found)
+
+
+def stands_for(session: Session, element: Element, words: Words) -> str:
+    """Return in words for how many robots one stands, and whether it is not as its model; empty for one like itself."""
+    parts = []
+    if element.robot in session.outliers:
+        parts.append(words("x.outlier"))
+    if (n := len(session.stands_for(element.robot))) > 1:
+        parts.append(words("x.stands", n=n))
+    return words.row(parts)

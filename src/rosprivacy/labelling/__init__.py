@@ -1,0 +1,1 @@
+"""Help with labels: policies, label files and source code in, out come suggestions, and lines for a label file."""

@@ -1,0 +1,213 @@
+"""Questions to a person, one at a time, until nothing is left to ask or the person stops (issue 21).
+
+In: what is asked now, who answers, and what keeps an answer. Out: how it ended. It knows neither a terminal nor a file:
+the command line and the tests put theirs in. Every answer is kept before the next question.
+
+The keys: a letter from A on picks a row, or puts it back; all others speak of the picked rows, or of all if none is
+picked. ``x`` says yes to the picked rows and no to the others. What takes data away is said of one row alone; or of a
+list of channels that are alike, by the number of its rows. There a letter takes a row out, and ``o`` takes out all;
+what is taken out is asked like any other channel.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass, field
+from string import ascii_uppercase
+from typing import TYPE_CHECKING, Protocol
+
+from rosprivacy.analysis.suggesting.question_rows import (
+    BRINGS_IN,
+    GOES_THROUGH,
+    MAKES,
+    NOTHING,
+    NOTHING_THROUGH,
+    YES,
+    Question,
+)
+from rosprivacy.analysis.text import counted
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Iterable, Iterator
+
+    from rosprivacy.analysis.suggesting.alike_channels import Alike
+    from rosprivacy.analysis.suggesting.question_rows import Row
+
+NO, OPEN, SKIP, QUIT, EXACTLY = "n", "o", "s", "q", "x"
+FEWEST = 2  # rows of a list: one row is asked by itself
+CHANGED = "this list is not as it was any more: nothing is kept, and it is asked anew"
+Said = tuple[str, tuple[str, str, str], tuple[str, ...]]  # what a row asks, in this conversation
+
+
+class Person(Protocol):
+    """Who answers."""
+
+    def key(self, question: Question, picked: frozenset[int]) -> str:
+        """Return a key, of a list also a number that was confirmed; nothing if there is no more."""
+        ...
+
+    def told(self, remark: str) -> None:
+        """Hear what became of the answer."""
+        ...
+
+
+@dataclass
+class Conversation:
+    """One conversation.
+
+    Attributes
+    ----------
+    now
+        What is asked under the labels as they are.
+    keep
+        Keeps what is said of all rows of a question by a key, before it returns; returns remarks if it could not.
+    lists
+        How many rows each list had that was confirmed.
+    """
+
+    now: Callable[[], Iterable[Question]]
+    keep: Callable[[Question, str], tuple[str, ...]]
+    person: Person
+    answers: int = 0
+    _later: set[Said] = field(default_factory=set)
+    lists: list[int] = field(default_factory=list)
+    _alone: set[Said] = field(default_factory=set)
+    _taken_out: set[Said] = field(default_factory=set)
+
+    def run(self) -> bool:
+        """Ask; return whether nothing is left to ask, and False if the person has stopped before."""
+        while pending := deque(self._left()):
+            kept = False
+            while pending:
+                question = pending.popleft()
+                if question.about == NOTHING_THROUGH:
+                    if not kept and not self._listed(question):
+                        return False
+                    break  # after an answer it may be another list
+                answer = self._answer(question)
+                if answer is None:
+                    return False
+                key, rows = answer
+                kept = kept or key not in (OPEN, SKIP)
+                rest = [row for row in question.rows if row not in rows]
+                if key == OPEN:
+                    self._alone.update(_said(question, row) for row in rows)
+                    rest = []
+                    pending.extendleft(Question(question.about, (row,)) for row in reversed(question.rows))
+                elif key == SKIP:
+                    self._later.update(_said(question, row) for row in rows)
+                elif key == EXACTLY:
+                    self._kept(Question(question.about, tuple(rest)), NO)
+                    self.answers -= 1  # both are one answer
+                    self._kept(Question(question.about, tuple(rows)), YES)
+                    break
+                elif self._kept(Question(question.about, tuple(rows)), key):
+                    break  # other elements may be reached now
+                if rest:
+                    pending.appendleft(Question(question.about, tuple(rest)))
+        return True
+
+    def _left(self) -> Iterator[Question]:
+        """What is asked now, without what the person wants to answer later; what was opened stands alone."""
+        for question in self.now():
+            rows = [row for row in question.rows if _said(question, row) not in self._later]
+            listed = [row for row in rows if row.alike and _said(question, row) not in self._taken_out | self._alone]
+            lists = [part for part in _by_likeness(listed) if len(part) >= FEWEST]
+            in_lists = [row for part in lists for row in part]
+            yield from (Question(NOTHING_THROUGH, part) for part in lists)
+            together = tuple(row for row in rows if row not in in_lists and _said(question, row) not in self._alone)
+            if together:
+                yield Question(question.about, together)
+            yield from (Question(question.about, (row,)) for row in rows if row not in (*together, *in_lists))
+
+    def _listed(self, question: Question) -> bool:
+        """Ask about a list; return False if the person stops."""
+        out: set[int] = set()
+        while True:
+            key = self.person.key(question, frozenset(out))
+            rows = tuple(row for at, row in enumerate(question.rows) if at not in out)
+            at = ascii_uppercase.find(key)
+            if key in ("", QUIT):
+                return False
+            if 0 <= at < len(question.rows):
+                out ^= {at}
+                continue
+            if key == OPEN:
+                out = set(range(len(question.rows)))
+            elif key == SKIP:
+                self._later.update(map(_of_channel, rows))
+            elif key == str(len(rows)) and len(rows) >= FEWEST:
+                self._confirmed(Question(NOTHING_THROUGH, rows))
+            else:
+                self.person.told(f"{key!r} is no answer here; {counted(len(rows), 'row')} left")
+                continue
+            self._taken_out.update(_of_channel(question.rows[one]) for one in out)
+            return True
+
+    def _confirmed(self, question: Question) -> None:
+        """Keep what is said of a list, if it would still be asked: the file may have changed meanwhile."""
+        still = [row for one in self.now() if one.about == GOES_THROUGH for row in one.rows if row.alike]
+        if any(row not in still for row in question.rows):
+            self.person.told(CHANGED)
+            return
+        remarks = self.keep(question, NOTHING)
+        for remark in remarks:
+            self.person.told(remark)
+        if remarks:
+            self._later.update(map(_of_channel, question.rows))
+        self.answers += 1
+        self.lists.append(len(question.rows))
+
+    def _answer(self, question: Question) -> tuple[str, list[Row]] | None:
+        """The key that is said of rows, and these; None if the person stops."""
+        picked: set[int] = set()
+        while True:
+            key = self.person.key(question, frozenset(picked))
+            rows = [row for at, row in enumerate(question.rows) if at in picked or not picked]
+            if key in ("", QUIT):
+                return None
+            at = ascii_uppercase.find(key)
+            if 0 <= at < len(question.rows) and len(question.rows) > 1:
+                picked ^= {at}
+            elif key in allowed(question, picked):
+                return key, rows
+            else:
+                self.person.told(f"{key!r} is no answer here")
+
+    def _kept(self, question: Question, key: str) -> bool:
+        """Keep an answer; return whether it changes what data get where."""
+        remarks = self.keep(question, key)
+        for remark in remarks:
+            self.person.told(remark)
+        if remarks:
+            self._later.update(_said(question, row) for row in question.rows)
+        self.answers += 1
+        if key == NO:
+            return False
+        reply = question.rows[0].reply(key)
+        return question.about in (BRINGS_IN, MAKES) or bool(reply and reply.takes_away)
+
+
+def allowed(question: Question, picked: Collection[int] = ()) -> tuple[str, ...]:
+    """Return the keys that answer a question about the rows that are picked, or about all."""
+    rows = tuple(row for at, row in enumerate(question.rows) if at in picked or not picked)
+    keys = Question(question.about, rows).keys()
+    refuse = all(row.refused for row in question.rows)
+    exactly = refuse and YES in keys and len(rows) < len(question.rows)
+    more = ((EXACTLY, exactly), (NO, refuse), (OPEN, len(rows) > 1), (SKIP, True))
+    return (*keys, *(key for key, there in more if there))
+
+
+def _by_likeness(rows: Iterable[Row]) -> tuple[tuple[Row, ...], ...]:
+    parts: dict[Alike, list[Row]] = {}
+    for row in rows:
+        parts.setdefault(row.alike, []).append(row)
+    return tuple(map(tuple, parts.values()))
+
+
+def _of_channel(row: Row) -> Said:
+    return GOES_THROUGH, row.element.identity, row.kinds
+
+
+def _said(question: Question, row: Row) -> Said:
+    return question.about, row.element.identity, row.kinds

@@ -1,0 +1,118 @@
+"""Suggestions about single elements of a system that is labelled step by step: what no label changes is found once.
+
+In: what is known, then one ``Result`` after the other. Out: for an element, or for a role, the proposals that
+``suggested_by`` gives; a test holds that. Evidence from names, types and packages rests on the graph; only what is said
+of open elements is found anew, and only for those that are asked about.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
+
+from rosprivacy.analysis.suggesting.evidence import LEAK
+from rosprivacy.analysis.suggesting.open_elements import of_open
+from rosprivacy.analysis.suggesting.traffic import standard_in, traffic
+from rosprivacy.labelling.refused import refused_in
+from rosprivacy.labelling.suggesting import asked_by, in_review_order, lasting_evidence, review_places, with_findings
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Mapping, Sequence
+
+    from rosprivacy.analysis.findings.review_order import Behind, Shown
+    from rosprivacy.analysis.model import FlowGraph, MessageType
+    from rosprivacy.analysis.suggesting.evidence import Evidence, Proposal
+    from rosprivacy.analysis.suggesting.traffic import Traffic
+    from rosprivacy.labelling.suggesting import Identity, Known
+    from rosprivacy.result import Result
+
+
+class _Lasting(NamedTuple):
+    """What was found in a graph, by the identity of the element that it speaks of, with all that it rests on."""
+
+    graph: FlowGraph
+    types: Mapping[int, tuple[MessageType, ...]]
+    standard: Collection[int]
+    told: Traffic
+    said: Mapping[Identity, Sequence[Evidence]]
+
+    def holds(self, result: Result) -> bool:
+        """Whether the same would be found now."""
+        same = self.graph is result.analysis.graph and self.types == result.bound.types
+        return same and self.standard == standard_in(result.bound)
+
+
+class Suggester:
+    """What suggests labels for one answer after the other.
+
+    Parameters
+    ----------
+    known
+        What suggestions are made by.
+    """
+
+    def __init__(self, known: Known) -> None:
+        self.known = known
+        self._last: _Lasting | None = None
+
+    def under(self, result: Result, order: Mapping[Shown, Behind]) -> Suggestions:
+        """Return the suggestions for an answer.
+
+        Parameters
+        ----------
+        order
+            ``result.review_order``, which others have need of, too.
+        """
+        if self._last is None or not self._last.holds(result):
+            self._last = self._found(result)
+        return Suggestions(self.known, self._last, result, order)
+
+    def _found(self, result: Result) -> _Lasting:
+        graph, bound, known = result.analysis.graph, result.bound, self.known
+        told = traffic(graph, bound)
+        said: dict[Identity, list[Evidence]] = defaultdict(list)
+        for one in lasting_evidence(graph, bound, told, known.rules, known.packages, {}, known.libraries):
+            said[one.label.element.identity].append(one)
+        return _Lasting(graph, bound.types, standard_in(bound), told, dict(said))
+
+
+class Suggestions:
+    """What could be said of the elements of one answer; made by ``Suggester.under``."""
+
+    def __init__(self, known: Known, lasting: _Lasting, result: Result, order: Mapping[Shown, Behind]) -> None:
+        self._known, self._lasting, self._result, self._order = known, lasting, result, order
+
+    def of(self, identity: Identity) -> tuple[Proposal, ...]:
+        """Return what could be said of one element."""
+        return self._of({identity})
+
+    def of_role(self, *roles: str) -> tuple[tuple[Proposal, ...], ...]:
+        """Return for each element of which one of some roles could be said all that could be, in review order."""
+        there = {at for at, said in self._lasting.said.items() if any(one.label.role in roles for one in said)}
+        if LEAK in roles:  # where data ends; of no other role of these is anything said of what is open
+            there |= {question.element.identity for question in self._result.analysis.open}
+        found: dict[Identity, list[Proposal]] = defaultdict(list)
+        for one in self._of(there):
+            found[one.label.element.identity].append(one)
+        return tuple(tuple(some) for some in found.values() if any(one.label.role in roles for one in some))
+
+    def _of(self, identities: Collection[Identity]) -> tuple[Proposal, ...]:
+        result, lasting = self._result, self._lasting
+        said = [one for at in identities for one in lasting.said.get(at, ())]
+        questions = [one for one in result.analysis.open if one.element.identity in identities]
+        if questions:
+            said += of_open(questions, lasting.graph, result.bound, lasting.told, self._known.rules)
+        return in_review_order(asked_by(said, result, self._found, self._refused), self._places)
+
+    @cached_property
+    def _found(self) -> frozenset[str]:
+        return with_findings(self._result)
+
+    @cached_property
+    def _refused(self) -> frozenset[str]:
+        return refused_in(self._result)
+
+    @cached_property
+    def _places(self) -> Mapping[Identity, int]:
+        return review_places(self._result.analysis, self._order)

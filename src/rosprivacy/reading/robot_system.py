@@ -1,0 +1,274 @@
+"""One robot: policies, saved graphs and label files -> ``System``.
+
+In: the names of files. Out: ``System``, whose labels can be replaced.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.errors import InputError, InputErrors
+from rosprivacy.analysis.model import MERGED, REFUSED_NAME, SEEN_ALTHOUGH_DENIED, SHARED_ENCLAVE
+from rosprivacy.answering import answer
+from rosprivacy.assumptions import files_read, remembered, types_read
+from rosprivacy.ingest.keystore.exposed import with_exposed
+from rosprivacy.ingest.labels.add_non_ros import extend, extended
+from rosprivacy.ingest.labels.bag_storages import told_of_bags
+from rosprivacy.ingest.labels.binding import bind, join, remarks
+from rosprivacy.ingest.labels.label_file import Labels, read_labels, unknown_categories
+from rosprivacy.ingest.labels.stated_types import in_order
+from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, Change, changed
+from rosprivacy.ingest.policies.comparisons import careful_notices
+from rosprivacy.ingest.policies.flow_graph import build
+from rosprivacy.ingest.policies.joint_policies import joint_warnings
+from rosprivacy.ingest.policies.merged_policies import merging_notices
+from rosprivacy.ingest.types.channel_types import channel_types, matching_nothing
+from rosprivacy.question import question_of
+from rosprivacy.reading.granted import Read, read_granted
+from rosprivacy.system import System
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    from rosprivacy.analysis.model import Bound, Diagnostic, FlowGraph, Policy
+    from rosprivacy.ingest.database.beyond_rows import Beyond
+    from rosprivacy.ingest.database.rows import RobotRows
+    from rosprivacy.ingest.policies.saved_graph import Saved
+    from rosprivacy.ingest.types.channel_types import Written
+    from rosprivacy.ingest.types.types_file import TypesFile
+    from rosprivacy.ontology.vocabulary import Vocabulary
+    from rosprivacy.question import Question
+    from rosprivacy.result import Result
+    from rosprivacy.settings import Settings
+
+ACROSS = (MERGED, SHARED_ENCLAVE, REFUSED_NAME, SEEN_ALTHOUGH_DENIED)  # what is said of policies together
+Types = tuple["TypesFile", ...]
+
+
+def answer_robot(policies: tuple[str, ...], labels: tuple[str | Labels, ...], settings: Settings) -> Result:
+    """Read policies and label files, and analyse them.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of the input, one line each.
+    """
+    question = question_of(settings)
+    return answer(robot_system(policies, labels, question), question)
+
+
+def robot_system(policies: tuple[str, ...], labels: tuple[str | Labels, ...], question: Question) -> System:
+    """Read policies and label files.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of the input, one line each.
+    """
+    return system_reader(policies, labels, question)(NO_CHANGE)
+
+
+def system_reader(
+    policies: tuple[str, ...], labels: tuple[str | Labels, ...], question: Question
+) -> Callable[[Change], System]:
+    """Read policies once; return what makes a system of them with a change (rule S6).
+
+    Raises
+    ------
+    InputErrors
+        With every problem of the input, one line each.
+    """
+    settings = question.settings
+    graphs = read_graphs(settings)
+    (read, said), types = read_system(policies, settings, graphs), observed_types(settings, graphs)
+
+    def made(change: Change) -> System:
+        there = changed(read, change)
+        graph = build(there, settings.view, settings.bounds)
+        read_so = (there, said)
+        return _under(labels, graph=graph, read=read_so, types=types, settings=settings, vocabulary=question.vocabulary)
+
+    return made
+
+
+def _under(
+    labels: tuple[str | Labels, ...], *, graph: FlowGraph, read: Read, types: Types, settings: Settings,
+    vocabulary: Vocabulary,
+) -> System:  # fmt: skip
+    """Put policies that were read under labels; their graph is made once, and lasts for all labels."""
+    files = read_label_files(labels, vocabulary, settings)
+    whole = extend(graph, files)
+    system = _joined(whole, bind(whole, files, settings.bounds), read, files, types, settings, vocabulary)
+    system = replace(system, diagnostics=(*system.diagnostics, *matching_nothing(whole, types)))
+    again = partial(_under, graph=graph, read=read, types=types, settings=settings, vocabulary=vocabulary)
+    return replace(system, under=again)
+
+
+def _joined(
+    graph: FlowGraph, bound: Bound, read: Read, files: list[Labels], types: Types, settings: Settings,
+    vocabulary: Vocabulary,
+) -> System:  # fmt: skip
+    policies, diagnostics = read
+    said = tuple(d for policy in policies for d in policy.diagnostics) + diagnostics
+    said += (
+        tuple(d for file in files for d in file.diagnostics)
+        + tuple(remarks(graph, files))
+        + tuple(told_of_bags(graph, (stated for file in files for stated in file.elements)))
+    )
+    said += careful_notices(graph.careful)
+    rests_on = {**files_read(policies, files, settings), **types_read(types)}
+    bound = with_exposed(graph, with_types(graph, bound, types), policies)
+    said = tuple(dict.fromkeys(said))  # several enclaves share what is said of their governance
+    return System(graph, bound, vocabulary, said, rests_on, policies, tuple(files), types=types)
+
+
+def with_types(graph: FlowGraph, bound: Bound, types: Types, written: Written = MappingProxyType({})) -> Bound:
+    """Return what is bound to a graph with the observed types of its channels beside those that labels state."""
+    seen = channel_types(graph, types, written)
+    both = {v: (*bound.types.get(v, ()), *seen.get(v, ())) for v in {*bound.types, *seen}}
+    return replace(bound, types=in_order(both))
+
+
+def answer_each(
+    policies: tuple[str, ...], labels: tuple[str | Labels, ...], settings: Settings
+) -> tuple[tuple[str, Result], ...]:
+    """Read policies and label files, and analyse each policy alone.
+
+    A name of a label has to match in one of the policies at least (rule S11). What of a folder was not read counts
+    for each of its policies, since nobody knows which one it belongs to.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of the input, one line each.
+    """
+    question = question_of(settings)
+    vocabulary = question.vocabulary
+    graphs = read_graphs(settings)
+    read, said = read_system(policies, settings, graphs)
+    types = observed_types(settings, graphs)
+    files = read_label_files(labels, vocabulary, settings)
+    bind(
+        extend(build(read, settings.view, settings.bounds), files), files, settings.bounds
+    )  # raises what fits none of them
+    left = tuple(one for one in said if one.code not in ACROSS)
+    results = []
+    for policy in read:
+        alone = (policy,), (*left, *joint_warnings((policy,)))
+        results.append((policy.file, answer(lenient_system(alone, files, question, types)[0], question)))
+    return tuple(results)
+
+
+def lenient_system(
+    read: Read, files: list[Labels], question: Question, types: Types = ()
+) -> tuple[System, list[InputError]]:
+    """Put policies under labels as far as their names go; return also what matches nothing."""
+    settings = question.settings
+    graph, missing = extended(build(read[0], settings.view, settings.bounds), files)
+    bound, more = join(graph, files, settings.bounds)
+    return _joined(graph, bound, read, files, types, settings, question.vocabulary), [*missing, *more]
+
+
+def robot_of(name: str, result: Result) -> RobotRows:
+    """Return the rows of a robot for the database; what the answer rests on goes with it."""
+    from rosprivacy.ingest.database.rows import robot_rows  # noqa: PLC0415
+
+    more = remembered(result.assumptions, result.diagnostics)
+    return robot_rows(name, result.analysis, result.bound, result.vocabulary, more, beyond_of(result))
+
+
+def beyond_of(result: Result) -> Beyond | None:
+    """Return what the enforced view adds to a result, for the database; None where nobody asked for both views."""
+    if result.enforced is None:
+        return None
+    from rosprivacy.analysis.findings.beyond import granted  # noqa: PLC0415
+    from rosprivacy.ingest.database.beyond_rows import Beyond  # noqa: PLC0415
+
+    return Beyond(result.enforced.added, granted(result.analysis.graph))
+
+
+def read_graphs(settings: Settings) -> list[Saved]:
+    """Read the saved graphs that are added to."""
+    if not settings.add:
+        return []
+    from rosprivacy.ingest.policies.saved_graph import read_saved  # noqa: PLC0415 - light start
+
+    return [read_saved(file) for file in settings.add]
+
+
+def read_system(policies: tuple[str, ...], settings: Settings, graphs: list[Saved]) -> Read:
+    """Read policies, beside the saved graphs that they add to."""
+    saved = [policy for graph in graphs for policy in graph.policies]
+    read: tuple[Policy, ...] = ()
+    diagnostics: tuple[Diagnostic, ...] = ()
+    if policies or not saved:
+        read, diagnostics = read_granted(policies, settings)
+    known = {policy.file for policy in read}  # read again is read anew
+    sources = {name for policy in read for name, _ in policy.sources}
+    left = (d for graph in graphs for d in graph.left)
+    diagnostics += tuple(d for d in left if d.place.file not in sources and d not in diagnostics)
+    system = (*read, *(policy for policy in saved if policy.file not in known))
+    read = tuple(sorted(system, key=lambda policy: policy.file))
+    return read, (*diagnostics, *joint_warnings(system), *merging_notices(system))
+
+
+def observed_types(settings: Settings, graphs: list[Saved]) -> Types:
+    """Read the files of observed types, and those that saved graphs keep; one that is named is read anew."""
+    files = read_types_files(settings.types, settings)
+    saved = {one.file: one for graph in graphs for one in graph.types}
+    return tuple(one for _, one in sorted({**saved, **files}.items()))
+
+
+def read_types_files(names: Iterable[str], settings: Settings) -> dict[str, TypesFile]:
+    """Read files of observed types, each once, with the problems of all of them."""
+    problems: list[InputError] = []
+    files: dict[str, TypesFile] = {}
+    for name in dict.fromkeys(names):
+        from rosprivacy.ingest.types.types_file import read_types  # noqa: PLC0415 - light start
+
+        try:
+            files[name] = read_types(name, settings.bounds)
+        except InputErrors as error:
+            problems += error.errors
+    if problems:
+        raise InputErrors(problems)
+    return files
+
+
+def standard_channels(graph: FlowGraph, vocabulary: Vocabulary, settings: Settings) -> set[tuple[str, str]]:
+    """Return (kind, name) of the channels that the standard file takes as mundane (rule S13)."""
+    bound = bind(graph, read_label_files((), vocabulary, settings))
+    return {(graph.elements[vertex].kind, graph.elements[vertex].name) for vertex in bound.elements}
+
+
+def read_label_files(labels: tuple[str | Labels, ...], vocabulary: Vocabulary, settings: Settings) -> list[Labels]:
+    """Read the standard channels' file and the user's, if not read before, with the problems of all of them."""
+    files: list[Labels] = []
+    problems: list[InputError] = []
+    read = {file.file for file in labels if isinstance(file, Labels)}
+    standard = [name for name in (settings.standard_channels,) if name and name not in read]
+    for file in dict.fromkeys([*standard, *labels]):
+        if isinstance(file, Labels):
+            files.append(file)
+            problems += unknown_categories(file, vocabulary)
+            continue
+        try:
+            shipped = file in standard and file not in labels  # named by the user, it is the user's own
+            files.append(
+                read_labels(
+                    file,
+                    vocabulary,
+                    category=settings.category,
+                    shipped=shipped,
+                    bounds=settings.bounds,
+                    include_root=settings.include_root,
+                )
+            )
+        except InputErrors as error:
+            problems += error.errors
+    if problems:
+        raise InputErrors(problems)
+    return files

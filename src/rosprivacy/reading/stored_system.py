@@ -1,0 +1,70 @@
+"""What is in a database, with what people added to it there -> ``System``, and the answer back into it.
+
+In: a driver. Out: a ``Result``; the answer about all categories is written back.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rosprivacy.answering import answer
+from rosprivacy.assumptions import put_together
+from rosprivacy.ingest.database.read_back import Stored, read_stored
+from rosprivacy.ingest.database.write_back import write_back
+from rosprivacy.question import question_of
+from rosprivacy.system import System
+
+if TYPE_CHECKING:
+    from neo4j import Driver
+
+    from rosprivacy.ontology.vocabulary import Vocabulary
+    from rosprivacy.result import Result
+    from rosprivacy.settings import Settings
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StoredSystem(System):
+    """A system with the database's own keys."""
+
+    stored: Stored
+
+
+def stored_system(driver: Driver, vocabulary: Vocabulary) -> StoredSystem:
+    """Read everything that is in a database.
+
+    Raises
+    ------
+    InputErrors
+        With every element, flow and role that cannot be understood.
+    """
+    stored = read_stored(driver, vocabulary)
+    said, rests_on = put_together(stored.robots.values())
+    return StoredSystem(
+        stored.graph, stored.bound, vocabulary, said, rests_on,
+        likeness=stored.likeness, is_fleet=len(stored.robots) > 1, stored=stored,
+    )  # fmt: skip
+
+
+def answer_unwritten(driver: Driver, settings: Settings) -> Result:
+    """Analyse what is in the database, and write nothing back; raises as ``answer_stored``."""
+    question = question_of(settings)._replace(every=True)
+    return answer(stored_system(driver, question.vocabulary), question)
+
+
+def answer_stored(driver: Driver, settings: Settings) -> Result:
+    """Analyse what is in the database, and write the answer about all categories back.
+
+    Raises
+    ------
+    InputErrors
+        With every element, flow and role that cannot be understood.
+    DatabaseError
+        If the server refuses, or a robot was loaded meanwhile.
+    """
+    question = question_of(settings)._replace(every=True)
+    system = stored_system(driver, question.vocabulary)
+    everything = question._replace(asked=None, decisions=None)
+    result = answer(system, everything)
+    write_back(driver, system.stored, result.analysis, question.vocabulary)
+    return result if question == everything else answer(system, question)

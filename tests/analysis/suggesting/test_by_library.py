@@ -1,0 +1,128 @@
+"""What libraries say of nodes, by what these write and read: the four rules of ``by_library.py`` (issue 21)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from rosprivacy.analysis.suggesting.evidence import CODE
+from rosprivacy.labelling.suggesting import suggest_labels
+from rosprivacy.settings import Settings
+from tests.helpers.fleet_files import policy
+
+HEAD = (
+    "import {library}\nfrom rclpy.node import Node\nfrom sensor_msgs.msg import Image\n"
+    "from std_msgs.msg import Bool, String\nfrom vision_msgs.msg import Detection2DArray as Found\n"
+    "from geometry_msgs.msg import Twist\nfrom hri_msgs.msg import Skeleton2D\n"
+    "class N(Node):\n    def __init__(self):\n        super().__init__('n')\n"
+)
+LINE = "        self.x = {}\n"
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def said(writes: str, reads: str, *calls: str) -> set[str]:
+    """What the code of a node says, with one channel of a type that it writes and one that it reads, or none."""
+    libraries = {call.partition("(")[0].partition(".")[0] for call in calls} - {"open", "input"}
+    code = HEAD.format(library=", ".join(sorted(libraries)) or "os")
+    code += LINE.format(f"self.create_publisher({writes}, '/w', 1)") if writes else ""
+    code += LINE.format(f"self.create_subscription({reads}, '/r', self.cb, 1)") if reads else ""
+    code += "".join(LINE.format(call) for call in calls)
+    Path("n.py").write_text(code, "utf-8")
+    Path("p.xml").write_text(policy(f"/n>{'/w' if writes else ''}<{'/r' if reads else ''}", "/m>/r</w"), "utf-8")
+    found = suggest_labels(("p.xml",), (), Settings(), sources=("n.py",)).proposals
+    return {
+        " ".join(filter(None, [one.label.role, one.label.kind, one.label.to, str(reason.confidence)]))
+        for one in found
+        for reason in one.evidence
+        if reason.ground == CODE and one.label.element.name == "/n"
+    }
+
+
+CAMERA, MICROPHONE, POSE = "cv2.VideoCapture(0)", "sounddevice.InputStream()", "mediapipe.solutions.pose.Pose()"
+
+
+@pytest.mark.parametrize(
+    ("writes", "reads", "calls", "told"),
+    [
+        # 1. What it brings in, it is a source of: as the rule says, or may.
+        ("Image", "", [CAMERA], {"source Video likely"}),
+        ("Image", "Image", [CAMERA], {"source Video may"}),
+        ("Unknown", "", [CAMERA], {"source Video may"}),
+        ("", "Bool", [CAMERA], set()),
+        ("Twist", "", ["readchar.readkey()"], {"source OperatorInput likely"}),
+        ("Twist", "", ["input('?')"], {"source OperatorInput may"}),  # often a question when it starts
+        # 2. What never comes into ROS is told by what is made of it.
+        ("Found", "", [CAMERA], {"source PersonDetection may", "source HouseholdObject may"}),
+        ("Skeleton2D", "", [CAMERA], {"source BodyPose likely"}),  # as its type says
+        ("Twist", "", [CAMERA], set()),
+        # 3. What makes one kind of another.
+        ("Skeleton2D", "Image", [POSE], {"derivation Video BodyPose likely"}),
+        ("Skeleton2D", "", [CAMERA, POSE], {"source BodyPose likely"}),
+        ("Skeleton2D", "", [POSE], {"source BodyPose may"}),
+        ("Skeleton2D", "Bool", [POSE], {"derivation Video BodyPose may"}),
+        ("Twist", "Image", [POSE], set()),
+        ("String", "", [MICROPHONE, "vosk.Model()"], {"source SpeechTranscript may", "source VoiceCommand may"}),
+        ("Skeleton2D", "Image", [CAMERA, POSE], {"derivation Video BodyPose likely"}),  # and no source of it
+        ("String", "Image", ["onnxruntime.InferenceSession('x')"], set()),  # may twice is nothing
+        ("Bool", "Image", ["face_recognition.face_locations(x)"], {"derivation Video PersonDetection may"}),  # a flag
+        ("Image", "", ["tf2_ros.Buffer().lookup_transform('x', 'y', t)"], set()),  # may, and no place is written
+        # 4. What lets data out.
+        ("", "Image", ["cv2.imwrite('x', y)"], {"leak Video likely"}),
+        ("", "Image", ["cv2.imshow('x', y)"], {"leak Video may"}),  # often for debugging
+        ("", "Image", ["requests.get('x')"], {"leak PersonalData may"}),
+        ("", "Bool", ["requests.post('x')"], {"leak PersonalData may"}),
+        ("", "Image", ["open('x', 'w')"], {"leak PersonalData may"}),
+        ("", "Image", ["open('x')"], set()),
+        ("", "", ["requests.post('x')"], {"leak PersonalData may"}),  # who knows what
+        ("Twist", "", ["readchar.readkey()", "requests.post('x')"],
+         {"source OperatorInput likely", "leak PersonalData may"}),
+        ("", "", [CAMERA, "requests.post('x')"], {"leak PersonalData likely"}),
+    ],
+)  # fmt: skip
+def test_the_four_rules(writes: str, reads: str, calls: list[str], told: set[str]) -> None:
+    assert said(writes, reads, *calls) == told
+
+
+def test_what_reads_ros_by_itself_makes_no_source() -> None:
+    """A listener of transforms reads /tf: a place that is made of them was not brought in."""
+    looked_up = "tf2_ros.Buffer().lookup_transform('map', 'base', t)"
+    said("Pose", "", looked_up)
+    Path("n.py").write_text(Path("n.py").read_text("utf-8").replace("'/w'", "'/robot_pose'"), "utf-8")
+    Path("p.xml").write_text(policy("/n>/robot_pose", "/m</robot_pose"), "utf-8")
+    found = suggest_labels(("p.xml",), (), Settings(), sources=("n.py",)).proposals
+    by_code = {one.label.role for one in found for reason in one.evidence if reason.ground == CODE}
+    assert by_code == {"derivation"}
+
+
+@pytest.mark.parametrize(
+    ("call", "sure"),
+    [("paho.mqtt.client.Client().publish('x')", "likely"), ("paho.mqtt.client.Client().subscribe('x')", "may")],
+)
+def test_who_listens_to_a_broker_does_not_yet_publish(call: str, sure: str) -> None:
+    assert f"leak PersonalData {sure}" in said("", "Image", call)
+
+
+def test_a_use_in_a_namespace_of_the_policy_is_found_by_the_own_name_of_the_node() -> None:
+    said("Image", "", CAMERA)
+    Path("p.xml").write_text(policy("/robot1/n>/w", "/m</w"), "utf-8")
+    found = suggest_labels(("p.xml",), (), Settings(), sources=("n.py",))
+    reasons = [r for one in found.proposals for r in one.evidence if one.label.element.name == "/robot1/n"]
+    assert [(str(r.place), r.reason.partition(":")[0]) for r in reasons if r.ground == CODE] == [
+        ("n.py:12", "uses cv2.VideoCapture (n.py")
+    ]
+    assert not found.unplaced
+
+
+def test_nothing_that_hides_a_leak_is_said_by_libraries() -> None:
+    """Beside a source or a leak by code no conduit and no sanitizer is proposed for the same data."""
+    said("Found", "Image", CAMERA, "requests.post('x')")
+    Path("l.yaml").write_text("labels: 1\nnodes: {/m: {source: [Video]}}\n", "utf-8")
+    found = suggest_labels(("p.xml",), ("l.yaml",), Settings(), sources=("n.py",)).proposals
+    roles = {one.label.role for one in found if one.label.element.name == "/n"}
+    assert "leak" in roles
+    assert not roles & {"conduit", "sanitizer"}

@@ -1,0 +1,234 @@
+"""``rosprivacy suggest --ask``: single keys answer, each is kept at once, and nothing is taken away in a group."""
+
+from __future__ import annotations
+
+import io
+import os
+import pty
+import subprocess
+import sys
+import time
+from typing import TYPE_CHECKING
+
+import pytest
+
+import rosprivacy
+from tests.helpers.command import LINE, cli
+from tests.helpers.little_robots import HOSTILE, policy_of
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from tests.helpers.command import Cli, Done
+
+__all__ = ["cli"]
+
+DAY = "1767225600"
+NODES = {
+    "eye": (["/a"], []),
+    "middle": (["/b", "/c"], ["/a"]),
+    "customer_bridge": ([], ["/b"]),
+    "unknown": ([], ["/c"]),
+}
+SOURCE = "labels: 1\nauthor: Ada\nnodes:\n  /eye: {source: [Video]}\n"
+
+
+@pytest.fixture
+def robot(tmp_path: Path) -> Path:
+    (tmp_path / "p.xml").write_text(policy_of(NODES), "utf-8")
+    (tmp_path / "l.yaml").write_text(SOURCE, "utf-8")
+    return tmp_path
+
+
+def ask(cli: Cli, folder: Path, keys: str, patch: pytest.MonkeyPatch, *more: str) -> Done:
+    with patch.context() as context:
+        context.setattr(sys, "stdin", io.StringIO(keys))
+        return cli("suggest", "p.xml", "--into", "l.yaml", "--ask", *more, cwd=folder, SOURCE_DATE_EPOCH=DAY)
+
+
+def test_from_a_source_to_the_answer_by_single_keys(cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The bridge lets out; the node between passes on; the unknown end is a conduit; the channels may carry it."""
+    done = ask(cli, robot, "y y\ny 2", monkeypatch)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "nothing is left to ask\nleak; 0 open elements" in done.stdout
+    text = (robot / "l.yaml").read_text("utf-8")
+    assert text.startswith(SOURCE)
+    for line in (
+        "  /customer_bridge: {leak: [Video], note: \"answered by Ada on 2026-01-01: 'bridge' in the name",
+        '  /middle: {conduit: [Video], note: "answered by Ada on 2026-01-01: it gets Video, which can go on',
+        '  /unknown: {conduit: [Video], note: "answered by Ada on 2026-01-01"}',
+        "  /b: {sensitive: [Video], note: ",
+    ):
+        assert line in text
+    found = rosprivacy.analyze(str(robot / "p.xml"), str(robot / "l.yaml")).analysis.findings
+    assert [(one.source.name, one.leak.name) for one in found] == [("/eye", "/customer_bridge")]
+
+
+def test_a_no_is_kept_with_who_and_when_and_not_asked_again(
+    cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first = ask(cli, robot, "nq", monkeypatch, "--by", "Bo")
+    assert "node /customer_bridge: Video" in first.stdout
+    line = '# not: {"nodes": {"/customer_bridge": {"leak": ["PersonalData"]}}} by Bo on 2026-01-01'
+    assert (robot / "l.yaml").read_text("utf-8") == f"{SOURCE}{line}\n"
+    again = ask(cli, robot, "q", monkeypatch)
+    assert "let such data out" not in again.stdout
+    assert "leak PersonalData" not in cli("suggest", "p.xml", "-l", "l.yaml", cwd=robot).stdout
+    ends = ask(cli, robot, "y s q", monkeypatch).stdout
+    assert "no policy lets it go on. What happens to it in these?" in ends  # it is an end as any other now
+    (robot / "l.yaml").write_text(SOURCE, "utf-8")
+    assert "let such data out" in ask(cli, robot, "q", monkeypatch).stdout
+
+
+def test_a_number_for_a_list_that_is_not_asked_takes_nothing_away(
+    cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A file of keys from an earlier time: ``10`` and Enter would be a ``0``, and close the leak."""
+    policy = policy_of({"eye": (["/front"], []), "ear": (["/front"], []), "box": ([], ["/front"])})
+    (tmp_path / "p.xml").write_text(policy, "utf-8")
+    before = "labels: 1\nauthor: Ada\nnodes:\n  /eye: {source: [Video]}\n  /box: {leak: [Video]}\n"
+    (tmp_path / "l.yaml").write_text(before, "utf-8")
+    done = ask(cli, tmp_path, "10\nq", monkeypatch)
+    assert "'1' is no answer here: the keys are out of step" in done.stdout
+    assert (tmp_path / "l.yaml").read_text("utf-8") == before
+
+
+def test_nothing_is_taken_away_in_a_group(cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """``0`` is an answer where one row is picked, or was opened."""
+    through = "s s"
+    group = ask(cli, robot, f"{through} 0 q", monkeypatch)
+    assert "topic /a" in group.stdout
+    assert "'0' is no answer here" in group.stdout
+    two = ask(cli, robot, f"{through} A B 0 q", monkeypatch)
+    assert "'0' is no answer here" in two.stdout
+    assert (robot / "l.yaml").read_text("utf-8") == SOURCE
+    picked = ask(cli, robot, f"{through} B 0 q", monkeypatch)
+    assert "B: " in picked.stdout
+    assert '  /b: {never: [Video], note: "answered by Ada on 2026-01-01"}' in (robot / "l.yaml").read_text("utf-8")
+    (robot / "l.yaml").write_text(SOURCE, "utf-8")
+    ask(cli, robot, f"{through} o y s 0 q", monkeypatch)
+    text = (robot / "l.yaml").read_text("utf-8")
+    assert "/a: {sensitive: [Video]" in text
+    assert "/b:" not in text
+    assert "/c: {never: [Video]" in text
+
+
+def test_the_finding_that_may_hang_on_an_answer_is_told_before(
+    cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (robot / "l.yaml").write_text(f"{SOURCE}  /customer_bridge: {{leak: [Video]}}\n", "utf-8")
+    shown = ask(cli, robot, "s s q", monkeypatch).stdout
+    assert "known findings, which may hang on this: Video: /eye -> /customer_bridge [" in shown
+
+
+def test_yes_to_everything_hides_neither_a_leak_nor_an_end(
+    cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A leak or a conduit is no question of yes."""
+    for more in ("  /customer_bridge: {leak: [Video]}\n", ""):
+        (robot / "l.yaml").write_text(SOURCE + more, "utf-8")
+        ask(cli, robot, "y" * 50, monkeypatch)
+        analysis = rosprivacy.analyze(str(robot / "p.xml"), str(robot / "l.yaml")).analysis
+        assert analysis.verdict == "leak"
+        assert "/unknown" in {one.element.name for one in analysis.open}
+
+
+@pytest.mark.parametrize("keys", ["", "q", "y", "yy", "x", "?!\x1b[A\u202e y q", "Z A A o n s"])
+def test_whenever_it_ends_what_was_answered_is_there(
+    cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch, keys: str
+) -> None:
+    done = ask(cli, robot, keys, monkeypatch)
+    assert done.returncode == 0
+    assert all(sign.isprintable() or sign == "\n" for sign in done.stdout)
+    text = (robot / "l.yaml").read_text("utf-8")
+    assert text.startswith(SOURCE)
+    assert ("/customer_bridge" in text) == ("y" in keys or "n" in keys)
+    rosprivacy.analyze(str(robot / "p.xml"), str(robot / "l.yaml"))
+
+
+def test_a_process_that_is_killed_loses_the_key_in_hand_at_most(robot: Path) -> None:
+    command = [sys.executable, "-m", "rosprivacy", "suggest", "p.xml", "--into", "l.yaml", "--ask"]
+    with subprocess.Popen(command, cwd=robot, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL) as process:
+        assert process.stdin is not None
+        process.stdin.write(b"y")
+        process.stdin.flush()
+        ends = time.monotonic() + 60
+        while "/customer_bridge" not in (robot / "l.yaml").read_text("utf-8") and time.monotonic() < ends:
+            time.sleep(0.05)
+        process.kill()
+    assert "/customer_bridge: {leak: [Video]" in (robot / "l.yaml").read_text("utf-8")
+    rosprivacy.analyze(str(robot / "p.xml"), str(robot / "l.yaml"))
+
+
+def test_at_a_terminal_a_key_needs_no_enter(robot: Path) -> None:
+    ours, theirs = pty.openpty()
+    command = [sys.executable, "-m", "rosprivacy", "suggest", "p.xml", "--into", "l.yaml", "--ask"]
+    with subprocess.Popen(command, cwd=robot, stdin=theirs, stdout=subprocess.PIPE, bufsize=0) as process:
+        assert process.stdout is not None
+        shown = b""
+        for key in (b"y", b"q"):
+            while not shown.endswith(b"> ") and (more := process.stdout.read(1)):
+                shown += more
+            time.sleep(0.5)  # what is typed before the terminal waits for a key is no answer
+            os.write(ours, key)
+            shown += process.stdout.read(1)
+        shown += process.stdout.read()
+    os.close(ours)
+    os.close(theirs)
+    assert process.returncode == 0
+    assert b"1 answer in l.yaml; the same command goes on from here" in shown
+    assert "/customer_bridge: {leak: [Video]" in (robot / "l.yaml").read_text("utf-8")
+
+
+@pytest.mark.parametrize(
+    ("text", "more", "message"),
+    [
+        ("labels: 1\n", [], "l.yaml: nobody says who answers; add --by NAME"),
+        ("labels: 1\nauthor: A\nnodes: {/nobody: conduit}\n", [], "l.yaml:3: '/nobody' matches no node"),
+    ],
+)
+def test_bad_input_is_one_line(
+    cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch, text: str, more: list[str], message: str
+) -> None:
+    (robot / "l.yaml").write_text(text, "utf-8")
+    done = ask(cli, robot, "y", monkeypatch, *more)
+    assert done.returncode == 2
+    assert done.stderr.startswith(message)
+    assert all(LINE.match(line) for line in done.stderr.splitlines())
+    assert (robot / "l.yaml").read_text("utf-8") == text
+
+
+@pytest.mark.parametrize("keys", [b"\xff\xfe", b"y\xff", b"\0q"])
+def test_keys_that_are_no_text_end_it(robot: Path, keys: bytes) -> None:
+    command = [sys.executable, "-m", "rosprivacy", "suggest", "p.xml", "--into", "l.yaml", "--ask"]
+    done = subprocess.run(command, cwd=robot, input=keys, capture_output=True, timeout=60, check=False)
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert (robot / "l.yaml").read_text("utf-8").startswith(SOURCE)
+
+
+@pytest.mark.parametrize("key", ["y", "n"])
+def test_json_has_no_room_for_answers(cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch, key: str) -> None:
+    text = '{"labels": 1, "author": "A", "nodes": {"/eye": {"source": ["Video"]}}}'
+    (robot / "l.yaml").write_text(text, "utf-8")
+    done = ask(cli, robot, key, monkeypatch)
+    assert (done.returncode, done.stderr.partition(";")[0]) == (2, "l.yaml: has no room for comments at its end")
+    assert (robot / "l.yaml").read_text("utf-8") == text
+
+
+@pytest.mark.parametrize("more", [["--ask"], ["--ask", "--into", "l.yaml", "-f", "json"], ["--by", "Ada"]])
+def test_options_that_do_not_go_together(cli: Cli, robot: Path, more: list[str]) -> None:
+    assert cli("suggest", "p.xml", *more, cwd=robot).returncode == 2
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_a_hostile_name_gets_into_neither_the_file_nor_the_terminal(
+    cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    (tmp_path / "p.xml").write_text(policy_of({"camera": ([name], []), "up": ([], [name])}), "utf-8")
+    if cli("analyze", "p.xml", cwd=tmp_path).returncode == 2:
+        pytest.skip("the policy's reader refuses such a name")
+    done = ask(cli, tmp_path, "y1ynyy", monkeypatch, "--by", 'A"\n- x: y\n# not: z\u202e')
+    assert done.returncode == 0
+    assert all(sign.isprintable() or sign == "\n" for sign in done.stdout)
+    said = rosprivacy.analyze(str(tmp_path / "p.xml"), str(tmp_path / "l.yaml")).document()
+    assert {one["element"]["name"] for one in said["roles"]} <= {"/camera", "/up"}

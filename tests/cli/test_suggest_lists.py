@@ -1,0 +1,311 @@
+"""``suggest --ask``: channels that are alike in one list, confirmed by its number; it closes no known finding."""
+
+from __future__ import annotations
+
+import io
+import subprocess
+import sys
+import time
+from typing import TYPE_CHECKING
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+import rosprivacy
+from rosprivacy.analysis.suggesting.question_rows import NOTHING_THROUGH
+from rosprivacy.labelling.asking import asked_now, with_answer
+from rosprivacy.labelling.conversation import QUIT, SKIP, Conversation
+from rosprivacy.labelling.suggesting import suggest_labels
+from rosprivacy.settings import Settings
+from tests.helpers.command import cli
+from tests.helpers.little_robots import policy_of
+from tests.helpers.planted_leaks import planted
+from tests.helpers.turtlebot import TURTLEBOT3
+from tests.helpers.typist import POLICIES
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from rosprivacy.analysis.suggesting.question_rows import Question
+    from tests.helpers.command import Cli, Done
+    from tests.helpers.little_robots import Nodes
+
+__all__ = ["cli"]
+
+DAY = "1767225600"
+TEXT = "std_msgs/msg/String"
+JOINTS, BATTERY = "sensor_msgs/msg/JointState", "sensor_msgs/msg/BatteryState"  # one family of the table
+TYPES = {
+    "joints": JOINTS,
+    "battery": BATTERY,
+    "arm": JOINTS,
+    "text": TEXT,
+    "grid": "nav_msgs/msg/OccupancyGrid",
+}
+NODES: Nodes = {
+    "eye": (["/a"], []),
+    "middle": (["/joints", "/battery", "/arm", "/text", "/grid", "/plain"], ["/a"]),
+    "here": ([], ["/joints", "/battery", "/arm", "/text", "/grid", "/plain"]),
+}
+HEAD = "labels: 1\nauthor: Ada\nnodes:\n  /eye: {source: [Video]}\n  /middle: conduit\n"
+LISTED = "Is it so that no Video goes through any of these?"
+
+
+def labels_of(types: dict[str, str], more: str = "") -> str:
+    return f"{HEAD}{more}topics:\n" + "".join(f"  /{name}: {{types: [{said}]}}\n" for name, said in types.items())
+
+
+@pytest.fixture
+def robot(tmp_path: Path) -> Path:
+    (tmp_path / "p.xml").write_text(policy_of(NODES), "utf-8")
+    (tmp_path / "l.yaml").write_text(labels_of(TYPES), "utf-8")
+    return tmp_path
+
+
+def ask(cli: Cli, folder: Path, keys: str, patch: pytest.MonkeyPatch) -> Done:
+    with patch.context() as context:
+        context.setattr(sys, "stdin", io.StringIO(keys))
+        return cli("suggest", "p.xml", "--into", "l.yaml", "--ask", cwd=folder, SOURCE_DATE_EPOCH=DAY)
+
+
+def list_shown(text: str) -> list[str]:
+    """The channels of the last list that was shown."""
+    lines = text.rpartition(LISTED)[2].partition("\n> ")[0].splitlines()
+    return [line.split()[2] for line in lines if " topic " in line]
+
+
+BEFORE = "ss"  # the end of the data, and what is asked before the list
+
+
+def test_only_what_a_type_says_is_in_a_list_and_all_of_it_is_shown(
+    cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Not a text, not a map (which is made of what sensors see), and not what nobody knows the type of."""
+    shown = ask(cli, robot, f"{BEFORE}q", monkeypatch).stdout
+    assert sorted(list_shown(shown)) == ["/arm", "/battery", "/joints"]
+    for name, said in (("arm", JOINTS), ("battery", BATTERY), ("joints", JOINTS)):
+        assert f"type {said} of /{name} is not made for Video" in shown
+    assert "  3 and Enter for none of it in all 3, A-Z take out or put back, o not as a list" in shown
+
+
+def test_a_list_is_confirmed_by_its_number_and_each_note_says_so(
+    cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    done = ask(cli, robot, f"{BEFORE}3\nq", monkeypatch)
+    assert "1 answer in l.yaml" in done.stdout
+    text = (robot / "l.yaml").read_text("utf-8")
+    for name in ("arm", "battery", "joints"):
+        assert f"  /{name}: {{never: [Video], " in text
+    assert text.count("answered by Ada on 2026-01-01 in a list of 3: type sensor_msgs/msg/") == 3
+
+
+@pytest.mark.parametrize(
+    "keys", ["y", "0", "0\n", "1\n", "2\n", "4\n", "33\n", "3", "3x", "3 \n", "x", "n", "Z", "\n\n"]
+)
+def test_nothing_else_confirms_it(cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch, keys: str) -> None:
+    before = (robot / "l.yaml").read_text("utf-8")
+    done = ask(cli, robot, f"{BEFORE}{keys}", monkeypatch)
+    assert done.returncode == 0
+    assert (robot / "l.yaml").read_text("utf-8") == before
+
+
+def test_rows_are_taken_out_and_asked_by_themselves(cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    done = ask(cli, robot, f"{BEFORE}A3\n2\nq", monkeypatch)
+    assert "'3' is no answer here; 2 rows left" in done.stdout
+    text = (robot / "l.yaml").read_text("utf-8")
+    assert text.count("never: [Video]") == text.count("in a list of 2: ") == 2
+    out = list_shown(ask(cli, robot, "ssssq", monkeypatch).stdout)
+    assert out == []  # one channel makes no list
+    (robot / "l.yaml").write_text(labels_of(TYPES), "utf-8")
+    assert "Can Video go through these?" in ask(cli, robot, f"{BEFORE}oq", monkeypatch).stdout
+
+
+def test_a_known_finding_is_asked_by_itself_also_where_only_all_together_would_close_it(
+    cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The data get to the leak by two of three channels: neither closes the finding, both do."""
+    nodes: Nodes = NODES | {"out": ([], ["/joints", "/arm"])}
+    (robot / "p.xml").write_text(policy_of(nodes), "utf-8")
+    (robot / "l.yaml").write_text(labels_of(TYPES, "  /out: {leak: [Video]}\n"), "utf-8")
+    shown = ask(cli, robot, "sssssq", monkeypatch).stdout
+    assert LISTED not in shown
+    assert "known findings, which may hang on this: Video: /eye -> /out [" in shown
+    (robot / "p.xml").write_text(policy_of(NODES | {"out": ([], ["/joints"])}), "utf-8")
+    shown = ask(cli, robot, "sssq", monkeypatch).stdout
+    assert sorted(list_shown(shown)) == ["/arm", "/battery"]
+
+
+def test_a_leak_that_becomes_known_while_a_list_is_shown_is_not_closed_by_it(robot: Path) -> None:
+    """Somebody else writes the leak into the file between the question and its answer."""
+    (robot / "p.xml").write_text(policy_of(NODES | {"out": ([], ["/joints"])}), "utf-8")
+    file = robot / "l.yaml"
+    told: list[str] = []
+
+    class Late:
+        done = False
+
+        def key(self, question: Question, picked: frozenset[int]) -> str:
+            del picked
+            if question.about != NOTHING_THROUGH or self.done:
+                return SKIP if not self.done else QUIT
+            self.done = True
+            file.write_text(labels_of(TYPES, "  /out: {leak: [Video]}\n"), "utf-8")
+            return str(len(question.rows))
+
+        def told(self, remark: str) -> None:
+            told.append(remark)
+
+    late = Late()
+    conversation(robot / "p.xml", file, late).run()
+    assert late.done
+    assert told == ["this list is not as it was any more: nothing is kept, and it is asked anew"]
+    assert "never" not in file.read_text("utf-8")
+
+
+class Careless:
+    """Somebody who confirms every list as it is, and answers nothing else."""
+
+    def key(self, question: Question, picked: frozenset[int]) -> str:
+        del picked
+        return str(len(question.rows)) if question.about == NOTHING_THROUGH else SKIP
+
+    def told(self, remark: str) -> None:
+        raise AssertionError(remark)
+
+
+def conversation(policy: Path, file: Path, person: object) -> Conversation:
+    options = Settings()
+
+    def now() -> tuple[Question, ...]:
+        return asked_now(suggest_labels((str(policy),), (str(file),), options))
+
+    def keep(question: Question, key: str) -> tuple[str, ...]:
+        written = with_answer(str(file), question, key, "Ada", "2026-11-23", options)
+        file.write_text(written.text, "utf-8")
+        return written.remarks
+
+    return Conversation(now, keep, person)  # type: ignore[arg-type]  # two kinds of persons
+
+
+CHANNELS = ("joints", "battery", "arm", "text", "plain")
+
+
+@given(
+    middle=st.lists(st.sampled_from(CHANNELS), min_size=2, unique=True),
+    second=st.lists(st.sampled_from(CHANNELS), unique=True),
+    ends=st.lists(st.lists(st.sampled_from(CHANNELS), min_size=1, unique=True), min_size=1, max_size=3),
+    leaks=st.integers(0, 3),
+)
+@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_an_accepted_list_closes_no_known_finding(
+    tmp_path: Path, middle: list[str], second: list[str], ends: list[list[str]], leaks: int
+) -> None:
+    nodes: Nodes = {
+        "eye": (["/a"], []),
+        "middle": ([f"/{one}" for one in middle], ["/a"]),
+        "second": ([f"/{one}" for one in second], [f"/{middle[0]}"]),
+    }
+    nodes |= {f"end{at}": ([], [f"/{one}" for one in channels]) for at, channels in enumerate(ends)}
+    (tmp_path / "p.xml").write_text(policy_of(nodes), "utf-8")
+    out = "".join(f"  /end{at}: {{leak: [Video]}}\n" for at in range(min(leaks, len(ends))))
+    used = {*middle, *second, *(one for channels in ends for one in channels)}
+    types = {name: said for name, said in TYPES.items() if name in used}
+    (tmp_path / "l.yaml").write_text(labels_of(types, out + "  /second: conduit\n"), "utf-8")
+    policy, file = tmp_path / "p.xml", tmp_path / "l.yaml"
+    before = found(policy, file)
+    conversation(policy, file, Careless()).run()
+    assert found(policy, file) == before
+    text = (tmp_path / "l.yaml").read_text("utf-8")
+    assert not any(f"  /{name}: {{never" in text for name in ("text", "plain", "a"))
+
+
+@pytest.mark.corpus
+@pytest.mark.slow
+def test_lists_of_packages_close_no_planted_leak(corpus: Path, tmp_path: Path) -> None:
+    lists = 0
+    for policy in (corpus / TURTLEBOT3, corpus / POLICIES["$RMF"]):
+        for file, path in planted(str(policy), tmp_path, 6, 1):
+            before = found(policy, file)
+            asking = conversation(policy, file, Careless())
+            asking.run()
+            lists += len(asking.lists)
+            assert found(policy, file) == before, path
+    assert lists
+
+
+def found(policy: Path, file: Path) -> set[str]:
+    analysis = rosprivacy.analyze(str(policy), str(file)).analysis
+    return {one.id for one in analysis.findings}
+
+
+def test_what_only_code_says_of_a_type_makes_no_list(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A test writes a flag where the camera has its pictures: nobody else says a type."""
+    nodes: Nodes = {"camera": (["/front", "/rear"], []), "box": ([], ["/front", "/rear"])}
+    (tmp_path / "p.xml").write_text(policy_of(nodes), "utf-8")
+    (tmp_path / "l.yaml").write_text("labels: 1\nauthor: Ada\nnodes:\n  /camera: {source: [Video]}\n", "utf-8")
+    (tmp_path / "test_box.py").write_text(
+        "from rclpy.node import Node\nfrom std_msgs.msg import Bool\n\n\nclass Tester(Node):\n"
+        "    def __init__(self):\n        super().__init__('tester')\n"
+        "        self.create_publisher(Bool, '/front', 1)\n        self.create_publisher(Bool, '/rear', 1)\n",
+        "utf-8",
+    )
+    with monkeypatch.context() as context:
+        context.setattr(sys, "stdin", io.StringIO("2q"))
+        shown = cli(
+            "suggest", "p.xml", "--into", "l.yaml", "--ask", "--source", "test_box.py", cwd=tmp_path
+        ).stdout  # fmt: skip
+    assert "type std_msgs/msg/Bool of /front is not made for Video" in shown
+    assert LISTED not in shown
+
+
+BEEPER = """package: 1
+name: beeper
+about: It beeps.
+sources:
+  - {at: https://example.org/beeper, version: "1.0", read: 2026-11-23}
+nodes:
+  - names: [beeper]
+    publishes: {beep: std_msgs/msg/Bool, tone: std_msgs/msg/Bool}
+    says:
+      - {conduit: [PersonalData], why: it beeps}
+"""
+
+
+@pytest.mark.parametrize("stated", [True, False])
+def test_where_a_label_states_that_something_else_goes_in_no_package_knows_the_type(
+    cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *, stated: bool
+) -> None:
+    nodes: Nodes = {"eye": (["/a"], []), "beeper": (["/beep", "/tone"], ["/a"]), "box": ([], ["/beep", "/tone"])}
+    (tmp_path / "p.xml").write_text(policy_of(nodes), "utf-8")
+    (tmp_path / "beeper.yaml").write_text(BEEPER, "utf-8")
+    more = (
+        "  /eye: {source: [Video]}\n  /beeper: conduit\n  /box: conduit\n"
+        "elements:\n  disk: {kind: storage, retention: P1D, country: DE}\n"
+        "flows:\n  - {from: /eye, to: disk}\n"
+    )
+    into = "  - {from: disk, to: {topic: /beep}}\n  - {from: disk, to: {topic: /tone}}\n" if stated else ""
+    (tmp_path / "l.yaml").write_text(f"labels: 1\nauthor: Ada\nnodes:\n{more}{into}", "utf-8")
+    with monkeypatch.context() as context:
+        context.setattr(sys, "stdin", io.StringIO("ssq"))
+        shown = cli(
+            "suggest", "p.xml", "--into", "l.yaml", "--ask", "--packages", "beeper.yaml", cwd=tmp_path
+        ).stdout  # fmt: skip
+    assert "topic /beep" in shown
+    assert (LISTED in shown) is not stated
+
+
+def test_a_process_that_is_killed_in_a_number_keeps_nothing_of_the_list(robot: Path) -> None:
+    command = [sys.executable, "-m", "rosprivacy", "suggest", "p.xml", "--into", "l.yaml", "--ask"]
+    before = (robot / "l.yaml").read_text("utf-8")
+    with subprocess.Popen(command, cwd=robot, stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0) as process:
+        assert process.stdin is not None
+        assert process.stdout is not None
+        process.stdin.write(b"ss3")
+        shown = b""
+        while LISTED.encode() not in shown and (more := process.stdout.read(1)):
+            shown += more
+        time.sleep(0.5)
+        process.kill()
+    assert LISTED.encode() in shown
+    assert (robot / "l.yaml").read_text("utf-8") == before

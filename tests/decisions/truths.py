@@ -1,0 +1,101 @@
+"""Hand-made labels that are the truth of the count: what a person has to say, and what comes of it.
+
+RMF office and TurtleBot3 are those of ``docs/case-studies.md``, as its reader types them; TurtleBot3 is also what the
+paper's five rounds came to; the care home is the example of ours.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import TYPE_CHECKING, NamedTuple
+
+from tests.helpers.paths import ROOT
+from tests.helpers.turtlebot import TURTLEBOT3
+from tests.helpers.typist import POLICIES, STUDIES, Typist
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+CARE = ROOT / "examples" / "care-home"
+PAPERS = "categorizations/JonasWoh__ROS2PrivacyGraph/categorizations/categorization_turtlebot3_step_5.json"
+LISTS = ("source", "leak", "conduit", "sensitive", "mundane")
+
+
+class Truth(NamedTuple):
+    """A system, and what is true of it.
+
+    Attributes
+    ----------
+    text
+        A label file.
+    more
+        Label files of the program that were used beside it.
+    """
+
+    name: str
+    policy: str
+    text: str
+    more: tuple[str, ...] = ()
+
+
+class Entry(NamedTuple):
+    """What is said of one name: as it is typed, without blanks before it and remarks."""
+
+    section: str
+    name: str
+    lines: tuple[str, ...]
+
+    @property
+    def keys(self) -> int:
+        """Signs that are typed."""
+        return sum(len(line.strip()) for line in self.lines)
+
+
+def truths(corpus: Path, folder: Path) -> Iterator[Truth]:
+    """Yield what is counted."""
+    yield Truth("RMF office", str(corpus / POLICIES["$RMF"]), _typed("RMF office", folder))
+    infrastructure = ("rosprivacy:infrastructure",)
+    text = _typed("TurtleBot3", folder)
+    yield Truth("TurtleBot3", str(corpus / TURTLEBOT3), text, infrastructure)
+    yield Truth("TurtleBot3, the paper's rounds", str(corpus / TURTLEBOT3), _of_paper(corpus / PAPERS))
+    yield care_home()
+
+
+def care_home() -> Truth:
+    """Return the example of ours."""
+    text = (CARE / "care-home.labels.yaml").read_text("utf-8")
+    return Truth("care home", str(CARE / "care-home.policy.xml"), text)
+
+
+def entries(text: str) -> list[Entry]:
+    """Take a label file apart into what is said of each name."""
+    found: list[Entry] = []
+    section = ""
+    for line in (re.sub(r"(^|\s)#.*", "", line).rstrip() for line in text.splitlines()):
+        if line.startswith("   "):
+            found[-1] = found[-1]._replace(lines=(*found[-1].lines, line))
+        elif line.startswith("  "):
+            name = line.strip().partition(": ")[0].rstrip(":").strip('"')
+            found.append(Entry(section, name, (line,)))
+        elif line:
+            section = line.partition(":")[0]
+    return found
+
+
+def _typed(study: str, folder: Path) -> str:
+    typist = Typist(folder / f"{study}.yaml")
+    for block in re.findall(r"```yaml\n(.*?)```", STUDIES[study], re.DOTALL):
+        typist.types(block)
+    return typist.file.read_text("utf-8")
+
+
+def _of_paper(file: Path) -> str:
+    said = json.loads(file.read_text("utf-8"))
+    sections: dict[str, list[str]] = {"nodes": [], "channels": []}
+    for role in LISTS:
+        for name in said[role]:
+            value = f"{{{role}: [LaserScan]}}" if role in LISTS[:2] else role
+            sections["nodes" if role in LISTS[:3] else "channels"].append(f"  {name}: {value}\n")
+    return "labels: 1\n" + "".join(f"{section}:\n{''.join(lines)}" for section, lines in sections.items())

@@ -1,0 +1,103 @@
+"""Decisions from the page: into the file that the command named, at once, and nowhere else."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from lxml import html
+
+from rosprivacy.ingest.decisions.decisions_file import parse_decisions
+from rosprivacy.ontology.vocabulary import load
+from tests.helpers.explorers import BARE, FACTORY, Explorer, copied, version
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    Explore = Callable[..., Explorer]
+
+SIGNED = {"choice": "accept", "reason": "within the building", "owner": "A. Lee", "expires": "2999-12-31"}
+
+
+@pytest.fixture
+def begun(explore: Explore, tmp_path: Path) -> Explorer:
+    return explore(BARE, copied(FACTORY / "run2.labels.yaml", tmp_path), decisions=tmp_path / "d.yaml")
+
+
+def decide(explorer: Explorer, client: Any, **fields: Any) -> Any:
+    said = {"version": version(client), "finding": explorer.session.findings[0].id, **fields}
+    return client.post(f"/decide?finding={explorer.session.findings[0].id}", data=said)
+
+
+def test_a_decision_is_written_at_once_and_shown(begun: Explorer, tmp_path: Path) -> None:
+    client = begun.client()
+    finding = begun.session.findings[0]
+    form = html.fromstring(client.get(f"/?finding={finding.id}").text).get_element_by_id("decide")
+    assert [one.get("value") for one in form.xpath(".//button")] == ["accept", "mitigate", "delegate", "avoid"]
+    answer = decide(begun, client, **SIGNED, legal_basis="6(1)(f); 9(2)(h)", ticket="X-1")
+    assert answer.status_code == 303
+    there = client.get(answer.headers["location"]).text
+    assert "Written to" in there
+    assert "within the building" in there
+    (entry,) = parse_decisions("d", (tmp_path / "d.yaml").read_text("utf-8"), load(), "2026-01-01").entries
+    said = (str(entry.choice), entry.reason, entry.owner, entry.expires, entry.legal_basis, entry.ticket)
+    assert said == ("accept", "within the building", "A. Lee", "2999-12-31", ("6(1)(f)", "9(2)(h)"), "X-1")
+    assert entry.id == finding.id
+    assert sum(one.stands for one in begun.session.findings) == 1
+    ways = html.fromstring(client.get("/").text).xpath("//a[@class='way']")
+    assert len(ways) == 1  # what is accepted is no way out to assess any more
+    assert begun.session.unsaved == 0
+
+
+@pytest.mark.parametrize(
+    "fields",
+    [
+        {"choice": "accept"},
+        {**SIGNED, "expires": "2020-01-01"},
+        {**SIGNED, "expires": "tomorrow"},
+        {**SIGNED, "legal_basis": "we want to"},
+        {**SIGNED, "choice": "allow"},
+        {**SIGNED, "choice": ["accept", "avoid"]},
+        {**SIGNED, "finding": "0123456789abcdef"},
+        {**SIGNED, "finding": "*"},
+        {**SIGNED, "reason": "a\x00b"},
+        {**SIGNED, "owner": "x" * 101},
+    ],
+)
+def test_what_is_no_decision_is_told_and_not_written(begun: Explorer, tmp_path: Path, fields: dict[str, Any]) -> None:
+    answer = decide(begun, begun.client(), **fields)
+    assert answer.status_code == 422
+    assert "This cannot be said" in answer.text
+    assert not (tmp_path / "d.yaml").exists()
+    assert begun.session.version == 0
+
+
+def test_no_file_of_the_browser_is_written(begun: Explorer, tmp_path: Path) -> None:
+    there = {"decisions": str(tmp_path / "other.yaml"), "file": str(tmp_path / "other.yaml")}
+    decide(begun, begun.client(), **SIGNED, **there)
+    assert sorted(one.name for one in tmp_path.glob("*.yaml")) == ["d.yaml", "run2.labels.yaml"]
+
+
+def test_texts_stay_texts_in_the_file(begun: Explorer, tmp_path: Path) -> None:
+    evil = 'x" # y: [&a *a] !!python/object <b> - id: 1'
+    assert decide(begun, begun.client(), **{**SIGNED, "reason": evil}).status_code == 303
+    (entry,) = parse_decisions("d", (tmp_path / "d.yaml").read_text("utf-8"), load(), "2026-01-01").entries
+    assert entry.reason == evil
+
+
+def test_without_the_option_the_page_says_how_to_start(explore: Explore, tmp_path: Path) -> None:
+    explorer = explore(BARE, copied(FACTORY / "run2.labels.yaml", tmp_path))
+    client = explorer.client()
+    there = html.fromstring(client.get(f"/?finding={explorer.session.findings[0].id}").text)
+    assert not there.xpath("//form[@id='decide']")
+    assert "--decisions decisions.yaml" in there.text_content()
+    assert decide(explorer, client, **SIGNED).status_code == 422
+
+
+def test_a_full_disk_or_a_closed_folder_is_told(begun: Explorer, tmp_path: Path) -> None:
+    (tmp_path / "d.yaml").mkdir()
+    answer = decide(begun, begun.client(), **SIGNED)
+    assert answer.status_code == 422
+    assert "d.yaml" in answer.text
+    assert begun.session.version == 0

@@ -1,0 +1,115 @@
+"""The page of a fleet: robots that are alike stand as one, and an answer is said of a model or of one robot."""
+
+from __future__ import annotations
+
+import shutil
+from typing import TYPE_CHECKING
+
+import pytest
+from lxml import html
+
+from rosprivacy.explorer.element_ids import element_id
+from rosprivacy.reading.fleet_system import answer_fleet
+from rosprivacy.settings import Settings
+from tests.helpers.explorers import Explorer, label, version
+from tests.helpers.paths import ROOT
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    Explore = Callable[..., Explorer]
+
+
+@pytest.fixture
+def hospital(tmp_path: Path) -> Path:
+    shutil.copytree(ROOT / "examples" / "fleet", tmp_path / "fleet")
+    file = tmp_path / "fleet" / "fleet.yaml"
+    labels = file.parent / "carrier.labels.yaml"
+    labels.write_text(labels.read_text().replace("  /recorder: conduit\n", "").replace("  /uplink: conduit\n", ""))
+    return file
+
+
+def on(robot: str, name: str) -> str:
+    return element_id((robot, "node", name))
+
+
+def test_robots_that_are_alike_are_one_and_others_come_first(explore: Explore, hospital: Path) -> None:
+    page = html.fromstring(explore(hospital, hospital, fleet=True).client().get("/").text)
+    rows = [row.text_content() for row in page.cssselect("#rows .row")]
+    asked = [row for row in rows if "from a source" in row]
+    assert asked[0].startswith("carrier_lent:/")
+    assert "not as its model" in asked[0]
+    assert any(row.startswith("carrier_01:/recorder") and "stands for 23 robots" in row for row in asked)
+    assert not [row for row in rows if row.startswith("carrier_02:")]
+
+
+def test_an_answer_is_of_the_model_or_of_one_robot(explore: Explore, hospital: Path) -> None:
+    explorer = explore(hospital, hospital, fleet=True)
+    client = explorer.client()
+    page = html.fromstring(client.get(f"/?at={on('carrier_lent', '/recorder')}").text)
+    told = [one.text_content().strip() for one in page.cssselect(".whose label")]
+    assert told == ["of model carrier: 24 robots", "carrier_lent only"]
+    assert page.cssselect(".whose input[checked]")[0].get("value") == "model"
+    page = html.fromstring(client.get(f"/?at={on('carrier_lent', '/blur')}").text)
+    assert page.cssselect(".whose input[checked]")[0].get("value") == "robot"  # it speaks of it already
+    about = {"about": "*"}
+    assert label(client, on("carrier_lent", "/recorder"), "conduit", whose="robot", **about).status_code == 303
+    assert label(client, on("carrier_01", "/recorder"), "conduit", whose="model", **about).status_code == 303
+    assert label(client, on("carrier_01", "/uplink"), "conduit", **about).status_code == 303
+    assert client.post("/save", data={"version": version(client)}).status_code == 303
+    own = (hospital.parent / "carrier_lent.labels.yaml").read_text()
+    model = (hospital.parent / "carrier.labels.yaml").read_text()
+    assert "  /recorder: conduit" in own
+    assert "/uplink" not in own
+    assert "  /recorder: conduit" in model
+    assert "  /uplink: conduit" in model
+    assert explorer.session.result.to("json") == answer_fleet(str(hospital), Settings()).to("json")
+
+
+def test_a_suggestion_is_taken_for_the_robots_that_are_chosen(explore: Explore, hospital: Path) -> None:
+    own, model = (hospital.parent / f"{name}.labels.yaml" for name in ("carrier_lent", "carrier"))
+    own.write_text(own.read_text().replace("nodes:\n", "nodes:\n  /person_detector: {note: another one}\n"))
+    before = model.read_text()
+    client = explore(hospital, hospital, fleet=True).client()
+    page = html.fromstring(client.get(f"/?at={on('carrier_lent', '/person_detector')}").text)
+    offer = next(form for form in page.forms if form.get("class") == "offer")
+    assert "carrier_lent only" in offer.text_content()
+    assert client.post("/label", data=dict(offer.form_values())).status_code == 303
+    assert client.post("/save", data={"version": version(client)}).status_code == 303
+    assert "source: [PersonTrack]" in own.read_text()
+    assert model.read_text() == before
+
+
+def test_what_cannot_be_said_is_refused_in_words(explore: Explore, hospital: Path) -> None:
+    explorer = explore(hospital, hospital, fleet=True)
+    client = explorer.client()
+    before = {path: path.read_bytes() for path in hospital.parent.iterdir()}
+    refused = label(client, on("carrier_01", "/uplink"), "conduit", about="*", whose="robot")
+    assert refused.status_code == 422
+    assert "names no label file of its own: carrier_01" in refused.text
+    shared = element_id(("hospital", "external-system", "fleet cloud"))
+    assert "what the fleet file states is changed there" in label(client, shared, "conduit", about="*").text
+    assert label(client, on("carrier_01", "/uplink"), "conduit", about="*", whose="/etc/passwd").status_code == 422
+    assert client.get("/?draw=all").status_code == 200
+    assert (explorer.session.unsaved, explorer.session.version) == (0, 0)
+    assert before == {path: path.read_bytes() for path in hospital.parent.iterdir()}
+
+
+def test_a_finding_of_a_fleet_is_shown_and_nothing_is_tried_or_decided(explore: Explore, hospital: Path) -> None:
+    """Both are about one robot: a form that asks for it all the same is refused."""
+    explorer = explore(hospital, hospital, fleet=True)
+    client = explorer.client()
+    way = html.fromstring(client.get("/").text).cssselect("a.way")[0].get("href")
+    page = html.fromstring(client.get(f"{way}&closes=1").text)
+    assert "which lets it out" in page.get_element_by_id("h-element").text_content()
+    assert page.cssselect("#hand .hops li")
+    assert not page.cssselect("#hand form")
+    finding = explorer.session.findings[0]
+    forms = (
+        ("/try", {"what": "storage", "element": element_id(finding.source.identity)}),
+        ("/decide", {"finding": finding.id, "choice": "avoid"}),
+    )
+    for path, said in forms:
+        assert client.post(path, data={"version": version(client), **said}).status_code == 422
+    assert explorer.session.version == 0

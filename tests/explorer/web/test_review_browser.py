@@ -1,0 +1,143 @@
+"""A review in a real Chromium: by keys alone to the report, on a phone, for a screen reader."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+from typing import TYPE_CHECKING, Any
+from urllib.parse import urlsplit
+
+import pytest
+
+from tests.helpers import browser as chrome
+from tests.helpers import explorers
+from tests.helpers.browser import DESKTOP, PHONE
+from tests.helpers.explorers import BARE, FACTORY, copied
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from selenium.webdriver.chrome.webdriver import WebDriver
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
+SECONDS = 20
+MOST = 40  # questions of the factory
+ROLE = "return document.activeElement.name === 'role' ? document.activeElement.value : ''"
+AT = "return document.activeElement.name || document.activeElement.tagName"
+HEADING = "return document.querySelector('h1').textContent"
+
+
+def press(browser: WebDriver, *keys: str) -> None:
+    from selenium.webdriver import ActionChains
+
+    for key in keys:
+        ActionChains(browser).send_keys(key).perform()
+
+
+def shown(browser: WebDriver, before: Any) -> None:
+    """Wait for the page after this one."""
+    from selenium.webdriver.support.expected_conditions import staleness_of
+    from selenium.webdriver.support.ui import WebDriverWait
+
+    WebDriverWait(browser, SECONDS, 0.02).until(staleness_of(before))
+    ready = "return document.readyState === 'complete'"
+    WebDriverWait(browser, SECONDS, 0.02).until(lambda b: b.execute_script(ready))
+
+
+def tab_to(browser: WebDriver, name: str) -> None:
+    from selenium.webdriver.common.keys import Keys
+
+    for _ in range(40):
+        press(browser, Keys.TAB)
+        if browser.execute_script(AT) == name:
+            return
+    raise AssertionError(f"no key leads to {name}")
+
+
+def answer(browser: WebDriver, role: str) -> None:
+    """Choose an answer with the arrows, write the reason, and the name where it is asked for; Enter."""
+    from selenium.webdriver.common.by import By
+    from selenium.webdriver.common.keys import Keys
+
+    before = browser.find_element(By.TAG_NAME, "html")
+    assert browser.execute_script(AT) == "H1"  # what a screen reader begins with
+    tab_to(browser, "role")
+    press(browser, Keys.SPACE)
+    for _ in range(12):
+        if browser.execute_script(ROLE) == role:
+            break
+        press(browser, Keys.ARROW_DOWN)
+    assert browser.execute_script(ROLE) == role
+    tab_to(browser, "note")
+    press(browser, *"seen")
+    if browser.execute_script("return !document.querySelector('[name=by]').value"):
+        tab_to(browser, "by")
+        press(browser, *"A. Lee")
+    press(browser, Keys.ENTER)
+    shown(browser, before)
+
+
+def axe(browser: WebDriver) -> list[tuple[str, str]]:
+    """What axe finds of WCAG 2.1 A and AA and of best practices: the rule, and the first element."""
+    browser.execute_script(files("axe_core_python").joinpath("axe.min.js").read_text("utf-8"))
+    found = browser.execute_async_script("axe.run(document, {resultTypes: ['violations']}).then(arguments[0])")
+    return [(one["id"], one["nodes"][0]["html"]) for one in found["violations"]]
+
+
+def test_the_factory_by_keys_alone_to_the_report(browser: WebDriver, tmp_path: Path) -> None:
+    from selenium.webdriver.common.by import By
+    from selenium.webdriver.common.keys import Keys
+    from selenium.webdriver.support.ui import WebDriverWait
+
+    told = {"behavior": "allow", "downloadPath": str(tmp_path)}
+    browser.execute_cdp_cmd("Browser.setDownloadBehavior", told)
+    with explorers.served(BARE, tmp_path / "new.labels.yaml", review=True) as explorer:
+        chrome.open_page(browser, explorer.door.link)
+        seen = []
+        while browser.find_elements(By.NAME, "role"):
+            seen.append(browser.execute_script(HEADING))
+            assert len(seen) < MOST
+            roles = browser.execute_script("return [...document.querySelectorAll('[name=role]')].map((e) => e.value)")
+            leaks = "/archive_server" in seen[-1] and "leak" in roles
+            wanted = ["leak"] if leaks else ["conduit", "sensitive", "source"]
+            answer(browser, next(role for role in wanted if role in roles))
+        assert "/archive_server" in " ".join(seen)
+        assert "Personal data can reach" in browser.find_element(By.TAG_NAME, "main").text
+        tab_to(browser, "A")
+        link = "return document.activeElement.getAttribute('href')"
+        while browser.execute_script(link) != "/report":
+            press(browser, Keys.TAB)
+        press(browser, Keys.ENTER)
+        report = tmp_path / "privacy-report.html"
+        WebDriverWait(browser, SECONDS * 3, 0.1).until(lambda _: report.is_file() and report.stat().st_size)
+        before = browser.find_element(By.TAG_NAME, "html")
+        browser.execute_script("document.querySelector('h1').focus()")
+        browser.execute_script("document.querySelector(\"[action^='/save'] button\").focus()")
+        press(browser, Keys.ENTER)
+        shown(browser, before)
+        assert "All answers are saved." in browser.find_element(By.TAG_NAME, "main").text
+        assert "A. Lee" in explorer.labels.read_text("utf-8")
+        asked = {urlsplit(address).netloc.partition(":")[0] for address in chrome.requests(browser)}
+        assert asked <= {"127.0.0.1", ""}
+        assert chrome.console(browser) == []
+        chrome.open_page(browser, report.as_uri())
+        assert "/archive_server" in browser.find_element(By.TAG_NAME, "body").text
+
+
+@pytest.mark.parametrize("language", ["en", "de", "fr"])
+@pytest.mark.parametrize("width", [DESKTOP, PHONE])
+def test_question_and_summary_fit_and_axe_finds_nothing(
+    browser: WebDriver, tmp_path: Path, width: int, language: str
+) -> None:
+    labels = copied(FACTORY / "run2.labels.yaml", tmp_path)
+    with explorers.served(BARE, labels, review=True, language=language) as explorer:
+        chrome.open_page(browser, explorer.door.link, width=width)
+        origin = f"http://127.0.0.1:{explorer.door.port}"
+        for address in ("/", f"/?at={explorers.node('/navigator')}", "/?step=summary"):
+            browser.get(origin + address)
+            browser.execute_script("document.querySelectorAll('details').forEach((d) => d.open = true)")
+            assert axe(browser) == []
+            assert browser.execute_script("return document.documentElement.scrollWidth") <= width
+            assert chrome.wider(browser, "h1, h2, p, li, fieldset, button, .pick, .field") == []
+            name = address.strip("/?").partition("=")[2] or "question"
+            chrome.screenshot(browser, tmp_path / f"{name}-{language}-{width}.png", width)
+        browser.get("about:blank")

@@ -1,0 +1,61 @@
+"""What the code of the labelled nodes uses of libraries -> ``uses`` in their system files.
+
+In: a folder with the sources of each system, by its name, at the commit that its file names. Nodes are found as
+``rosprivacy suggest --source`` finds them. Nobody has to look at what is written, of held-out systems neither.
+"""
+
+from __future__ import annotations
+
+import io
+from typing import TYPE_CHECKING, Any
+
+from ruamel.yaml import YAML
+from ruamel.yaml.comments import CommentedSeq
+
+from rosprivacy.analysis.model import Element
+from rosprivacy.ingest.annotations.source_files import read_sources
+from rosprivacy.labelling.code_said import code_said
+from tests.labelled.labelled_set import HERE
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+WIDTH = 120
+ROS = ("rclpy", "rclcpp", "ament_index_python", "launch", "launch_ros", "builtin_interfaces", "tf_transformations")
+PLAIN = (  # libraries that bring nothing in and let nothing out, by no rule that anybody could write
+    "numpy", "math", "time", "datetime", "typing", "threading", "collections", "dataclasses", "enum", "functools",
+    "random", "copy", "re", "struct", "itertools", "abc", "traceback", "argparse", "contextlib", "uuid", "warnings",
+    "__future__", "string", "textwrap", "hashlib", "base64", "statistics", "heapq", "queue", "signal", "cmath", "array",
+    "operator", "types", "importlib", "inspect", "setuptools", "pytest", "unittest", "glob", "shutil",
+)  # fmt: skip
+INTERFACES = ("msg", "srv", "action")
+
+
+def write_uses(root: Path) -> dict[str, int]:
+    """Write the uses of all systems whose sources are there; return how many nodes of each have some."""
+    files = sorted((HERE / "systems").glob("*.yaml"))
+    return {file.stem: _write(file, root / file.stem) for file in files if (root / file.stem).is_dir()}
+
+
+def _write(file: Path, sources: Path) -> int:
+    yaml = YAML()
+    yaml.width, yaml.preserve_quotes = WIDTH, True
+    top: Any = yaml.load(file.read_text("utf-8"))
+    nodes = top["nodes"]
+    names = [*nodes]
+    said = code_said(*read_sources([str(sources)]), [Element("node", name) for name in names])
+    for vertex, name in enumerate(names):
+        used = sorted({use.name for use in said.uses.get(vertex, ()) if _tells(use.name)})
+        nodes[name].pop("uses", None)
+        if used:
+            nodes[name]["uses"] = CommentedSeq(used)
+            nodes[name]["uses"].fa.set_flow_style()
+    text = io.StringIO()
+    yaml.dump(top, text)
+    file.write_text(text.getvalue(), "utf-8")
+    return sum("uses" in node for node in nodes.values())
+
+
+def _tells(name: str) -> bool:
+    head, _, rest = name.partition(".")
+    return head not in ROS and head not in PLAIN and rest.partition(".")[0] not in INTERFACES
