@@ -65,6 +65,10 @@ class Targets:
         """Return by which names the fleet file leads to a label file, and whether as one of a robot."""
         return tuple(sorted(self._names.get(os.path.realpath(file), ())))
 
+    def readers(self, file: str) -> tuple[str, ...]:
+        """Return the robots that read a label file, by id."""
+        return tuple(self._readers.get(os.path.realpath(file), ()))
+
     def of(self, robot: str) -> tuple[Target, ...]:
         """Return the files for an element of a robot: that of its model, and its own; none where neither has one.
 
