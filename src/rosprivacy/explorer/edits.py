@@ -15,7 +15,6 @@ from rosprivacy.ingest.labels.label_reader import NONE
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from rosprivacy.explorer.label_targets import Target
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 SECTION = {
@@ -98,21 +97,6 @@ class Edit(NamedTuple):
     def said(self) -> Said:
         """What the entry says after it."""
         return Said(self.section, self.name, self.value)
-
-
-class Entry(NamedTuple):
-    """What a label file says of an element.
-
-    Attributes
-    ----------
-    target
-        The label file of a fleet; None where a session edits one only.
-    """
-
-    section: str
-    name: str
-    value: Any
-    target: Target | None = None
 
 
 def section_of(kind: str, name: str, file: str) -> str:

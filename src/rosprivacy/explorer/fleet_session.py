@@ -9,9 +9,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import FleetError, InputError, InputErrors, shown
-from rosprivacy.explorer.edits import Edit, Entry, place_of, section_of
+from rosprivacy.explorer.edits import Edit, place_of, section_of
 from rosprivacy.explorer.fleet_files import FleetFiles
-from rosprivacy.explorer.label_targets import Target, Targets, outliers
+from rosprivacy.explorer.label_targets import Entry, Target, Targets, outliers
 from rosprivacy.explorer.session import Session
 from rosprivacy.question import question_of
 from rosprivacy.reading.fleet_system import read_once

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 from collections import defaultdict
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.explorer.own_file import chosen
 from rosprivacy.ingest.fleet.dds_domains import pseudo_robot
@@ -39,6 +39,21 @@ class Target(NamedTuple):
     robots: tuple[str, ...]
     models: tuple[str, ...]
     alone: bool
+
+
+class Entry(NamedTuple):
+    """What a label file says of an element or a glob.
+
+    Attributes
+    ----------
+    target
+        The label file of a fleet; None where a session edits one only.
+    """
+
+    section: str
+    name: str
+    value: Any
+    target: Target | None = None
 
 
 class Targets:

@@ -14,9 +14,10 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import InputErrors, LabelError, shown
 from rosprivacy.decided import decisions_of
 from rosprivacy.explorer.deciding import Ruling, record
-from rosprivacy.explorer.edits import Edit, Entry, entry_of, section_of
+from rosprivacy.explorer.edits import Edit, entry_of, section_of
 from rosprivacy.explorer.effects import Change, compared
 from rosprivacy.explorer.history import History
+from rosprivacy.explorer.label_targets import Entry
 from rosprivacy.explorer.one_file import opened
 from rosprivacy.explorer.questions import questions
 from rosprivacy.explorer.scenarios import Scenario, WhatIf, tried
