@@ -13,9 +13,12 @@ ground ``code``. The rules, in full (docs/suggestions.md):
    node is a source of the second one. It is ``likely`` if a channel that the node writes carries the second one by its
    name, or by a type that says so with more than ``may``. A rule that says ``may`` says nothing if no such channel is
    thought to carry it. If nobody knows where the node has the first one from, both are ``may``; what reads ROS by
-   itself (a listener of transforms) makes no source.
+   itself (a listener of transforms) makes no source. What makes either of several kinds (a detector of what it was
+   taught) is ``likely`` to make one only where channels tell of that one alone.
 4. What lets data out makes a leak. It is ``may`` if nothing of what the node reads is thought to carry a kind, and it
    brings in no more than what an operator does.
+5. What a node brings in or makes, it may let out itself. So a node that writes nothing, and whose code lets data out,
+   is asked about, too: 1 and 3 hold, and both are ``may``.
 """
 
 from __future__ import annotations
@@ -93,7 +96,7 @@ def library_evidence(
         brought, made, let_out = (
             _spoken(section, own, libraries) for section in (libraries.brings_in, libraries.makes, libraries.lets_out)
         )
-        if written:
+        if written or let_out:
             yield from node.brought_in(brought, made)
             yield from node.made(made, brought)
         yield from node.let_out(let_out, brought)
@@ -131,7 +134,8 @@ class _Node:
         for one in brought:
             for kind in one.rule.kinds:
                 if one.rule.any_type or self._related(kind, self.out):
-                    sure = Confidence.MAY if self._related(kind, self.into) else one.rule.confidence
+                    doubtful = self._related(kind, self.into) or not self.written
+                    sure = Confidence.MAY if doubtful else one.rule.confidence
                     yield one.evidence(self._label(SOURCE, kind), sure)
                 elif self._cannot_write(kind):
                     yield from self._told_of(one, kind)
@@ -158,7 +162,7 @@ class _Node:
             read = [first for first in one.rule.kinds if self._related(first, self.into)]
             came = next((own[first] for first in own if self._related(first, one.rule.kinds)), None)
             for kind in one.rule.to:
-                sure = Confidence.LIKELY if self._related(kind, self.told) else Confidence.MAY
+                sure = Confidence.LIKELY if self._tells(kind, one.rule) else Confidence.MAY
                 weak = one.rule.confidence is Confidence.MAY and not self._related(kind, self.out)
                 any_type = one.rule.any_type and kind in self.rules.names.computed  # a picture needs its type
                 if weak or (self._cannot_write(kind) and not any_type):
@@ -174,6 +178,11 @@ class _Node:
                     label = self._derived(one.rule.kinds[0], kind) if reads else self._label(SOURCE, kind)
                     yield one.evidence(label, Confidence.MAY, "; where it has that from is not known")
 
+    def _tells(self, kind: str, rule: LibraryRule) -> bool:
+        """Whether channels tell of a kind that is made; of kinds that are made instead of each other, of it alone."""
+        others = rule.to if rule.either else (kind,)
+        return {one for one in others if self._related(one, self.told)} == {kind}
+
     def let_out(self, let_out: Sequence[Spoken], brought: Sequence[Spoken]) -> Iterator[Evidence]:
         """Yield what the node lets out."""
         known = bool(self.into) or any(not one.rule.any_type for one in brought)
@@ -188,7 +197,9 @@ class _Node:
         return any(one != ANYTHING and self.rules.related(kind, one) for one in kinds)
 
     def _cannot_write(self, kind: str) -> bool:
-        return all(cannot_carry(kind, element, types, self.rules) for element, types in self.written)
+        """Whether none of its channels can carry a kind; of a node that writes nothing, that is not the reason."""
+        every = [cannot_carry(kind, element, types, self.rules) for element, types in self.written]
+        return bool(every) and all(every)
 
     def _label(self, role: str, kind: str) -> Label:
         return Label(self.element, role, kind)

@@ -1,8 +1,9 @@
 """What Python code uses: names of libraries, as its imports resolve them, where they are used; nothing is run.
 
 ``import cv2 as cv`` and ``cv.VideoCapture(0)`` give ``cv2.VideoCapture``; ``from x import y`` gives ``x.y`` where ``y``
-is used. What a variable is that was made by such a call is known as far as all its values are made by the same:
-``self.client = mqtt.Client()`` and ``self.client.publish(…)``. No recursion: code may be nested as deep as it likes.
+is used. What a variable is that was made by such a call, or stands for a library, is known as far as all its values are
+the same: ``self.client = mqtt.Client()`` and ``self.client.publish(…)``. That it is None at first says nothing against
+it. No recursion: code may be nested as deep as it likes.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from __future__ import annotations
 import ast
 from collections import defaultdict
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeGuard
 
 from rosprivacy.ingest.annotations.source_code import LONGEST_USE, Lines, Unit, Use
 from rosprivacy.ingest.annotations.started import program
@@ -93,10 +94,15 @@ class PythonUses:
             pairs = [(item.optional_vars, item.context_expr) for item in node.items]
         for target, value in pairs:
             if target is not None and (name := _variable(target)):
-                made = isinstance(value, ast.Call | ast.Await)
                 if isinstance(value, ast.List | ast.Tuple | ast.Constant | ast.JoinedStr):
                     self._commands[unit, name].append(value)
-                self._made[unit, name].add(self._chain(value, unit, set()) if value is not None and made else "")
+                if not _is_none(value):
+                    self._made[unit, name].add(self._value(value, unit))
+
+    def _value(self, value: ast.expr, unit: str) -> str:
+        """What makes a value: a call, or a library that it stands for (``self.sr = speech_recognition``)."""
+        alias = isinstance(value, ast.Name) and value.id in self._known
+        return self._chain(value, unit, set()) if alias or isinstance(value, ast.Call | ast.Await) else ""
 
     def _names(self, node: ast.expr, unit: str, inside: set[int]) -> Iterator[str]:
         """The names that one piece of code uses, from the outside: ``a.b().c`` is looked at once."""
@@ -143,6 +149,10 @@ class PythonUses:
         name = _variable(node)
         made = (self._made.get((unit, name)) or self._made.get(("", name), set())) if name else set()
         return next(iter(made)) if len(made) == 1 else ""
+
+
+def _is_none(value: ast.expr | None) -> TypeGuard[None]:
+    return value is None or (isinstance(value, ast.Constant) and value.value is None)
 
 
 def _variable(node: ast.expr) -> str:

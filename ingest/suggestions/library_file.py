@@ -35,7 +35,7 @@ ALL = (*NAMED, "confidence", "why", "source")
 KEYS = {
     BRINGS_IN: (*ALL, "kinds", "any_type"),
     LETS_OUT: (*ALL, "kinds", "where"),
-    MAKES: (*ALL, "kinds", "to", "any_type", "by_itself"),
+    MAKES: (*ALL, "kinds", "to", "any_type", "by_itself", "either"),
     SILENT: (*NAMED, "why"),
 }
 NEEDED = {
@@ -160,6 +160,7 @@ class _Reader(FileReader):
             self._one_of(said, "where", WHERE),
             self._is_true(said, "any_type"),
             self._is_true(said, "by_itself"),
+            self._is_true(said, "either"),
         )
 
     def _names(self, said: dict[str, Value], section: str) -> Iterator[Key]:
