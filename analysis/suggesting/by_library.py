@@ -28,6 +28,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from rosprivacy.analysis.model import Confidence
 from rosprivacy.analysis.suggesting.carried_kinds import ANYTHING, cannot_carry
 from rosprivacy.analysis.suggesting.evidence import CODE, DERIVATION, LEAK, NAMED, SOURCE, Evidence, Label
+from rosprivacy.analysis.suggesting.library_rules import ADDRESS, PROGRAM
 from rosprivacy.analysis.suggesting.weighing import surer
 
 if TYPE_CHECKING:
@@ -39,6 +40,9 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.suggesting.traffic import Traffic
 
 
+_VERBS = {PROGRAM: "starts", ADDRESS: "names"}  # what code does with a thing of such a name
+
+
 class Spoken(NamedTuple):
     """A rule, and the first use that it speaks about."""
 
@@ -48,7 +52,9 @@ class Spoken(NamedTuple):
     def evidence(self, label: Label, sure: Confidence, then: str = "") -> Evidence:
         """Return what it says for a label: no surer than the rule."""
         sure = sure if surer(self.rule.confidence, sure) else self.rule.confidence
-        what = f"starts {self.use.name[2:]}" if self.use.name.startswith("$") else f"uses {self.use.name}"
+        name = self.use.name
+        how = next((verb for sign, verb in _VERBS.items() if name.startswith(sign)), "uses")
+        what = f"{how} {name[2:] if how != 'uses' else name}"
         return Evidence(label, CODE, sure, f"{what} ({self.use.place}): {self.rule.why}{then}", self.use.place)
 
 

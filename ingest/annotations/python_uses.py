@@ -3,7 +3,8 @@
 ``import cv2 as cv`` and ``cv.VideoCapture(0)`` give ``cv2.VideoCapture``; ``from x import y`` gives ``x.y`` where ``y``
 is used. What a variable is that was made by such a call, or stands for a library, is known as far as all its values are
 the same: ``self.client = mqtt.Client()`` and ``self.client.publish(…)``. That it is None at first says nothing against
-it. No recursion: code may be nested as deep as it likes.
+it. An address that stands in the code, ``https://…``, is a use, too, without what follows a question mark, and with
+``{}`` for what is filled in. No recursion: code may be nested as deep as it likes.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from collections import defaultdict
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeGuard
 
+from rosprivacy.analysis.suggesting.library_rules import ADDRESS
 from rosprivacy.ingest.annotations.source_code import LONGEST_USE, Lines, Unit, Use
 from rosprivacy.ingest.annotations.started import program
 
@@ -26,7 +28,9 @@ STARTERS = (  # what starts a program, and what looks for one that is started th
     "subprocess.", "os.system", "os.popen", "os.exec", "os.spawn", "asyncio.create_subprocess_", "shutil.which",
     "pexpect.",
 )  # fmt: skip
+SCHEMES = ("http://", "https://", "ws://", "wss://", "mqtt://", "mqtts://", "rtsp://", "rtmp://")
 MODE_SIGNS, WRITING = frozenset("rwaxbtU+"), frozenset("wax+")
+PIECES = (ast.Call, ast.Attribute, ast.Name, ast.Constant, ast.JoinedStr)  # code that may say what is used
 DEFINITIONS = (ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
 
 
@@ -72,11 +76,13 @@ class PythonUses:
         found: dict[tuple[str, str], Use] = {}
         inside: set[int] = set()  # parts of what has been looked at as a whole
         for node, unit in pieces:
-            if id(node) not in inside and isinstance(node, ast.Call | ast.Attribute | ast.Name):
-                for name in self._names(node, unit, inside):
-                    one = Use(name, node.lineno, unit)
-                    first = found.setdefault((unit, name), one)
-                    found[unit, name] = min(first, one, key=lambda use: use.line)
+            if id(node) in inside or not isinstance(node, PIECES):
+                continue
+            of_text = isinstance(node, ast.Constant | ast.JoinedStr)
+            for name in _addresses(node, inside) if of_text else self._names(node, unit, inside):
+                one = Use(name, node.lineno, unit)
+                first = found.setdefault((unit, name), one)
+                found[unit, name] = min(first, one, key=lambda use: use.line)
         return tuple(sorted(found.values(), key=lambda use: (use.line, use.name)))
 
     def _tops(self) -> Iterator[tuple[str, ast.stmt]]:
@@ -149,6 +155,17 @@ class PythonUses:
         name = _variable(node)
         made = (self._made.get((unit, name)) or self._made.get(("", name), set())) if name else set()
         return next(iter(made)) if len(made) == 1 else ""
+
+
+def _addresses(node: ast.expr, inside: set[int]) -> Iterator[str]:
+    """The address that a text is."""
+    parts = node.values if isinstance(node, ast.JoinedStr) else [node]
+    inside.update(map(id, parts))
+    first = parts[0].value if parts and isinstance(parts[0], ast.Constant) else None
+    if isinstance(first, str) and first.startswith(SCHEMES):
+        texts = (str(one.value) if isinstance(one, ast.Constant) else "{}" for one in parts)
+        address, *_ = "".join(texts).partition("?")[0].split()
+        yield f"{ADDRESS}{address[: LONGEST_USE - len(ADDRESS)]}"
 
 
 def _is_none(value: ast.expr | None) -> TypeGuard[None]:

@@ -13,12 +13,17 @@ from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedSeq
 
 from rosprivacy.analysis.model import Element
+from rosprivacy.analysis.suggesting.library_rules import ADDRESS
 from rosprivacy.ingest.annotations.source_files import read_sources
+from rosprivacy.ingest.suggestions.library_file import read_library_rules
 from rosprivacy.labelling.code_said import code_said
+from rosprivacy.ontology.vocabulary import load
 from tests.labelled.labelled_set import HERE
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+    from rosprivacy.analysis.suggesting.library_rules import LibraryRules, NodeUse
 
 WIDTH = 120
 ROS = ("rclpy", "rclcpp", "ament_index_python", "launch", "launch_ros", "builtin_interfaces", "tf_transformations")
@@ -43,9 +48,10 @@ def _write(file: Path, sources: Path) -> int:
     top: Any = yaml.load(file.read_text("utf-8"))
     nodes = top["nodes"]
     names = [*nodes]
+    rules = read_library_rules((), load())[0]
     said = code_said(*read_sources([str(sources)]), [Element("node", name) for name in names])
     for vertex, name in enumerate(names):
-        used = sorted({use.name for use in said.uses.get(vertex, ()) if _tells(use.name)})
+        used = sorted({use.name for use in said.uses.get(vertex, ()) if _tells(use, rules)})
         nodes[name].pop("uses", None)
         if used:
             nodes[name]["uses"] = CommentedSeq(used)
@@ -56,6 +62,8 @@ def _write(file: Path, sources: Path) -> int:
     return sum("uses" in node for node in nodes.values())
 
 
-def _tells(name: str) -> bool:
-    head, _, rest = name.partition(".")
+def _tells(use: NodeUse, rules: LibraryRules) -> bool:
+    if use.name.startswith(ADDRESS):  # addresses of others do not belong into our files
+        return rules.speaks(use)
+    head, _, rest = use.name.partition(".")
     return head not in ROS and head not in PLAIN and rest.partition(".")[0] not in INTERFACES
