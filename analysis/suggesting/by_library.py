@@ -19,6 +19,8 @@ ground ``code``. The rules, in full (docs/suggestions.md):
    brings in no more than what an operator does.
 5. What a node brings in or makes, it may let out itself. So a node that writes nothing, and whose code lets data out,
    is asked about, too: 1 and 3 hold, and both are ``may``.
+6. Somebody who acts on a node (keys, a window, a page) may enter what its request to a service is about, by the name of
+   the service: an order, a question to a model. It is ``may``.
 """
 
 from __future__ import annotations
@@ -29,6 +31,7 @@ from rosprivacy.analysis.model import Confidence
 from rosprivacy.analysis.suggesting.carried_kinds import ANYTHING, cannot_carry
 from rosprivacy.analysis.suggesting.evidence import CODE, DERIVATION, LEAK, NAMED, SOURCE, Evidence, Label
 from rosprivacy.analysis.suggesting.library_rules import ADDRESS, PROGRAM
+from rosprivacy.analysis.suggesting.name_rules import of_topic
 from rosprivacy.analysis.suggesting.weighing import surer
 
 if TYPE_CHECKING:
@@ -40,6 +43,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.suggesting.traffic import Traffic
 
 
+ENTERED_BY = "OperatorInput"  # what says that somebody acts on a node
 _VERBS = {PROGRAM: "starts", ADDRESS: "names"}  # what code does with a thing of such a name
 
 
@@ -104,6 +108,7 @@ def library_evidence(
         )
         if written or let_out:
             yield from node.brought_in(brought, made)
+            yield from node.entered(brought)
             yield from node.made(made, brought)
         yield from node.let_out(let_out, brought)
 
@@ -147,6 +152,16 @@ class _Node:
                     yield from self._told_of(one, kind)
                 elif not self._is_made_of(kind, made):
                     yield one.evidence(self._label(SOURCE, kind), Confidence.MAY)
+
+    def entered(self, brought: Sequence[Spoken]) -> Iterator[Evidence]:
+        """Yield what somebody enters, by the services that the node asks for."""
+        acted = next((one for one in brought if ENTERED_BY in one.rule.kinds), None)
+        names = self.rules.names
+        for element, types in self.written if acted else ():
+            spoken = of_topic(element.name, names) if element.leg == "request" else None
+            for kind in spoken.rule.kinds if acted and spoken else ():
+                if kind in names.entered and not cannot_carry(kind, element, types, self.rules):
+                    yield acted.evidence(self._label(SOURCE, kind), Confidence.MAY, f"; it asks for {element.name}")
 
     def _told_of(self, one: Spoken, kind: str) -> Iterator[Evidence]:
         """What is written of what data tell that never come into ROS themselves."""

@@ -65,6 +65,8 @@ class NameRules(NamedTuple):
         Categories that programs work out of other data, so that who writes them is seldom where they come from.
     not_by_type
         Categories of which a type that says no more than ``may`` makes no source by itself.
+    entered
+        Categories that somebody enters, where a service is asked for whose name speaks of them, such as ``order``.
     wanted
         Phrases: what a topic with them last carries is wished, such as ``goal_pose``, and was not measured.
     commanding
@@ -88,6 +90,7 @@ class NameRules(NamedTuple):
     becomes: Mapping[str, Mapping[str, NameRule]]
     computed: frozenset[str] = frozenset()
     not_by_type: frozenset[str] = frozenset()
+    entered: frozenset[str] = frozenset()
     wanted: frozenset[Phrase] = frozenset()
     commanding: frozenset[str] = frozenset()
     reworked: frozenset[str] = frozenset()

@@ -10,6 +10,7 @@ it. An address that stands in the code, ``https://…``, is a use, too, without 
 from __future__ import annotations
 
 import ast
+import builtins
 from collections import defaultdict
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeGuard
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
 
 LONGEST = 32  # names and calls of a chain: what is longer is nobody's
 BUILT_IN = ("open", "input")
+BUILT_INS = frozenset(dir(builtins))
+ALL = "*"  # that is imported from a module
 CALLED_WITH = ("input", "output")  # keywords that say whether a stream of sound comes in or goes out
 STARTERS = (  # what starts a program, and what looks for one that is started then
     "subprocess.", "os.system", "os.popen", "os.exec", "os.spawn", "asyncio.create_subprocess_", "shutil.which",
@@ -65,6 +68,8 @@ class PythonUses:
         )
         own = {one.name: f".{Path(file).stem}.{one.name}" for one in self.units}
         self._known = own | dict(imported(tree))
+        self._all_of = self._known.pop(ALL, "").removesuffix(f".{ALL}")  # the last module of which all is imported
+        self._own = set(_named_here(tree)) if self._all_of else set()
         self._made: dict[tuple[str, str], set[str]] = defaultdict(set)  # by unit and variable: what makes its values
         self._commands: dict[tuple[str, str], list[ast.expr]] = defaultdict(list)  # lists and texts that variables are
 
@@ -147,14 +152,30 @@ class PythonUses:
                 inside.add(id(node))
         if not isinstance(node, ast.Name):
             return ""
-        head = self._known.get(node.id) or (node.id if node.id in BUILT_IN else "")
+        head = self._known.get(node.id) or (node.id if node.id in BUILT_IN else self._of_all(node.id))
         return ".".join([head, *reversed(parts)]) if head else ""
+
+    def _of_all(self, name: str) -> str:
+        """``tkinter.Tk`` of ``Tk`` after ``from tkinter import *``, where the file itself names nothing so."""
+        known = name in self._own or name in BUILT_INS
+        return f"{self._all_of}.{name}" if self._all_of and not known else ""
 
     def _by_variable(self, node: ast.expr, unit: str) -> str:
         """What a variable is made by, if all its values are made by one."""
         name = _variable(node)
         made = (self._made.get((unit, name)) or self._made.get(("", name), set())) if name else set()
         return next(iter(made)) if len(made) == 1 else ""
+
+
+def _named_here(tree: ast.Module) -> Iterator[str]:
+    """All names that a file gives."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Load):
+            yield node.id
+        elif isinstance(node, ast.arg):
+            yield node.arg
+        elif isinstance(node, DEFINITIONS) or (isinstance(node, ast.ExceptHandler) and node.name):
+            yield node.name or ""
 
 
 def _addresses(node: ast.expr, inside: set[int]) -> Iterator[str]:

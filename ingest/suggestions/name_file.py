@@ -30,6 +30,7 @@ LISTS = (
     "neutral",
     "computed",
     "not_by_type",
+    "entered",
     "wanted",
     "commanding",
     "reworked",
@@ -59,6 +60,7 @@ class NameFile:
     neutral: frozenset[str]
     computed: frozenset[str]
     not_by_type: frozenset[str]
+    entered: frozenset[str]
     wanted: frozenset[Phrase]
     commanding: frozenset[str]
     reworked: frozenset[str]
@@ -109,6 +111,7 @@ def read_name_rules(
         becomes=becomes,
         computed=frozenset().union(*(one.computed for one in read)),
         not_by_type=frozenset().union(*(one.not_by_type for one in read)),
+        entered=frozenset().union(*(one.entered for one in read)),
         wanted=frozenset().union(*(one.wanted for one in read)),
         commanding=frozenset().union(*(one.commanding for one in read)),
         reworked=frozenset().union(*(one.reworked for one in read)),
@@ -162,6 +165,7 @@ class _Reader(FileReader):
             neutral=self._words(said, "neutral"),
             computed=frozenset(self._kinds(said, "computed")),
             not_by_type=frozenset(self._kinds(said, "not_by_type")),
+            entered=frozenset(self._kinds(said, "entered")),
             wanted=self._phrases(said, "wanted"),
             commanding=self._words(said, "commanding"),
             reworked=self._words(said, "reworked"),

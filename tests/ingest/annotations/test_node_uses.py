@@ -49,7 +49,10 @@ def node(name: str = "n", line: str = "pass", of: str = "N") -> str:
         ("import sr\n" + NODE + node(line="with sr.Mic() as m: m.listen()"), "sr.Mic.listen"),
         ("import mq\n" + NODE + node(line="self.c = mq.Client(); self.c.publish('x')"), "mq.Client.publish"),
         ("import mq\n" + NODE + node(line="y = mq.A() if x else 0; self.run(target=mq.loop)"), "mq.loop"),
-        ("import mq\n" + NODE + node(line="self.c = None; self.c = mq.Client(); self.c.publish('x')"), "mq.Client.publish"),
+        ("import mq\n" + NODE + node(line="self.c = None; self.c = mq.Client(); self.c.go('x')"), "mq.Client.go"),
+        ("from gui import *\n" + NODE + node(line="root = Tk(); root.title('x')"), "gui.Tk.title"),
+        (NODE + node(line="go('https://a.b/c?key=d')"), "@ https://a.b/c"),
+        (NODE + node(line="go(f'http://{host}:1/x/{y}')"), "@ http://{}:1/x/{}"),
         (NODE + node(line="import sr; self.sr = sr; self.r = self.sr.Mic(); self.r.listen()"), "sr.Mic.listen"),
         (NODE + node(line="open('f', 'w').write('x')"), "open(w)"),
         (NODE + node(line="open('f', mode='ab')"), "open(w)"),
@@ -71,6 +74,13 @@ def test_names_are_resolved_by_imports(tmp_path: Path, code: str, name: str) -> 
 def test_a_variable_that_may_be_two_things_is_none(tmp_path: Path) -> None:
     code = "import a, b\n" + NODE + node(line="self.c = a.X() if y else 0; self.c = b.Y(); self.c.go()")
     assert uses(tmp_path, own_py=code)["/n"] == ["a.X", "b.Y"]
+
+
+def test_what_the_file_names_itself_is_not_of_a_module_that_is_imported_whole(tmp_path: Path) -> None:
+    code = (
+        "from gui import *\n" + NODE + node(line="own = print(1); own.go(); self.f(Tk)") + "    def f(self, x): x.y()\n"
+    )
+    assert uses(tmp_path, own_py=code)["/n"] == ["gui.Tk"]
 
 
 def test_of_several_nodes_in_a_file_each_has_its_own(tmp_path: Path) -> None:
