@@ -16,7 +16,7 @@ ground ``code``. The rules, in full (docs/suggestions.md):
    itself (a listener of transforms) makes no source. What makes either of several kinds (a detector of what it was
    taught) is ``likely`` to make one only where channels tell of that one alone.
 4. What lets data out makes a leak. It is ``may`` if nothing of what the node reads is thought to carry a kind, and it
-   brings in no more than what an operator does.
+   brings in no more than what an operator does. What a driver sends to a network is ``may``: it talks with its device.
 5. What a node brings in or makes, it may let out itself. So a node that writes nothing, and whose code lets data out,
    is asked about, too: 1 and 3 hold, and both are ``may``.
 6. Somebody who acts on a node (keys, a window, a page) may enter what its request to a service is about, by the name of
@@ -31,7 +31,7 @@ from rosprivacy.analysis.model import Confidence
 from rosprivacy.analysis.suggesting.carried_kinds import ANYTHING, cannot_carry
 from rosprivacy.analysis.suggesting.evidence import CODE, DERIVATION, LEAK, NAMED, SOURCE, Evidence, Label
 from rosprivacy.analysis.suggesting.library_rules import ADDRESS, PROGRAM
-from rosprivacy.analysis.suggesting.name_rules import of_topic
+from rosprivacy.analysis.suggesting.name_rules import has_word, of_topic
 from rosprivacy.analysis.suggesting.weighing import surer
 
 if TYPE_CHECKING:
@@ -44,6 +44,7 @@ if TYPE_CHECKING:
 
 
 ENTERED_BY = "OperatorInput"  # what says that somebody acts on a node
+NETWORK = "network"  # where data go
 _VERBS = {PROGRAM: "starts", ADDRESS: "names"}  # what code does with a thing of such a name
 
 
@@ -207,9 +208,11 @@ class _Node:
     def let_out(self, let_out: Sequence[Spoken], brought: Sequence[Spoken]) -> Iterator[Evidence]:
         """Yield what the node lets out."""
         known = bool(self.into) or any(not one.rule.any_type for one in brought)
+        drives = has_word(self.element.name, self.rules.names.driving)
         for one in let_out:
+            doubtful = not known or (drives and one.rule.where == NETWORK)
             for kind in one.rule.kinds:
-                yield one.evidence(self._label(LEAK, kind), one.rule.confidence if known else Confidence.MAY)
+                yield one.evidence(self._label(LEAK, kind), Confidence.MAY if doubtful else one.rule.confidence)
 
     def _derived(self, first: str, kind: str) -> Label:
         return self._label(DERIVATION, first)._replace(to=kind)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from functools import lru_cache
+from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
@@ -77,6 +78,10 @@ class NameRules(NamedTuple):
         Words: a node with one of them in its name works on what others bring in, such as ``detector``.
     simulated
         Words: a node or topic with one of them in its name stands for what nobody measured.
+    driving
+        Words: a node with one of them in its name talks with its own device.
+    unprompted
+        Of topics: what a node brings in that writes one, and reads none.
     understood
         Words: a topic with one of them carries what somebody wants, where its writer reads what somebody said.
     """
@@ -97,6 +102,8 @@ class NameRules(NamedTuple):
     reworking: frozenset[str] = frozenset()
     simulated: frozenset[str] = frozenset()
     understood: frozenset[str] = frozenset()
+    driving: frozenset[str] = frozenset()
+    unprompted: Mapping[Phrase, NameRule] = MappingProxyType({})
 
 
 class Spoken(NamedTuple):

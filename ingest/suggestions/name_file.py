@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 NAMES = "rosprivacy:names"  # the shipped file
-WITH_KINDS, WITHOUT_KINDS = ("carries", "brings_in"), ("nothing", "lets_out")
+WITH_KINDS, WITHOUT_KINDS = ("carries", "brings_in", "unprompted"), ("nothing", "lets_out")
 LISTS = (
     "silent",
     "neutral",
@@ -37,6 +37,7 @@ LISTS = (
     "reworking",
     "simulated",
     "understood",
+    "driving",
 )
 PARTS = ("name_rules", "version", *WITH_KINDS, *WITHOUT_KINDS, "becomes", *LISTS)
 OF_KINDS = ("kinds", "instead_of", "any_type")  # for rules that name kinds
@@ -67,6 +68,7 @@ class NameFile:
     reworking: frozenset[str]
     simulated: frozenset[str]
     understood: frozenset[str]
+    driving: frozenset[str]
     sections: dict[str, dict[Phrase, NameRule]]
 
 
@@ -118,6 +120,7 @@ def read_name_rules(
         reworking=frozenset().union(*(one.reworking for one in read)),
         simulated=frozenset().union(*(one.simulated for one in read)),
         understood=frozenset().union(*(one.understood for one in read)),
+        driving=frozenset().union(*(one.driving for one in read)),
     )
     return rules, tuple((one.file, one.sha256) for one in read)
 
@@ -172,6 +175,7 @@ class _Reader(FileReader):
             reworking=self._words(said, "reworking"),
             simulated=self._words(said, "simulated"),
             understood=self._words(said, "understood"),
+            driving=self._words(said, "driving"),
             sections=self.sections,
         )
 

@@ -95,7 +95,7 @@ def test_a_users_rules_stand_before_ours(tmp_path: Path) -> None:
         (OWN % "12", f"f.yaml:3: '12' is no name of a library; {NO_NAME}"),
         (OWN % "'a(r)'", f"f.yaml:3: 'a(r)' is no name of a library; {NO_NAME}"),
         ("library_rules: 1\nbrings_in:\n- {kinds: [Video], confidence: may, why: x}\n",
-         "f.yaml:3: a rule about no library; write python, c++, programs, or one of them"),
+         "f.yaml:3: a rule about no library; write python, c++, programs, addresses, or one of them"),
         ("library_rules: 1\nbrings_in:\n- {python: [a], kinds: [Vidoe], confidence: may, why: x}\n",
          "f.yaml:3: unknown category 'Vidoe'; did you mean Video or Voice?"),
         ("library_rules: 1\nmakes:\n- {c++: [a], kinds: [Video], confidence: may, why: x}\n",
