@@ -156,13 +156,14 @@ class _Node:
 
     def entered(self, brought: Sequence[Spoken]) -> Iterator[Evidence]:
         """Yield what somebody enters, by the services that the node asks for."""
-        acted = next((one for one in brought if ENTERED_BY in one.rule.kinds), None)
+        acted = [one for one in brought if ENTERED_BY in one.rule.kinds][:1]
         names = self.rules.names
         for element, types in self.written if acted else ():
             spoken = of_topic(element.name, names) if element.leg == "request" else None
-            for kind in spoken.rule.kinds if acted and spoken else ():
+            for kind in spoken.rule.kinds if spoken else ():
                 if kind in names.entered and not cannot_carry(kind, element, types, self.rules):
-                    yield acted.evidence(self._label(SOURCE, kind), Confidence.MAY, f"; it asks for {element.name}")
+                    then = f"; it asks for {element.name}"
+                    yield from (one.evidence(self._label(SOURCE, kind), Confidence.MAY, then) for one in acted)
 
     def _told_of(self, one: Spoken, kind: str) -> Iterator[Evidence]:
         """What is written of what data tell that never come into ROS themselves."""

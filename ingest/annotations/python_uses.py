@@ -13,7 +13,7 @@ import ast
 import builtins
 from collections import defaultdict
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeGuard
+from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.suggesting.library_rules import ADDRESS
 from rosprivacy.ingest.annotations.source_code import LONGEST_USE, Lines, Unit, Use
@@ -107,7 +107,7 @@ class PythonUses:
             if target is not None and (name := _variable(target)):
                 if isinstance(value, ast.List | ast.Tuple | ast.Constant | ast.JoinedStr):
                     self._commands[unit, name].append(value)
-                if not _is_none(value):
+                if value is not None and not _is_none(value):
                     self._made[unit, name].add(self._value(value, unit))
 
     def _value(self, value: ast.expr, unit: str) -> str:
@@ -189,8 +189,8 @@ def _addresses(node: ast.expr, inside: set[int]) -> Iterator[str]:
         yield f"{ADDRESS}{address[: LONGEST_USE - len(ADDRESS)]}"
 
 
-def _is_none(value: ast.expr | None) -> TypeGuard[None]:
-    return value is None or (isinstance(value, ast.Constant) and value.value is None)
+def _is_none(value: ast.expr) -> bool:
+    return isinstance(value, ast.Constant) and value.value is None
 
 
 def _variable(node: ast.expr) -> str:
