@@ -61,15 +61,14 @@ def explore(
         raise InputError(", ".join(missing), 0, "not installed", command_for("explore"))
     from rosprivacy.explorer.journal import journal_folder
     from rosprivacy.explorer.web.application import Site
-    from rosprivacy.explorer.web.cypher_site import StoredSite
     from rosprivacy.explorer.web.guard import Door
     from rosprivacy.explorer.web.review_site import ReviewSite
     from rosprivacy.explorer.web.serving import bound_socket
     from rosprivacy.report.words.words import Words
 
-    if review and (inputs.fleet or inputs.from_database):
-        hint = "leave --review away, or review the policies and label files of one robot"
-        raise InputError("--review", 0, "asks about one robot, and not about a fleet or a database", hint)
+    if review and inputs.from_database:
+        hint = "leave --review away, or review the policies and label files of a robot, or a fleet"
+        raise InputError("--review", 0, "has no file for answers in a database", hint)
     if inputs.decisions and (inputs.fleet or inputs.from_database):
         hint = "leave it away, and use 'rosprivacy decide'"
         raise InputError("--decisions", 0, "is for one robot, and not for a fleet or a database", hint)
@@ -80,6 +79,8 @@ def explore(
     with bound_socket(port) as listening:
         door, words = Door(listening.getsockname()[1], read_only), Words(lang.value)
         if ask:
+            from rosprivacy.explorer.web.cypher_site import StoredSite
+
             site: Site = StoredSite(session, settings, words, door, ask)
         else:
             site = (ReviewSite if review else Site)(session, settings, words, door)
