@@ -6,6 +6,7 @@ import base64
 import json
 import shutil
 from contextlib import contextmanager
+from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -104,6 +105,13 @@ def pdf(browser: WebDriver) -> bytes:
 def wider(browser: WebDriver, selector: str) -> list[str]:
     """Return the elements that are wider than their box or the page."""
     return list(browser.execute_script(WIDER, selector))
+
+
+def axe(browser: WebDriver) -> list[tuple[str, str]]:
+    """Return what axe finds of WCAG 2.1 A and AA and of best practices: the rule, and the first element."""
+    browser.execute_script(files("axe_core_python").joinpath("axe.min.js").read_text("utf-8"))
+    found = browser.execute_async_script("axe.run(document, {resultTypes: ['violations']}).then(arguments[0])")
+    return [(one["id"], one["nodes"][0]["html"]) for one in found["violations"]]
 
 
 def drop(browser: WebDriver, file: Path, at: tuple[int, int]) -> None:
