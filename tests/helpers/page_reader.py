@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import rosprivacy
 from tests.helpers import browser as chrome
 from tests.helpers import explorers
-from tests.helpers.browser import DESKTOP
+from tests.helpers.browser import DESKTOP, PHONE
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -23,6 +23,13 @@ SECONDS = 20
 PANES = ("list", "picture", "element")
 CURRENT = "const a = document.querySelector('#rows [aria-current] .name'); return a ? a.textContent : ''"
 SETTLED = "return !document.body.hasAttribute('aria-busy')"
+TOLD = "h1, h2:not(.unseen), h3, p:not(.unseen), .row, .way, .answers, .about label, .hops li, .said li, .try, .decide"
+BUTTONS = ".answers, .tabs, .inline, .decide, #tries, .verbs"
+SMALL = """
+return [...document.querySelectorAll(`.row, .way, .answers summary, :is(${arguments[0]}) button`)]
+  .filter((e) => e.offsetParent && e.getBoundingClientRect().height < 44).map((e) => e.textContent);
+"""
+OPENED = "for (const one of document.querySelectorAll('main details')) one.open = true"
 MEANS = ("verdict", "findings", "open", "roles", "carries", "sanitizers", "derivations")
 
 
@@ -38,7 +45,7 @@ class Reader:
     """A person who has nothing but keys, and has opened the link."""
 
     def __init__(self, browser: WebDriver, explorer: Explorer, width: int = DESKTOP) -> None:
-        self.browser = browser
+        self.browser, self.width = browser, width
         chrome.open_page(browser, explorer.door.link, width=width)
 
     def press(self, *keys: str) -> None:
@@ -95,6 +102,24 @@ class Reader:
     def pane(self, name: str) -> None:
         """Show one pane, as a narrow screen does."""
         self.browser.execute_script(f"document.querySelector('.tabs [data-pane={name}]').click()")
+
+    def faults(self) -> list[object]:
+        """What is wrong with the panes as they stand, with all that can be opened: for axe, a thumb, the width."""
+        found: list[object] = []
+        narrow = self.width <= PHONE
+        self.browser.execute_script(OPENED)
+        for pane in PANES if narrow else ("all",):
+            if narrow:
+                self.pane(pane)
+            for dark in (False, True):
+                chrome.shade(self.browser, dark=dark)
+                found += chrome.axe(self.browser)
+            sideways = self.browser.execute_script("return document.documentElement.scrollWidth")
+            found += [f"{pane} is {sideways} wide"] if sideways > self.width else []
+            if narrow:
+                found += [*self.browser.execute_script(SMALL, BUTTONS), *chrome.wider(self.browser, TOLD)]
+        chrome.shade(self.browser, dark=False)
+        return found
 
     @property
     def version(self) -> int:

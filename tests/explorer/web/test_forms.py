@@ -144,6 +144,25 @@ def test_whatever_is_understood_is_of_closed_lists(
         ("sensitive", Answer(TOPIC, "mundane", ("Voice",)), {"never": ["Voice"]}),
         ({"never": ["Voice"]}, Answer(TOPIC, "mundane", ("Video",)), {"never": ["Voice", "Video"]}),
         ({"never": ["Voice"]}, Answer(TOPIC, "mundane"), {"mundane": True}),
+        ({"only": ["Location"]}, Answer(TOPIC, "sensitive", ("Location",)), {"only": ["Location"]}),
+        ({"only": ["Location"]}, Answer(TOPIC, "sensitive", ("Video",)), {"only": ["Location", "Video"]}),
+        (
+            {"only": ["Location", "Voice"]},
+            Answer(TOPIC, "mundane", ("Voice",)),
+            {"only": ["Location"], "never": ["Voice"]},
+        ),
+        (
+            {"only": ["Biometric"]},
+            Answer(TOPIC, "mundane", ("FaceTemplate",)),
+            {"only": ["Biometric"], "never": ["FaceTemplate"]},
+        ),
+        ({"only": ["Location"]}, Answer(TOPIC, "mundane", ("Location",)), {"mundane": True}),
+        (
+            {"only": ["Location"], "never": ["Voice"]},
+            Answer(TOPIC, "sensitive", ("Voice",)),
+            {"only": ["Location", "Voice"]},
+        ),
+        ({"only": ["Location"]}, Answer(TOPIC, "sensitive"), {"sensitive": True}),
         ("conduit", Answer(NODE, "absent", note="tests only"), {"absent": "tests only"}),
     ],
 )

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import shutil
 from typing import TYPE_CHECKING
 
 import pytest
 
-from rosprivacy.reading.fleet_system import answer_fleet
-from rosprivacy.settings import Settings
 from tests.helpers import browser as chrome
 from tests.helpers.browser import DESKTOP, PHONE
 from tests.helpers.explorers import BARE, FACTORY, FILTERED, copied, label
+from tests.helpers.full_disk import full_disk
 from tests.helpers.page_reader import SECONDS, Reader, meaning, served
-from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -24,14 +21,8 @@ if TYPE_CHECKING:
     from tests.helpers.explorers import Explorer
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.usefixtures("quiet")]
-TEXTS = "h1, h2:not(.unseen), h3, p:not(.unseen), .row, .answers, .about label, .hops li"
 BOTTOMS = """
 return [...document.querySelectorAll('.hops li, .answers .answer')].map((e) => e.getBoundingClientRect().bottom)
-"""
-LAST_OF_WHOSE = "const all = document.querySelectorAll('.whose input'); all[all.length - 1].click()"
-SMALL = """
-return [...document.querySelectorAll('.answers button, .answers summary, .row, .tabs button')]
-  .filter((e) => e.offsetParent && e.getBoundingClientRect().height < 48).map((e) => e.textContent);
 """
 
 
@@ -123,14 +114,7 @@ def test_a_second_window_is_told_and_a_stale_answer_does_nothing(browser: WebDri
 def test_a_phone_shows_everything_without_moving_sideways(browser: WebDriver, tmp_path: Path, language: str) -> None:
     with served(browser, BARE, copied(FACTORY / "run2.labels.yaml", tmp_path), language=language) as explorer:
         reader = Reader(browser, explorer, PHONE)
-        for number in range(3):
-            browser.execute_script(f"document.querySelectorAll('.tabs button')[{number}].click()")
-            assert browser.execute_script("return document.documentElement.scrollWidth") <= PHONE
-            assert (
-                chrome.wider(browser, "h1, h2:not(.unseen), h3, p:not(.unseen), .row, .answers, .about label, .hops li")
-                == []
-            )
-            assert browser.execute_script(SMALL) == []
+        assert reader.faults() == []
         assert reader.text(".hops li") != ""
 
 
@@ -138,14 +122,41 @@ def test_a_phone_shows_everything_without_moving_sideways(browser: WebDriver, tm
 def test_axe_finds_nothing_in_any_pane(browser: WebDriver, tmp_path: Path, width: int) -> None:
     file = copied(FACTORY / "run2.labels.yaml", tmp_path)
     with served(browser, BARE, file) as explorer:
-        Reader(browser, explorer, width)
-        for pane in ("list", "picture", "element"):
-            browser.execute_script(f"document.querySelector('.tabs [data-pane={pane}]').click()")
-            for more in ("", "document.querySelectorAll('#hand details').forEach((d) => d.open = true)"):
-                browser.execute_script(more)
-                assert chrome.axe(browser) == []
+        reader = Reader(browser, explorer, width)
+        assert reader.faults() == []
+        for name in ("/robot_camera", "/safety_video"):  # a source with nothing open, and a channel
+            reader.go(name)
+            assert reader.faults() == []
+        reader.press("w", "1")  # the whole system, and a kind of data switched off
+        assert reader.faults() == []
         browser.execute_script("document.querySelector('#help').showModal()")
         assert chrome.axe(browser) == []
+
+
+@pytest.mark.parametrize("width", [DESKTOP, PHONE])
+def test_axe_finds_nothing_in_what_the_page_tells(browser: WebDriver, tmp_path: Path, width: int) -> None:
+    """The empty page, answers of an earlier session, a file that somebody else changed, and one that is only shown."""
+    file = tmp_path / "new.labels.yaml"
+    with served(browser, BARE, file, journal=tmp_path / "journal") as explorer:
+        reader = Reader(browser, explorer, width)
+        assert reader.faults() == []
+        reader.answer("/robot_camera", "a")
+        assert reader.faults() == []
+        explorer.session.close()
+    with served(browser, BARE, file, journal=tmp_path / "journal") as explorer:
+        reader = Reader(browser, explorer, width)
+        assert "earlier" in reader.text("#message")
+        assert reader.faults() == []
+        reader.focus("#message form button")
+        reader.press("\n")
+        file.write_text("labels: 1\nchannels:\n  /new_pose: mundane\n", "utf-8")
+        browser.refresh()
+        assert "+  /new_pose: mundane" in reader.text("#message")
+        assert reader.faults() == []
+    with served(browser, BARE, copied(FACTORY / "run2.labels.yaml", tmp_path), read_only=True) as explorer:
+        reader = Reader(browser, explorer, width)
+        assert "nothing can be changed" in reader.text("#head")
+        assert reader.faults() == []
 
 
 def test_the_first_question_its_path_and_the_answers_lie_within_the_first_screen(
@@ -174,23 +185,39 @@ def test_without_the_script_forms_and_links_work(explore: Callable[..., Explorer
     assert label(client, "e0", "leak").status_code == 422
 
 
-def test_a_fleet_is_decided_for_the_model_and_for_one_robot(browser: WebDriver, tmp_path: Path) -> None:
-    shutil.copytree(ROOT / "examples" / "fleet", tmp_path / "fleet")
-    file = tmp_path / "fleet" / "fleet.yaml"
-    model, own = file.parent / "carrier.labels.yaml", file.parent / "carrier_lent.labels.yaml"
-    model.write_text(model.read_text().replace("  /recorder: conduit\n", ""))
-    with served(browser, file, file, fleet=True) as explorer:
-        reader = Reader(browser, explorer)
-        assert reader.current == "carrier_lent:/recorder"
-        browser.execute_script(LAST_OF_WHOSE)
-        reader.answer("carrier_lent:/recorder", "c")
-        assert "stands for 23 robots" in reader.text("#element .facts")
-        for width in (DESKTOP, PHONE, DESKTOP):
-            size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": width == PHONE}
-            browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
-            assert chrome.wider(browser, "fieldset, .whose label, .row") == []
-        reader.answer("carrier_01:/recorder", "c")
+def test_two_explorers_stand_side_by_side_in_one_browser(browser: WebDriver, tmp_path: Path) -> None:
+    """A browser keeps the cookies of all ports of a machine together: each explorer has one of its own name."""
+    first = copied(FACTORY / "run1.labels.yaml", tmp_path)
+    with served(browser, BARE, first) as one, served(browser, FILTERED, tmp_path / "other.labels.yaml") as other:
+        reader = Reader(browser, one)
+        Reader(browser, other).answer("/robot_camera", "a")
+        browser.get(f"http://127.0.0.1:{one.door.port}/")
+        reader.answer("/archive_server", "l")
         reader.save()
-        assert explorer.session.result.to("json") == answer_fleet(str(file), Settings()).to("json")
-    for labels in (model, own):
-        assert "  /recorder: {conduit: [Video]}" in labels.read_text()
+        browser.get(f"http://127.0.0.1:{other.door.port}/")
+        reader.save()
+        assert {cookie["name"] for cookie in browser.get_cookies()} >= {one.door.cookie, other.door.cookie}
+    assert "/archive_server" in first.read_text("utf-8")
+    assert other.labels.is_file()
+
+
+def test_a_full_disk_in_mid_session_loses_nothing_and_is_told(browser: WebDriver, tmp_path: Path) -> None:
+    labels = copied(FACTORY / "run1.labels.yaml", tmp_path)
+    before = labels.read_bytes()
+    with served(browser, BARE, labels, journal=tmp_path / "journal") as explorer:
+        reader = Reader(browser, explorer)
+        with full_disk(100):
+            reader.answer("/archive_server", "l")
+            assert "edits are in this session only" in reader.text("#message")  # no journal can be written
+            reader.press_save()
+            assert "cannot be written" in reader.text("#message")
+            assert reader.text("[data-key='Ctrl+S']") == "Save 1"
+            reader.answer("/navigator", "c")  # it goes on
+        assert labels.read_bytes() == before
+        assert [file.name for file in tmp_path.glob("*.yaml*")] == [labels.name]  # and nothing is left beside it
+        (refused,) = chrome.console(browser)  # Chromium tells of every 422
+        assert "422" in refused["message"]
+        assert reader.verdict == "leak"
+        reader.save()
+        assert explorer.session.unsaved == 0
+    assert meaning(BARE, labels)["verdict"] == "leak"

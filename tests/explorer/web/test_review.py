@@ -31,7 +31,7 @@ EVERYWHERE = ("yaml", "topic", "sanitizer", "conduit", "policy", "frontier")
 INSIDERS = {
     "en": (" node", "enclave", "label", "mundane", "derivation", "element"),
     "de": ("knoten", "enklave", "enclave", "label", "policies", "kante", "senke"),
-    "fr": ("nœud", "noeud", "enclave", "annotation", "arête"),
+    "fr": ("nœud", "noeud", "enclave", "annotation", "arête", "étiquette"),
 }
 PLAIN = """<?xml version="1.0"?>
 <policy version="0.2.0"><enclaves><enclave path="/e"><profiles>
@@ -39,6 +39,7 @@ PLAIN = """<?xml version="1.0"?>
 <profile node="b2" ns="/"><topics subscribe="ALLOW"><topic>m</topic></topics></profile>
 </profiles></enclave></enclaves></policy>
 """
+NOT_OURS = "//code | //*[@lang='en'][not(self::html)] | //select[@name='brings' or @name='makes']"  # kinds: worn tags
 OURS = "//code | //option | //*[@lang='en'] | //b"
 
 
@@ -112,9 +113,18 @@ def test_every_page_speaks_the_readers_language(explore: Explore, tmp_path: Path
 def test_no_page_says_words_of_insiders(explore: Explore, tmp_path: Path, language: str) -> None:
     client = explore(CARE, tmp_path / "new.labels.yaml", language=language, review=True).client()
     nothing = [client.get(address).text for address in ("/?step=source", "/?step=summary")]
-    for text in (*nothing, *to_the_end(client)):
+    file = copied(ROOT / "examples" / "care-home" / "care-home.labels.yaml", tmp_path)
+    explorer = explore(CARE, file, language=language, review=True)
+    labelled = explorer.client()
+    decided = [labelled.get(f"/?at={at}").text for at in explorer.site.standing.carried]  # limits of channels, too
+    file.write_text(file.read_text("utf-8") + "# by hand\n", "utf-8")
+    changed = html.fromstring(labelled.get("/").text)
+    assert changed.xpath("//*[@role='alert']")
+    for shown in changed.xpath("//pre"):  # the file itself
+        shown.drop_tree()
+    for text in (*nothing, *decided, html.tostring(changed, encoding="unicode"), *to_the_end(client)):
         whole = html.fromstring(text)
-        for left in whole.xpath("//code | //*[@lang='en'][not(self::html)]"):
+        for left in whole.xpath(NOT_OURS):
             left.drop_tree()
         said = whole.text_content().casefold()
         assert [word for word in (*EVERYWHERE, *INSIDERS[language]) if word in said] == []
