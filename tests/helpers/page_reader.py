@@ -93,8 +93,20 @@ class Reader:
                 at = self.current
                 self.press(key)
         if self.current != name:
-            self.press("/", *name, "\n")
+            self.find(name)
         assert self.current == name
+
+    def find(self, name: str) -> None:
+        """Go to an element by its name, with ``/``."""
+        self.press("/", *name, "\n")
+        assert self.current == name
+
+    def say(self, name: str, *keys: str) -> None:
+        """Answer as ``answer`` does, of an element that is found by its name."""
+        self.find(name)
+        before = self.version
+        self.press(*keys)
+        self.wait(before + 1)
 
     def focus(self, selector: str) -> None:
         self.browser.execute_script("document.querySelector(arguments[0]).focus()", selector)
