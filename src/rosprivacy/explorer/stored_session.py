@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors
+from rosprivacy.explorer.one_file import OneFile
 from rosprivacy.explorer.own_file import read_own
 from rosprivacy.explorer.session import Session
 from rosprivacy.question import question_of
@@ -37,7 +38,8 @@ class StoredSession(Session):
     of_one_robot = False
 
     def __init__(self, system: System, asked: Asked) -> None:
-        super().__init__(system, asked, (), read_own(None, asked.vocabulary, asked.settings), 0)
+        own = read_own(None, asked.vocabulary, asked.settings)
+        super().__init__(OneFile(system, asked, (), own), system, asked)
 
     @classmethod
     def open_database(cls, driver: Driver, settings: Settings | None = None) -> StoredSession:

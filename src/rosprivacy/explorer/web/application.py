@@ -30,7 +30,7 @@ from rosprivacy.explorer.web.rendering import Message, rendered
 from rosprivacy.explorer.web.saying import label_of, limit_of
 from rosprivacy.explorer.web.standing import Standing
 from rosprivacy.explorer.web.titles import title_of
-from rosprivacy.explorer.web.trial_forms import tried_in
+from rosprivacy.explorer.web.trial_forms import TOGETHER, tried_in
 from rosprivacy.explorer.web.view import trial_in, view_of
 from rosprivacy.explorer.web.whose import ROBOT, WHOSE
 from rosprivacy.labelling.suggesting import what_is_known
@@ -272,7 +272,8 @@ class Site:
 
     def _try(self, form: Form) -> Told:
         """Try something; nothing that is kept anywhere changes."""
-        tried = tried_in(form, self.standing, self._words)
+        both = form.one("what") == TOGETHER
+        tried = self._trials.together(form) if both else tried_in(form, self.standing, self._words)
         name = form.words("name") or self._new_name()
         self._trials.keep(name, tried.what, tried.says)
         return Told(200, trial=name)
