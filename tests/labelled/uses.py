@@ -43,7 +43,8 @@ def _write(file: Path, sources: Path) -> int:
     top: Any = yaml.load(file.read_text("utf-8"))
     nodes = top["nodes"]
     names = [*nodes]
-    said = code_said(*read_sources([str(sources)]), [Element("node", name) for name in names])
+    codes, of_others, _ = read_sources([str(sources)])
+    said = code_said(codes, of_others, [Element("node", name) for name in names])
     for vertex, name in enumerate(names):
         used = sorted({use.name for use in said.uses.get(vertex, ()) if _tells(use.name)})
         nodes[name].pop("uses", None)

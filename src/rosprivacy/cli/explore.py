@@ -60,9 +60,9 @@ def explore(
     from rosprivacy.explorer.web.serving import bound_socket
     from rosprivacy.report.words.words import Words
 
-    if review and (inputs.fleet or inputs.from_database):
-        hint = "leave --review away, or review the policies and label files of one robot"
-        raise InputError("--review", 0, "asks about one robot, and not about a fleet or a database", hint)
+    if review and inputs.from_database:
+        hint = "leave --review away, or review the policies and label files of a robot, or a fleet"
+        raise InputError("--review", 0, "has no file for answers in a database", hint)
     if inputs.decisions and (inputs.fleet or inputs.from_database):
         hint = "leave it away, and use 'rosprivacy decide'"
         raise InputError("--decisions", 0, "is for one robot, and not for a fleet or a database", hint)

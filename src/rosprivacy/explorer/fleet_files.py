@@ -6,6 +6,7 @@ In: a fleet that was read; edits that name their file. Out: as of ``LabelFiles``
 from __future__ import annotations
 
 import hashlib
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors, LabelError
@@ -14,6 +15,7 @@ from rosprivacy.explorer.effects import differences, merged
 from rosprivacy.explorer.fleet_labels import FleetLabels, read_fleet_labels
 from rosprivacy.explorer.label_files import Merging
 from rosprivacy.explorer.label_targets import Targets
+from rosprivacy.explorer.own_file import read_own
 from rosprivacy.explorer.saving import Conflict, Saved
 
 if TYPE_CHECKING:
@@ -43,6 +45,7 @@ class FleetFiles:
         self.targets = Targets(read.fleet)
         self._edited = dict(edited)  # those that were looked into, by the first of their names
         self._digests = dict(digests)  # of label files, as they were read
+        self._said: dict[str, Mapping[tuple[str, str], Any]] = {}  # of others, that were asked for
 
     @property
     def name(self) -> str:
@@ -85,6 +88,16 @@ class FleetFiles:
                 raise InputErrors([LabelError(file, 0, what, "save what is said, and begin again")])
             self._edited[first] = labels
         return self._edited[first]
+
+    def says(self, file: str, edits: Sequence[Edit]) -> dict[tuple[str, str], Any]:
+        """Return what one of them says with edits: (section, name) -> entry; to know it, no text has to be kept."""
+        first = self.targets.called(file)[0][0]
+        if first in self._edited:
+            return self._edited[first].entries(_of(first, edits))
+        if first not in self._said:
+            settings = replace(self._asked.settings, include_root=self.read.fleet.root)
+            self._said[first] = read_own(file, self._asked.vocabulary, settings).says
+        return dict(self._said[first])
 
     def differences(self, before: Sequence[Edit], after: Sequence[Edit]) -> list[Edit]:
         """Return the edits that make of the files with some edits those with others."""

@@ -9,15 +9,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import FleetError, InputError, InputErrors, shown
-from rosprivacy.explorer.edits import Edit, section_of
+from rosprivacy.explorer.edits import Edit, place_of, section_of
 from rosprivacy.explorer.fleet_files import FleetFiles
-from rosprivacy.explorer.label_targets import Target, Targets, outliers
+from rosprivacy.explorer.label_targets import Entry, Target, Targets, outliers
 from rosprivacy.explorer.session import Session
 from rosprivacy.question import question_of
 from rosprivacy.reading.fleet_system import read_once
 from rosprivacy.settings import Settings
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from pathlib import Path
     from typing import Any, Unpack
 
@@ -109,11 +110,38 @@ class FleetSession(Session):
 
     def said_of(self, element: Element, *, only_this_robot: bool = False) -> Any:
         """Return what the label file of an answer says of an element; None for nothing, and where there is no file."""
-        section, name = self.called(element)
-        try:
-            return self._spot(name, section, only_this_robot=only_this_robot).value
-        except InputErrors:
+        found = [one.file for one in self.targets_of(element) if one.alone or not only_this_robot]
+        if not found:
             return None
+        entries = self._files.says(found[-1] if only_this_robot else found[0], self._done)
+        return entries.get(place_of(*super().called(element), entries))
+
+    def speaks_of(self, robot: str) -> Mapping[tuple[str, str], Any]:
+        """Return what label files that can be edited say of a robot, with the edits; its own before its model's."""
+        says = [self._files.says(one.file, self._done) for one in self.targets.of(robot)]
+        return {place: value for said in says for place, value in said.items() if value is not None}
+
+    @property
+    def answers(self) -> tuple[Entry, ...]:
+        """All that the label files say, with the edits: of robots that are alike, those of the first one."""
+        robots = [group.robots[0].id for group in self._files.read.groups]
+        robots += [robot for edit in self._done for robot in self.targets.readers(edit.file)]
+        targets = {one.file: one for robot in dict.fromkeys(robots) for one in self.targets.of(robot)}
+        return tuple(
+            Entry(*place, value, target)
+            for file, target in targets.items()
+            for place, value in self._files.says(file, self._done).items()
+            if value is not None
+        )
+
+    def is_about(self, edit: Edit, element: Element) -> bool:
+        """Return whether the label file of an edit is one that speaks of an element."""
+        called = self.targets.called(edit.file)
+        return any(self.targets.called(one.file) == called for one in self.targets_of(element))
+
+    def can_answer(self, element: Element) -> bool:
+        """Return whether there is a label file that can say something of an element."""
+        return bool(self.targets_of(element))
 
     def answer_for(self, element: Element, label: Label | None, *, only_this_robot: bool = False) -> Change:
         """Label an element, or take its label away; see ``label`` and ``unlabel``."""

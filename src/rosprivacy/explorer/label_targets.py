@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 from collections import defaultdict
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.explorer.own_file import chosen
 from rosprivacy.ingest.fleet.dds_domains import pseudo_robot
@@ -41,6 +41,21 @@ class Target(NamedTuple):
     alone: bool
 
 
+class Entry(NamedTuple):
+    """What a label file says of an element or a glob.
+
+    Attributes
+    ----------
+    target
+        The label file of a fleet; None where a session edits one only.
+    """
+
+    section: str
+    name: str
+    value: Any
+    target: Target | None = None
+
+
 class Targets:
     """The label files of a fleet, with the robots that read them.
 
@@ -64,6 +79,10 @@ class Targets:
     def called(self, file: str) -> tuple[tuple[str, bool], ...]:
         """Return by which names the fleet file leads to a label file, and whether as one of a robot."""
         return tuple(sorted(self._names.get(os.path.realpath(file), ())))
+
+    def readers(self, file: str) -> tuple[str, ...]:
+        """Return the robots that read a label file, by id."""
+        return tuple(self._readers.get(os.path.realpath(file), ()))
 
     def of(self, robot: str) -> tuple[Target, ...]:
         """Return the files for an element of a robot: that of its model, and its own; none where neither has one.

@@ -17,6 +17,7 @@ from rosprivacy.explorer.deciding import Ruling, record
 from rosprivacy.explorer.edits import Edit, entry_of, section_of
 from rosprivacy.explorer.effects import Change, compared
 from rosprivacy.explorer.history import History
+from rosprivacy.explorer.label_targets import Entry
 from rosprivacy.explorer.one_file import opened
 from rosprivacy.explorer.questions import questions
 from rosprivacy.explorer.scenarios import Scenario, WhatIf, tried
@@ -118,6 +119,23 @@ class Session(History):
         """Label an element, or take its label away; see ``label`` and ``unlabel``."""
         section, name = self.called(element)
         return self.unlabel(name, kind=section) if label is None else self.label(name, kind=section, **label)
+
+    def speaks_of(self, robot: str) -> Mapping[tuple[str, str], Any]:  # noqa: ARG002 - of a fleet
+        """Return what label files that can be edited say of a robot, with the edits; one of its own before others."""
+        return self.entries
+
+    @property
+    def answers(self) -> tuple[Entry, ...]:
+        """All that the label file says, with the edits; of a fleet all that its label files say."""
+        return tuple(Entry(*place, value) for place, value in self.entries.items() if value is not None)
+
+    def is_about(self, edit: Edit, element: Element) -> bool:  # noqa: ARG002 - of a fleet
+        """Return whether the label file of an edit is one that speaks of an element."""
+        return True
+
+    def can_answer(self, element: Element) -> bool:  # noqa: ARG002 - of a fleet
+        """Return whether there is a label file that can say something of an element."""
+        return True
 
     def targets_of(self, element: Element) -> tuple[Target, ...]:  # noqa: ARG002 - of a fleet
         """Return the label files that an answer can go to, where there are several robots."""

@@ -19,6 +19,7 @@ from rosprivacy.settings import Settings
 if TYPE_CHECKING:
     from neo4j import Driver
 
+    from rosprivacy.analysis.model import Element
     from rosprivacy.explorer.edits import Edit
     from rosprivacy.explorer.effects import Change
     from rosprivacy.explorer.saving import Saved
@@ -59,6 +60,10 @@ class StoredSession(Session):
     def remarks(self) -> tuple[str, ...]:
         """What a person has to know of the session itself."""
         return (f"{SHOWN_ONLY[0].upper()}{SHOWN_ONLY[1:]}.",)
+
+    def can_answer(self, element: Element) -> bool:  # noqa: ARG002 - as of one robot
+        """Nothing can be said here."""
+        return False
 
     def do(self, edit: Edit) -> Change:
         """Refuse an edit.

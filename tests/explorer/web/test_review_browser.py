@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
@@ -11,6 +12,7 @@ from tests.helpers import browser as chrome
 from tests.helpers import explorers
 from tests.helpers.browser import DESKTOP, PHONE
 from tests.helpers.explorers import BARE, FACTORY, copied
+from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -133,3 +135,48 @@ def test_question_and_summary_fit_and_axe_finds_nothing(
             name = address.strip("/?").partition("=")[2] or "question"
             chrome.screenshot(browser, tmp_path / f"{name}-{language}-{width}.png", width)
         browser.get("about:blank")
+
+
+@pytest.mark.parametrize("width", [DESKTOP, PHONE])
+def test_a_fleet_is_reviewed_by_keys_and_said_of_one_robot_or_of_its_model(
+    browser: WebDriver, tmp_path: Path, width: int
+) -> None:
+    from selenium.webdriver.common.by import By
+    from selenium.webdriver.common.keys import Keys
+
+    shutil.copytree(ROOT / "examples" / "fleet", tmp_path / "fleet")
+    fleet, model, own = (
+        tmp_path / "fleet" / name for name in ("fleet.yaml", "carrier.labels.yaml", "carrier_lent.labels.yaml")
+    )
+    model.write_text(model.read_text().replace("  /recorder: conduit\n", "").replace("  /uplink: conduit\n", ""))
+    before = model.read_text()
+    whose = "return document.activeElement.name === 'whose' ? document.activeElement.value : ''"
+    with explorers.served(fleet, fleet, fleet=True, review=True) as explorer:
+        chrome.open_page(browser, explorer.door.link, width=width)
+        asked = []
+        for robot in ("robot", "model"):
+            asked.append(browser.execute_script(HEADING))
+            assert chrome.axe(browser) == []
+            assert browser.execute_script("return document.documentElement.scrollWidth") <= width
+            assert chrome.wider(browser, "h1, h2, p, li, fieldset, button, .pick, .field") == []
+            chrome.screenshot(browser, tmp_path / f"{robot}-{width}.png", width)
+            tab_to(browser, "whose")
+            while browser.execute_script(whose) != robot:
+                press(browser, Keys.ARROW_DOWN)
+            browser.execute_script("document.querySelector('h1').focus()")
+            answer(browser, "conduit")
+        assert [("carrier_lent" in one) for one in asked] == [True, True]  # it is not as its model
+        browser.get(f"http://127.0.0.1:{explorer.door.port}/?step=summary")
+        assert chrome.axe(browser) == []
+        assert chrome.wider(browser, "h1, h2, p, li, fieldset, button, .pick, .field") == []
+        chrome.screenshot(browser, tmp_path / f"summary-{width}.png", width)
+        assert "carrier_lent only" in browser.find_element(By.TAG_NAME, "main").text
+        before_save = browser.find_element(By.TAG_NAME, "html")
+        browser.execute_script("document.querySelector(\"[action^='/save'] button\").focus()")
+        press(browser, Keys.ENTER)
+        shown(browser, before_save)
+        assert "All answers are saved." in browser.find_element(By.TAG_NAME, "main").text
+    told = [name for name in ("/recorder", "/uplink") if f"  {name}:" in own.read_text()]
+    assert len(told) == 1
+    assert model.read_text() != before
+    assert f"  {told[0]}:" not in model.read_text()
