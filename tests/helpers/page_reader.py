@@ -12,7 +12,7 @@ from tests.helpers import explorers
 from tests.helpers.browser import DESKTOP, PHONE
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
     from pathlib import Path
 
     from selenium.webdriver.chrome.webdriver import WebDriver
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from tests.helpers.explorers import Explorer
 
 SECONDS = 20
+MOST_TABS = 200
 PANES = ("list", "picture", "element")
 CURRENT = "const a = document.querySelector('#rows [aria-current] .name'); return a ? a.textContent : ''"
 SETTLED = "return !document.body.hasAttribute('aria-busy')"
@@ -108,6 +109,16 @@ class Reader:
         self.press(*keys)
         self.wait(before + 1)
 
+    def tab_to(self, selector: str) -> None:
+        """Press Tab until it leads to an element."""
+        from selenium.webdriver.common.keys import Keys
+
+        for _ in range(MOST_TABS):
+            self.press(Keys.TAB)
+            if self.browser.execute_script("return document.activeElement.matches(arguments[0])", selector):
+                return
+        raise AssertionError(f"no key leads to {selector}")
+
     def focus(self, selector: str) -> None:
         self.browser.execute_script("document.querySelector(arguments[0]).focus()", selector)
 
@@ -154,10 +165,10 @@ class Reader:
         return str(self.browser.execute_script("return document.querySelector(arguments[0]).textContent", selector))
 
 
-def meaning(policy: Path, labels: Path) -> Any:
-    """What a label file means for a policy, without where it stands."""
+def meaning(policy: Path, labels: Path, keys: Iterable[str] = MEANS) -> Any:
+    """What a label file means for a policy, without where it stands: what the document says under some keys."""
     document = rosprivacy.analyze(policy, labels).document()
-    return json.loads(json.dumps({key: document[key] for key in MEANS}), object_hook=_without_place)
+    return json.loads(json.dumps({key: document[key] for key in keys}), object_hook=_without_place)
 
 
 def _without_place(said: dict[str, Any]) -> dict[str, Any]:

@@ -97,10 +97,10 @@ def load_kinds() -> tuple[str, ...]:
 
 def _video(carer: Carer) -> None:
     carer.say("/camera", *carer.choose("s", "video of"))
+    carer.say("/uplink", *carer.choose("z", "sums"))
     carer.say("/face_recognizer", *carer.choose("z", "throws"))
     carer.say("/face_recognizer", *carer.choose("d", "face t"))
     carer.say("/blur", *carer.choose("z", "pseudo"))
-    carer.say("/uplink", *carer.choose("z", "sums"))
     carer.say("/recorder", "l")
     for channel in ("/camera/image", "/camera/blurred", "/camera/*"):
         carer.say(channel, "0", "v")
@@ -130,6 +130,7 @@ def _places(carer: Carer) -> None:
     carer.say("/scan", "0", "v")
     carer.say("/person_tracker", "c")
     carer.say("/person_tracker", *carer.choose("d", "person t"))
+    carer.only("location")
     carer.say("/person_tracker/tracks", "m")
     carer.only("person track")
     carer.say("/person_tracker/tracks", "v")

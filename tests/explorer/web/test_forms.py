@@ -140,6 +140,16 @@ def test_whatever_is_understood_is_of_closed_lists(
             Answer(NODE, "conduit", ("Video",)),
             {"derives": [{"from": "Video", "to": "FaceTemplate"}], "conduit": ["Video"]},
         ),
+        (
+            {"sanitizer": {"Video": "drop"}},
+            Answer(NODE, "derives", ("Video",), to="FaceTemplate"),
+            {"sanitizer": {"Video": "drop"}, "derives": [{"from": "Video", "to": "FaceTemplate"}]},
+        ),
+        (
+            {"leak": ["Video"]},
+            Answer(NODE, "derives", ("Video",), to="FaceTemplate"),
+            {"leak": ["Video"], "derives": [{"from": "Video", "to": "FaceTemplate"}]},
+        ),
         ("mundane", Answer(TOPIC, "sensitive", ("Video",)), {"sensitive": ["Video"]}),
         ("sensitive", Answer(TOPIC, "mundane", ("Voice",)), {"never": ["Voice"]}),
         ({"never": ["Voice"]}, Answer(TOPIC, "mundane", ("Video",)), {"never": ["Voice", "Video"]}),

@@ -24,24 +24,12 @@ if TYPE_CHECKING:
 
 LANGUAGES = ("en", "de", "fr")
 CARE = ROOT / "examples" / "care-home" / "care-home.policy.xml"
-<<<<<<< HEAD
-NAME = "A. Lee"
-MOST = 60  # questions of a small system
-EVERYWHERE = ("yaml", "topic", "sanitizer", "conduit", "policy", "frontier")
-INSIDERS = {
-    "en": (" node", "enclave", "label", "mundane", "derivation", "element"),
-    "de": ("knoten", "enklave", "enclave", "label", "policies", "kante", "senke"),
-    "fr": ("nœud", "noeud", "enclave", "annotation", "arête", "étiquette"),
-}
-=======
->>>>>>> main
 PLAIN = """<?xml version="1.0"?>
 <policy version="0.2.0"><enclaves><enclave path="/e"><profiles>
 <profile node="a1" ns="/"><topics publish="ALLOW"><topic>m</topic></topics></profile>
 <profile node="b2" ns="/"><topics subscribe="ALLOW"><topic>m</topic></topics></profile>
 </profiles></enclave></enclaves></policy>
 """
-NOT_OURS = "//code | //*[@lang='en'][not(self::html)] | //select[@name='brings' or @name='makes']"  # kinds: worn tags
 OURS = "//code | //option | //*[@lang='en'] | //b"
 
 
@@ -83,26 +71,15 @@ def test_every_page_speaks_the_readers_language(explore: Explore, tmp_path: Path
 def test_no_page_says_words_of_insiders(explore: Explore, tmp_path: Path, language: str) -> None:
     client = explore(CARE, tmp_path / "new.labels.yaml", language=language, review=True).client()
     nothing = [client.get(address).text for address in ("/?step=source", "/?step=summary")]
-<<<<<<< HEAD
     file = copied(ROOT / "examples" / "care-home" / "care-home.labels.yaml", tmp_path)
     explorer = explore(CARE, file, language=language, review=True)
     labelled = explorer.client()
     decided = [labelled.get(f"/?at={at}").text for at in explorer.site.standing.carried]  # limits of channels, too
     file.write_text(file.read_text("utf-8") + "# by hand\n", "utf-8")
-    changed = html.fromstring(labelled.get("/").text)
-    assert changed.xpath("//*[@role='alert']")
-    for shown in changed.xpath("//pre"):  # the file itself
-        shown.drop_tree()
-    for text in (*nothing, *decided, html.tostring(changed, encoding="unicode"), *to_the_end(client)):
-        whole = html.fromstring(text)
-        for left in whole.xpath(NOT_OURS):
-            left.drop_tree()
-        said = whole.text_content().casefold()
-        assert [word for word in (*EVERYWHERE, *INSIDERS[language]) if word in said] == []
-=======
-    for text in (*nothing, *to_the_end(client)):
+    changed = labelled.get("/").text
+    assert 'role="alert"' in changed
+    for text in (*nothing, *decided, changed, *to_the_end(client)):
         assert insiders_in(text, language) == []
->>>>>>> main
 
 
 def without_suggestions(explore: Explore, tmp_path: Path, **how: Any) -> Explorer:

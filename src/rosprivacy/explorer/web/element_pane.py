@@ -145,7 +145,7 @@ def pane_of(standing: Standing, element: Element, view: View, words: Words) -> P
         is_open=bool(is_open),
         asked=words.row(title_of(kind, standing.vocabulary, words) for kind in asked or here),
         ways=tuple(_ways(standing, element, asked or here, view, words)),
-        about=_about(standing, carried, asked or [kind for kind in here if not _begins(standing, at, kind)], words),
+        about=_about(standing, carried, asked or [kind for kind in here if not _ends(standing, at, kind)], words),
         offers=tuple(_offer(one, standing, words) for one in offers if _whole(one)),
         roles=tuple((role, KEYS[role]) for role in roles),
         kinds=_all_kinds(standing, words),
@@ -179,9 +179,9 @@ def _about(standing: Standing, carried: Sequence[str], chosen: Sequence[str], wo
     return tuple(About(kind, title_of(kind, standing.vocabulary, words), kind in chosen) for kind in offered)
 
 
-def _begins(standing: Standing, at: str, kind: str) -> bool:
-    """Whether a label says that the element brings a kind in: an answer about it would take that away."""
-    return "source" in standing.roles.get(at, {}).get(kind, ())
+def _ends(standing: Standing, at: str, kind: str) -> bool:
+    """Whether a label says that a kind comes in or goes out there: a person who takes that away chooses the kind."""
+    return not {forms.SOURCE, forms.LEAK}.isdisjoint(standing.roles.get(at, {}).get(kind, ()))
 
 
 def _all_kinds(standing: Standing, words: Words) -> tuple[tuple[str, str], ...]:

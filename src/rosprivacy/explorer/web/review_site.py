@@ -85,15 +85,10 @@ class ReviewSite(Site):
         standing = self.standing
         self._entered = form
         answer = answer_in_review(form, standing, self._words)
-<<<<<<< HEAD
-        key, now = label_key(answer.element), standing.entry(answer.element)
-        self.session.label(key["name"], kind=key["section"], **self._said(answer, standing))
-=======
         alone = form.choice("whose", WHOSE) == ROBOT
         now = standing.entry(answer.element, only_this_robot=alone)
         said = cast("Label", self._said(answer, now))
         self.session.answer_for(answer.element, said, only_this_robot=alone)
->>>>>>> main
         self._entered, self._by = None, answer.by
         return Told(200, self._answered(answer, now, self._words(f"rv.answer.{answer.role}")))
 

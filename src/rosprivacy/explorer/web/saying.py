@@ -105,7 +105,10 @@ def _without(now: Any, answer: Answer) -> dict[str, Any]:
         return {now: True} if now in WHOLE and now in {answer.role, "conduit"} else {}
     if not isinstance(now, dict):
         return {}
-    left = {key: _less(now[key], answer) for key in PER_KIND if key in now}
+    if answer.role == forms.DERIVES:  # what is made of data says nothing of what becomes of the data itself
+        left = {key: now[key] for key in PER_KIND if key in now}
+    else:
+        left = {key: _less(now[key], answer) for key in PER_KIND if key in now}
     both = {forms.SOURCE: "leak", forms.LEAK: "source"}.get(answer.role, "")  # it may bring in and let out the same
     left |= {both: now[both]} if both in now else {}
     if "derives" in now:
