@@ -16,6 +16,7 @@ from rosprivacy.ingest.labels.label_file import parse_labels
 from rosprivacy.ontology.vocabulary import load
 from tests.helpers.explorers import BARE, FACTORY, Explorer, copied, label, node, version
 from tests.helpers.languages import english_in
+from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -129,6 +130,18 @@ def test_an_answer_about_nothing_chosen_takes_no_source_and_no_leak_away(
     assert len(explorer.session.findings) == 2
     assert label(client, element, "conduit", about="Video").status_code == 303  # a person who says so is believed
     assert len(explorer.session.findings) == (1 if element == CAMERA else 0)
+
+
+def test_a_broader_kind_beside_a_narrower_one_can_be_answered_for(explore: Explore, tmp_path: Path) -> None:
+    """A tracker makes tracks of places: both go on, and each is a question of its own."""
+    file = tmp_path / "own.labels.yaml"
+    tracker = "{conduit: [Location], derives: [{from: Location, to: PersonTrack}]}"
+    file.write_text(f"labels: 1\nnodes:\n  /lidar: {{source: [Location]}}\n  /person_tracker: {tracker}\n", "utf-8")
+    explorer = explore(ROOT / "examples" / "care-home" / "care-home.policy.xml", file)
+    client, tracks = explorer.client(), element_id(("", "topic", "/person_tracker/tracks"))
+    form = next(one for one in html.fromstring(client.get(f"/?at={tracks}").text).forms if one.get("id") == "answers")
+    chosen = [value for name, value in form.form_values() if name == "about" and value]
+    assert chosen == ["Location", "PersonTrack"]
 
 
 def test_a_limit_of_a_channel_outlives_an_answer_about_one_kind_and_is_told_when_it_goes(

@@ -127,8 +127,8 @@ class Pane(NamedTuple):
 def pane_of(standing: Standing, element: Element, view: View, words: Words) -> Pane:
     """Return what the page shows of an element."""
     at = element_id(element.identity)
-    carried = standing.carried.get(at, ())
     is_open = standing.open_kinds.get(at, ())
+    carried = sorted({*standing.carried.get(at, ()), *is_open})  # a broader kind is open beside a narrower one
     here = [kind for kind in carried if kind not in view.hidden]
     asked = [kind for kind in is_open if kind not in view.hidden]
     offers = standing.suggestions.of(element.identity)
