@@ -5,7 +5,6 @@ from __future__ import annotations
 import threading
 from contextlib import contextmanager
 from functools import partial
-from importlib.resources import files
 from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
 
@@ -20,7 +19,7 @@ from rosprivacy.private_neo4j import connection
 from rosprivacy.report.words.words import Words
 from rosprivacy.settings import Settings
 from tests.helpers import browser as chrome
-from tests.helpers.browser import DESKTOP, PHONE
+from tests.helpers.browser import DESKTOP, PHONE, axe
 from tests.helpers.graphs import care_home, rows_of
 
 if TYPE_CHECKING:
@@ -85,12 +84,6 @@ def until(browser: WebDriver, script: str) -> None:
     from selenium.webdriver.support.ui import WebDriverWait
 
     WebDriverWait(browser, SECONDS, 0.05).until(lambda b: b.execute_script(f"return {script}"))
-
-
-def axe(browser: WebDriver) -> list[tuple[str, str]]:
-    browser.execute_script(files("axe_core_python").joinpath("axe.min.js").read_text("utf-8"))
-    found = browser.execute_async_script("axe.run(document, {resultTypes: ['violations']}).then(arguments[0])")
-    return [(one["id"], one["nodes"][0]["html"]) for one in found["violations"]]
 
 
 def test_by_keys_alone_to_a_question_its_rows_and_back(browser: WebDriver, loaded: Connection) -> None:

@@ -107,7 +107,7 @@ class StoredSite(Site):
 
     async def _question(self, request: Request) -> Response:
         body = await request.body()
-        return await run_in_threadpool(self._answered, body)
+        return await run_in_threadpool(self._asked, body)
 
     def _to_fill_in(self, query: str) -> Response:
         """The page with a question of the pack, if the address names one; nothing is asked."""
@@ -118,7 +118,7 @@ class StoredSite(Site):
         at = said["at"] if element else element_id(finding.leak.identity) if finding else ""
         return self._page_of(Asked(chosen, prefilled(chosen, element, finding) if chosen else {}, at=at), standing)
 
-    def _answered(self, body: bytes) -> Response:
+    def _asked(self, body: bytes) -> Response:
         """Ask what a form asks; what cannot be answered stays in its fields."""
         asked, standing = Asked(), self._now_standing()
         try:
