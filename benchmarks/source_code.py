@@ -96,4 +96,5 @@ def beside_parsing(many: str, rounds: int) -> Measured:
 
 def told(folder: str) -> object:
     """All that suggestions take from source code, of a system without elements."""
-    return code_said(*read_sources([folder]), [])
+    codes, of_others, _ = read_sources([folder])
+    return code_said(codes, of_others, [])

@@ -41,8 +41,27 @@ class Piece(NamedTuple):
     name: str
 
 
+class Local(NamedTuple):
+    """A use that is of these sources, by its name, and could be of a library of that name.
+
+    Attributes
+    ----------
+    of
+        The file, or the folder of a package of C++, that has it.
+    """
+
+    use: NodeUse
+    of: str
+
+
 class CodeUnits:
-    """The pieces of some files."""
+    """The pieces of some files.
+
+    Attributes
+    ----------
+    local
+        Uses that no library is asked about, since something here has that name.
+    """
 
     def __init__(self, codes: Sequence[Code]) -> None:
         self._python = {code.file: code for code in codes if code.language == PYTHON}
@@ -60,15 +79,18 @@ class CodeUnits:
                     self._classes[package_of(code.file)].add(one.name)
         self.uses: dict[Piece, list[NodeUse]] = defaultdict(list)
         self.links: dict[Piece, set[Piece]] = defaultdict(set)
+        self.local: list[Local] = []
         self._known: dict[tuple[str, str], Piece | None] = {}
         for code in codes:
             for use in code.uses:
                 piece = self.piece(code, use.unit)
                 link = self._link(code, use.name)
+                used = NodeUse(use.name, code.language, Place(code.file, use.line))
                 if link:
                     self.links[piece].add(link)
-                elif not use.name.startswith("."):
-                    self.uses[piece].append(NodeUse(use.name, code.language, Place(code.file, use.line)))
+                if not use.name.startswith("."):
+                    self.uses[piece] += [] if link else [used]
+                    self.local += [Local(used, link.of)] if link else []
 
     def piece(self, code: Code, name: str) -> Piece:
         """Return a piece of a file by its name."""

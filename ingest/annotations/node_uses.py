@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.suggesting.library_rules import NodeUse
-    from rosprivacy.ingest.annotations.code_units import Piece
+    from rosprivacy.ingest.annotations.code_units import Local, Piece
     from rosprivacy.ingest.annotations.source_code import Code, Site
 
 TESTS = frozenset(["test", "tests", "testing"])  # folders
@@ -40,10 +40,13 @@ class CodeUses(NamedTuple):
         By full name of a node, sorted.
     without_node
         Of which nobody knows whose they are.
+    local
+        That are no uses of a library, since something in the files has that name.
     """
 
     of_nodes: Mapping[str, tuple[NodeUse, ...]]
     without_node: tuple[NodeUse, ...]
+    local: tuple[Local, ...] = ()
 
 
 def node_uses(codes: Sequence[Code], namespace: str = ROOT) -> CodeUses:
@@ -78,7 +81,8 @@ def node_uses(codes: Sequence[Code], namespace: str = ROOT) -> CodeUses:
             own[name].update(use for one in pieces for use in found.units.uses.get(one, ()))
         reached |= pieces if names else set()
     left = {use for piece, some in found.units.uses.items() if piece not in reached for use in some}
-    return CodeUses({name: _sorted(some) for name, some in sorted(own.items())}, _sorted(left))
+    of_nodes = {name: _sorted(some) for name, some in sorted(own.items())}
+    return CodeUses(of_nodes, _sorted(left), tuple(found.units.local))
 
 
 def _sorted(uses: Iterable[NodeUse]) -> tuple[NodeUse, ...]:

@@ -45,20 +45,23 @@ class Sources(NamedTuple):
         Sorted by file; what cannot be read is among them, with its problem.
     of_others
         Folders with code of others, or that is not built, that were left out; sorted.
+    unread
+        (file, folder) of code that was left out by the name of a folder alone: nobody said that it is not built.
     """
 
     codes: tuple[Code, ...]
     of_others: tuple[str, ...]
+    unread: tuple[tuple[str, str], ...] = ()
 
 
 def read_sources(sources: Iterable[str]) -> Sources:
     """Read all source code that some files and folders hold."""
     problems: list[InputError] = []
     files: set[str] = set()
-    of_others: set[str] = set()
+    left_out: dict[str, str] = {}
     for source in sources:
         try:
-            files.update(_files(source, problems, of_others))
+            files.update(_files(source, problems, left_out))
         except (OSError, ValueError):
             problems.append(LabelError(source, 0, "cannot be a path", "correct it"))
     codes = [Code(error.file, "", problems=(error,)) for error in problems]
@@ -73,10 +76,12 @@ def read_sources(sources: Iterable[str]) -> Sources:
             refused = LabelError(file, 0, f"C++ needs a library that is not installed ({error})", MISSING)
             codes += [] if lacking else [Code(file, "c++", problems=(refused,))]
             lacking = True
-    return Sources(tuple(sorted(codes, key=lambda code: code.file)), tuple(sorted(of_others)))
+    unread = ((file, folder) for file, folder in left_out.items() if file not in files and not _not_built(file, folder))
+    folders = tuple(sorted(set(left_out.values())))
+    return Sources(tuple(sorted(codes, key=lambda code: code.file)), folders, tuple(sorted(unread)))
 
 
-def _files(source: str, problems: list[InputError], of_others: set[str]) -> set[str]:
+def _files(source: str, problems: list[InputError], left_out: dict[str, str]) -> set[str]:
     found = contents(source)
     if found is None:
         if Path(source).is_file() and not _language(source):
@@ -92,7 +97,7 @@ def _files(source: str, problems: list[InputError], of_others: set[str]) -> set[
     elif all(folders.values()):
         what = f"no Python and no C++ in it but what is not read as code of others: {shown(', '.join(sorted(others)))}"
         problems.append(LabelError(source, 0, what, "name such a folder by itself to have it read"))
-    of_others |= others
+    left_out.update((file, folder) for file, folder in folders.items() if folder)
     return {file for file, folder in folders.items() if not folder}
 
 
@@ -125,6 +130,12 @@ def _left_out(source: str, file: str) -> str:
         if part in OF_OTHERS or _ignored(folder):
             return folder
     return ""
+
+
+def _not_built(file: str, folder: str) -> bool:
+    """Whether a file says that the folder, or one in it on the way to a file, is not built."""
+    inside = (str(one) for one in Path(file).parents if one == Path(folder) or one.is_relative_to(folder))
+    return any(map(_ignored, inside))
 
 
 def _below(source: str, file: str) -> tuple[Path, tuple[str, ...]]:

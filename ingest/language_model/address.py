@@ -16,6 +16,8 @@ OPTION = "--model-url"
 PATH = "/chat/completions"
 EXAMPLE = "write it as http://localhost:PORT/v1 or https://HOST/v1"
 ENCRYPT = "use https://, an address such as 192.168.0.2, or say --model-unencrypted"
+# RFC 1918 and RFC 4193. What ipaddress calls private is more: addresses for examples (203.0.113.9), and 0.0.0.0.
+PRIVATE = tuple(map(ipaddress.ip_network, ("10.0.0.0/8", "172.16.0.0/12", "192.168.0.0/16", "fc00::/7")))
 
 
 class Address(NamedTuple):
@@ -80,5 +82,6 @@ def _is_local(host: str) -> bool:
         address = ipaddress.ip_address(host)
     except ValueError:
         return host == "localhost"
-    mapped = getattr(address, "ipv4_mapped", None)  # Python 3.11 takes ::ffff:8.8.8.8 as private
-    return (mapped or address).is_private
+    address = getattr(address, "ipv4_mapped", None) or address
+    networks = (network for network in PRIVATE if network.version == address.version)
+    return address.is_loopback or address.is_link_local or any(address in network for network in networks)

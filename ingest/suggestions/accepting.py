@@ -41,11 +41,16 @@ LIMITING = frozenset(["sanitizer", "never", "mundane", "only"])  # roles that ta
 
 @dataclass(frozen=True, slots=True)
 class Accepted:
-    """The new text, how many suggestions became labels, and what to tell a person."""
+    """The new text, the labels that are in it now, and what to tell a person."""
 
     text: str
-    count: int
+    labels: tuple[NewLabel, ...]
     remarks: tuple[str, ...]
+
+    @property
+    def count(self) -> int:
+        """How many labels these are."""
+        return len(self.labels)
 
 
 class NewLabel(NamedTuple):
@@ -115,7 +120,7 @@ def accept(
         else:
             allowed.append(_accepted(one, who, day))
     done = with_labels(file, text, allowed, vocabulary)
-    return Accepted(done.text, done.count, (*remarks, *done.remarks))
+    return Accepted(done.text, done.labels, (*remarks, *done.remarks))
 
 
 def _accepted(one: Comment, who: str, day: str) -> NewLabel:
@@ -156,7 +161,7 @@ def with_labels(file: str, text: str, labels: Sequence[NewLabel], vocabulary: Vo
     _check(file, rest, new, taken, vocabulary)
     done = [(one.section, one.name, one.said) for one in taken]
     left = [as_written(one) for one in comments if (one.section, one.name, one.said) not in done]
-    return Accepted(with_comments(new, [*refusals, *left]), len(taken), tuple(remarks))
+    return Accepted(with_comments(new, [*refusals, *left]), tuple(taken), tuple(remarks))
 
 
 def _closing(comment: Comment, known: Collection[tuple[str, str]] | None, vocabulary: Vocabulary) -> str:

@@ -2,6 +2,9 @@
 
 WORDS = {
     "rv.title": "Prüfung der Daten eines Roboters",
+    "rv.title.fleet": "Prüfung der Daten einer Flotte",
+    "rv.robots": "{robot}: {what}.",
+    "rv.beyond": "Hier kann keine Antwort gegeben werden: Das steht in der Datei der ganzen Flotte, oder der Roboter hat keine Datei für Antworten. Es bleibt offen. Fragen Sie die Technik.",
     "rv.progress": "{n} von {all} entschieden",
     "rv.undo": "Letzte Antwort zurücknehmen",
     "rv.save": "Antworten speichern",

@@ -2,6 +2,9 @@
 
 WORDS = {
     "rv.title": "Review of a robot's data",
+    "rv.title.fleet": "Review of a fleet's data",
+    "rv.robots": "{robot}: {what}.",
+    "rv.beyond": "No answer can be given here: this is stated in the file of the whole fleet, or of a robot without a file for answers. It stays open. Ask the engineer.",
     "rv.progress": "{n} of {all} decided",
     "rv.undo": "Take the last answer back",
     "rv.save": "Save the answers",

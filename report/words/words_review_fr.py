@@ -2,6 +2,9 @@
 
 WORDS = {
     "rv.title": "Examen des données d'un robot",
+    "rv.title.fleet": "Examen des données d'une flotte",
+    "rv.robots": "{robot} : {what}.",
+    "rv.beyond": "Aucune réponse n'est possible ici : cela est indiqué dans le fichier de toute la flotte, ou le robot n’a pas de fichier pour les réponses. Cela reste ouvert. Demandez à l'ingénieur.",
     "rv.progress": "{n} sur {all} décidés",
     "rv.undo": "Annuler la dernière réponse",
     "rv.save": "Enregistrer les réponses",

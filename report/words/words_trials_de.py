@@ -9,6 +9,8 @@ WORDS = {
     "x.trial.name": "Probe {n}",
     "x.trial.drop": "Vergessen",
     "x.trial.dropped": "Vergessen: {name}.",
+    "x.trial.both": "Zwei Proben zusammen",
+    "x.trial.with": "Zusammen mit welcher Probe?",
     "x.trial.gone": "„{name}“ lässt sich nicht mehr probieren. So steht es jetzt.",
     "x.trial.tried": "Was probiert wird",
     "x.trial.follows": "Was daraus folgt",

@@ -9,6 +9,8 @@ WORDS = {
     "x.trial.name": "Trial {n}",
     "x.trial.drop": "Forget",
     "x.trial.dropped": "Forgotten: {name}.",
+    "x.trial.both": "Try two together",
+    "x.trial.with": "Together with which trial?",
     "x.trial.gone": "“{name}” cannot be tried any more. This is how it stands.",
     "x.trial.tried": "What is tried",
     "x.trial.follows": "What follows",

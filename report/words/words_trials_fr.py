@@ -11,6 +11,8 @@ _TYPED = {
     "x.trial.name": "Essai {n}",
     "x.trial.drop": "Oublier",
     "x.trial.dropped": "Oublié : {name}.",
+    "x.trial.both": "Deux essais ensemble",
+    "x.trial.with": "Avec quel autre essai ?",
     "x.trial.gone": "« {name} » ne peut plus être essayé. Voici l'état actuel.",
     "x.trial.tried": "Ce qui est essayé",
     "x.trial.follows": "Ce qui en résulte",

@@ -15,7 +15,7 @@ from rosprivacy.ingest.annotations.annotation_text import WORDS, Annotation, rea
 from rosprivacy.ingest.annotations.code_evidence import CodeEvidence, code_evidence
 from rosprivacy.ingest.annotations.source_files import read_sources
 from rosprivacy.ontology.vocabulary import load
-from tests.helpers.command import cli
+from tests.helpers.command import cli, refused
 from tests.helpers.docs import CATEGORIES, blocks
 from tests.helpers.paths import ROOT
 
@@ -87,9 +87,9 @@ def test_what_a_person_added_is_a_difference(package: Path, cli: Cli) -> None:
         done = cli("annotations", "src", "--check", LABELS, cwd=package)
         assert (done.returncode, bool(done.stdout)) == (1, True)
     (package / LABELS).write_text("# mine\n" + text)
-    refused = cli("annotations", "src", "-o", LABELS, cwd=package)
-    assert refused.returncode == 2
-    assert "was not written by annotations" in refused.stderr
+    done = cli("annotations", "src", "-o", LABELS, cwd=package)
+    assert done.returncode == 2
+    assert "was not written by annotations" in done.stderr
     assert (package / LABELS).read_text() == "# mine\n" + text
 
 
@@ -154,9 +154,9 @@ def test_names_and_notes_of_strangers_stay_text(tmp_path: Path, cli: Cli) -> Non
     """No line of YAML, no key and no terminal sequence comes of a comment or of a file's name."""
     file = tmp_path / "x: {y}\n\x1b[31m # 'z.py"
     file.write_text('# privacy(/a: {leak: [Voice]}): mundane\n# privacy("b"): mundane\n')
-    refused = cli("annotations", str(tmp_path), cwd=tmp_path)
-    assert (refused.returncode, len(refused.stderr.splitlines())) == (2, 2)
-    assert all(line.isprintable() for line in refused.stderr.splitlines())
+    done = cli("annotations", str(tmp_path), cwd=tmp_path)
+    assert (done.returncode, len(done.stderr.splitlines())) == (2, 2)
+    assert all(line.isprintable() for line in done.stderr.splitlines())
     note = 'why: "x" }\x1b]0;title\x07 # \u202e nodes: {/b: conduit} \\n - &a *a !!python/object'
     file.write_text(
         "# privacy(/a:b}): mundane\n# privacy(/c): conduit Video\n"
@@ -183,19 +183,69 @@ def test_code_of_others_below_what_is_named_is_left_out_and_told(tmp_path: Path,
     for name in ("own.py", "third_party/lib/x.py", "deep/vendor/y.cpp", "vendor.py"):
         file = tmp_path / "p" / name
         file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(f"{'//' if file.suffix == '.cpp' else '#'} privacy(/{file.stem}): mundane\n", "utf-8")
+        text = "p" if "/" not in name else "our p"  # others write of privacy, too, and of what they do with it
+        file.write_text(f"{'//' if file.suffix == '.cpp' else '#'} {text}rivacy(/{file.stem}): mundane\n", "utf-8")
     told = f"{NOT_READ}: p/deep/vendor, p/third_party\n"
     done = cli("annotations", "p", cwd=tmp_path)
     assert done.stderr == f"2 annotations of 2 elements in 2 files; {told}"
     assert "/x" not in done.stdout
-    done = cli("annotations", "p/third_party", "p/deep/vendor/y.cpp", cwd=tmp_path)
-    assert done.stderr == "2 annotations of 2 elements in 2 files\n"
+
+
+LOST = (
+    "this annotation is not read, since p/{0} is taken for code of others; name that folder, too, to have it read; "
+    "or put a file COLCON_IGNORE into it to leave it out"
+)
+
+
+@pytest.mark.parametrize(
+    ("name", "line"),
+    [
+        ("build/demo/node.py", "# privacy(/camera): source Video"),
+        ("vendor/driver.py", "self.pub = make()  # privacy: source Video"),
+        ("vendor/driver.cpp", "  // privacy(/camera): source Video"),
+        ("install/deep/site-packages/x.hpp", "/* privacy(/camera): source Video */"),
+        ("third_party/old.py", "print 'no Python 3'  # privacy: leak Voice"),
+        ("vendor/driver.py", "# privacy: source Vidoe"),
+    ],
+)
+def test_an_annotation_in_code_of_others_is_an_error(tmp_path: Path, cli: Cli, name: str, line: str) -> None:
+    """Somebody wrote it: dropped, it would hide a source."""
+    file = tmp_path / "p" / name
+    file.parent.mkdir(parents=True)
+    file.write_text(f"\n{line}\n", "utf-8")
+    (tmp_path / "p" / "own.py").write_text("# privacy(/x): mundane\n", "utf-8")
+    done = cli("annotations", "p", cwd=tmp_path)
+    folder = name.partition("/")[0]
+    assert refused(done) == [f"p/{name}:2: {LOST.format(folder)}"]
+    (tmp_path / "p").rename(tmp_path / "q")
+    (tmp_path / "q" / folder / "COLCON_IGNORE").touch()
+    assert cli("annotations", "q", cwd=tmp_path).returncode == 0
+
+
+def test_a_folder_of_code_of_others_is_read_if_it_is_named_too(tmp_path: Path, cli: Cli) -> None:
+    (tmp_path / "p" / "vendor").mkdir(parents=True)
+    (tmp_path / "p" / "vendor" / "x.py").write_text("# privacy(/x): mundane\n", "utf-8")
+    (tmp_path / "p" / "own.py").write_text("# privacy(/y): mundane\n", "utf-8")
+    done = cli("annotations", "p", "p/vendor", cwd=tmp_path)
+    assert (done.returncode, done.stderr.partition(";")[0]) == (0, "2 annotations of 2 elements in 2 files")
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["# Privacy matters: source code", "# privacy: we keep nothing", "privacy: source Video", "x = 'privacy: 1'"],
+)
+def test_words_of_others_about_privacy_are_no_annotation(tmp_path: Path, cli: Cli, line: str) -> None:
+    (tmp_path / "p" / "vendor").mkdir(parents=True)
+    (tmp_path / "p" / "vendor" / "x.py").write_text(f"{line}\n", "utf-8")
+    (tmp_path / "p" / "vendor" / "broken.py").write_bytes(b"privacy \xff\x00 (((\n")
+    (tmp_path / "p" / "own.py").write_text("# privacy(/y): mundane\n", "utf-8")
+    assert cli("annotations", "p", cwd=tmp_path).returncode == 0
 
 
 def test_a_folder_with_nothing_but_code_of_others_is_an_error(tmp_path: Path, cli: Cli) -> None:
     file = tmp_path / "p" / "vendor" / "x.py"
     file.parent.mkdir(parents=True)
-    file.write_text("# privacy(/x): mundane\n", "utf-8")
+    file.write_text("# theirs\n", "utf-8")
     done = cli("annotations", "p", cwd=tmp_path)
     what = "p: no Python and no C++ in it but what is not read as code of others: p/vendor"
     assert (done.returncode, done.stderr) == (2, f"{what}; name such a folder by itself to have it read\n")

@@ -134,11 +134,10 @@ def test_decisions_are_about_one_robot(cli: Cli, system: tuple[str, ...]) -> Non
     assert "--decisions: is for one robot" in done.stderr
 
 
-@pytest.mark.parametrize("system", [("--fleet", "f.yaml"), ("--from-database",)])
-def test_a_review_is_about_one_robot(cli: Cli, system: tuple[str, ...]) -> None:
-    done = cli("explore", *system, "--review")
+def test_a_review_of_a_database_has_no_file_for_answers(cli: Cli) -> None:
+    done = cli("explore", "--from-database", "--review")
     assert done.returncode == 2
-    assert "--review: asks about one robot" in done.stderr
+    assert "--review: has no file for answers in a database" in done.stderr
 
 
 def test_a_policy_that_is_not_there_is_one_line(cli: Cli, tmp_path: Path) -> None:

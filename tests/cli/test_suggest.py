@@ -370,6 +370,31 @@ def test_what_code_uses_is_told_with_its_line_and_what_is_nobodys_too(cli: Cli, 
     )  # fmt: skip
 
 
+def test_a_package_of_the_sources_that_is_called_as_a_library_is_told(cli: Cli, robot: Path) -> None:
+    """Which one Python imports, nobody knows here: the leak would be missed without a word."""
+    (robot / "l.yaml").write_text("labels: 1\n", "utf-8")
+    for name in ("finder/finder", "requests/requests"):
+        (robot / "src" / name).mkdir(parents=True)
+        (robot / "src" / name / "__init__.py").write_text("\n", "utf-8")
+    (robot / "src" / "finder" / "finder" / "node.py").write_text(
+        "import requests, ours\nfrom rclpy.node import Node\n\n\nclass Finder(Node):\n    def __init__(self):\n"
+        "        super().__init__('finder')\n        requests.post('x')\n        requests.put('x')\n",
+        "utf-8",
+    )
+    text = cli("suggest", "p.xml", "--source", "src", cwd=robot).stdout
+    assert "uses requests.post" not in text
+    (told,) = [line for line in text.splitlines() if "notice" in line]
+    assert told == (
+        "notice: src/finder/finder/node.py:8: requests.post is taken for src/requests/requests/__init__.py of these "
+        "sources, so no library of that name suggests anything; label the node by hand if the library is meant"
+    )
+    (robot / "src" / "requests" / "requests" / "__init__.py").rename(robot / "src" / "requests" / "__init__.py")
+    (robot / "src" / "requests").rename(robot / "src" / "other")
+    text = cli("suggest", "p.xml", "--source", "src", cwd=robot).stdout
+    assert "uses requests.post (src/finder/finder/node.py:8): it talks to a server" in text
+    assert "notice" not in text
+
+
 def test_code_tells_types_with_its_line(cli: Cli, robot: Path) -> None:
     (robot / "l.yaml").write_text("labels: 1\n", "utf-8")
     (robot / "driver.py").write_text(
@@ -589,6 +614,79 @@ def test_a_comment_that_is_older_than_a_finding_does_not_close_it(cli: Cli, robo
         told.stderr,
     )
     assert (robot / "l.yaml").read_text("utf-8") == LEAKS + old
+
+
+@pytest.fixture
+def limited(cli: Cli, tmp_path: Path) -> Path:
+    """Somebody accepted ``never`` for /front, when no source was known."""
+    (tmp_path / "p.xml").write_text(
+        policy_of({"camera": (["/front", "/side"], []), "box": ([], ["/front"]), "other": ([], ["/side"])}), "utf-8"
+    )
+    lines = [
+        suggestion("nodes", "/camera", {"source": ["Video"]}),
+        suggestion("topics", "/front", {"never": ["Video"]}, "may"),
+        suggestion("nodes", "/box", {"leak": ["Video"]}, "may"),
+    ]
+    (tmp_path / "l.yaml").write_text(f"labels: 1\nauthor: Ada\n{''.join(lines)}", "utf-8")
+    done = cli("labels", "p.xml", "-l", "l.yaml", "--accept", "/front", cwd=tmp_path)
+    assert done.stderr == "l.yaml: 1 suggestion accepted\n"
+    return tmp_path
+
+
+def test_a_limit_on_the_way_of_data_that_are_accepted_later_is_told(cli: Cli, limited: Path) -> None:
+    done = cli("labels", "p.xml", "-l", "l.yaml", "--accept", "likely", cwd=limited)
+    assert (done.returncode, done.stderr) == (
+        0,
+        (
+            "l.yaml:4: never of topic /front takes Video away, which is accepted now; see whether it is still so\n"
+            "l.yaml: 1 suggestion accepted\n"
+        ),
+    )
+    leak = cli("labels", "p.xml", "-l", "l.yaml", "--accept", "/box", cwd=limited)
+    assert leak.stderr == (
+        "l.yaml:4: never of topic /front takes Video away, which is accepted now; behind it lies the leak /box; "
+        "see whether it is still so\nl.yaml: 1 suggestion accepted\n"
+    )
+
+
+def test_without_policies_a_limit_that_may_be_on_the_way_is_told(cli: Cli, limited: Path) -> None:
+    done = cli("labels", "-l", "l.yaml", "--accept", "likely", cwd=limited)
+    assert (done.returncode, done.stderr) == (
+        0,
+        (
+            "l.yaml: Video is accepted, and such data may be taken away by never of /front (line 4); name the policies "
+            "as well, and what of it is on the way is told\nl.yaml: 1 suggestion accepted\n"
+        ),
+    )
+
+
+@pytest.mark.parametrize(
+    ("said", "told"),
+    [
+        ("{never: [Voice]}", False),
+        ("{never: [PersonImage]}", True),
+        ("mundane", True),
+        ("{only: [Voice]}", True),
+        ("{only: [PersonImage]}", False),
+        ("sensitive", False),
+    ],
+)
+def test_what_takes_away_other_data_is_no_limit_of_these(cli: Cli, limited: Path, *, said: str, told: bool) -> None:
+    source = suggestion("nodes", "/camera", {"source": ["Video"]})
+    (limited / "l.yaml").write_text(f"labels: 1\nauthor: Ada\ntopics:\n  /front: {said}\n{source}", "utf-8")
+    text = (limited / "l.yaml").read_text("utf-8")
+    for policies in ([], ["p.xml"]):
+        (limited / "l.yaml").write_text(text, "utf-8")
+        done = cli("labels", *policies, "-l", "l.yaml", "--accept", "likely", cwd=limited)
+        assert ("/front" in done.stderr) is told
+
+
+def test_a_limit_elsewhere_is_not_on_the_way(cli: Cli, limited: Path) -> None:
+    source = suggestion("nodes", "/camera", {"source": ["Video"]})
+    (limited / "l.yaml").write_text(f"labels: 1\nauthor: Ada\ntopics:\n  /other: {{never: [Video]}}\n{source}", "utf-8")
+    (limited / "p.xml").write_text(policy_of({"camera": (["/front"], []), "box": (["/other"], [])}), "utf-8")
+    done = cli("labels", "p.xml", "-l", "l.yaml", "--accept", "likely", cwd=limited)
+    assert done.stderr == "l.yaml: 1 suggestion accepted\n"
 
 
 def test_what_is_accepted_in_one_go_is_known_before_data_are_taken_away(cli: Cli, tmp_path: Path) -> None:

@@ -13,12 +13,18 @@ from typing import TYPE_CHECKING
 import pytest
 
 import rosprivacy
+from rosprivacy.analysis.suggesting.question_rows import GOES_THROUGH
+from rosprivacy.labelling.asking import asked_now
+from rosprivacy.labelling.conversation import Conversation
+from rosprivacy.labelling.suggesting import suggest_labels
+from rosprivacy.settings import Settings
 from tests.helpers.command import LINE, cli
 from tests.helpers.little_robots import HOSTILE, policy_of
 
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from rosprivacy.analysis.suggesting.question_rows import Question
     from tests.helpers.command import Cli, Done
 
 __all__ = ["cli"]
@@ -80,37 +86,114 @@ def test_a_no_is_kept_with_who_and_when_and_not_asked_again(
     assert "let such data out" in ask(cli, robot, "q", monkeypatch).stdout
 
 
-def test_a_number_for_a_list_that_is_not_asked_takes_nothing_away(
+LEAKING = "labels: 1\nauthor: Ada\nnodes:\n  /eye: {source: [Video]}\n  /ear: {source: [Voice]}\n  /box: {leak: none}\n"
+TWO_KINDS = policy_of({"eye": (["/front"], []), "ear": (["/front"], []), "box": ([], ["/front"])})
+
+
+@pytest.mark.parametrize("keys", ["10\n", "1", "0", "2", "9", "3\n", "/front 0", "/rear topic never Video and Voice\n"])
+def test_keys_of_a_file_that_are_out_of_step_take_nothing_away(
+    cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, keys: str
+) -> None:
+    """The ``1`` of ``10`` says *Video at most* of a channel of two kinds, and ``0`` none of it."""
+    (tmp_path / "p.xml").write_text(TWO_KINDS, "utf-8")
+    (tmp_path / "l.yaml").write_text(LEAKING, "utf-8")
+    done = ask(cli, tmp_path, f"{keys}q", monkeypatch)
+    assert "Can Video and Voice go through?" in done.stdout
+    assert "no more are read" in done.stdout or "no more keys are read" in done.stdout
+    assert (tmp_path / "l.yaml").read_text("utf-8") == LEAKING
+
+
+@pytest.mark.parametrize(
+    ("line", "label"),
+    [
+        ("/front topic never Video Voice\n", "/front: {never: [Video, Voice], note: "),
+        ("/front topic only Video\r\n", "/front: {only: [Video], note: "),
+    ],
+)
+def test_a_line_of_a_file_says_of_its_element_what_is_taken_away(
+    cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, line: str, label: str
+) -> None:
+    (tmp_path / "p.xml").write_text(TWO_KINDS, "utf-8")
+    (tmp_path / "l.yaml").write_text(LEAKING, "utf-8")
+    told = ask(cli, tmp_path, "1", monkeypatch).stdout
+    assert "'1' takes data away; where no terminal is, a line says it, and no more keys are read: " in told
+    assert "/front topic only Video\n" in told
+    done = ask(cli, tmp_path, line, monkeypatch)
+    assert "1 answer in l.yaml" in done.stdout
+    assert label in (tmp_path / "l.yaml").read_text("utf-8")
+
+
+def test_a_line_that_ends_data_says_the_node_and_the_method(
     cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A file of keys from an earlier time: ``10`` and Enter would be a ``0``, and close the leak."""
-    policy = policy_of({"eye": (["/front"], []), "ear": (["/front"], []), "box": ([], ["/front"])})
-    (tmp_path / "p.xml").write_text(policy, "utf-8")
-    before = "labels: 1\nauthor: Ada\nnodes:\n  /eye: {source: [Video]}\n  /box: {leak: [Video]}\n"
-    (tmp_path / "l.yaml").write_text(before, "utf-8")
-    done = ask(cli, tmp_path, "10\nq", monkeypatch)
-    assert "'1' is no answer here: the keys are out of step" in done.stdout
-    assert (tmp_path / "l.yaml").read_text("utf-8") == before
+    nodes = {"eye": (["/a/image"], []), "face_detector": (["/faces"], ["/a/image"]), "box": ([], ["/faces"])}
+    (tmp_path / "p.xml").write_text(policy_of(nodes), "utf-8")
+    types = "topics:\n  /a/image: {types: [sensor_msgs/msg/Image]}\n  /faces: {types: [hri_msgs/msg/IdsList]}\n"
+    (tmp_path / "l.yaml").write_text(SOURCE + types, "utf-8")
+    ask(cli, tmp_path, "nnq", monkeypatch)
+    assert "0 ends them (drop)" in ask(cli, tmp_path, "q", monkeypatch).stdout
+    before = (tmp_path / "l.yaml").read_text("utf-8")
+    for wrong in ("0", "/face_detector node sanitizer Video anonymise\n", "/box node sanitizer Video drop\n"):
+        ask(cli, tmp_path, f"{wrong}q", monkeypatch)
+        assert (tmp_path / "l.yaml").read_text("utf-8") == before
+    done = ask(cli, tmp_path, "/face_detector node sanitizer Video drop\nq", monkeypatch)
+    assert "1 answer in l.yaml" in done.stdout
+    assert "/face_detector: {sanitizer: {Video: drop}, note: " in (tmp_path / "l.yaml").read_text("utf-8")
 
 
 def test_nothing_is_taken_away_in_a_group(cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """``0`` is an answer where one row is picked, or was opened."""
+    """It is said of one row, which a line picks; or it was opened before."""
     through = "s s"
     group = ask(cli, robot, f"{through} 0 q", monkeypatch)
     assert "topic /a" in group.stdout
     assert "'0' is no answer here" in group.stdout
-    two = ask(cli, robot, f"{through} A B 0 q", monkeypatch)
-    assert "'0' is no answer here" in two.stdout
+    two = ask(cli, robot, f"{through} /a topic never Video; /b topic never Video\n", monkeypatch)
+    assert "is no answer here" in two.stdout
     assert (robot / "l.yaml").read_text("utf-8") == SOURCE
-    picked = ask(cli, robot, f"{through} B 0 q", monkeypatch)
+    picked = ask(cli, robot, f"{through} A /b topic never Video\nq", monkeypatch)
     assert "B: " in picked.stdout
-    assert '  /b: {never: [Video], note: "answered by Ada on 2026-01-01"}' in (robot / "l.yaml").read_text("utf-8")
+    assert "  A: " in picked.stdout
+    text = (robot / "l.yaml").read_text("utf-8")
+    assert '  /b: {never: [Video], note: "answered by Ada on 2026-01-01"}' in text
+    assert "/a:" not in text
     (robot / "l.yaml").write_text(SOURCE, "utf-8")
-    ask(cli, robot, f"{through} o y s 0 q", monkeypatch)
+    ask(cli, robot, f"{through} o y s /c topic never Video\nq", monkeypatch)
     text = (robot / "l.yaml").read_text("utf-8")
     assert "/a: {sensitive: [Video]" in text
     assert "/b:" not in text
     assert "/c: {never: [Video]" in text
+
+
+@pytest.mark.parametrize(("keys", "kept"), [("AB0", False), ("B0", True)])
+def test_at_a_terminal_a_key_takes_away_of_one_row(robot: Path, keys: str, kept: bool) -> None:  # noqa: FBT001 - a row of a table
+    """Who presses it sees the question."""
+    question = next(one for one in asked_of(robot) if one.about == GOES_THROUGH)
+    said: list[str] = []
+
+    class Person:
+        def __init__(self) -> None:
+            self.keys = [*keys, "q"]
+
+        def key(self, now: Question, picked: frozenset[int]) -> str:
+            del picked
+            return self.keys.pop(0) if now == question else "s"
+
+        def told(self, remark: str) -> None:
+            said.append(remark)
+
+    answered: list[str] = []
+
+    def keep(now: Question, key: str) -> tuple[str, ...]:
+        answered.append(f"{now.rows[0].element.name} {key}")
+        return ()
+
+    Conversation(lambda: [question] if not answered else [], keep, Person()).run()
+    assert (answered == ["/b 0"]) is kept
+    assert bool(said) is not kept
+
+
+def asked_of(robot: Path) -> tuple[Question, ...]:
+    return asked_now(suggest_labels((str(robot / "p.xml"),), (str(robot / "l.yaml"),), Settings()))
 
 
 def test_the_finding_that_may_hang_on_an_answer_is_told_before(

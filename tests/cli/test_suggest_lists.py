@@ -89,32 +89,70 @@ def test_only_what_a_type_says_is_in_a_list_and_all_of_it_is_shown(
     assert "  3 and Enter for none of it in all 3, A-Z take out or put back, o not as a list" in shown
 
 
-def test_a_list_is_confirmed_by_its_number_and_each_note_says_so(
-    cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    done = ask(cli, robot, f"{BEFORE}3\nq", monkeypatch)
-    assert "1 answer in l.yaml" in done.stdout
+def line(*names: str) -> str:
+    """What a file of keys says of a list."""
+    return "; ".join(f"/{name} topic never Video" for name in names) + "\n"
+
+
+def test_a_list_is_confirmed_by_its_number_and_each_note_says_so(robot: Path) -> None:
+    conversation(robot / "p.xml", robot / "l.yaml", Careless()).run()
     text = (robot / "l.yaml").read_text("utf-8")
     for name in ("arm", "battery", "joints"):
         assert f"  /{name}: {{never: [Video], " in text
-    assert text.count("answered by Ada on 2026-01-01 in a list of 3: type sensor_msgs/msg/") == 3
+    assert text.count("answered by Ada on 2026-11-23 in a list of 3: type sensor_msgs/msg/") == 3
+
+
+@pytest.mark.parametrize("number", ["", "0", "1", "2", "4", "33", "3x", "03"])
+def test_no_other_number_confirms_it(robot: Path, number: str) -> None:
+    before = (robot / "l.yaml").read_text("utf-8")
+    told: list[str] = []
+
+    class Mistyping:
+        def __init__(self) -> None:
+            self.keys = [number, QUIT]
+
+        def key(self, question: Question, picked: frozenset[int]) -> str:
+            del picked
+            return self.keys.pop(0) if question.about == NOTHING_THROUGH else SKIP
+
+        def told(self, remark: str) -> None:
+            told.append(remark)
+
+    conversation(robot / "p.xml", robot / "l.yaml", Mistyping()).run()
+    assert told == ([f"{number!r} is no answer here; 3 rows left"] if number else [])
+    assert (robot / "l.yaml").read_text("utf-8") == before
 
 
 @pytest.mark.parametrize(
-    "keys", ["y", "0", "0\n", "1\n", "2\n", "4\n", "33\n", "3", "3x", "3 \n", "x", "n", "Z", "\n\n"]
+    "keys",
+    [
+        *("y", "0", "0\n", "1\n", "2\n", "3\n", "4\n", "33\n", "3", "3x", "3 \n", "x", "n", "Z", "\n\n", "A2\n"),
+        *(line("arm"), line("arm", "text"), line("arm", "arm"), line("arm", "joints").replace("Video", "Voice")),
+    ],
 )
-def test_nothing_else_confirms_it(cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch, keys: str) -> None:
+def test_a_file_of_keys_that_does_not_name_the_rows_confirms_nothing(
+    cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch, keys: str
+) -> None:
+    """Three others may be in the list than those that it was made for."""
     before = (robot / "l.yaml").read_text("utf-8")
     done = ask(cli, robot, f"{BEFORE}{keys}", monkeypatch)
     assert done.returncode == 0
     assert (robot / "l.yaml").read_text("utf-8") == before
 
 
-def test_rows_are_taken_out_and_asked_by_themselves(cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    done = ask(cli, robot, f"{BEFORE}A3\n2\nq", monkeypatch)
-    assert "'3' is no answer here; 2 rows left" in done.stdout
+def test_a_file_of_keys_confirms_the_rows_that_it_names(cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    told = ask(cli, robot, f"{BEFORE}3\n", monkeypatch).stdout
+    whole = line("arm", "battery", "joints")
+    assert f"'3' takes data away; where no terminal is, a line says it, and no more keys are read: {whole}" in told
+    done = ask(cli, robot, f"{BEFORE}A{line('battery', 'joints')}q", monkeypatch)
+    assert "1 answer in l.yaml" in done.stdout
     text = (robot / "l.yaml").read_text("utf-8")
     assert text.count("never: [Video]") == text.count("in a list of 2: ") == 2
+    assert "/arm: {types" in text
+
+
+def test_rows_are_taken_out_and_asked_by_themselves(cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    ask(cli, robot, f"{BEFORE}{line('battery', 'joints')}q", monkeypatch)
     out = list_shown(ask(cli, robot, "ssssq", monkeypatch).stdout)
     assert out == []  # one channel makes no list
     (robot / "l.yaml").write_text(labels_of(TYPES), "utf-8")

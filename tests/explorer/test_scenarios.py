@@ -80,8 +80,8 @@ def test_a_storage_means_an_element_with_its_flows(session: Session, tmp_path: P
 def test_a_doubted_sanitizer_cleans_nothing() -> None:
     policy, labels = str(CARE / "care-home.policy.xml"), str(CARE / "care-home.labels.yaml")
     session = Session.open([policy], [labels])
-    cleaning = [entry.name for entry in session.own.labels.entries for s in entry.statements if s.role == "sanitizer"]
-    for name in dict.fromkeys(cleaning):
+    cleaning = [name for (_, name), entry in session.entries.items() if "sanitizer" in entry]
+    for name in cleaning:
         found = session.scenario(name, WhatIf(doubted=(("node", name, ()),)))
         entry = dict(session.entries["nodes", name])
         entry.pop("sanitizer")

@@ -70,6 +70,21 @@ def labels(choices: Choices) -> dict[str, str]:
     return {"labels.yaml": written(choices, top)}
 
 
+def journal(choices: Choices) -> dict[str, str]:
+    """What a session of the explorer left that was not saved, and the label file that it was about."""
+    head: Any = {"rosprivacy.session": 1, "labels": "", "policies": ""}
+    lines = [with_fault(choices, head) if choices.once_in(FAULTY) else head]
+    for _ in range(choices.below(4)):
+        node = choices.once_in(2)
+        section = "nodes" if node else choices.pick(("topics", "channels", "services", "elements", "labels"))
+        name = choices.pick((*NODES, *GLOBS) if node else (*CHANNELS, *NON_ROS_NAMES))
+        value = _node(choices) if node else choices.pick((_channel(choices), _element(choices, NON_ROS_NAMES), None))
+        line: Any = [section, name, value, *(["edited.yaml"] if choices.once_in(FAULTY) else [])]
+        lines.append(with_fault(choices, line) if choices.once_in(FAULTY) else line)
+    text = "".join(f"{json.dumps(line)}\n" for line in lines)
+    return {"journal.jsonl": text[:-2] if choices.once_in(8) else text, "edited.yaml": BASE_LABELS}
+
+
 def standard(choices: Choices) -> dict[str, str]:
     sections = {
         section: _keyed(choices, (*CHANNELS, *GLOBS), lambda c: c.pick(("mundane", "mundane", {"never": ["Video"]})))

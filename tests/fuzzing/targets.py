@@ -5,6 +5,7 @@ All files lie in the current folder, beside ``base.xml`` and the labels that go 
 
 from __future__ import annotations
 
+from contextlib import closing, suppress
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -12,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import rosprivacy
 from rosprivacy.analysis import durations
-from rosprivacy.analysis.errors import InputError
+from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.analysis.model import Confidence, Element, Place, Profile
 from rosprivacy.analysis.suggesting.asked_elements import Asked
 from rosprivacy.analysis.suggesting.by_package import package_evidence
@@ -20,6 +21,8 @@ from rosprivacy.analysis.suggesting.evidence import HIDING
 from rosprivacy.analysis.suggesting.library_rules import CPP, PYTHON, NodeUse
 from rosprivacy.analysis.suggesting.model_answers import judged
 from rosprivacy.analysis.suggesting.name_rules import of_topic
+from rosprivacy.explorer.journal import read_journal
+from rosprivacy.explorer.session import Session
 from rosprivacy.ingest.bags.bag_folders import read_bags
 from rosprivacy.ingest.decisions.decisions_file import read_decisions
 from rosprivacy.ingest.doors.text_files import TextFiles
@@ -49,6 +52,7 @@ from rosprivacy.queries.library import parse
 from rosprivacy.report.compare.earlier import read_earlier
 from rosprivacy.report.json_text import as_text
 from rosprivacy.running.observing import written
+from rosprivacy.settings import Settings
 from rosprivacy.spark import parquet
 from tests.fuzzing import (
     bag_texts,
@@ -160,6 +164,18 @@ def _accepted() -> None:
         if one.hides and one.confidence is Confidence.MAY
     )
     parse_labels(rest, load(), name="labels.yaml")
+
+
+def _taken_up() -> None:
+    """Each edit of a journal is refused or done; what is then saved is read as the session understood it."""
+    with closing(Session.open(["base.xml"], ["edited.yaml"], Settings(today=TODAY))) as session:
+        for edit in read_journal(Path("journal.jsonl")).edits:
+            with suppress(InputErrors):
+                session.do(edit)
+        session.save()
+        saved = rosprivacy.analyze("base.xml", "edited.yaml", today=TODAY)
+        assert [one.id for one in saved.findings] == [one.id for one in session.findings]
+        assert saved.analysis.verdict == session.verdict
 
 
 def _answered() -> None:
@@ -330,6 +346,7 @@ TARGETS = {target.name: target for target in (
         ("analyze", "node.json5", "-l", "star.yaml"),
     ),
     Target("name-rules", 10, suggestion_texts.name_rules, _named),
+    Target("journal", 10, label_texts.journal, _taken_up),
     Target("library-rules", 10, suggestion_texts.library_rules, _used),
     Target("suggestions", 10, suggestion_texts.suggested, _accepted),
     Target("model-exchanges", 10, suggestion_texts.recorded, _answered),

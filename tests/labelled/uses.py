@@ -50,7 +50,8 @@ def _write(file: Path, sources: Path) -> int:
     nodes = top["nodes"]
     names = [*nodes]
     rules = read_library_rules((), load())[0]
-    said = code_said(*read_sources([str(sources)]), [Element("node", name) for name in names])
+    codes, of_others, _ = read_sources([str(sources)])
+    said = code_said(codes, of_others, [Element("node", name) for name in names])
     for vertex, name in enumerate(names):
         used = sorted({told for use in said.uses.get(vertex, ()) for told in _told(use, rules)})
         nodes[name].pop("uses", None)

@@ -16,6 +16,7 @@ from rosprivacy.cli.output import emit
 from rosprivacy.clock import today
 from rosprivacy.labelling.asking import asked_now, with_answer
 from rosprivacy.labelling.conversation import Conversation, allowed
+from rosprivacy.labelling.named_answers import AND, BEGINS, keys_of, lines_of, takes_away
 from rosprivacy.labelling.suggested_lines import who_says
 from rosprivacy.report.editing import editing
 from rosprivacy.report.suggest.question_lines import keys_line, question_lines
@@ -29,9 +30,10 @@ if TYPE_CHECKING:
     from rosprivacy.settings import Settings
 
 DIGITS, MOST_DIGITS, ENTER = frozenset("0123456789"), 4, ("\r", "\n", "\r\n")
+LONGEST_ANSWER = 100_000  # signs of a line
 ENDED = "\x03\x04"  # Ctrl-C and Ctrl-D, where the terminal gives them as keys
-# A file of keys was made for other questions, and the digits of a number for a list may take data away elsewhere.
 OUT_OF_STEP = "the keys are out of step with the questions, and no more are read"
+BY_LINE = "takes data away; where no terminal is, a line says it, and no more keys are read"
 
 
 def ask(file: Path, told: Callable[[], Suggested], by: str | None, settings: Settings) -> None:
@@ -67,10 +69,15 @@ def ask(file: Path, told: Callable[[], Suggested], by: str | None, settings: Set
 
 
 class _Terminal:
-    """A person at a terminal; or a file of keys, in which blanks and line ends are none."""
+    """A person at a terminal; or a file of keys, in which blanks and line ends are none.
+
+    A file of keys may have been made for other questions. So there no single key takes data away, nor a number: a line
+    does, which names the element.
+    """
 
     def __init__(self) -> None:
         self.last: Question | None = None
+        self.next: list[str] = []  # the rest of what a line comes to
 
     def key(self, question: Question, picked: frozenset[int]) -> str:
         if question != self.last:
@@ -79,17 +86,42 @@ class _Terminal:
         self.last = question
         typer.echo(keys_line(question, picked, allowed(question, picked)))
         typer.echo("> ", nl=False)
-        key = _pressed()
-        if question.about == NOTHING_THROUGH and key in DIGITS:
-            key = _number(key)
-        elif key in DIGITS and key not in allowed(question, picked) and not sys.stdin.isatty():
-            typer.echo(f"{key!r} is no answer here: {OUT_OF_STEP}")
-            return ""
+        if self.next:
+            key = self.next.pop(0)
+        else:
+            key = _pressed()
+            if not at_terminal():
+                key = self._piped(key, question, picked)
+            elif question.about == NOTHING_THROUGH and key in DIGITS:
+                key = _number(key)
         typer.echo(shown(key))
         return key
 
     def told(self, remark: str) -> None:
         typer.echo(remark)
+
+    def _piped(self, key: str, question: Question, picked: frozenset[int]) -> str:
+        """What a key of a file says, or the line that begins with it; nothing if no more may be read."""
+        if key == BEGINS:
+            line = key + _rest_of_line()
+            self.next = list(keys_of(line, question, picked))
+            if self.next:
+                return self.next.pop(0)
+            typer.echo(f"{shown(line)!r} is no answer here: {OUT_OF_STEP}")
+            return ""
+        whole = question.about == NOTHING_THROUGH
+        if key not in DIGITS or (key in (can := allowed(question, picked)) and not takes_away(question, key)):
+            return key
+        rows = tuple(row for at, row in enumerate(question.rows) if (at in picked) is not whole or not picked)
+        lines = lines_of(question._replace(rows=rows), key) if whole or key in can else ()
+        problem = f"{BY_LINE}: {shown(AND.join(lines))}" if lines else f"is no answer here: {OUT_OF_STEP}"
+        typer.echo(f"{key!r} {problem}")
+        return ""
+
+
+def at_terminal() -> bool:
+    """Return whether keys come from a terminal."""
+    return sys.stdin is not None and sys.stdin.isatty()
 
 
 def _number(first: str) -> str:
@@ -104,10 +136,18 @@ def _number(first: str) -> str:
     return ""
 
 
+def _rest_of_line() -> str:
+    """What stands on a line after its first sign; of an endless line its beginning."""
+    rest = ""
+    while (key := _read()) and key not in ENTER and len(rest) < LONGEST_ANSWER:
+        rest += key
+    return rest
+
+
 def _pressed() -> str:
     """The next key; nothing if there is no more, or it cannot be read."""
     key = _read()
-    while key.isspace() and not sys.stdin.isatty():
+    while key.isspace() and not at_terminal():
         key = _read()
     return key
 
@@ -117,7 +157,7 @@ def _read() -> str:
     if sys.stdin is None:
         return ""
     try:
-        if sys.stdin.isatty():
+        if at_terminal():
             key = typer.getchar()
             return "" if key in ENDED else key
         key = sys.stdin.read(1)

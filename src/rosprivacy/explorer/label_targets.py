@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 from collections import defaultdict
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.explorer.own_file import chosen
 from rosprivacy.ingest.fleet.dds_domains import pseudo_robot
@@ -41,6 +41,21 @@ class Target(NamedTuple):
     alone: bool
 
 
+class Entry(NamedTuple):
+    """What a label file says of an element or a glob.
+
+    Attributes
+    ----------
+    target
+        The label file of a fleet; None where a session edits one only.
+    """
+
+    section: str
+    name: str
+    value: Any
+    target: Target | None = None
+
+
 class Targets:
     """The label files of a fleet, with the robots that read them.
 
@@ -54,6 +69,7 @@ class Targets:
         self.fleet = fleet
         self._robots = {robot.id: robot for robot in (*fleet.robots, *fleet.infrastructure)}
         self._readers: dict[str, dict[str, Robot]] = defaultdict(dict)
+        self._chosen: dict[tuple[str, ...], int | None] = {}
         self._names: dict[str, set[tuple[str, bool]]] = defaultdict(set)
         for robot in self._robots.values():
             for files, alone in ((robot.labels, False), (robot.own, True)):
@@ -65,6 +81,10 @@ class Targets:
         """Return by which names the fleet file leads to a label file, and whether as one of a robot."""
         return tuple(sorted(self._names.get(os.path.realpath(file), ())))
 
+    def readers(self, file: str) -> tuple[str, ...]:
+        """Return the robots that read a label file, by id."""
+        return tuple(self._readers.get(os.path.realpath(file), ()))
+
     def of(self, robot: str) -> tuple[Target, ...]:
         """Return the files for an element of a robot: that of its model, and its own; none where neither has one.
 
@@ -73,7 +93,9 @@ class Targets:
         found: dict[str, Target] = {}
         for one in self._of(robot):
             for files, alone in ((one.labels, False), (one.own, True)):
-                at = chosen(files)
+                if files not in self._chosen:
+                    self._chosen[files] = chosen(files)  # which looks into them
+                at = self._chosen[files]
                 if at is not None:
                     found.setdefault(os.path.realpath(files[at]), self._target(files[at], alone=alone))
         return tuple(sorted(found.values(), key=lambda target: target.alone))

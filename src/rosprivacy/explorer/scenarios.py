@@ -7,6 +7,7 @@ an edit: the label file and the policies stay as they are.
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import count
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.errors import InputError, InputErrors, shown
@@ -197,6 +198,51 @@ def told(what: WhatIf) -> str:
     }
     more: dict[str, Sized] = {"flow added": what.flows, "sanitizer doubted": what.doubted}
     return ", ".join(_few(len(some), name) for name, some in {**parts, **more}.items() if some)
+
+
+def together(first: WhatIf, second: WhatIf) -> WhatIf:
+    """Return what is tried if both are; what both say is said once.
+
+    An element of the second that is called as another one of the first is another element: it gets a number.
+
+    >>> disk = WhatIf(elements={"disk": {"kind": "storage"}}, flows=(("/camera", "disk"),))
+    >>> other = WhatIf(elements={"disk": {"kind": "storage"}}, flows=(("/face_id", "disk"),))
+    >>> both = together(disk, other)
+    >>> list(both.elements), both.flows
+    (['disk', 'disk 2'], (('/camera', 'disk'), ('/face_id', 'disk 2')))
+    >>> together(disk, disk) == disk
+    True
+    """
+    renamed = {name: _free(name, first, second) for name in second.elements}
+    flows = tuple((_renamed(a, renamed), _renamed(b, renamed)) for a, b in second.flows)
+    return WhatIf(
+        cut=tuple(dict.fromkeys((*first.cut, *second.cut))),
+        filters=tuple(dict.fromkeys((*first.filters, *second.filters))),
+        elements={**first.elements, **{renamed[name]: said for name, said in second.elements.items()}},
+        flows=(*first.flows, *(flow for flow in flows if flow not in first.flows)),
+        doubted=tuple(dict.fromkeys((*first.doubted, *second.doubted))),
+        steps=tuple(dict.fromkeys((*first.steps, *second.steps))),
+    )
+
+
+def _free(name: str, first: WhatIf, second: WhatIf) -> str:
+    """A name for an element of the second: its own, unless the first has another element of that name."""
+    if name not in first.elements or _stated(name, first) == _stated(name, second):
+        return name
+    taken = first.elements.keys() | second.elements.keys()
+    return next(other for number in count(2) if (other := f"{name} {number}") not in taken)
+
+
+def _stated(name: str, what: WhatIf) -> object:
+    return what.elements[name], [flow for flow in what.flows if name in map(_name_of, flow)]
+
+
+def _renamed(end: End, names: Mapping[str, str]) -> End:
+    return names.get(end, end) if isinstance(end, str) else {kind: names.get(of, of) for kind, of in end.items()}
+
+
+def _name_of(end: End) -> str:
+    return end if isinstance(end, str) else next(iter(end.values()))
 
 
 def _few(number: int, name: str) -> str:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors
+from rosprivacy.explorer.one_file import OneFile
 from rosprivacy.explorer.own_file import read_own
 from rosprivacy.explorer.session import Session
 from rosprivacy.question import question_of
@@ -18,6 +19,7 @@ from rosprivacy.settings import Settings
 if TYPE_CHECKING:
     from neo4j import Driver
 
+    from rosprivacy.analysis.model import Element
     from rosprivacy.explorer.edits import Edit
     from rosprivacy.explorer.effects import Change
     from rosprivacy.explorer.saving import Saved
@@ -37,7 +39,8 @@ class StoredSession(Session):
     of_one_robot = False
 
     def __init__(self, system: System, asked: Asked) -> None:
-        super().__init__(system, asked, (), read_own(None, asked.vocabulary, asked.settings), 0)
+        own = read_own(None, asked.vocabulary, asked.settings)
+        super().__init__(OneFile(system, asked, (), own), system, asked)
 
     @classmethod
     def open_database(cls, driver: Driver, settings: Settings | None = None) -> StoredSession:
@@ -57,6 +60,10 @@ class StoredSession(Session):
     def remarks(self) -> tuple[str, ...]:
         """What a person has to know of the session itself."""
         return (f"{SHOWN_ONLY[0].upper()}{SHOWN_ONLY[1:]}.",)
+
+    def can_answer(self, element: Element) -> bool:  # noqa: ARG002 - as of one robot
+        """Nothing can be said here."""
+        return False
 
     def do(self, edit: Edit) -> Change:
         """Refuse an edit.

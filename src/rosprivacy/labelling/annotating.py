@@ -14,6 +14,7 @@ from rosprivacy.analysis.text import counted, printable
 from rosprivacy.ingest.annotations.annotated_labels import HEAD, conflicts, label_text
 from rosprivacy.ingest.annotations.attached import attach
 from rosprivacy.ingest.annotations.code_names import ROOT, is_ros_name
+from rosprivacy.ingest.annotations.left_out import lost_annotations
 from rosprivacy.ingest.annotations.source_files import read_sources
 from rosprivacy.ingest.labels.label_file import parse_labels, read_labels
 from rosprivacy.ingest.labels.label_reader import SECTIONS
@@ -73,9 +74,9 @@ def annotated(sources: Sequence[str], vocabulary: Vocabulary, namespace: str = R
     """
     if namespace != ROOT and not (namespace.startswith("/") and is_ros_name(namespace)):
         raise InputError("--namespace", 0, f"{shown(namespace)!r} is no namespace", "write it so: /robot")
-    codes, of_others = read_sources(sources)
+    codes, of_others, unread = read_sources(sources)
     labelled, problems = attach(codes, vocabulary, namespace)
-    if some := (*problems, *conflicts(labelled, vocabulary)):
+    if some := (*problems, *lost_annotations(unread, vocabulary), *conflicts(labelled, vocabulary)):
         raise InputErrors(some)
     return Annotated(len(codes), labelled, label_text(labelled, vocabulary, NAME), of_others)
 

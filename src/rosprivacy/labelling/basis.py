@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Bound, MessageType
     from rosprivacy.analysis.suggesting.asked_elements import Comments
     from rosprivacy.analysis.suggesting.library_rules import NodeUse
+    from rosprivacy.ingest.annotations.code_units import Local
     from rosprivacy.result import Result
 
 
@@ -29,6 +30,8 @@ class CodeSaid(NamedTuple):
         What could not be read.
     of_others
         Folders with code of others that were left out.
+    local
+        Uses that no library is asked about, since something in the code has that name.
     """
 
     types: Mapping[int, tuple[MessageType, ...]]
@@ -36,6 +39,7 @@ class CodeSaid(NamedTuple):
     unplaced: tuple[NodeUse, ...]
     problems: tuple[InputError, ...]
     of_others: tuple[str, ...]
+    local: tuple[Local, ...] = ()
 
 
 NO_CODE = CodeSaid({}, {}, (), (), ())

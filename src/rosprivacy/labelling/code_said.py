@@ -39,7 +39,7 @@ def code_said(codes: Sequence[Code], of_others: tuple[str, ...], elements: Seque
     homeless -= {use for some in uses.values() for use in some}
     unplaced = sorted({*found.without_node, *homeless}, key=lambda use: (use.place, use.name))
     problems = tuple(one for code in codes for one in code.problems if not code.uses and not code.sites)
-    return CodeSaid(_types(codes, elements), uses, tuple(unplaced), problems, of_others)
+    return CodeSaid(_types(codes, elements), uses, tuple(unplaced), problems, of_others, found.local)
 
 
 def _types(codes: Sequence[Code], elements: Sequence[Element]) -> Mapping[int, tuple[MessageType, ...]]:

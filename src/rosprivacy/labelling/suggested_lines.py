@@ -20,15 +20,17 @@ from rosprivacy.ingest.reading.bounded_file import read_utf8
 from rosprivacy.ingest.suggestions.accepting import accept
 from rosprivacy.ingest.suggestions.comments import comment_of, taken_apart, with_comments
 from rosprivacy.labelling.label_lines import Written, own_file
+from rosprivacy.labelling.limits_on_the_way import brings, limits_on_the_way, limits_said
 from rosprivacy.ontology.vocabulary import load
-from rosprivacy.reading.robot_system import answer_robot
+from rosprivacy.reading.robot_system import answer_robot, read_label_files
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.labelling.suggesting import Suggested
     from rosprivacy.ontology.vocabulary import Vocabulary
+    from rosprivacy.result import Result
     from rosprivacy.settings import Settings
 
 
@@ -93,12 +95,30 @@ def with_accepted(
     who = who_says(file, by)
     vocabulary = load(ontologies=settings.ontologies)
 
-    def known(new: str) -> list[tuple[str, str]]:
+    def read(new: str) -> tuple[str | Labels, ...]:
+        """The label files, with that text of the one that is written."""
         own = parse_labels(new, vocabulary, name=file, category=settings.category, bounds=settings.bounds)
-        return _findings(policies, tuple(own if one == file else one for one in labels), settings)
+        return tuple(own if one == file else one for one in labels)
+
+    def result(new: str) -> Result:
+        return answer_robot(policies, read(new), settings)
+
+    def known(new: str) -> list[tuple[str, str]]:
+        return [(one.category, one_line(one)) for one in result(new).analysis.findings]
 
     done = accept(file, text, named, who, today(os.environ), vocabulary, known if policies else None)
-    return Written(file, done.text, done.count, done.remarks)
+    new_data = brings(done.labels)
+    told: Iterable[str] = ()
+    if new_data and policies:
+        told = limits_on_the_way(result(text), result(done.text))
+    elif new_data:
+        told = limits_said(new_data, _own_labels(read(done.text), vocabulary, settings), vocabulary)
+    return Written(file, done.text, done.count, (*done.remarks, *told))
+
+
+def _own_labels(labels: tuple[str | Labels, ...], vocabulary: Vocabulary, settings: Settings) -> tuple[Labels, ...]:
+    """What people have said, without what comes with the program."""
+    return tuple(one for one in read_label_files(labels, vocabulary, settings) if not one.shipped)
 
 
 def who_says(file: str, by: str | None, does: str = "accepts") -> str:
@@ -113,12 +133,6 @@ def who_says(file: str, by: str | None, does: str = "accepts") -> str:
     if not who:
         raise InputError(file, 0, f"nobody says who {does}", "add --by NAME, or 'author: NAME' to the file")
     return who
-
-
-def _findings(policies: tuple[str, ...], labels: tuple[str | Labels, ...], settings: Settings) -> list[tuple[str, str]]:
-    """The category of each finding, and what to tell of it."""
-    found = answer_robot(policies, labels, settings).analysis.findings
-    return [(one.category, one_line(one)) for one in found]
 
 
 def text_of(file: str) -> str:

@@ -10,6 +10,7 @@ from itertools import chain
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.findings.review_order import Behind
+from rosprivacy.analysis.model import Diagnostic, Severity
 from rosprivacy.analysis.suggesting.by_library import library_evidence
 from rosprivacy.analysis.suggesting.by_package import package_evidence
 from rosprivacy.analysis.suggesting.by_package_types import by_package_types
@@ -40,11 +41,12 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Analysis, OpenQuestion
     from rosprivacy.analysis.errors import InputError
     from rosprivacy.analysis.findings.review_order import Shown
-    from rosprivacy.analysis.model import Bound, Diagnostic, FlowGraph, MessageType
+    from rosprivacy.analysis.model import Bound, FlowGraph, MessageType
     from rosprivacy.analysis.suggesting.evidence import Evidence, Label, Proposal
     from rosprivacy.analysis.suggesting.library_rules import LibraryRules, NodeUse
     from rosprivacy.analysis.suggesting.ros_package import Package
     from rosprivacy.analysis.suggesting.traffic import Traffic
+    from rosprivacy.ingest.annotations.code_units import Local
     from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.labelling.interview import Interview
     from rosprivacy.ontology.vocabulary import Vocabulary
@@ -97,7 +99,7 @@ class Suggested:
     of_others
         Folders with code of others that were left out.
     notices
-        What a reader has to know of the packages.
+        What a reader has to know of the packages, and of names in source code.
     """
 
     proposals: tuple[Proposal, ...]
@@ -239,7 +241,7 @@ def suggested_by(
         tuple(use for use in basis.code.unplaced if known.libraries.speaks(use)),
         basis.code.problems,
         basis.code.of_others,
-        replacements(known.packages),
+        (*replacements(known.packages), *_named_alike(basis.code.local, known.libraries)),
     )
 
 
@@ -269,7 +271,7 @@ def basis_of(result: Result, sources: Sequence[str] = ()) -> Basis:
     from rosprivacy.ingest.annotations.source_files import read_sources  # noqa: PLC0415
     from rosprivacy.labelling.code_said import code_said  # noqa: PLC0415
 
-    codes, of_others = read_sources(sources)
+    codes, of_others, _ = read_sources(sources)
     code = code_said(codes, of_others, result.analysis.graph.elements)
     return Basis(result, _with_types(result.bound, code.types), places, code_comments(codes), code)
 
@@ -331,6 +333,15 @@ def _rules(
     names, read = read_name_rules(files, vocabulary, settings.bounds)
     rules = Rules(table.suggestions, table.limits.of, names, vocabulary.hierarchy)
     return rules, ((table.limits.file, table.limits.sha256), *read)
+
+
+def _named_alike(local: Iterable[Local], libraries: LibraryRules) -> Iterator[Diagnostic]:
+    """A notice for each file that uses what is called as a library of a rule, and stands in the sources itself."""
+    spoken = sorted((one for one in local if libraries.speaks(one.use)), key=lambda one: (one.use.place, one.use.name))
+    first = {(one.use.place.file, one.of): one for one in reversed(spoken)}
+    for one in sorted(first.values(), key=lambda one: one.use.place):
+        what = f"{one.use.name} is taken for {one.of} of these sources, so no library of that name suggests anything"
+        yield Diagnostic(one.use.place, Severity.NOTICE, f"{what}; label the node by hand if the library is meant")
 
 
 def _with_types(bound: Bound, said: Mapping[int, tuple[MessageType, ...]]) -> Bound:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from importlib.resources import files
+import shutil
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
@@ -12,6 +12,7 @@ from tests.helpers import browser as chrome
 from tests.helpers import explorers
 from tests.helpers.browser import DESKTOP, PHONE
 from tests.helpers.explorers import BARE, FACTORY, copied
+from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -76,13 +77,6 @@ def answer(browser: WebDriver, role: str) -> None:
     shown(browser, before)
 
 
-def axe(browser: WebDriver) -> list[tuple[str, str]]:
-    """What axe finds of WCAG 2.1 A and AA and of best practices: the rule, and the first element."""
-    browser.execute_script(files("axe_core_python").joinpath("axe.min.js").read_text("utf-8"))
-    found = browser.execute_async_script("axe.run(document, {resultTypes: ['violations']}).then(arguments[0])")
-    return [(one["id"], one["nodes"][0]["html"]) for one in found["violations"]]
-
-
 def test_the_factory_by_keys_alone_to_the_report(browser: WebDriver, tmp_path: Path) -> None:
     from selenium.webdriver.common.by import By
     from selenium.webdriver.common.keys import Keys
@@ -135,9 +129,54 @@ def test_question_and_summary_fit_and_axe_finds_nothing(
         for address in ("/", f"/?at={explorers.node('/navigator')}", "/?step=summary"):
             browser.get(origin + address)
             browser.execute_script("document.querySelectorAll('details').forEach((d) => d.open = true)")
-            assert axe(browser) == []
+            assert chrome.axe(browser) == []
             assert browser.execute_script("return document.documentElement.scrollWidth") <= width
             assert chrome.wider(browser, "h1, h2, p, li, fieldset, button, .pick, .field") == []
             name = address.strip("/?").partition("=")[2] or "question"
             chrome.screenshot(browser, tmp_path / f"{name}-{language}-{width}.png", width)
         browser.get("about:blank")
+
+
+@pytest.mark.parametrize("width", [DESKTOP, PHONE])
+def test_a_fleet_is_reviewed_by_keys_and_said_of_one_robot_or_of_its_model(
+    browser: WebDriver, tmp_path: Path, width: int
+) -> None:
+    from selenium.webdriver.common.by import By
+    from selenium.webdriver.common.keys import Keys
+
+    shutil.copytree(ROOT / "examples" / "fleet", tmp_path / "fleet")
+    fleet, model, own = (
+        tmp_path / "fleet" / name for name in ("fleet.yaml", "carrier.labels.yaml", "carrier_lent.labels.yaml")
+    )
+    model.write_text(model.read_text().replace("  /recorder: conduit\n", "").replace("  /uplink: conduit\n", ""))
+    before = model.read_text()
+    whose = "return document.activeElement.name === 'whose' ? document.activeElement.value : ''"
+    with explorers.served(fleet, fleet, fleet=True, review=True) as explorer:
+        chrome.open_page(browser, explorer.door.link, width=width)
+        asked = []
+        for robot in ("robot", "model"):
+            asked.append(browser.execute_script(HEADING))
+            assert chrome.axe(browser) == []
+            assert browser.execute_script("return document.documentElement.scrollWidth") <= width
+            assert chrome.wider(browser, "h1, h2, p, li, fieldset, button, .pick, .field") == []
+            chrome.screenshot(browser, tmp_path / f"{robot}-{width}.png", width)
+            tab_to(browser, "whose")
+            while browser.execute_script(whose) != robot:
+                press(browser, Keys.ARROW_DOWN)
+            browser.execute_script("document.querySelector('h1').focus()")
+            answer(browser, "conduit")
+        assert [("carrier_lent" in one) for one in asked] == [True, True]  # it is not as its model
+        browser.get(f"http://127.0.0.1:{explorer.door.port}/?step=summary")
+        assert chrome.axe(browser) == []
+        assert chrome.wider(browser, "h1, h2, p, li, fieldset, button, .pick, .field") == []
+        chrome.screenshot(browser, tmp_path / f"summary-{width}.png", width)
+        assert "carrier_lent only" in browser.find_element(By.TAG_NAME, "main").text
+        before_save = browser.find_element(By.TAG_NAME, "html")
+        browser.execute_script("document.querySelector(\"[action^='/save'] button\").focus()")
+        press(browser, Keys.ENTER)
+        shown(browser, before_save)
+        assert "All answers are saved." in browser.find_element(By.TAG_NAME, "main").text
+    told = [name for name in ("/recorder", "/uplink") if f"  {name}:" in own.read_text()]
+    assert len(told) == 1
+    assert model.read_text() != before
+    assert f"  {told[0]}:" not in model.read_text()

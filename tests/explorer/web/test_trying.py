@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from typing import TYPE_CHECKING, Any
+from urllib.parse import quote_plus
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -181,6 +182,31 @@ def test_trials_are_kept_by_name_made_anew_after_an_edit_and_forgotten(explore: 
     assert page(client, first).xpath("//aside") == []  # a link to it shows how it stands
 
 
+def test_two_trials_are_tried_together(explore: Explore, labels: Path) -> None:
+    """A storage behind the camera opens paths, also where the way of its data to the archive is filtered."""
+    explorer = explore(BARE, labels)
+    client = explorer.client()
+    alone = tried(client, what="filter", flow=FLOW, data="*").headers["location"]
+    assert not page(client, alone).xpath("//form[starts-with(@action, '/try')]")  # there is no other one
+    for at in (CAMERA, ARCHIVE):
+        tried(client, what="storage", element=at, country="us")
+    for first, second in (("Trial 1", "Trial 2"), ("Trial 4", "Trial 3")):
+        (form,) = page(client, f"/?trial={quote_plus(first)}").xpath("//form[starts-with(@action, '/try')]")
+        assert second in form.xpath(".//option/text()")
+        assert first not in form.xpath(".//option/text()")
+        said = {**dict(form.form_values()), "second": second}
+        there = page(client, client.post(form.get("action"), data=said).headers["location"])
+    assert text(there, "element").count("A storage is added") == 2
+    found = explorer.session.scenarios["Trial 5"]
+    assert {flow[1] for flow in found.what.flows} == {"storage on trial", "storage on trial 2"}
+    closed, opened = ({*explorer.session.scenarios[f"Trial {n}"].difference.opened} for n in (1, 5))
+    assert not closed
+    assert {*explorer.session.scenarios["Trial 2"].difference.opened} < opened
+    assert found.difference.closed == explorer.session.scenarios["Trial 1"].difference.closed
+    for wrong in ({"first": "Trial 1"}, {"first": "Trial 1", "second": "Trial 9"}):
+        assert tried(client, what="together", **wrong).status_code == 422
+
+
 def test_what_is_tried_and_not_there_any_more_is_told(explore: Explore, labels: Path) -> None:
     labels.write_text(labels.read_text("utf-8") + "elements:\n  disk: {kind: storage}\n", "utf-8")
     explorer = explore(BARE, labels)
@@ -293,9 +319,12 @@ def opened(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Explorer]:
     explorer.site.close()
 
 
-names = st.sampled_from(["what", "flow", "line", "element", "data", "proposal", "step", "days", "country", "name"])
+names = st.sampled_from(
+    ["what", "flow", "line", "element", "data", "proposal", "step", "days", "country", "name", "first", "second"]
+)
 values = st.one_of(
-    st.text(max_size=12), st.sampled_from(["filter", "cut", "doubt", "proposal", FLOW, CAMERA, "*", "0", "Video"])
+    st.text(max_size=12),
+    st.sampled_from(["filter", "cut", "doubt", "proposal", "together", FLOW, CAMERA, "*", "0", "Video"]),
 )
 
 

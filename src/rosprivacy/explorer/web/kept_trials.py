@@ -8,13 +8,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosprivacy.explorer.scenarios import told
+from rosprivacy.explorer.scenarios import together, told
 from rosprivacy.explorer.web.forms import FormError
 from rosprivacy.explorer.web.standing import Standing
+from rosprivacy.explorer.web.trial_forms import Tried
 
 if TYPE_CHECKING:
     from rosprivacy.explorer.scenarios import Scenario, WhatIf
     from rosprivacy.explorer.session import Session
+    from rosprivacy.explorer.web.forms import Form
     from rosprivacy.labelling.suggesting_on_demand import Suggester
 
 MOST = 20  # each keeps a whole answer
@@ -58,6 +60,18 @@ class Trials:
             raise FormError(f"There are {MOST} trials already: forget one.")
         self._session.scenario(name, what)
         self._says[name] = says
+
+    def together(self, form: Form) -> Tried:
+        """Return what two trials that a form names try, as one, and what a person is told of it.
+
+        Raises
+        ------
+        FormError
+            If one of them is not kept.
+        """
+        names = form.choice("first", self.names), form.choice("second", self.names)
+        first, second = (self._session.scenarios[name].what for name in names)
+        return Tried(together(first, second), tuple(dict.fromkeys(said for name in names for said in self.says(name))))
 
     def drop(self, name: str) -> None:
         """Forget one."""

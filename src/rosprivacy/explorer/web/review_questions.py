@@ -15,9 +15,11 @@ from rosprivacy.explorer.web.element_pane import pane_of
 from rosprivacy.explorer.web.left_open import brings_nothing, left_of, note_before, says_of_data
 from rosprivacy.explorer.web.review_answers import offered
 from rosprivacy.explorer.web.view import View
+from rosprivacy.explorer.web.whose import stands_for
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
+    from typing import Any
 
     from rosprivacy.analysis.model import Element
     from rosprivacy.explorer.web.element_pane import Hop, Line, Pane
@@ -36,12 +38,15 @@ class Asked(NamedTuple):
         What of it is left to the engineer; empty if nothing is.
     can_wait
         Whether nothing hangs on the answer now.
+    beyond
+        Whether no answer can be given here: no label file can speak of it.
     """
 
     id: str
     element: Element
     left: str
     can_wait: bool = False
+    beyond: bool = False
 
 
 class Progress(NamedTuple):
@@ -73,6 +78,10 @@ class Question(NamedTuple):
     ----------
     reached
         Whether data gets to the element.
+    beyond
+        As of ``Asked``.
+    robot
+        Of the element; empty where there is one robot only.
     guesses
         What the program takes for likely: what, and why (in English).
     """
@@ -85,36 +94,41 @@ class Question(NamedTuple):
     reached: bool
     left: str
     said: str
+    beyond: bool
+    robot: str
 
 
 def asked(standing: Standing) -> tuple[Asked, ...]:
     """Return everything that is open, in the order in which it is asked."""
-    found: dict[str, Asked] = {}
-    for proposals in standing.suggestions.of_role("source"):
-        element = proposals[0].label.element
-        at = element_id(element.identity)
-        if at in standing.carried:
+    session, found = standing.session, dict[str, Asked]()
+    suggested = [proposals[0].label.element for proposals in standing.suggestions.of_role("source")]
+    for element in sorted(suggested, key=lambda one: one.robot not in session.outliers):
+        at, said = element_id(element.identity), standing.said_of(element)
+        if at in standing.carried or any(map(says_of_data, said)):
             continue
-        entry = standing.entry(element)
-        if not says_of_data(entry) and (left_of(entry) or not brings_nothing(entry)):
-            found[at] = Asked(at, element, left_of(entry))
+        if _left(said) or not any(map(brings_nothing, said)):
+            found[at] = Asked(at, element, _left(said), beyond=not session.can_answer(element))
     for question in standing.questions:
-        at = element_id(question.element.identity)
-        found[at] = Asked(at, question.element, left_of(standing.entry(question.element)), question.can_wait)
+        element, said = question.element, standing.said_of(question.element)
+        at, beyond = element_id(element.identity), not session.can_answer(element)
+        found[at] = Asked(at, element, _left(said), question.can_wait, beyond)
     return tuple(found.values())
+
+
+def _left(said: Sequence[Any]) -> str:
+    return next(filter(None, map(left_of, said)), "")
 
 
 def progress(standing: Standing, questions: Sequence[Asked]) -> Progress:
     """Return how many elements are decided: data gets there, or somebody spoke of them, and nothing is open there."""
-    spoken = {standing.places[place] for place in standing.entries.keys() & standing.places.keys()}
-    decided = (standing.carried.keys() | spoken) - {one.id for one in questions}
+    decided = (standing.carried.keys() | standing.spoken) - {one.id for one in questions}
     return Progress(len(decided), len(decided) + len(questions))
 
 
 def question_of(standing: Standing, element: Element, words: Words) -> Question:
     """Return what a person is asked about an element."""
     pane = pane_of(standing, element, View(), words)
-    entry = standing.entry(element)
+    said = standing.said_of(element)
     reached = bool(standing.carried.get(pane.id))
     return Question(
         pane=pane,
@@ -123,9 +137,16 @@ def question_of(standing: Standing, element: Element, words: Words) -> Question:
         guesses=tuple((offer.told, "; ".join(offer.reasons)) for offer in pane.offers),
         roles=offered(element, reached=reached),
         reached=reached,
-        left=left_of(entry),
-        said=shown(note_before(entry)),
+        left=_left(said),
+        said=shown(next(filter(None, map(note_before, said)), "")),
+        beyond=not standing.session.can_answer(element),
+        robot=shown(element.robot),
     )
+
+
+def named_with_robots(element: Element, standing: Standing, words: Words) -> str:
+    """Return the same as ``named``; of a fleet with how many robots it is asked about."""
+    return words.row(filter(None, [named(element, words), stands_for(standing.session, element, words)]))
 
 
 def named(element: Element, words: Words) -> str:

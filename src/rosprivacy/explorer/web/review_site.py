@@ -6,15 +6,15 @@ A person is asked in plain words; an answer needs a name, and some a reason. Wor
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 from urllib.parse import parse_qs
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from starlette.responses import HTMLResponse
 
-from rosprivacy.analysis.errors import RosPrivacyError, shown
+from rosprivacy.analysis.errors import RosPrivacyError
 from rosprivacy.explorer.web import forms
-from rosprivacy.explorer.web.application import DONE, PROBLEM, Site, Told
+from rosprivacy.explorer.web.application import PROBLEM, Site, Told
 from rosprivacy.explorer.web.left_open import bringing_nothing, leaving, left_of, note_before
 from rosprivacy.explorer.web.rendering import Message
 from rosprivacy.explorer.web.review_answers import NONE, REASONED, SKIP, NotYet, answer_in_review
@@ -23,19 +23,19 @@ from rosprivacy.explorer.web.review_sources import sources_of
 from rosprivacy.explorer.web.review_summary import summary_of
 from rosprivacy.explorer.web.saying import label_of
 from rosprivacy.explorer.web.view import LONGEST
-from rosprivacy.report.document.analysis import label_key
+from rosprivacy.explorer.web.whose import ROBOT, WHOSE
 from rosprivacy.report.page.html import in_html
 
 if TYPE_CHECKING:
     from jinja2 import Template
     from starlette.responses import Response
 
+    from rosprivacy.explorer.edits import Label
     from rosprivacy.explorer.web.forms import Answer, Form
-    from rosprivacy.explorer.web.standing import Standing
 
 FIRST, SUMMARY = "/", "/?step=summary"
 STEPS = ("summary", "source")  # that are asked for by name
-FIELDS = ("role", "note", "by", "method", "makes", "brings")
+FIELDS = ("role", "note", "by", "method", "makes", "brings", "whose")
 
 
 class ReviewSite(Site):
@@ -51,7 +51,7 @@ class ReviewSite(Site):
             questions = asked(standing)
             element, step = standing.elements.get(_one(query, "at")), _one(query, "step")
             if element is None and step not in STEPS:
-                element = next((one.element for one in questions if not one.left), None)
+                element = next((one.element for one in questions if not (one.left or one.beyond)), None)
                 step = "source" if not standing.analysis.emitted else step
             message, self._message = told.message if told else self._message or self._changed_on_disk(), None
             entered, self._entered = self._entered, None
@@ -60,6 +60,7 @@ class ReviewSite(Site):
                 "progress": progress(standing, questions), "unsaved": self.session.unsaved,
                 "can_undo": self.session.can_undo, "read_only": self.door.read_only,
                 "before": self.session.unsaved_from_before, "remarks": self.session.remarks,
+                "title": words("rv.title.fleet" if standing.result.fleet else "rv.title"),
             }  # fmt: skip
             if element is None and step == "source":
                 sources = sources_of(standing, _one(query, "find"), words)
@@ -71,7 +72,7 @@ class ReviewSite(Site):
                 chosen = [kind.name for kind in question.pane.about if kind.chosen]
                 text = _template("review_question").render(
                     q=question, by=self._by, methods=forms.METHODS, reasoned=REASONED,
-                    entered={name: "".join(entered.several(name)[:1]) if entered else "" for name in FIELDS},
+                    entered={name: _entered(entered, name) for name in FIELDS},
                     about=entered.several("about") if entered else chosen, **shared,
                 )  # fmt: skip
         return HTMLResponse(text, told.status if told else 200)
@@ -84,15 +85,15 @@ class ReviewSite(Site):
         standing = self.standing
         self._entered = form
         answer = answer_in_review(form, standing, self._words)
-        key = label_key(answer.element)
-        self.session.label(key["name"], kind=key["section"], **self._said(answer, standing))
+        alone = form.choice("whose", WHOSE) == ROBOT
+        now = standing.entry(answer.element, only_this_robot=alone)
+        said = cast("Label", self._said(answer, now))
+        self.session.answer_for(answer.element, said, only_this_robot=alone)
         self._entered, self._by = None, answer.by
-        what = f"{shown(answer.element.full_name)} – {self._words(f'rv.answer.{answer.role}')}"
-        return Told(200, Message(DONE, self._words("x.changed", what=what)))
+        return Told(200, self._answered(answer, now, self._words(f"rv.answer.{answer.role}")))
 
-    def _said(self, answer: Answer, standing: Standing) -> dict[str, Any]:
-        """What the label file then says."""
-        now = standing.entry(answer.element)
+    def _said(self, answer: Answer, now: Any) -> dict[str, Any]:
+        """What the label file then says; ``now`` is what it says now."""
         if answer.role == SKIP:
             return leaving(now, answer.by, answer.note, self._words)
         if answer.role == NONE:
@@ -107,7 +108,7 @@ class ReviewSite(Site):
         last = self.session.edits[-1:]
         told = super()._undo(form)
         for edit in last:
-            at = self.standing.places.get((edit.section, edit.name), "")
+            at = self.standing.place_of(edit)
             self._next = f"/?at={at}" if at else FIRST
         return told
 
@@ -123,6 +124,10 @@ class ReviewSite(Site):
         if isinstance(error, NotYet):
             return Message(PROBLEM, self._words("x.refused"), (str(error),))
         return super()._refused(error)._replace(text=self._words("rv.refused"))
+
+
+def _entered(form: Form | None, name: str) -> str:
+    return "".join(form.several(name)[:1]) if form else ""
 
 
 def _one(query: str, name: str) -> str:

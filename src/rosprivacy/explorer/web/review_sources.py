@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.explorer.web.left_open import left_of, note_before
-from rosprivacy.explorer.web.review_questions import named
+from rosprivacy.explorer.web.review_questions import named_with_robots
 
 if TYPE_CHECKING:
     from rosprivacy.explorer.web.standing import Standing
@@ -49,15 +49,17 @@ class Sources(NamedTuple):
 def sources_of(standing: Standing, find: str, words: Words) -> Sources:
     """Return the elements that can be named: all but channels, what nobody spoke of first."""
     find = find[:LONGEST]
-    spoken = {standing.places[place] for place in standing.entries.keys() & standing.places.keys()}
+    first = {at for some in standing.places.values() for at in some}
     fitting = [
         (at, element)
         for at, element in standing.elements.items()
-        if not element.is_channel and find.casefold() in element.name.casefold()
+        if at in first and not element.is_channel and find.casefold() in element.full_name.casefold()
     ]
-    fitting.sort(key=lambda one: one[0] in spoken)
+    fitting = [one for one in fitting if standing.session.can_answer(one[1])]
+    fitting.sort(key=lambda one: one[0] in standing.spoken)
     rows = []
     for at, element in fitting[:MOST]:
-        entry = standing.entry(element) if at in spoken else None
-        rows.append(Source(at, named(element, words), shown(note_before(entry) or left_of(entry))))
+        entry = next(iter(standing.said_of(element)), None) if at in standing.spoken else None
+        note = shown(note_before(entry) or left_of(entry))
+        rows.append(Source(at, named_with_robots(element, standing, words), note))
     return Sources(shown(find), tuple(rows), len(fitting[MOST:]), bool(standing.analysis.emitted))

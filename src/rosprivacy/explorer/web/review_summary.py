@@ -11,8 +11,9 @@ from rosprivacy.analysis.errors import shown
 from rosprivacy.explorer.edits import ROLES
 from rosprivacy.explorer.web.left_open import note_before
 from rosprivacy.explorer.web.page import verdict_of
-from rosprivacy.explorer.web.review_questions import named
+from rosprivacy.explorer.web.review_questions import named_with_robots
 from rosprivacy.explorer.web.titles import titles_of
+from rosprivacy.explorer.web.whose import target_told
 from rosprivacy.report.page.finding_entries import finding_entries
 from rosprivacy.report.page.index import Index
 from rosprivacy.report.page.kinds import kinds
@@ -36,12 +37,13 @@ class Decided(NamedTuple):
 
 
 class Open(NamedTuple):
-    """What is not decided; ``left`` is what the engineer is to be asked."""
+    """What is not decided; ``left`` is what the engineer is to be asked, ``beyond`` as of ``Asked``."""
 
     id: str
     name: str
     left: str
     can_wait: bool
+    beyond: bool
 
 
 class Summary(NamedTuple):
@@ -79,10 +81,10 @@ def summary_of(standing: Standing, questions: Sequence[Asked], words: Words) -> 
         verdict=words.known(f"rv.verdict.{verdict}", words.known(f"verdict.{verdict}", verdict)),
         end=tuple(_end(questions, words, decided=bool(decided), followed=followed)),
         decided=decided,
-        open=tuple(Open(one.id, named(one.element, words), shown(one.left), one.can_wait) for one in questions),
+        open=tuple(_open(one, standing, words) for one in questions),
         kinds=tuple(kind for kind in kinds(index, finding_entries(index)) if kind.entries),
         followed=followed,
-        answered=bool(standing.entries),
+        answered=bool(standing.session.answers),
     )
 
 
@@ -98,12 +100,18 @@ def _end(questions: Sequence[Asked], words: Words, *, decided: bool, followed: b
 
 def _decided(standing: Standing, words: Words) -> Iterator[Decided]:
     titles = titles_of(standing.vocabulary, words)
-    for (_, name), entry in standing.entries.items():
-        said = tuple(_said(entry, titles, words))
-        told = entry if isinstance(entry, dict) else {}
-        why = note_before(entry)
+    for one in standing.session.answers:
+        said = tuple(_said(one.value, titles, words))
+        told = one.value if isinstance(one.value, dict) else {}
+        why = note_before(one.value)
         if said or why:
-            yield Decided(shown(name), said, shown(why), shown(str(told.get("author") or "")))
+            name = words.row([shown(one.name), *([target_told(one.target, words)] if one.target else [])])
+            yield Decided(name, said, shown(why), shown(str(told.get("author") or "")))
+
+
+def _open(one: Asked, standing: Standing, words: Words) -> Open:
+    name = named_with_robots(one.element, standing, words)
+    return Open(one.id, name, shown(one.left), one.can_wait, one.beyond)
 
 
 def _said(entry: Any, titles: Mapping[str, str], words: Words) -> Iterator[str]:

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Analysis, Finding
     from rosprivacy.analysis.findings.review_order import Behind, Shown
     from rosprivacy.analysis.model import Element
+    from rosprivacy.explorer.edits import Edit
     from rosprivacy.explorer.questions import Question
     from rosprivacy.explorer.session import Session
     from rosprivacy.labelling.suggesting_on_demand import Suggester, Suggestions
@@ -129,15 +130,33 @@ class Standing:
         return WhyCarried(self.result.analysis)
 
     @cached_property
-    def places(self) -> Mapping[tuple[str, str], str]:
-        """Section and name, as a label file says them -> id of the element."""
-        keys = ((at, label_key(element)) for at, element in self.elements.items())
-        return {(key["section"], key["name"]): at for at, key in keys}
+    def places(self) -> Mapping[tuple[str, str], Sequence[str]]:
+        """Section and name, as a label file says them -> ids of elements; of robots that are alike, of the first."""
+        second = self.result.fleet.likeness.second if self.result.fleet else ()
+        found: dict[tuple[str, str], list[str]] = {}
+        for at, element in self.elements.items():
+            if element.robot not in second:
+                key = label_key(element)
+                found.setdefault((key["section"], key["name"]), []).append(at)
+        return found
 
     @cached_property
-    def entries(self) -> Mapping[tuple[str, str], Any]:
-        """What the label file says with the edits: (section, name) -> entry; not what an edit took away."""
-        return {place: entry for place, entry in self.session.entries.items() if entry is not None}
+    def spoken(self) -> frozenset[str]:
+        """Ids of the elements that a label file speaks of, by their names."""
+        there = [(self.elements[at].robot, place, at) for place, some in self.places.items() for at in some]
+        says = {robot: self.session.speaks_of(robot) for robot in dict.fromkeys(robot for robot, _, _ in there)}
+        return frozenset(at for robot, place, at in there if says[robot].get(place) is not None)
+
+    def place_of(self, edit: Edit) -> str:
+        """Return the id of an element that an edit is about, an open one first; empty if there is none now."""
+        named = self.places.get((edit.section, edit.name), ())
+        there = [at for at in named if self.session.is_about(edit, self.elements[at])]
+        return next((at for at in self.open_kinds if at in there), there[0] if there else "")
+
+    def said_of(self, element: Element) -> tuple[Any, ...]:
+        """Return what label files say of an element: a robot's own first, and that of its model."""
+        said = (self.entry(element, only_this_robot=True), self.entry(element))
+        return tuple(one for one in said if one is not None)
 
     def entry(self, element: Element, *, only_this_robot: bool = False) -> Any:
         """Return what the label file, with the edits, says of an element; None for nothing."""

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from rosprivacy.explorer.web.standing import Standing
     from rosprivacy.report.words.words import Words
 
+TOGETHER = "together"  # of two trials that are kept
 ALL_STEPS = ""  # in the place of one change of a proposal
 COUNTRY = re.compile(r"[A-Z]{2}")
 LONGEST_DAYS = 5  # digits

@@ -44,6 +44,8 @@ class TrialPane(NamedTuple):
         The first findings; ``more`` tells how many others there are of each.
     leads
         Where the trial is left.
+    others
+        Other trials, each of which can be tried together with this one.
     """
 
     name: str
@@ -56,6 +58,7 @@ class TrialPane(NamedTuple):
     remarks: tuple[str, ...]
     address: str
     leads: str
+    others: tuple[str, ...]
 
 
 class Kept(NamedTuple):
@@ -97,6 +100,7 @@ def trial_pane(now: Standing, trials: Trials, view: View, words: Words) -> Trial
         remarks=tuple(map(shown, trials.scenario(name).remarks)),
         address=view.to("")._replace(find="").address,
         leads=out.address,
+        others=tuple(one for one in trials.names if one != name),
     )
 
 

@@ -8,6 +8,7 @@ from rosprivacy.analysis.errors import shown
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.model import Element
+    from rosprivacy.explorer.label_targets import Target
     from rosprivacy.explorer.session import Session
     from rosprivacy.report.words.words import Words
 
@@ -37,15 +38,22 @@ def whose(session: Session, element: Element, words: Words) -> tuple[Whose, ...]
     targets = session.targets_of(element)
     alone = [one.alone for one in targets]
     own = alone == [True] or (True in alone and session.said_of(element, only_this_robot=True) is not None)
-    found = []
-    for one in targets:
-        n, robot = len(one.robots), shown(one.robots[0])
-        value = ROBOT if one.alone else MODEL
-        told = words("x.whose.robot", robot=robot) if n == 1 else words("x.whose.robots", n=n)
-        if one.models and not one.alone:
-            told = words("x.whose.model", models=words.row(shown(model) for model in one.models), robots=told)
-        found.append(Whose(value, told, one.alone == own))
-    return tuple(found)
+    return tuple(Whose(ROBOT if one.alone else MODEL, target_told(one, words), one.alone == own) for one in targets)
+
+
+def target_told(target: Target, words: Words) -> str:
+    """Return in words of which robots it is said what goes to a label file.
+
+    >>> from rosprivacy.explorer.label_targets import Target
+    >>> from rosprivacy.report.words.words import IN_ENGLISH
+    >>> target_told(Target("carrier.labels.yaml", ("carrier_1", "carrier_2"), ("carrier",), alone=False), IN_ENGLISH)
+    'of model carrier: 2 robots'
+    """
+    n, robot = len(target.robots), shown(target.robots[0])
+    told = words("x.whose.robot", robot=robot) if n == 1 else words("x.whose.robots", n=n)
+    if target.models and not target.alone:
+        return words("x.whose.model", models=words.row(map(shown, target.models)), robots=told)
+    return told
 
 
 def stands_for(session: Session, element: Element, words: Words) -> str:
