@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rosprivacy.analysis.answer import Verdict
+    from rosprivacy.analysis.fleet.likeness import Likeness
+    from rosprivacy.analysis.fleet.patterns import FleetView
     from rosprivacy.result import Result
 
     Entries = Mapping[tuple[str, str], Any]
@@ -27,9 +29,13 @@ class Difference(NamedTuple):
     before, verdict
         The verdicts.
     opened, closed
-        Ids of the findings that stand in the second one only, and in the first one only.
+        Ids of the findings that stand in the second one only, and in the first one only; of a fleet those that the
+        answer shows for robots on which they do.
     more, fewer
-        How many elements are open in the second one only, and in the first one only.
+        How many elements are open in the second one only, and in the first one only; of a fleet on all robots.
+    robots
+        Of a fleet: id of a finding that is opened or closed -> on which robots; where it begins, or where it ends if
+        that is on no robot.
     """
 
     before: Verdict
@@ -38,6 +44,7 @@ class Difference(NamedTuple):
     closed: tuple[str, ...]
     more: int
     fewer: int
+    robots: Mapping[str, tuple[str, ...]] = {}
 
 
 class Change(NamedTuple):
@@ -57,10 +64,13 @@ class Change(NamedTuple):
     closed: tuple[str, ...] = ()
     more: int = 0
     fewer: int = 0
+    robots: Mapping[str, tuple[str, ...]] = {}
 
 
 def compared(before: Result, after: Result) -> Difference:
     """Return what differs between two answers."""
+    if before.fleet and after.fleet:
+        return _of_fleets(before, before.fleet, after, after.fleet)
     stood, stands = ([f.id for f in result.analysis.findings if f.stands] for result in (before, after))
     had, has = set(stood), set(stands)
     was, now = (Counter(q.element.shown_as for q in result.analysis.open) for result in (before, after))
@@ -72,6 +82,44 @@ def compared(before: Result, after: Result) -> Difference:
         len(now - was),
         len(was - now),
     )
+
+
+def _of_fleets(before: Result, was: FleetView, after: Result, now: FleetView) -> Difference:
+    """What differs, robot by robot: which robots are alike may be otherwise, too."""
+    stood, stands = _standing(was), _standing(now)
+    closed = {key: (one, on - stands.get(key, (one, frozenset()))[1]) for key, (one, on) in stood.items()}
+    opened = {key: (one, on - stood.get(key, (one, frozenset()))[1]) for key, (one, on) in stands.items()}
+    had, has = _open(before, was.likeness), _open(after, now.likeness)
+    return Difference(
+        before.analysis.verdict,
+        after.analysis.verdict,
+        tuple(one for one, on in opened.values() if on),
+        tuple(one for one, on in closed.values() if on),
+        sum(len(on - had.get(at, frozenset())) for at, on in has.items()),
+        sum(len(on - has.get(at, frozenset())) for at, on in had.items()),
+        {one: tuple(sorted(on - {""})) for one, on in (*closed.values(), *opened.values()) if on},
+    )
+
+
+def _standing(view: FleetView) -> dict[str, tuple[str, frozenset[str]]]:
+    """Id of a pattern -> the finding that is shown of it, and on which robots it stands; the empty name for none."""
+    found = {}
+    for pattern in view.patterns:
+        forms = (robots for form, robots in pattern.forms if not (form.dismissed or form.accepted))
+        on = frozenset(robot for robots in forms for robot in robots)
+        found[pattern.id] = pattern.finding.id, on or frozenset([""] if pattern.finding.stands else [])
+    return found
+
+
+def _open(result: Result, likeness: Likeness) -> dict[object, frozenset[str]]:
+    """What is open -> on which robots; the empty name for what belongs to none."""
+    found: dict[object, frozenset[str]] = {}
+    for question in result.analysis.open:
+        element = question.element
+        if element.robot not in likeness.second:
+            at = likeness.alike(element).shown_as
+            found[at] = found.get(at, frozenset()).union(likeness.placed(element.robot) or ("",))
+    return found
 
 
 class Merged(NamedTuple):
