@@ -21,6 +21,9 @@ if TYPE_CHECKING:
     Entries = Mapping[tuple[str, str], Any]
 
 
+OPENED, CLOSED, PLAINER = "opened", "closed", "plainer"
+
+
 class Difference(NamedTuple):
     """What is so in one answer and not in another.
 
@@ -33,9 +36,11 @@ class Difference(NamedTuple):
         answer shows for robots on which they do.
     more, fewer
         How many elements are open in the second one only, and in the first one only; of a fleet on all robots.
+    plainer
+        Ids of the findings that stand in both, and are pseudonymised in the first one only.
     robots
-        Of a fleet: id of a finding that is opened or closed -> on which robots; where it begins, or where it ends if
-        that is on no robot.
+        Of a fleet: ``OPENED``, ``CLOSED`` or ``PLAINER`` and the id of a finding -> on which robots it is so: where it
+        begins, or where it ends if that is on no robot.
     """
 
     before: Verdict
@@ -44,7 +49,8 @@ class Difference(NamedTuple):
     closed: tuple[str, ...]
     more: int
     fewer: int
-    robots: Mapping[str, tuple[str, ...]] = {}
+    plainer: tuple[str, ...] = ()
+    robots: Mapping[tuple[str, str], tuple[str, ...]] = {}
 
 
 class Change(NamedTuple):
@@ -64,50 +70,70 @@ class Change(NamedTuple):
     closed: tuple[str, ...] = ()
     more: int = 0
     fewer: int = 0
-    robots: Mapping[str, tuple[str, ...]] = {}
+    plainer: tuple[str, ...] = ()
+    robots: Mapping[tuple[str, str], tuple[str, ...]] = {}
 
 
 def compared(before: Result, after: Result) -> Difference:
     """Return what differs between two answers."""
     if before.fleet and after.fleet:
         return _of_fleets(before, before.fleet, after, after.fleet)
-    stood, stands = ([f.id for f in result.analysis.findings if f.stands] for result in (before, after))
-    had, has = set(stood), set(stands)
+    stood, stands = ([f for f in result.analysis.findings if f.stands] for result in (before, after))
+    had, has = {f.id for f in stood}, {f.id for f in stands}
+    reduced = {f.id for f in stood if f.pseudonymised}
     was, now = (Counter(q.element.shown_as for q in result.analysis.open) for result in (before, after))
     return Difference(
         before.analysis.verdict,
         after.analysis.verdict,
-        tuple(one for one in stands if one not in had),
-        tuple(one for one in stood if one not in has),
+        tuple(f.id for f in stands if f.id not in had),
+        tuple(f.id for f in stood if f.id not in has),
         len(now - was),
         len(was - now),
+        tuple(f.id for f in stands if f.id in reduced and not f.pseudonymised),
     )
+
+
+class _Stands(NamedTuple):
+    """On which robots the findings of a pattern stand, and on which of them data is plain; the empty name for none."""
+
+    finding: str
+    on: frozenset[str] = frozenset()
+    plain: frozenset[str] = frozenset()
 
 
 def _of_fleets(before: Result, was: FleetView, after: Result, now: FleetView) -> Difference:
     """What differs, robot by robot: which robots are alike may be otherwise, too."""
     stood, stands = _standing(was), _standing(now)
-    closed = {key: (one, on - stands.get(key, (one, frozenset()))[1]) for key, (one, on) in stood.items()}
-    opened = {key: (one, on - stood.get(key, (one, frozenset()))[1]) for key, (one, on) in stands.items()}
+    nothing = _Stands("")
+    reduced = {key: one.on - one.plain for key, one in stood.items()}
+    moved = {
+        CLOSED: {one.finding: one.on - stands.get(key, nothing).on for key, one in stood.items()},
+        OPENED: {one.finding: one.on - stood.get(key, nothing).on for key, one in stands.items()},
+        PLAINER: {one.finding: one.plain & reduced.get(key, frozenset()) for key, one in stands.items()},
+    }  # fmt: skip
     had, has = _open(before, was.likeness), _open(after, now.likeness)
     return Difference(
         before.analysis.verdict,
         after.analysis.verdict,
-        tuple(one for one, on in opened.values() if on),
-        tuple(one for one, on in closed.values() if on),
+        tuple(one for one, on in moved[OPENED].items() if on),
+        tuple(one for one, on in moved[CLOSED].items() if on),
         sum(len(on - had.get(at, frozenset())) for at, on in has.items()),
         sum(len(on - has.get(at, frozenset())) for at, on in had.items()),
-        {one: tuple(sorted(on - {""})) for one, on in (*closed.values(), *opened.values()) if on},
+        tuple(one for one, on in moved[PLAINER].items() if on),
+        {(what, one): tuple(sorted(on - {""})) for what, some in moved.items() for one, on in some.items() if on},
     )
 
 
-def _standing(view: FleetView) -> dict[str, tuple[str, frozenset[str]]]:
-    """Id of a pattern -> the finding that is shown of it, and on which robots it stands; the empty name for none."""
+def _standing(view: FleetView) -> dict[str, _Stands]:
+    """Id of a pattern -> how its findings stand."""
     found = {}
     for pattern in view.patterns:
-        forms = (robots for form, robots in pattern.forms if not (form.dismissed or form.accepted))
-        on = frozenset(robot for robots in forms for robot in robots)
-        found[pattern.id] = pattern.finding.id, on or frozenset([""] if pattern.finding.stands else [])
+        forms = [(form, robots) for form, robots in pattern.forms if not (form.dismissed or form.accepted)]
+        on = frozenset(robot for _, robots in forms for robot in robots)
+        plain = frozenset(robot for form, robots in forms if not form.pseudonymised for robot in robots)
+        if not on and pattern.finding.stands:  # it is on no robot
+            on, plain = frozenset([""]), frozenset([] if pattern.finding.pseudonymised else [""])
+        found[pattern.id] = _Stands(pattern.finding.id, on, plain)
     return found
 
 

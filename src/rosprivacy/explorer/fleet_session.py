@@ -205,6 +205,10 @@ class FleetSession(Session):
             return (robot,)
         return tuple(one.id for one in fleet.robots if one.model == found.model)
 
+    def model_of(self, robot: str) -> str:
+        """Return the model of a robot; empty where there is none."""
+        return next((one.model for one in self._files.read.fleet.robots if one.id == robot), "")
+
     def _tried(self, what: WhatIf) -> tuple[Result, tuple[str, ...]]:
         assert isinstance(self._system, FleetSystem), "of a fleet"
         return tried_on_robots(self._system, partial(self._files.tried, self._done), self._asked, what)

@@ -147,6 +147,10 @@ class Session(Trying):
         """Return the robots on which something is tried, where there are several: those of the model, or one."""
         return ()
 
+    def model_of(self, robot: str) -> str:  # noqa: ARG002 - of a fleet
+        """Return the model of a robot; empty where there is none."""
+        return ""
+
     @property
     def outliers(self) -> frozenset[str]:
         """Robots of a fleet that are not read as most robots of their model are."""

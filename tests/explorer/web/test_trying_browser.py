@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import shutil
 from contextlib import contextmanager
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from rosprivacy.explorer.element_ids import element_id
 from tests.helpers import browser as chrome
 from tests.helpers import explorers
 from tests.helpers.browser import DESKTOP, PHONE
 from tests.helpers.explorers import BARE, FACTORY, copied
+from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -130,3 +133,29 @@ def _accessible(browser: WebDriver, width: int) -> None:
     if width == PHONE:
         assert browser.execute_script(SMALL) == []
         assert chrome.wider(browser, "h1, h3, p:not(.unseen), .row, .way, .hops li, .said li, .try, .decide") == []
+
+
+@pytest.mark.parametrize("width", [DESKTOP, PHONE])
+def test_trials_of_a_fleet_fit_and_say_on_how_many_robots(browser: WebDriver, tmp_path: Path, width: int) -> None:
+    shutil.copytree(ROOT / "examples" / "fleet", tmp_path / "fleet")
+    fleet = tmp_path / "fleet" / "fleet.yaml"
+    blur = element_id(("carrier_01", "node", "/blur"))
+    with explorers.served(fleet, fleet, fleet=True) as explorer:
+        reader = Reader(browser, explorer, width)
+        browser.get(f"http://127.0.0.1:{explorer.door.port}/?at={blur}")
+        reader.pane("element")
+        browser.execute_script("document.getElementById('tries').open = true")
+        _accessible(browser, width)
+        chrome.screenshot(browser, tmp_path / f"offers-{width}.png", width)
+        reader.focus("#try-storage-whose")
+        reader.press("c")  # "carrier_01 only"
+        assert reader.text("#try-storage-whose option:checked") == "carrier_01 only"
+        browser.execute_script("document.getElementById('try-storage-whose').form.querySelector('button').focus()")
+        reader.press("\ue007")
+        assert "On 1 robot: carrier_01." in reader.text("#element")
+        assert "1 path to assess opens" in reader.text("#element")
+        reader.pane("element")
+        _accessible(browser, width)
+        chrome.screenshot(browser, tmp_path / f"trial-{width}.png", width)
+        browser.get("about:blank")
+    assert chrome.console(browser) == []
