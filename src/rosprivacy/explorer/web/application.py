@@ -10,7 +10,7 @@ from contextlib import suppress
 from importlib.resources import files
 from itertools import count
 from threading import RLock
-from typing import TYPE_CHECKING, NamedTuple, cast
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 from starlette.applications import Starlette
 from starlette.concurrency import run_in_threadpool
@@ -27,8 +27,9 @@ from rosprivacy.explorer.web.kept_trials import Trials
 from rosprivacy.explorer.web.page import page_of
 from rosprivacy.explorer.web.page_picture import drawn, pictures_of
 from rosprivacy.explorer.web.rendering import Message, rendered
-from rosprivacy.explorer.web.saying import label_of
+from rosprivacy.explorer.web.saying import label_of, limit_of
 from rosprivacy.explorer.web.standing import Standing
+from rosprivacy.explorer.web.titles import title_of
 from rosprivacy.explorer.web.trial_forms import TOGETHER, tried_in
 from rosprivacy.explorer.web.view import trial_in, view_of
 from rosprivacy.explorer.web.whose import ROBOT, WHOSE
@@ -44,7 +45,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.explorer.edits import Label
     from rosprivacy.explorer.session import Session
-    from rosprivacy.explorer.web.forms import Form
+    from rosprivacy.explorer.web.forms import Answer, Form
     from rosprivacy.explorer.web.guard import Door
     from rosprivacy.explorer.web.view import View
     from rosprivacy.report.words.words import Words
@@ -224,13 +225,19 @@ class Site:
         standing = self.standing
         answer = forms.answer_in(form, standing.elements, standing.vocabulary.categories)
         alone = form.choice("whose", WHOSE) == ROBOT
-        label = None
+        label, now = None, standing.entry(answer.element, only_this_robot=alone)
         if answer.role != forms.NOTHING:
-            label = cast("Label", label_of(answer, standing.entry(answer.element, only_this_robot=alone)))
+            label = cast("Label", label_of(answer, now))
         self.session.answer_for(answer.element, label, only_this_robot=alone)
         self._by = answer.by or self._by
-        what = f"{shown(answer.element.full_name)} – {self._words(f'x.answer.{answer.role}')}"
-        return Told(200, Message(DONE, self._words("x.changed", what=what)))
+        return Told(200, self._answered(answer, now, self._words(f"x.answer.{answer.role}")))
+
+    def _answered(self, answer: Answer, before: Any, what: str) -> Message:
+        """Tell what was answered, and that a limit of the channel is gone where the answer is that all may go there."""
+        told = self._words("x.changed", what=f"{shown(answer.element.full_name)} – {what}")
+        limit = limit_of(before) if answer.role == forms.SENSITIVE and not answer.kinds else ()
+        titles = self._words.row(title_of(kind, self.standing.vocabulary, self._words) for kind in limit)
+        return Message(DONE, told, (self._words("x.limit.gone", data=titles),) if limit else ())
 
     def _undo(self, _: Form) -> Told:
         return Told(200, Message(DONE, self._words("x.undone")) if self.session.undo() else None)

@@ -206,6 +206,7 @@ def _found(standing: Standing, view: View, words: Words) -> tuple[Row, ...]:
     there = [element for element in standing.elements.values() if wanted in element.full_name.casefold()]
     beside = standing.result.fleet.likeness.second if standing.result.fleet else ()
     there = [element for element in there if element.robot not in beside]
+    there.sort(key=lambda element: element.full_name.casefold() != wanted)  # the very name first
     return tuple(_row(element, "", standing, view, words) for element in there[:MOST_FOUND])
 
 

@@ -107,7 +107,7 @@ function pane(name) {
 
 // --- keys ---------------------------------------------------------------------------------------------------------
 
-const typing = (target) => target.matches("input:not([type=checkbox]), select, textarea") || one("dialog[open]");
+const typing = (target) => target.matches("input:not([type=checkbox], [type=radio]), select, textarea") || one("dialog[open]");
 
 document.addEventListener("keydown", (event) => {
   if ((event.ctrlKey || event.metaKey) && event.key === "s") {
@@ -120,7 +120,8 @@ document.addEventListener("keydown", (event) => {
   if (event.key === "/") {
     event.preventDefault();
     pane("list");
-    return one("#find").focus();
+    one("#find").focus();
+    return one("#find").select(); // what was looked for before is typed over
   }
   if (event.key === "j" || event.key === "k") return step(event.key === "j" ? 1 : -1);
   if (press(event.key)) event.preventDefault(); // else the letter goes on into what is focused now
