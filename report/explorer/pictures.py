@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple, Self
 
 from rosprivacy.report.explorer.drawing import ROOM, SECONDS, Drawing
 from rosprivacy.report.explorer.legend import legend
-from rosprivacy.report.explorer.scenes import Scenes
+from rosprivacy.report.explorer.scenes import Scene, Scenes
 from rosprivacy.report.explorer.style_sheet import style_sheet
 from rosprivacy.report.pictures.phrases import Phrases
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.findings.why_carried import WhyCarried
     from rosprivacy.report.explorer.live_svg import Links
-    from rosprivacy.report.pictures.picture import Key
+    from rosprivacy.report.pictures.picture import Key, Picture
 
 
 class Shown(NamedTuple):
@@ -123,6 +123,17 @@ class Pictures:
                 self._seen = Scenes(analysis, self._say, why)
             scene = (self._seen.whole if everything else self._seen.of)(focus, kinds)
         picture = scene.picture
+        return Shown(self._drawing.svg(scene, links, room), legend(scene), picture.title, picture.notes, picture.ways)
+
+    def drawn(self, picture: Picture, links: Links | None = None, room: tuple[float, float] = ROOM) -> Shown:
+        """Return a picture that was made elsewhere, such as what a query of the database gives.
+
+        Parameters
+        ----------
+        links, room
+            As of ``of``.
+        """
+        scene = Scene(picture)
         return Shown(self._drawing.svg(scene, links, room), legend(scene), picture.title, picture.notes, picture.ways)
 
 

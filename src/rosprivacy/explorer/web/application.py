@@ -10,7 +10,7 @@ from contextlib import suppress
 from importlib.resources import files
 from itertools import count
 from threading import RLock
-from typing import TYPE_CHECKING, Any, NamedTuple, cast
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, cast
 
 from starlette.applications import Starlette
 from starlette.concurrency import run_in_threadpool
@@ -54,6 +54,8 @@ if TYPE_CHECKING:
 STATIC = {
     "explore.css": "text/css",
     "explore.js": "text/javascript",
+    "cypher.css": "text/css",
+    "cypher.js": "text/javascript",
     "picture.css": "text/css",
     "review.css": "text/css",
 }
@@ -81,6 +83,9 @@ class Site:
         Of the reader's language.
     """
 
+    asks: ClassVar[bool] = False  # whether there is a database that can be asked
+    reading: ClassVar[tuple[str, ...]] = READING
+
     def __init__(self, session: Session, settings: Settings, words: Words, door: Door) -> None:
         self.session, self.door = session, door
         self._words = words
@@ -105,8 +110,13 @@ class Site:
             Route("/report", self._report),
             Route("/static/{name}", _static),
             *(Route(path, self._post(work), methods=["POST"]) for path, work in posts.items()),
+            *self.further_routes(),
         ]
-        return Guard(Starlette(routes=routes), self.door, READING)
+        return Guard(Starlette(routes=routes), self.door, self.reading)
+
+    def further_routes(self) -> list[Route]:
+        """Return what else is answered: nothing for a session of files."""
+        return []
 
     def close(self) -> None:
         """End what draws the pictures."""
@@ -170,6 +180,7 @@ class Site:
                 remarks=self.session.remarks,
                 by=self._by,
                 read_only=self.door.read_only,
+                asks=self.asks,
             )
         return HTMLResponse(text, told.status if told else 200)
 
