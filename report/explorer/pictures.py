@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.findings.why_carried import WhyCarried
+    from rosprivacy.analysis.findings.witness import Witness
     from rosprivacy.report.explorer.live_svg import Links
     from rosprivacy.report.pictures.picture import Key, Picture
 
@@ -99,6 +100,7 @@ class Pictures:
         *,
         everything: bool = False,
         why: WhyCarried | None = None,
+        way: Witness | None = None,
     ) -> Shown:
         """Return a picture; the same for the same analysis, element and kinds, to the byte.
 
@@ -117,11 +119,13 @@ class Pictures:
             Draw the whole system, above some 150 boxes in groups, and not only what matters.
         why
             Of the analysis, by who has it already.
+        way
+            As of ``Scenes.of``.
         """
         with self._lock:
             if self._seen is None or self._seen.analysis is not analysis:
                 self._seen = Scenes(analysis, self._say, why)
-            scene = (self._seen.whole if everything else self._seen.of)(focus, kinds)
+            scene = (self._seen.whole if everything else self._seen.of)(focus, kinds, way=way)
         picture = scene.picture
         return Shown(self._drawing.svg(scene, links, room), legend(scene), picture.title, picture.notes, picture.ways)
 

@@ -34,6 +34,8 @@ def test_a_finding_is_closed_on_trial_and_accepted_by_keys_alone(browser: WebDri
         assert "from /robot_camera" in reader.text("#h-element")
         reader.press("p")
         assert "With 3 changes" in reader.text("#hand")
+        top = "return document.querySelector('#h-closes').getBoundingClientRect().top"
+        assert 0 < browser.execute_script(top) < browser.execute_script("return innerHeight / 2")  # it is seen
         reader.focus(".proposal form button")
         reader.press(Keys.ENTER)
         assert "this is a trial" in reader.text("#trial")

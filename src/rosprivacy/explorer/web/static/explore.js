@@ -88,7 +88,9 @@ document.addEventListener("click", (event) => {
   const link = event.target.closest("a[data-swap], a[data-element]");
   if (link && !event.ctrlKey && !event.metaKey && !event.shiftKey && event.button === 0) {
     event.preventDefault();
-    return void ask(link.getAttribute("href"), {}, link.matches(".switch, .button:not([data-leads])") ? "none" : "row");
+    const shows = link.dataset.shows; // a part further down, which is what was asked for
+    const asked = ask(link.getAttribute("href"), {}, link.matches(".switch, .button:not([data-leads])") ? "none" : "row");
+    return void asked.then(() => shows && one(`#${shows}`)?.scrollIntoView({ block: "start" }));
   }
   const button = event.target.closest("button");
   if (button?.dataset.pane) pane(button.dataset.pane);
