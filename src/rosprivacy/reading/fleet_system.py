@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.analysis.model import unread
+from rosprivacy.analysis.suggesting.outdated_reasons import outdated_reasons
 from rosprivacy.answering import answer
 from rosprivacy.assumptions import assumptions_of, files_read, remembered, types_read
 from rosprivacy.ingest.database.fleet_rows import FleetRows
@@ -169,11 +170,12 @@ def _made(fleet: Fleet, groups: tuple[Alike, ...], reader: Reader, change: Chang
     files = [{"file": name, "sha256": digest} for name, digest in fleet.sources]
     seen = {one.file: one for member in members.values() for one in member.types}
     types = tuple(one for _, one in sorted(seen.items()))
+    files_by_robot = {robot.id: (*robot.labels, *robot.own) for group in groups for robot in group.robots}
     return FleetSystem(
         placed.graph, placed.bound, question.vocabulary, tuple(diagnostics),
         {**files_read(policies, labels, settings), **types_read(types), "fleet": files},
         tuple({policy.file: policy for policy in policies}.values()), labels, placed.likeness, is_fleet=True,
-        fleet=fleet, groups=groups, members=members, placed=placed, joins=joins,
+        fleet=fleet, groups=groups, members=members, placed=placed, joins=joins, label_files=files_by_robot,
     )  # fmt: skip
 
 
@@ -263,6 +265,7 @@ class Reader:
         diagnostics += matching_nothing(extended, types, written)
         bound = with_types(extended, bind(extended, files, settings.bounds, robot.surroundings), types, written)
         bound = with_exposed(extended, bound, policies)
+        diagnostics += outdated_reasons(extended, bound)
         return Member(
             robot, policies, extended, bound, full, graph.profiles, tuple(files), tuple(dict.fromkeys(diagnostics)),
             types, robot.add,
