@@ -63,7 +63,7 @@ def _labels(question: Question, key: str, note: str) -> Iterator[NewLabel]:
     for row in question.rows:
         reply = row.reply(key)
         if reply:
-            said = key == YES or question.about == NOTHING_THROUGH
+            said = key == YES or row.alike  # of rows that a person has picked, the reasons may say the opposite
             why = f": {'; '.join(row.reasons)}" if said and row.reasons else ""
             yield NewLabel(*reply.label, f"{note}{why}")
 
