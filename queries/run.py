@@ -9,6 +9,7 @@ import json
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from difflib import get_close_matches
+from itertools import accumulate
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import DatabaseError as OurDatabaseError
@@ -31,6 +32,9 @@ FETCHED = 100  # rows at once; the server keeps them in memory until they are re
 TIMEOUT = 60.0  # seconds
 LARGEST = 100 * 2**20  # of all rows, as `_size` counts; what is held here while it is turned into text
 LONGEST_REASON = 400
+DEEPEST = (
+    150  # brackets within brackets: from some 250 on the server's stack overflows, and it says nothing for 2 minutes
+)
 WAY = "path"  # the column of the pack that names elements in the order of the flow
 
 
@@ -84,6 +88,8 @@ def run(
     """
     import neo4j  # noqa: PLC0415 - light start
 
+    if _depth(text) > DEEPEST:
+        raise QueryError(f"the query has brackets within brackets, more than {DEEPEST} deep; ask for less")
     with (
         _refusals(driver, timeout),
         driver.session(
@@ -106,7 +112,7 @@ def run(
             row = tuple(value_of(value) for value in record.values())
             held += _size([plain(value) for value in row])
             if held > LARGEST:
-                raise QueryError(f"the rows take more than {LARGEST // 2**20} MB; ask for less, or use a lower --limit")
+                raise QueryError(f"the rows take more than {LARGEST // 2**20} MB; ask for less")
             rows.append(row)
         return Rows(columns, _with_ends(transaction, rows))
 
@@ -172,6 +178,12 @@ def as_cell(value: Any, column: str = WAY, words: Callable[[GraphValue], str] = 
     return json.dumps(plain(value), ensure_ascii=False, sort_keys=True)
 
 
+def _depth(text: str) -> int:
+    """Return how deep brackets stand in each other at most; those in strings count."""
+    steps = ((sign in "([{") - (sign in ")]}") for sign in text)
+    return max(accumulate(steps), default=0)
+
+
 def _size(value: Any) -> int:
     """Return about how many bytes a plain value takes as text."""
     if isinstance(value, str):
@@ -211,7 +223,7 @@ def _refusals(driver: Driver, timeout: float | None) -> Iterator[None]:
                 "the query would write; queries only read: write with cypher-shell or the driver"
             ) from None
         if ".TransactionTimedOut" in code:
-            hint = "ask for less, or give it longer with --timeout"
+            hint = "ask for less, or give it longer with rosprivacy query --timeout"
             raise QueryError(f"the query took longer than {timeout:g} s; {hint}") from None
         if isinstance(error, ClientError | DatabaseError):
             raise QueryError(f"the server refuses the query: {what}; correct it") from None

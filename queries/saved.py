@@ -10,12 +10,12 @@ import io
 import json
 import re
 import zipfile
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rosprivacy.queries.library import PARAMETER, TEXT
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
     from rosprivacy.queries.library import Query
 
@@ -56,10 +56,26 @@ def saved(query: Query) -> str:
         for field in query.parameters
         if field.name in defaults
     ]
+    texts = {name: json.dumps(value, ensure_ascii=False) for name, value in defaults.items()}
+    return "\n".join([*lines, _with_texts(query, texts), ""])
+
+
+def written_out(query: Query, values: Mapping[str, Any]) -> str:
+    """Return the Cypher of a query alone, with some values in the place of parameters; others stay.
+
+    >>> from rosprivacy.queries.library import find
+    >>> print(written_out(find("findings"), {"robot": "r'1", "category": ""}).splitlines()[1])
+    WHERE ("r'1" = '' OR f.robot = "r'1")
+    """
+    return _with_texts(query, {name: json.dumps(value) for name, value in values.items()})
+
+
+def _with_texts(query: Query, texts: Mapping[str, str]) -> str:
+    """The Cypher without its header, and with literals for some parameters."""
+
+    def written(token: re.Match[str]) -> str:
+        name = token.group(token.lastindex) if token.lastindex else ""
+        return texts.get(name, token.group())
+
     body = [line for line in query.text.splitlines() if not line.startswith("//")]
-
-    def with_default(token: re.Match[str]) -> str:
-        name = token.group(token.lastindex) if token.lastindex else None
-        return json.dumps(defaults[name], ensure_ascii=False) if name in defaults else token.group()
-
-    return "\n".join([*lines, _TOKEN.sub(with_default, "\n".join(body)), ""])
+    return _TOKEN.sub(written, "\n".join(body))

@@ -89,8 +89,15 @@ class Options(NamedTuple):
     bounds: Bounds = BOUNDS
 
 
-def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Options | None = None) -> Analysis:
+def analyse(
+    graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Options | None = None, before: Spread | None = None
+) -> Analysis:
     """Answer, for every category in one pass, whether it can get from a source to a leak.
+
+    Parameters
+    ----------
+    before
+        That of an earlier answer about the same graph, of which all is taken over that is still so.
 
     Raises
     ------
@@ -112,13 +119,13 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
     """
     options = options or Options()
     bound = replace(bound, outside=on_day(bound.outside, options.today))
-    spread = spreading.spread(graph, bound, hierarchy)
+    spread = spreading.spread(graph, bound, hierarchy, before)
     kinds = tuple(concerns(spread, bound, hierarchy))
     wanted = [c for c in spread.categories if options.categories is None or c in options.categories]
     mask = _mask(spread, options)
-    net = Net.of(spread)
+    net = Net.kept(spread)
     work = _Work(options.bounds)
-    findings = tuple(_findings(net, mask, kinds, options, work))
+    findings = _kept_findings(net, mask, kinds, options, work)
     questions = open_questions(net, mask, unanswered(graph.elements, bound.outside))
     lacks = grounds(spread, mask).lacking
     leak = any(finding.stands for finding in findings)
@@ -128,7 +135,9 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
         emitted=tuple(wanted),
         findings=findings,
         open=questions,
-        carried=_carried(spread, mask, hierarchy),
+        carried=spread.course.kept(
+            "carried", (mask, spread.gone, hierarchy), lambda: _carried(spread, mask, hierarchy)
+        ),
         roles=_roles(spread, mask),
         standard_channels=_standard_channels(spread),
         standard_reached=standard_channels.reached(spread, mask),
@@ -192,6 +201,19 @@ class _Work:
             more, hint = self.paths.bounds.refusal(self.paths.name)
             what = f"how many paths share no flow is not counted for {self.left_out:,} findings, which say 1: {more}"
             yield Diagnostic(NOWHERE, Severity.WARNING, f"{what}; {hint}", PATHS_NOT_COUNTED)
+
+
+def _kept_findings(net: Net, mask: int, kinds: Sequence[Concern], options: Options, work: _Work) -> tuple[Finding, ...]:
+    """All findings; those of before, where data goes the same ways, ends at the same places and the same is asked."""
+
+    def find() -> tuple[Finding, ...]:
+        return tuple(_findings(net, mask, kinds, options, work))
+
+    if options.count_paths or options.choose:
+        return find()
+    spread = net.spread
+    ends = [(one.kind, {v: bits for v, bits in one.bits.items() if bits}, one.reasons) for one in kinds]
+    return spread.course.kept("findings", (mask, options, spread.gone, ends), find)
 
 
 def _findings(net: Net, mask: int, kinds: Sequence[Concern], options: Options, work: _Work) -> Iterator[Finding]:

@@ -68,8 +68,8 @@ def review_order(analysis: Analysis) -> dict[Shown, Behind]:
     elements = spread.graph.elements
     kinds = {q.categories: spread.bits.merged(sum(map(spread.both, q.categories))) for q in analysis.open}
     asked = {q.element.shown_as: kinds[q.categories] for q in analysis.open}
-    following = _Following.of(spread)
-    reached = following.reached()
+    following = spread.course.kept("following", None, lambda: _Following.of(spread))
+    reached = spread.course.kept("reached", None, following.reached)
     shown = {vertex: elements[vertex].shown_as for vertex in reached}
     open_at = {vertex: one for vertex, one in shown.items() if one in asked}
     through = _through(following, {vertex: asked[one] for vertex, one in open_at.items()}, reached)
@@ -152,6 +152,10 @@ class _Following(NamedTuple):
                 hub += 1
         return flows
 
+    def dominators(self) -> dict[int, int]:
+        """Return the last vertex that all data to each vertex goes through; nothing of too many flows."""
+        return immediate_dominators(self.with_hubs(), START) if 0 < self.number() <= MOST else {}
+
     def reached(self) -> list[int]:
         """Every vertex that data gets to, the nearest to a source first."""
         written = _by_member((meeting.written, meeting) for meeting in self.meetings)
@@ -233,9 +237,7 @@ def _through(following: _Following, asked: Mapping[int, int], reached: Iterable[
 
 def _below(following: _Following, questions: Iterable[int], leaks: Iterable[int]) -> Mapping[int, tuple[int, int]]:
     """Vertex -> how many of the questions, and of the leaks, data gets to past it only; without itself."""
-    if not 0 < following.number() <= MOST:
-        return {}
-    parents = immediate_dominators(following.with_hubs(), START)
+    parents = following.spread.course.kept("dominators", None, following.dominators)
     asked, leaking = set(questions), set(leaks)
     below: dict[int, tuple[int, int]] = defaultdict(lambda: (0, 0))
     for vertex in asked | leaking:

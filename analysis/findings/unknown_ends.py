@@ -57,7 +57,7 @@ def unknown_ends(spread: Spread, mask: int) -> tuple[UnknownEnd, ...]:
 def _unread(spread: Spread, mask: int) -> Iterator[int]:
     """Channels with data from which no flow leads to anything but channels."""
     elements = spread.graph.elements
-    known = _readable(spread.graph)
+    known = spread.course.kept("readable", None, lambda: _readable(spread.graph))
     for vertex in sorted(spread.leaves):
         if elements[vertex].is_channel and spread.present(vertex) & mask and vertex not in known:
             yield vertex
@@ -96,12 +96,15 @@ def _readable(graph: FlowGraph) -> Collection[int]:
 def _unreached(spread: Spread) -> Iterator[int]:
     """Elements outside ROS that nothing flows into; where data may begin, a flow out is enough."""
     graph = spread.graph
+    outside = [vertex for vertex, element in enumerate(graph.elements) if element.kind in NON_ROS]
+    if not outside:
+        return
     own = [flow for _, flow in parted(graph.flows)[0]]  # a meeting is one of channels, or of them and nodes
     entered = {flow.target for flow in own}
     left = {flow.source for flow in own}
-    for vertex, element in enumerate(graph.elements):
-        if element.kind in NON_ROS and vertex not in entered:
-            begins = element.kind == PARTICIPANT  # it was seen to write, and nobody says what
+    for vertex in outside:
+        if vertex not in entered:
+            begins = graph.elements[vertex].kind == PARTICIPANT  # it was seen to write, and nobody says what
             begins |= any("source" in fact.roles for fact in spread.facts.get(vertex, {}).values())
             if not (begins and vertex in left):
                 yield vertex

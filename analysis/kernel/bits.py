@@ -66,7 +66,8 @@ class CategoryBits:
 
     def in_both_forms(self, bits: int) -> int:
         """Return the bits of all categories of which some form is among these."""
-        return sum(map(self.both, bits_of(self.merged(bits))))
+        merged = self.merged(bits)
+        return merged | merged << self._count
 
 
 def bits_of(number: int) -> Iterator[int]:

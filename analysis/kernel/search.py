@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import dataclass, field
-from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.kernel.states import Net
@@ -133,9 +132,10 @@ def search(net: Net, starts: Iterable[int], allowed: int, stop: Mapping[int, int
     return reach
 
 
-@lru_cache(maxsize=1)  # what is open, a page and its picture ask the same of one answer
 def from_sources(spread: Spread) -> tuple[Net, Search]:
     """Search from all sources, past every leak; only of a spread that is whole, since the answer is kept.
+
+    What is open, a page and its picture ask the same of one answer.
 
     >>> from rosprivacy.analysis.example import ARCHIVE, factory
     >>> from rosprivacy.analysis.kernel.spreading import spread
@@ -144,8 +144,12 @@ def from_sources(spread: Spread) -> tuple[Net, Search]:
     >>> reach.level(ARCHIVE, carried.both("FaceTemplate"))
     4
     """
-    net = Net.of(spread)
-    return net, search(net, [vertex for vertex in spread.facts if spread.begins(vertex)], spread.all_bits, {})
+    net = Net.kept(spread)
+
+    def find() -> Search:
+        return search(net, [vertex for vertex in spread.facts if spread.begins(vertex)], spread.all_bits, {})
+
+    return net, spread.course.kept("from sources", None, find)
 
 
 def _across_sides(net: Net, reach: Search, level: int, leaving: Mapping[int, int]) -> dict[int, int]:

@@ -7,14 +7,16 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.kernel.bits import CategoryBits, bits_of
+from rosprivacy.analysis.kernel.course import Course
 from rosprivacy.analysis.many_flows import find
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.kernel.overruled import Overruled
     from rosprivacy.analysis.kernel.roles import Facts
-    from rosprivacy.analysis.model import FlowGraph
+    from rosprivacy.analysis.model import FlowGraph, Statement
 
 
 @lru_cache(maxsize=1)  # what is said of single elements is asked for again and again
@@ -67,6 +69,12 @@ class Spread:
         Vertex -> bits, where there are any.
     sent
         Vertex -> bits that leave along all of its flows.
+    decisions
+        What was decided, by all that is said of elements or flows; what an answer after it need not decide anew.
+    hierarchy
+        By which it was decided.
+    course
+        What is found of how data goes on; the same one where it goes the same ways as in an answer before.
     """
 
     graph: FlowGraph
@@ -94,6 +102,9 @@ class Spread:
     leaves: dict[int, int] = field(default_factory=dict)
     sent: dict[int, int] = field(default_factory=dict)
 
+    decisions: dict[tuple[Statement, ...], dict[str, Facts]] = field(default_factory=dict)
+    hierarchy: Hierarchy | None = None
+    course: Course = field(default_factory=Course, init=False)
     _both: Mapping[str, int] = field(init=False, repr=False, compare=False)
     _names: dict[int, tuple[str, ...]] = field(default_factory=dict, init=False, repr=False, compare=False)
 
@@ -117,6 +128,22 @@ class Spread:
             flow_facts={now[index]: facts for index, facts in self.flow_facts.items() if index in now},
             flow_emits={now[index]: bits for index, bits in self.flow_emits.items() if index in now},
             flow_keeps={now[index]: bits for index, bits in self.flow_keeps.items() if index in now},
+        )
+
+    def goes_like(self, other: Spread) -> bool:
+        """Whether labels let data go the same ways as in another spread: then the fixpoint is the same, too."""
+        same = self.graph is other.graph and self.categories == other.categories
+        return same and self._ways() == other._ways()
+
+    def _ways(self) -> tuple[Mapping[int, object], ...]:
+        """All that the fixpoint and searches rest on, but for the graph; what says nothing is left out."""
+        return (
+            {vertex: bits for vertex, bits in self.emits.items() if bits},
+            {vertex: bits for vertex, bits in self.keeps.items() if bits != self.all_bits},
+            {vertex: pairs for vertex, pairs in self.derives.items() if pairs},
+            self.flow_emits,
+            self.flow_keeps,
+            self.flow_begins,
         )
 
     @property

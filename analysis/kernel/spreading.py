@@ -25,8 +25,13 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Bound, FlowGraph, Statement
 
 
-def spread(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy) -> Spread:
+def spread(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, before: Spread | None = None) -> Spread:
     """Apply labels to a graph and carry every category to where it can get.
+
+    Parameters
+    ----------
+    before
+        The spread of an earlier answer: where data goes the same ways, what was found of that holds here, too.
 
     Raises
     ------
@@ -40,8 +45,12 @@ def spread(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy) -> Spread:
     >>> carried.planes(carried.arrives[ARCHIVE])  # as they are, pseudonymised
     (('FaceTemplate',), ('Video',))
     """
-    result = meaning(graph, bound, hierarchy, emitted(bound.elements.values()))
-    fill(result, *least_solution(LabelledGraph.of(result)))
+    result = meaning(graph, bound, hierarchy, emitted(bound.elements.values()), before=before)
+    if before is not None and result.goes_like(before):
+        result.course = before.course
+        result.arrives, result.leaves, result.sent = before.arrives, before.leaves, before.sent
+    else:
+        fill(result, *least_solution(LabelledGraph.of(result)))
     return result
 
 
@@ -53,8 +62,9 @@ class LeftOut(NamedTuple):
 
 
 def meaning(
-    graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, categories: Iterable[str], left_out: LeftOut | None = None
-) -> Spread:
+    graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, categories: Iterable[str], left_out: LeftOut | None = None,
+    before: Spread | None = None,
+) -> Spread:  # fmt: skip
     """Apply labels to a graph, and carry nothing yet.
 
     Parameters
@@ -63,6 +73,8 @@ def meaning(
         That have bits: those that are emitted, here or in the other parts of what this is a part of.
     left_out
         What was said before of the same elements and flows, but for this; no source names channels there.
+    before
+        As of ``spread``.
 
     Raises
     ------
@@ -76,8 +88,8 @@ def meaning(
     >>> labelled.names(labelled.leaks[ARCHIVE]), labelled.arrives
     (('FaceTemplate', 'Video'), {})
     """
-    spread = Spread(graph, tuple(sorted(categories)))
-    problems = _decide(spread, bound, hierarchy, left_out)
+    spread = Spread(graph, tuple(sorted(categories)), hierarchy=hierarchy)
+    problems = _decide(spread, bound, hierarchy, left_out, before)
     spread.overruled = overruled(spread.facts, graph.elements)
     problems += [error for one in spread.overruled if (error := one.error())]
     problems += keep_named(spread.facts, spread.flow_facts, graph, bound, hierarchy)
@@ -100,8 +112,12 @@ def meaning(
     return spread
 
 
-def _decide(spread: Spread, bound: Bound, hierarchy: Hierarchy, left_out: LeftOut | None) -> list[InputError]:
+def _decide(
+    spread: Spread, bound: Bound, hierarchy: Hierarchy, left_out: LeftOut | None, before: Spread | None
+) -> list[InputError]:
     """Put in what each element and flow does with each category; return where statements contradict each other."""
+    same = before is not None and (before.categories, before.hierarchy) == (spread.categories, hierarchy)
+    decisions = before.decisions if before and same else {}
     elements, flows = spread.graph.elements, spread.graph.flows
     problems: list[InputError] = []
     alike: dict[tuple[int, ...], dict[str, Facts]] = {}  # globs say the same of many elements
@@ -109,6 +125,9 @@ def _decide(spread: Spread, bound: Bound, hierarchy: Hierarchy, left_out: LeftOu
     def decide(said: tuple[Statement, ...], name: str, before: Mapping[str, Facts]) -> dict[str, Facts]:
         key = tuple(map(id, said))
         if key in alike:
+            return alike[key]
+        if said in decisions:
+            spread.decisions[said] = alike[key] = decisions[said]
             return alike[key]
         mentioned = {category for statement in said for category in statement.categories}
         result: dict[str, Facts] = {}
@@ -123,6 +142,8 @@ def _decide(spread: Spread, bound: Bound, hierarchy: Hierarchy, left_out: LeftOu
                 problems.append(error)
         if len(problems) == known:
             alike[key] = result
+            if not left_out:
+                spread.decisions[said] = result
         return result
 
     facts_before = left_out.spread.facts if left_out else {}

@@ -64,6 +64,11 @@ class Net(NamedTuple):
                     inner[source].append(_move(spread, source, target))
         return cls(spread, flows, {source: sorted(moves) for source, moves in inner.items()}, met)
 
+    @classmethod
+    def kept(cls, spread: Spread) -> Net:
+        """Do the same of a spread that is whole; the flows are indexed once for all answers of one course."""
+        return spread.course.kept("net", None, lambda: cls.of(spread))._replace(spread=spread)
+
     def leaving(self, vertex: int) -> list[Move]:
         """Return all flows of an element, with the pairs of its meetings."""
         moves, meetings = self.flows.get(vertex, []), self.meetings.get(vertex, ())

@@ -13,9 +13,14 @@ ground ``code``. The rules, in full (docs/suggestions.md):
    node is a source of the second one. It is ``likely`` if a channel that the node writes carries the second one by its
    name, or by a type that says so with more than ``may``. A rule that says ``may`` says nothing if no such channel is
    thought to carry it. If nobody knows where the node has the first one from, both are ``may``; what reads ROS by
-   itself (a listener of transforms) makes no source.
+   itself (a listener of transforms) makes no source. What makes either of several kinds (a detector of what it was
+   taught) is ``likely`` to make one only where channels tell of that one alone.
 4. What lets data out makes a leak. It is ``may`` if nothing of what the node reads is thought to carry a kind, and it
-   brings in no more than what an operator does.
+   brings in no more than what an operator does. What a driver sends to a network is ``may``: it talks with its device.
+5. What a node brings in or makes, it may let out itself. So a node that writes nothing, and whose code lets data out,
+   is asked about, too: 1 and 3 hold, and both are ``may``.
+6. Somebody who acts on a node (keys, a window, a page) may enter what its request to a service is about, by the name of
+   the service: an order, a question to a model. It is ``may``.
 """
 
 from __future__ import annotations
@@ -25,6 +30,8 @@ from typing import TYPE_CHECKING, NamedTuple
 from rosprivacy.analysis.model import Confidence
 from rosprivacy.analysis.suggesting.carried_kinds import ANYTHING, cannot_carry
 from rosprivacy.analysis.suggesting.evidence import CODE, DERIVATION, LEAK, NAMED, SOURCE, Evidence, Label
+from rosprivacy.analysis.suggesting.library_rules import ADDRESS, PROGRAM
+from rosprivacy.analysis.suggesting.name_rules import has_word, of_topic
 from rosprivacy.analysis.suggesting.weighing import surer
 
 if TYPE_CHECKING:
@@ -36,6 +43,11 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.suggesting.traffic import Traffic
 
 
+ENTERED_BY = "OperatorInput"  # what says that somebody acts on a node
+NETWORK = "network"  # where data go
+_VERBS = {PROGRAM: "starts", ADDRESS: "names"}  # what code does with a thing of such a name
+
+
 class Spoken(NamedTuple):
     """A rule, and the first use that it speaks about."""
 
@@ -45,7 +57,9 @@ class Spoken(NamedTuple):
     def evidence(self, label: Label, sure: Confidence, then: str = "") -> Evidence:
         """Return what it says for a label: no surer than the rule."""
         sure = sure if surer(self.rule.confidence, sure) else self.rule.confidence
-        what = f"starts {self.use.name[2:]}" if self.use.name.startswith("$") else f"uses {self.use.name}"
+        name = self.use.name
+        how = next((verb for sign, verb in _VERBS.items() if name.startswith(sign)), "uses")
+        what = f"{how} {name[2:] if how != 'uses' else name}"
         return Evidence(label, CODE, sure, f"{what} ({self.use.place}): {self.rule.why}{then}", self.use.place)
 
 
@@ -93,8 +107,9 @@ def library_evidence(
         brought, made, let_out = (
             _spoken(section, own, libraries) for section in (libraries.brings_in, libraries.makes, libraries.lets_out)
         )
-        if written:
+        if written or let_out:
             yield from node.brought_in(brought, made)
+            yield from node.entered(brought)
             yield from node.made(made, brought)
         yield from node.let_out(let_out, brought)
 
@@ -131,12 +146,24 @@ class _Node:
         for one in brought:
             for kind in one.rule.kinds:
                 if one.rule.any_type or self._related(kind, self.out):
-                    sure = Confidence.MAY if self._related(kind, self.into) else one.rule.confidence
+                    doubtful = self._related(kind, self.into) or not self.written
+                    sure = Confidence.MAY if doubtful else one.rule.confidence
                     yield one.evidence(self._label(SOURCE, kind), sure)
                 elif self._cannot_write(kind):
                     yield from self._told_of(one, kind)
                 elif not self._is_made_of(kind, made):
                     yield one.evidence(self._label(SOURCE, kind), Confidence.MAY)
+
+    def entered(self, brought: Sequence[Spoken]) -> Iterator[Evidence]:
+        """Yield what somebody enters, by the services that the node asks for."""
+        acted = [one for one in brought if ENTERED_BY in one.rule.kinds][:1]
+        names = self.rules.names
+        for element, types in self.written if acted else ():
+            spoken = of_topic(element.name, names) if element.leg == "request" else None
+            for kind in spoken.rule.kinds if spoken else ():
+                if kind in names.entered and not cannot_carry(kind, element, types, self.rules):
+                    then = f"; it asks for {element.name}"
+                    yield from (one.evidence(self._label(SOURCE, kind), Confidence.MAY, then) for one in acted)
 
     def _told_of(self, one: Spoken, kind: str) -> Iterator[Evidence]:
         """What is written of what data tell that never come into ROS themselves."""
@@ -158,7 +185,7 @@ class _Node:
             read = [first for first in one.rule.kinds if self._related(first, self.into)]
             came = next((own[first] for first in own if self._related(first, one.rule.kinds)), None)
             for kind in one.rule.to:
-                sure = Confidence.LIKELY if self._related(kind, self.told) else Confidence.MAY
+                sure = Confidence.LIKELY if self._tells(kind, one.rule) else Confidence.MAY
                 weak = one.rule.confidence is Confidence.MAY and not self._related(kind, self.out)
                 any_type = one.rule.any_type and kind in self.rules.names.computed  # a picture needs its type
                 if weak or (self._cannot_write(kind) and not any_type):
@@ -174,12 +201,19 @@ class _Node:
                     label = self._derived(one.rule.kinds[0], kind) if reads else self._label(SOURCE, kind)
                     yield one.evidence(label, Confidence.MAY, "; where it has that from is not known")
 
+    def _tells(self, kind: str, rule: LibraryRule) -> bool:
+        """Whether channels tell of a kind that is made; of kinds that are made instead of each other, of it alone."""
+        others = rule.to if rule.either else (kind,)
+        return {one for one in others if self._related(one, self.told)} == {kind}
+
     def let_out(self, let_out: Sequence[Spoken], brought: Sequence[Spoken]) -> Iterator[Evidence]:
         """Yield what the node lets out."""
         known = bool(self.into) or any(not one.rule.any_type for one in brought)
+        drives = has_word(self.element.name, self.rules.names.driving)
         for one in let_out:
+            doubtful = not known or (drives and one.rule.where == NETWORK)
             for kind in one.rule.kinds:
-                yield one.evidence(self._label(LEAK, kind), one.rule.confidence if known else Confidence.MAY)
+                yield one.evidence(self._label(LEAK, kind), Confidence.MAY if doubtful else one.rule.confidence)
 
     def _derived(self, first: str, kind: str) -> Label:
         return self._label(DERIVATION, first)._replace(to=kind)
@@ -188,7 +222,9 @@ class _Node:
         return any(one != ANYTHING and self.rules.related(kind, one) for one in kinds)
 
     def _cannot_write(self, kind: str) -> bool:
-        return all(cannot_carry(kind, element, types, self.rules) for element, types in self.written)
+        """Whether none of its channels can carry a kind; of a node that writes nothing, that is not the reason."""
+        every = [cannot_carry(kind, element, types, self.rules) for element, types in self.written]
+        return bool(every) and all(every)
 
     def _label(self, role: str, kind: str) -> Label:
         return Label(self.element, role, kind)

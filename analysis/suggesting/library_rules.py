@@ -3,12 +3,14 @@
 A use is a name as the code's imports resolve it: ``cv2.VideoCapture`` in Python, ``cv::VideoCapture`` in C++. A rule
 about a name speaks about all that is below it, too: one about ``whisper`` about ``whisper.load_model``. Of several such
 rules the one with the longest name speaks. What stands in brackets behind a name says how it is called: ``open(w)``
-opens a file to write; a rule about ``open`` speaks about it, too. A program that code starts is used as ``$ espeak``.
+opens a file to write; a rule about ``open`` speaks about it, too. A program that code starts is used as ``$ espeak``,
+an address that stands in it as ``@ https://api.openai.com/v1``. A rule about addresses names a part of them.
 """
 
 from __future__ import annotations
 
 import re
+from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
@@ -18,6 +20,7 @@ if TYPE_CHECKING:
 
 PYTHON, CPP = "python", "c++"
 PROGRAM = "$ "  # before the name of a program that code starts
+ADDRESS = "@ "  # before an address that stands in code
 _END = re.compile(r"(?:\.|::|[(]| )[^.:( ]*$")  # of a name: its last part, with the sign before it
 
 
@@ -54,6 +57,8 @@ class LibraryRule(NamedTuple):
         Whether it can have any form, a flag or a velocity, so that no message type speaks against it.
     by_itself
         Of what makes something: whether it reads ROS by itself, as a listener of transforms does.
+    either
+        Of what makes something: whether it makes one or another of the kinds, by what it was taught.
     """
 
     kinds: tuple[str, ...]
@@ -64,6 +69,7 @@ class LibraryRule(NamedTuple):
     where: str = ""
     any_type: bool = False
     by_itself: bool = False
+    either: bool = False
 
 
 class Names(NamedTuple):
@@ -73,6 +79,8 @@ class Names(NamedTuple):
     ----------
     starred
         By what names begin with: what was written with ``*`` at its end.
+    addresses
+        By a part of an address.
 
     Examples
     --------
@@ -81,13 +89,19 @@ class Names(NamedTuple):
     >>> names = Names({"sounddevice.InputStream": rule}, {"Pa_Open": rule})
     >>> [bool(names.of(name)) for name in ("sounddevice.InputStream.read", "sounddevice.play", "Pa_OpenStream")]
     [True, False, True]
+    >>> bool(Names({}, {}, {"api.openai.com": rule}).of("@ https://api.openai.com/v1"))
+    True
     """
 
     rules: Mapping[str, LibraryRule]
     starred: Mapping[str, LibraryRule]
+    addresses: Mapping[str, LibraryRule] = MappingProxyType({})
 
     def of(self, name: str) -> tuple[str, LibraryRule] | None:
-        """Return the longest name that is this one, or above it, with its rule."""
+        """Return the longest name that is this one, or above it, with its rule; of an address the longest part."""
+        if name.startswith(ADDRESS):
+            part = max((one for one in self.addresses if one in name), key=len, default="")
+            return (part, self.addresses[part]) if part else None
         for above in _above(name):
             if above in self.rules:
                 return above, self.rules[above]

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from functools import lru_cache
+from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
@@ -65,6 +66,8 @@ class NameRules(NamedTuple):
         Categories that programs work out of other data, so that who writes them is seldom where they come from.
     not_by_type
         Categories of which a type that says no more than ``may`` makes no source by itself.
+    entered
+        Categories that somebody enters, where a service is asked for whose name speaks of them, such as ``order``.
     wanted
         Phrases: what a topic with them last carries is wished, such as ``goal_pose``, and was not measured.
     commanding
@@ -75,6 +78,10 @@ class NameRules(NamedTuple):
         Words: a node with one of them in its name works on what others bring in, such as ``detector``.
     simulated
         Words: a node or topic with one of them in its name stands for what nobody measured.
+    driving
+        Words: a node with one of them in its name talks with its own device.
+    unprompted
+        Of topics: what a node brings in that writes one, and reads none.
     understood
         Words: a topic with one of them carries what somebody wants, where its writer reads what somebody said.
     """
@@ -88,12 +95,15 @@ class NameRules(NamedTuple):
     becomes: Mapping[str, Mapping[str, NameRule]]
     computed: frozenset[str] = frozenset()
     not_by_type: frozenset[str] = frozenset()
+    entered: frozenset[str] = frozenset()
     wanted: frozenset[Phrase] = frozenset()
     commanding: frozenset[str] = frozenset()
     reworked: frozenset[str] = frozenset()
     reworking: frozenset[str] = frozenset()
     simulated: frozenset[str] = frozenset()
     understood: frozenset[str] = frozenset()
+    driving: frozenset[str] = frozenset()
+    unprompted: Mapping[Phrase, NameRule] = MappingProxyType({})
 
 
 class Spoken(NamedTuple):

@@ -2,8 +2,9 @@
 
 In: files. Out: the uses of libraries of each piece, and its links to others. In Python a link is a name of the file
 itself, or of a module that it imports and that is there: beside it, above it, or in the one other package of the
-sources that has it (``src/robot_llm/robot_llm/client.py`` for ``robot_llm.client``). In C++ it is the name of a class
-of the same package, by the folders: what holds ``src`` or ``include``. What does not resolve is a use of a library.
+sources that has it (``src/robot_llm/robot_llm/client.py`` for ``robot_llm.client``). A name that a module only imports
+(``from .client import Client`` in an ``__init__.py``) is what it imports. In C++ it is the name of a class of the same
+package, by the folders: what holds ``src`` or ``include``. What does not resolve is a use of a library.
 """
 
 from __future__ import annotations
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
 
 INIT = "__init__.py"
 FOLDERS = ("src", "include")  # of a package of C++
+HANDED_ON = 4  # modules that a name is imported through, one from the other
+ALL = "*"  # that is imported from a module
 
 
 class Piece(NamedTuple):
@@ -136,8 +139,24 @@ class CodeUnits:
         if found is None:
             return None
         file, rest = found
-        names = {one.name for one in self._python[file].units}
-        return Piece(file, rest[0] if rest and rest[0] in names else "")
+        for _ in range(HANDED_ON):
+            if not rest or rest[0] in self._units(file) or (further := self._handed_on(file, rest)) is None:
+                break
+            file, rest = further
+        return Piece(file, rest[0] if rest and rest[0] in self._units(file) else "")
+
+    def _units(self, file: str) -> set[str]:
+        return {one.name for one in self._python[file].units}
+
+    def _handed_on(self, file: str, rest: list[str]) -> tuple[str, list[str]] | None:
+        """Where a name comes from that a module imports; of all that it imports, the one module that has it."""
+        folder, pairs = str(PurePath(file).parent), self._python[file].imports
+        named = [".".join([meant, *rest[1:]]) for name, meant in pairs if name == rest[0]]
+        found = [self._module(folder, name) for name in named]
+        whole = [self._module(folder, meant.removesuffix(ALL) + rest[0]) for name, meant in pairs if name == ALL]
+        found += [one for one in whole if one and one[1][:1] == rest[:1] and rest[0] in self._units(one[0])]
+        known = [one for one in found if one and one[0] != file]
+        return known[0] if len({one[0] for one in known}) == 1 else None
 
     def _module(self, folder: str, name: str) -> tuple[str, list[str]] | None:
         """A file, and what is left of a name that begins with a module: ``.helper.Camera``, ``demo.helper.Camera``."""

@@ -85,7 +85,8 @@ def read_python(file: str, data: bytes) -> Code:
         line = (isinstance(error, SyntaxError) and error.lineno) or 1
         what = error.msg if isinstance(error, SyntaxError) else str(error) or type(error).__name__
         return Code(file, "python", problems=(LabelError(file, line, f"not Python {VERSION}: {shown(what)}", CORRECT),))
-    imports = dict(imported(tree))
+    pairs = tuple(imported(tree))
+    imports = dict(pairs)
     used = PythonUses(tree, file)
     classes, sites = [], []
     for node, where in _walk(tree):
@@ -95,7 +96,8 @@ def read_python(file: str, data: bytes) -> Code:
             sites.append(Site(NODE, None, lines, lines, class_owner(node.name), head=True))
         elif isinstance(node, ast.Call) and (site := _site(node, where, imports)):
             sites.append(site)
-    return Code(file, "python", comments, tuple(classes), tuple(sites), (), used.uses(), used.units, *launched(tree))
+    own = comments, tuple(classes), tuple(sites)
+    return Code(file, "python", *own, (), used.uses(), used.units, *launched(tree), pairs)
 
 
 def _comments(text: str) -> Iterator[Comment]:

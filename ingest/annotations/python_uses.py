@@ -1,17 +1,21 @@
 """What Python code uses: names of libraries, as its imports resolve them, where they are used; nothing is run.
 
 ``import cv2 as cv`` and ``cv.VideoCapture(0)`` give ``cv2.VideoCapture``; ``from x import y`` gives ``x.y`` where ``y``
-is used. What a variable is that was made by such a call is known as far as all its values are made by the same:
-``self.client = mqtt.Client()`` and ``self.client.publish(…)``. No recursion: code may be nested as deep as it likes.
+is used. What a variable is that was made by such a call, or stands for a library, is known as far as all its values are
+the same: ``self.client = mqtt.Client()`` and ``self.client.publish(…)``. That it is None at first says nothing against
+it. An address that stands in the code, ``https://…``, is a use, too, without what follows a question mark, and with
+``{}`` for what is filled in. No recursion: code may be nested as deep as it likes.
 """
 
 from __future__ import annotations
 
 import ast
+import builtins
 from collections import defaultdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.suggesting.library_rules import ADDRESS
 from rosprivacy.ingest.annotations.source_code import LONGEST_USE, Lines, Unit, Use
 from rosprivacy.ingest.annotations.started import program
 
@@ -20,12 +24,16 @@ if TYPE_CHECKING:
 
 LONGEST = 32  # names and calls of a chain: what is longer is nobody's
 BUILT_IN = ("open", "input")
+BUILT_INS = frozenset(dir(builtins))
+ALL = "*"  # that is imported from a module
 CALLED_WITH = ("input", "output")  # keywords that say whether a stream of sound comes in or goes out
 STARTERS = (  # what starts a program, and what looks for one that is started then
     "subprocess.", "os.system", "os.popen", "os.exec", "os.spawn", "asyncio.create_subprocess_", "shutil.which",
     "pexpect.",
 )  # fmt: skip
+SCHEMES = ("http://", "https://", "ws://", "wss://", "mqtt://", "mqtts://", "rtsp://", "rtmp://")
 MODE_SIGNS, WRITING = frozenset("rwaxbtU+"), frozenset("wax+")
+PIECES = (ast.Call, ast.Attribute, ast.Name, ast.Constant, ast.JoinedStr)  # code that may say what is used
 DEFINITIONS = (ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
 
 
@@ -60,6 +68,8 @@ class PythonUses:
         )
         own = {one.name: f".{Path(file).stem}.{one.name}" for one in self.units}
         self._known = own | dict(imported(tree))
+        self._all_of = self._known.pop(ALL, "").removesuffix(f".{ALL}")  # the last module of which all is imported
+        self._own = set(_named_here(tree)) if self._all_of else set()
         self._made: dict[tuple[str, str], set[str]] = defaultdict(set)  # by unit and variable: what makes its values
         self._commands: dict[tuple[str, str], list[ast.expr]] = defaultdict(list)  # lists and texts that variables are
 
@@ -71,11 +81,13 @@ class PythonUses:
         found: dict[tuple[str, str], Use] = {}
         inside: set[int] = set()  # parts of what has been looked at as a whole
         for node, unit in pieces:
-            if id(node) not in inside and isinstance(node, ast.Call | ast.Attribute | ast.Name):
-                for name in self._names(node, unit, inside):
-                    one = Use(name, node.lineno, unit)
-                    first = found.setdefault((unit, name), one)
-                    found[unit, name] = min(first, one, key=lambda use: use.line)
+            if id(node) in inside or not isinstance(node, PIECES):
+                continue
+            of_text = isinstance(node, ast.Constant | ast.JoinedStr)
+            for name in _addresses(node, inside) if of_text else self._names(node, unit, inside):
+                one = Use(name, node.lineno, unit)
+                first = found.setdefault((unit, name), one)
+                found[unit, name] = min(first, one, key=lambda use: use.line)
         return tuple(sorted(found.values(), key=lambda use: (use.line, use.name)))
 
     def _tops(self) -> Iterator[tuple[str, ast.stmt]]:
@@ -93,10 +105,15 @@ class PythonUses:
             pairs = [(item.optional_vars, item.context_expr) for item in node.items]
         for target, value in pairs:
             if target is not None and (name := _variable(target)):
-                made = isinstance(value, ast.Call | ast.Await)
                 if isinstance(value, ast.List | ast.Tuple | ast.Constant | ast.JoinedStr):
                     self._commands[unit, name].append(value)
-                self._made[unit, name].add(self._chain(value, unit, set()) if value is not None and made else "")
+                if value is not None and not _is_none(value):
+                    self._made[unit, name].add(self._value(value, unit))
+
+    def _value(self, value: ast.expr, unit: str) -> str:
+        """What makes a value: a call, or a library that it stands for (``self.sr = speech_recognition``)."""
+        alias = isinstance(value, ast.Name) and value.id in self._known
+        return self._chain(value, unit, set()) if alias or isinstance(value, ast.Call | ast.Await) else ""
 
     def _names(self, node: ast.expr, unit: str, inside: set[int]) -> Iterator[str]:
         """The names that one piece of code uses, from the outside: ``a.b().c`` is looked at once."""
@@ -135,14 +152,45 @@ class PythonUses:
                 inside.add(id(node))
         if not isinstance(node, ast.Name):
             return ""
-        head = self._known.get(node.id) or (node.id if node.id in BUILT_IN else "")
+        head = self._known.get(node.id) or (node.id if node.id in BUILT_IN else self._of_all(node.id))
         return ".".join([head, *reversed(parts)]) if head else ""
+
+    def _of_all(self, name: str) -> str:
+        """``tkinter.Tk`` of ``Tk`` after ``from tkinter import *``, where the file itself names nothing so."""
+        known = name in self._own or name in BUILT_INS
+        return f"{self._all_of}.{name}" if self._all_of and not known else ""
 
     def _by_variable(self, node: ast.expr, unit: str) -> str:
         """What a variable is made by, if all its values are made by one."""
         name = _variable(node)
         made = (self._made.get((unit, name)) or self._made.get(("", name), set())) if name else set()
         return next(iter(made)) if len(made) == 1 else ""
+
+
+def _named_here(tree: ast.Module) -> Iterator[str]:
+    """All names that a file gives."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Load):
+            yield node.id
+        elif isinstance(node, ast.arg):
+            yield node.arg
+        elif isinstance(node, DEFINITIONS) or (isinstance(node, ast.ExceptHandler) and node.name):
+            yield node.name or ""
+
+
+def _addresses(node: ast.expr, inside: set[int]) -> Iterator[str]:
+    """The address that a text is."""
+    parts = node.values if isinstance(node, ast.JoinedStr) else [node]
+    inside.update(map(id, parts))
+    first = parts[0].value if parts and isinstance(parts[0], ast.Constant) else None
+    if isinstance(first, str) and first.startswith(SCHEMES):
+        texts = (str(one.value) if isinstance(one, ast.Constant) else "{}" for one in parts)
+        address, *_ = "".join(texts).partition("?")[0].split()
+        yield f"{ADDRESS}{address[: LONGEST_USE - len(ADDRESS)]}"
+
+
+def _is_none(value: ast.expr) -> bool:
+    return isinstance(value, ast.Constant) and value.value is None
 
 
 def _variable(node: ast.expr) -> str:

@@ -142,6 +142,8 @@ class Code(NamedTuple):
         ``python`` or ``c++``; empty for what could not be read.
     uses
         What it uses of libraries, and of itself and its neighbours; each name once in a unit.
+    imports
+        Of Python: names, and what they stand for; ``*`` stands for all names of a module.
     """
 
     file: str
@@ -154,6 +156,7 @@ class Code(NamedTuple):
     units: tuple[Unit, ...] = ()
     launches: tuple[Launch, ...] = ()
     scripts: tuple[Script, ...] = ()
+    imports: tuple[tuple[str, str], ...] = ()
 
 
 def class_owner(name: str) -> str:

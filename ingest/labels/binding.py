@@ -19,6 +19,7 @@ from rosprivacy.analysis.non_ros import by_kind
 from rosprivacy.analysis.text import counted
 from rosprivacy.analysis.written_names import is_glob, literal, meant
 from rosprivacy.ingest.labels.bag_storages import recorded_types
+from rosprivacy.ingest.labels.graph_names import NEAREST, GraphNames, Unmatched
 from rosprivacy.ingest.labels.label_file import OURS
 from rosprivacy.ingest.labels.stated_processing import two_of_one, united
 from rosprivacy.ingest.labels.stated_types import in_order, of_no_channel, stated_at
@@ -33,39 +34,42 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.labels.entries import Entry, FlowEntry
     from rosprivacy.ingest.labels.label_file import Labels
 
-NEAREST = 3
 NOT_STATED = Surroundings()
 STEPS_OF_A_NAME = 4  # beside a glob
 GLOB_LIKE_A_WILDCARD = "glob-like-a-wildcard"
-COMPARISONS = 50_000  # of names, in the search for the nearest; a label file of another system is refused soon
 
 
 def bind(
-    graph: FlowGraph, labels: Sequence[Labels], bounds: Bounds = BOUNDS, system: Surroundings = NOT_STATED
-) -> Bound:
+    graph: FlowGraph, labels: Sequence[Labels], bounds: Bounds = BOUNDS, system: Surroundings = NOT_STATED,
+    names: GraphNames | None = None,
+) -> Bound:  # fmt: skip
     """Join label files to a graph.
 
     Parameters
     ----------
     system
         Where it works, as a fleet file states it, beside what the label files say.
+    names
+        Those of the graph, by who has them already.
 
     Raises
     ------
     InputErrors
         With every name that matches nothing, but for shipped files; above a bound.
     """
-    bound, problems = join(graph, labels, bounds, system)
+    bound, problems = join(graph, labels, bounds, system, names)
     if problems:
         raise InputErrors(problems)
     return bound
 
 
 def join(
-    graph: FlowGraph, labels: Sequence[Labels], bounds: Bounds = BOUNDS, system: Surroundings = NOT_STATED
-) -> tuple[Bound, list[InputError]]:
+    graph: FlowGraph, labels: Sequence[Labels], bounds: Bounds = BOUNDS, system: Surroundings = NOT_STATED,
+    names: GraphNames | None = None,
+) -> tuple[Bound, list[InputError]]:  # fmt: skip
     """Join label files to a graph as far as its names go; return also what matches nothing."""
-    names = _Names(graph)
+    names = names or GraphNames(graph)
+    unmatched = Unmatched(names)
     _check_work(names, labels, bounds)
     elements: dict[int, list[Statement]] = defaultdict(list)
     flows: dict[int, list[Statement]] = defaultdict(list)
@@ -80,7 +84,7 @@ def join(
         for entry in file.entries:
             vertices = names.matching(entry.name, entry.kinds)
             if not vertices and not file.shipped:
-                problems.append(names.unmatched(entry))
+                problems.append(unmatched.of_entry(entry))
             for vertex in vertices:
                 elements[vertex] += entry.statements
                 if entry.subjects:
@@ -96,7 +100,7 @@ def join(
         for flow in file.flows:
             indices = _flows(graph, flows_of, names, flow)
             if not indices:
-                problems.append(names.no_flow(flow))
+                problems.append(unmatched.of_flow(flow))
             for index in indices if flow.statements else ():
                 flows[index] += flow.statements
     outside = _outside(graph, labels)
@@ -125,7 +129,7 @@ def _of_system(labels: Iterable[Labels], problems: list[InputError]) -> Processi
     return united((((int(file.own), 0), file.processing) for file in labels), differ)
 
 
-def _check_work(names: _Names, labels: Iterable[Labels], bounds: Bounds) -> None:
+def _check_work(names: GraphNames, labels: Iterable[Labels], bounds: Bounds) -> None:
     """Globs times names grow faster than the files that state them."""
     work = Tally(bounds, "comparisons", LabelError)
     for file in labels:
@@ -137,13 +141,18 @@ def _check_work(names: _Names, labels: Iterable[Labels], bounds: Bounds) -> None
                 work.add(STEPS_OF_A_NAME * sum(len(names.by_kind.get(kind, ())) for kind in kinds), place)
 
 
-def remarks(graph: FlowGraph, labels: Iterable[Labels]) -> Iterator[Diagnostic]:
+def remarks(graph: FlowGraph, labels: Iterable[Labels], names: GraphNames | None = None) -> Iterator[Diagnostic]:
     """Yield what a person has to know of names in label files, though they are no errors.
 
     A name in a user's own file of standard channels that matches nothing (rule S13); a glob that is written like the
     name of a wildcard, which means more than this one element.
+
+    Parameters
+    ----------
+    names
+        As of ``bind``.
     """
-    names = _Names(graph)
+    names = names or GraphNames(graph)
     for file in labels:
         if file.shipped and not file.file.startswith(OURS):
             yield from _unused(names, file)
@@ -151,14 +160,15 @@ def remarks(graph: FlowGraph, labels: Iterable[Labels]) -> Iterator[Diagnostic]:
             yield from _like_a_wildcard(names, graph, file)
 
 
-def _unused(names: _Names, file: Labels) -> Iterator[Diagnostic]:
+def _unused(names: GraphNames, file: Labels) -> Iterator[Diagnostic]:
+    unmatched = Unmatched(names)
     for entry in file.entries:
         if not names.matching(entry.name, entry.kinds):
-            error = names.unmatched(entry)
+            error = unmatched.of_entry(entry)
             yield Diagnostic(entry.place, Severity.NOTICE, f"{error.problem}; {error.hint}")
 
 
-def _like_a_wildcard(names: _Names, graph: FlowGraph, file: Labels) -> Iterator[Diagnostic]:
+def _like_a_wildcard(names: GraphNames, graph: FlowGraph, file: Labels) -> Iterator[Diagnostic]:
     told_apart = {entry.name for entry in file.entries}  # who labels the wildcard too knows of the difference
     for entry in file.entries:
         alone = literal(entry.name)
@@ -199,57 +209,7 @@ def _seen(graph: FlowGraph) -> dict[int, NonRosFacts]:
     return seen
 
 
-class _Names:
-    """The vertices of a graph by kind and name."""
-
-    def __init__(self, graph: FlowGraph) -> None:
-        self.comparisons = 0
-        self.by_kind: dict[str, dict[str, list[int]]] = defaultdict(lambda: defaultdict(list))
-        for vertex, element in enumerate(graph.elements):
-            self.by_kind[element.kind][element.name].append(vertex)
-
-    def matching(self, name: str, kinds: Iterable[str] | None = None) -> list[int]:
-        """The vertices of some kinds (of all by default) that a name or glob covers wholly."""
-        found = []
-        for kind in self.by_kind if kinds is None else kinds:
-            known = self.by_kind.get(kind, {})
-            found += [vertex for other in covered(name, known) for vertex in known[other]]
-        return sorted(found)
-
-    def unmatched(self, entry: Entry) -> LabelError:
-        """The error for a name that matches nothing, with the nearest names."""
-        close = self._close(entry.name, entry.kinds)
-        what = f"{shown(entry.name)!r} matches no {' or '.join(entry.kinds)} of the policies"
-        name = meant(entry.name)
-        elsewhere = [kind for kind in self.by_kind if kind not in entry.kinds and name in self.by_kind[kind]]
-        if elsewhere:
-            hint = f"there is a {elsewhere[0]} of that name: move it to the section for it"
-        elif close:
-            hint = f"did you mean {' or '.join(map(shown, close))}?"
-        else:
-            hint = "see the names with rosprivacy labels --init"
-        return LabelError(entry.place.file, entry.place.line, what, hint)
-
-    def no_flow(self, entry: FlowEntry) -> LabelError:
-        """The error for a flow that is not there."""
-        hints = []
-        for end in (entry.source, entry.target):
-            close = [] if self.matching(end) else self._close(end, self.by_kind)
-            hints += [f"instead of {shown(end)} did you mean {' or '.join(map(shown, close))}?"] if close else []
-        what = f"no flow goes from {shown(entry.source)!r} to {shown(entry.target)!r}"
-        hint = " ".join(hints) or "name two elements with a flow between them, in its direction"
-        return LabelError(entry.place.file, entry.place.line, what, hint)
-
-    def _close(self, name: str, kinds: Iterable[str]) -> list[str]:
-        """The nearest names, as long as looking for them does not take too long."""
-        known = [other for kind in kinds for other in self.by_kind.get(kind, {})]
-        self.comparisons += len(known)
-        if self.comparisons > COMPARISONS:
-            return []
-        return [literal(close) for close in get_close_matches(meant(name), known, n=NEAREST, cutoff=0.5)]
-
-
-def _flows(graph: FlowGraph, flows_of: Mapping[int, range], names: _Names, entry: FlowEntry) -> list[int]:
+def _flows(graph: FlowGraph, flows_of: Mapping[int, range], names: GraphNames, entry: FlowEntry) -> list[int]:
     sources, targets = (names.matching(end.name, (end.kind,) if end.kind else None) for end in entry.ends)
     numbers = [flows_of[source] for source in sources if source in flows_of]
     flows, wanted = at_most(graph.flows, sum(map(len, numbers))), set(targets)

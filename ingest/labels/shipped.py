@@ -5,6 +5,7 @@ In: elements. Out: (kind, name) of those that the file of infrastructure propose
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from rosprivacy.ingest.labels.label_file import INFRASTRUCTURE, read_labels
@@ -26,6 +27,10 @@ def infrastructure_of(elements: Iterable[Element], vocabulary: Vocabulary) -> fr
     if not names:
         return frozenset()
     entries = read_labels(INFRASTRUCTURE, vocabulary).entries
-    return frozenset(
-        (kind, name) for entry in entries for kind in entry.kinds for name in covered(entry.name, names.get(kind, ()))
-    )
+    written = {kind: tuple(entry.name for entry in entries if kind in entry.kinds) for kind in names}
+    return frozenset((kind, name) for kind, some in names.items() for name in some if _is_one_of(name, written[kind]))
+
+
+@lru_cache(maxsize=65536)  # after each answer of a session the same is asked
+def _is_one_of(name: str, written: tuple[str, ...]) -> bool:
+    return any(covered(one, (name,)) for one in written)

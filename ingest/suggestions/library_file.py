@@ -13,7 +13,15 @@ from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import InputError, InputErrors, shown
 from rosprivacy.analysis.model import Confidence, Place
 from rosprivacy.analysis.suggesting.carried_kinds import ANYTHING
-from rosprivacy.analysis.suggesting.library_rules import CPP, PROGRAM, PYTHON, LibraryRule, LibraryRules, Names
+from rosprivacy.analysis.suggesting.library_rules import (
+    ADDRESS,
+    CPP,
+    PROGRAM,
+    PYTHON,
+    LibraryRule,
+    LibraryRules,
+    Names,
+)
 from rosprivacy.analysis.suggesting.ros_package import WHERE
 from rosprivacy.ingest.reading.format_reader import FileReader
 from rosprivacy.ingest.suggestions.rule_text import read_rule_text
@@ -29,13 +37,14 @@ LIBRARIES = "rosprivacy:libraries"  # the shipped file
 BRINGS_IN, LETS_OUT, MAKES, SILENT = "brings_in", "lets_out", "makes", "silent"
 SECTIONS = (BRINGS_IN, LETS_OUT, MAKES)
 PARTS = ("library_rules", "version", *SECTIONS, SILENT)
-PROGRAMS = "programs"
-NAMED = {PYTHON: (PYTHON,), CPP: (CPP,), PROGRAMS: (PYTHON, CPP)}  # key of a rule -> languages of its names
+PROGRAMS, ADDRESSES = "programs", "addresses"
+NAMED = {PYTHON: (PYTHON,), CPP: (CPP,), PROGRAMS: (PYTHON, CPP), ADDRESSES: (PYTHON,)}  # key -> languages of names
+BEFORE = {PROGRAMS: PROGRAM, ADDRESSES: ADDRESS}  # signs before names of these keys
 ALL = (*NAMED, "confidence", "why", "source")
 KEYS = {
     BRINGS_IN: (*ALL, "kinds", "any_type"),
     LETS_OUT: (*ALL, "kinds", "where"),
-    MAKES: (*ALL, "kinds", "to", "any_type", "by_itself"),
+    MAKES: (*ALL, "kinds", "to", "any_type", "by_itself", "either"),
     SILENT: (*NAMED, "why"),
 }
 NEEDED = {
@@ -46,6 +55,7 @@ NEEDED = {
 }
 SURE = (Confidence.LIKELY, Confidence.MAY)  # a call that stands in code may never run, so no rule is certain
 NAME = re.compile(r"[A-Za-z_~][\w.:-]*(?: [\w-]+){0,2}(?:\((?:w|input|output)\)|\*)?", re.ASCII)
+PART = re.compile(r"[a-z0-9:/][\w.:/-]{3,}", re.ASCII)  # of an address
 Key = tuple[str, str]  # language, name
 
 
@@ -100,7 +110,9 @@ def _joined(sections: Iterable[dict[Key, LibraryRule]]) -> dict[str, Names]:
 
 def _names(rules: dict[str, LibraryRule]) -> Names:
     starred = {name[:-1]: rule for name, rule in rules.items() if name.endswith("*")}
-    return Names({name: rule for name, rule in rules.items() if not name.endswith("*")}, starred)
+    parts = {name.removeprefix(ADDRESS): rule for name, rule in rules.items() if name.startswith(ADDRESS)}
+    plain = {name: rule for name, rule in rules.items() if not (name.endswith("*") or name.startswith(ADDRESS))}
+    return Names(plain, starred, parts)
 
 
 def _read(file: str, vocabulary: Vocabulary, bounds: Bounds) -> LibraryFile:
@@ -160,17 +172,20 @@ class _Reader(FileReader):
             self._one_of(said, "where", WHERE),
             self._is_true(said, "any_type"),
             self._is_true(said, "by_itself"),
+            self._is_true(said, "either"),
         )
 
     def _names(self, said: dict[str, Value], section: str) -> Iterator[Key]:
         known = self.lines[section]
         for key, languages in NAMED.items():
             for item in self._items(said, key):
-                if item.kind != "text" or not NAME.fullmatch(item.text):
+                if item.kind != "text" or not (PART if key == ADDRESSES else NAME).fullmatch(item.text):
                     hint = "write names such as cv2.VideoCapture, cv::VideoCapture, curl_easy_*, open(w), or a program"
-                    self.problem(item.line, f"{shown(item.text or item.kind)!r} is no name of a library", hint)
+                    hint = "write a part of it, such as api.openai.com or rtsp://" if key == ADDRESSES else hint
+                    what = "part of an address" if key == ADDRESSES else "name of a library"
+                    self.problem(item.line, f"{shown(item.text or item.kind)!r} is no {what}", hint)
                     continue
-                ones = [(of, (PROGRAM if key == PROGRAMS else "") + item.text) for of in languages]
+                ones = [(of, BEFORE.get(key, "") + item.text) for of in languages]
                 if ones[0] in known:
                     what = f"{shown(item.text)} again, first in line {known[ones[0]]}"
                     self.problem(item.line, what, f"say each name once in {section}")

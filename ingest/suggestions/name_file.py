@@ -24,18 +24,20 @@ if TYPE_CHECKING:
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 NAMES = "rosprivacy:names"  # the shipped file
-WITH_KINDS, WITHOUT_KINDS = ("carries", "brings_in"), ("nothing", "lets_out")
+WITH_KINDS, WITHOUT_KINDS = ("carries", "brings_in", "unprompted"), ("nothing", "lets_out")
 LISTS = (
     "silent",
     "neutral",
     "computed",
     "not_by_type",
+    "entered",
     "wanted",
     "commanding",
     "reworked",
     "reworking",
     "simulated",
     "understood",
+    "driving",
 )
 PARTS = ("name_rules", "version", *WITH_KINDS, *WITHOUT_KINDS, "becomes", *LISTS)
 OF_KINDS = ("kinds", "instead_of", "any_type")  # for rules that name kinds
@@ -59,12 +61,14 @@ class NameFile:
     neutral: frozenset[str]
     computed: frozenset[str]
     not_by_type: frozenset[str]
+    entered: frozenset[str]
     wanted: frozenset[Phrase]
     commanding: frozenset[str]
     reworked: frozenset[str]
     reworking: frozenset[str]
     simulated: frozenset[str]
     understood: frozenset[str]
+    driving: frozenset[str]
     sections: dict[str, dict[Phrase, NameRule]]
 
 
@@ -109,12 +113,14 @@ def read_name_rules(
         becomes=becomes,
         computed=frozenset().union(*(one.computed for one in read)),
         not_by_type=frozenset().union(*(one.not_by_type for one in read)),
+        entered=frozenset().union(*(one.entered for one in read)),
         wanted=frozenset().union(*(one.wanted for one in read)),
         commanding=frozenset().union(*(one.commanding for one in read)),
         reworked=frozenset().union(*(one.reworked for one in read)),
         reworking=frozenset().union(*(one.reworking for one in read)),
         simulated=frozenset().union(*(one.simulated for one in read)),
         understood=frozenset().union(*(one.understood for one in read)),
+        driving=frozenset().union(*(one.driving for one in read)),
     )
     return rules, tuple((one.file, one.sha256) for one in read)
 
@@ -162,12 +168,14 @@ class _Reader(FileReader):
             neutral=self._words(said, "neutral"),
             computed=frozenset(self._kinds(said, "computed")),
             not_by_type=frozenset(self._kinds(said, "not_by_type")),
+            entered=frozenset(self._kinds(said, "entered")),
             wanted=self._phrases(said, "wanted"),
             commanding=self._words(said, "commanding"),
             reworked=self._words(said, "reworked"),
             reworking=self._words(said, "reworking"),
             simulated=self._words(said, "simulated"),
             understood=self._words(said, "understood"),
+            driving=self._words(said, "driving"),
             sections=self.sections,
         )
 

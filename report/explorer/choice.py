@@ -64,7 +64,7 @@ class Choice:
         return steps
 
 
-def choose(joined: Joined, focus: Key | None, wanted: Sequence[str], most: int) -> Choice:
+def choose(joined: Joined, focus: Key | None, wanted: Sequence[str], most: int, way: Witness | None = None) -> Choice:
     """Return what matters, seen from an element.
 
     Parameters
@@ -73,10 +73,12 @@ def choose(joined: Joined, focus: Key | None, wanted: Sequence[str], most: int) 
         Names of the emitted categories that are shown.
     most
         Boxes.
+    way
+        A path to the element that is in hand itself; None for the shortest ones.
     """
     asked = [kind for one in joined.analysis.open if one.element.identity == focus for kind in one.categories]
     kinds = [kind for kind in wanted if kind in asked] or wanted
-    paths = joined.paths(focus, kinds)[: 1 + OTHER_PATHS] if focus else []
+    paths = [way] if way else joined.paths(focus, kinds)[: 1 + OTHER_PATHS] if focus else []
     every = [finding for finding in joined.analysis.findings if not finding.dismissed and finding.category in wanted]
     every.sort(key=lambda finding: (not finding.stands, focus not in core([finding]), len(finding.steps)))
     taken = _on(focus, paths)

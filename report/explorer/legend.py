@@ -10,15 +10,17 @@ from typing import TYPE_CHECKING, NamedTuple
 from markupsafe import Markup
 
 from rosprivacy.report.pictures.looks import DRAWN_ROLES, LINE_LOOKS, OPEN
+from rosprivacy.report.pictures.picture import DRAWN, PRIVACY
 
 if TYPE_CHECKING:
     from rosprivacy.report.explorer.scenes import Scene
 
 NODE, TOPIC, SERVICE = "node", "topic", "service"
+_BLOCK = '<polygon class="area" points="4,3 28,3 28,15 4,15"/>'
 _OVAL = '<ellipse class="area" cx="16" cy="9" rx="12" ry="6"/>'
 _FORMS = {
     NODE: _OVAL,
-    TOPIC: '<polygon class="area" points="4,3 28,3 28,15 4,15"/>',
+    TOPIC: _BLOCK,
     SERVICE: '<rect class="area" x="4" y="3" width="24" height="12" rx="5"/>',
 }
 _DOUBLE = '<ellipse class="outline" cx="16" cy="9" rx="15" ry="8.5"/>'
@@ -50,6 +52,7 @@ def signs(scene: Scene) -> tuple[Sign, ...]:
     picture = scene.picture
     looks = {box.look for box in picture.boxes} | ({OPEN} if any(box.open for box in picture.boxes) else set())
     kinds, lines = {box.kind for box in picture.boxes}, {line.look for line in picture.lines}
+    forms = _FORMS if picture.view == PRIVACY else {kind: _FORMS.get(kind, _BLOCK) for kind in DRAWN}
     found = [
         Sign(
             f"box look-{name}{' open' if name == OPEN else ''}",
@@ -59,7 +62,10 @@ def signs(scene: Scene) -> tuple[Sign, ...]:
         for name, look in DRAWN_ROLES.items()
         if name in looks
     ]
-    found += [Sign(f"box kind-{k}", form, picture.say(f"pic.look.{k}")) for k, form in _FORMS.items() if k in kinds]
+    for kind, form in forms.items():
+        if kind in kinds:  # where there are no roles, kinds have colours
+            coloured = f" look-{kind}" if kind in looks else ""
+            found.append(Sign(f"box kind-{kind}{coloured}", form, picture.say(f"pic.look.{kind}")))
     found += [
         Sign(f"line look-{name}", _ENDS if look.head == "tee" else _LINE, picture.say(f"pic.look.{name}"))
         for name, look in LINE_LOOKS.items()

@@ -8,8 +8,8 @@ What a page can rely on:
 - a box is ``<a class="box kind-… look-…" href="…" data-element="…" aria-label="…">`` where the page says what leads to
   an element, else a ``<g>``; a folded box leads to the first of its elements, and all names stand in its title;
 - ``open`` is a class of what is not reviewed, ``focus`` of the box in hand, which also has ``aria-current="true"``;
-- a line is ``<g class="line look-…">``; ``hidden`` is a class of what only pseudonymised data goes along, ``step`` of a
-  numbered step to the box in hand;
+- a line is ``<g class="line look-…">``, with the type of a relationship on it that is no flow; ``hidden`` is a class of
+  what only pseudonymised data goes along, ``step`` of a numbered step to the box in hand;
 - both have a ``<title>``: full names, policy lines, kinds of data;
 - ``width`` and ``height`` are in pixels in which text can be read: scroll a picture that is too large, never shrink it.
 """
@@ -23,9 +23,10 @@ from typing import TYPE_CHECKING, NamedTuple
 from lxml import etree
 
 from rosprivacy.analysis.text import printable
-from rosprivacy.report.explorer.unnamed_dot import SIZE, levels, texts
+from rosprivacy.report.explorer.unnamed_dot import SIZE, caption, is_step, levels, texts
 from rosprivacy.report.pictures.dot import hover, line_hover, paired
 from rosprivacy.report.pictures.picture import GROUP as SEVERAL
+from rosprivacy.report.pictures.picture import RECORD
 from rosprivacy.report.pictures.svg import NAMESPACE, alt_text
 
 if TYPE_CHECKING:
@@ -45,7 +46,10 @@ BASELINE = 0.34  # of the size of letters, from the middle of a line of text dow
 
 
 class Links(NamedTuple):
-    """How a page names elements, and what leads to them; each a function of the identity of an element (rule S1)."""
+    """How a page names elements, and what leads to them; each a function of the identity of an element (rule S1).
+
+    An empty address is one that leads nowhere.
+    """
 
     name: Callable[[Key], str]
     address: Callable[[Key], str]
@@ -71,7 +75,7 @@ def live_svg(data: bytes, scene: Scene, links: Links | None = None) -> str:
     for box in _in_reading_order(scene, groups):
         _box(sheet, groups[picture.keys[box.key]], scene, box, links)
     for number, (line, _) in enumerate(paired(picture)):
-        if line.words:
+        if is_step(line):
             _badge(sheet, groups[f"e{number}"], line.words)
     etree.cleanup_namespaces(root)
     return etree.tostring(root, encoding="unicode")
@@ -131,12 +135,12 @@ def _box(sheet: etree._Element, drawn: etree._Element, scene: Scene, box: Box, l
     classes += ["open"] if box.open else []
     classes += ["focus"] if box.key == scene.focus else []
     tip = printable(hover(scene.picture, box))
-    leads = links if box.kind != SEVERAL else None
-    group = etree.SubElement(sheet, LINK if leads else GROUP)
+    address = links.address(box.key) if links and box.kind not in (SEVERAL, RECORD) else ""
+    group = etree.SubElement(sheet, LINK if address else GROUP)
     group.set("class", " ".join(classes))
-    if leads:
-        group.set("href", printable(leads.address(box.key)))
-        group.set("data-element", printable(leads.name(box.key)))
+    if links and address:
+        group.set("href", printable(address))
+        group.set("data-element", printable(links.name(box.key)))
         group.set("aria-label", tip)
     if box.key == scene.focus:
         group.set("aria-current", "true")
@@ -152,10 +156,16 @@ def _box(sheet: etree._Element, drawn: etree._Element, scene: Scene, box: Box, l
 
 def _line(sheet: etree._Element, drawn: etree._Element, scene: Scene, line: Line) -> None:
     classes = ["line", f"look-{line.look}", *(["hidden"] if line.pseudonymised else [])]
-    group = etree.SubElement(sheet, GROUP)
-    group.set("class", " ".join([*classes, *(["step"] if line.words else [])]))
-    _said(group, TITLE, line_hover(scene.picture, replace(line, words="")))
+    group, step = etree.SubElement(sheet, GROUP), is_step(line)
+    group.set("class", " ".join([*classes, *(["step"] if step else [])]))
+    _said(group, TITLE, line_hover(scene.picture, replace(line, words="") if step else line))
     group.extend(_shapes(drawn))
+    place = drawn.find(TEXT)
+    if line.words and not step and place is not None:
+        written = _said(group, TEXT, caption(line).text)
+        written.set("class", "word")
+        written.set("x", str(place.get("x")))
+        written.set("y", str(place.get("y")))
 
 
 def _shapes(drawn: etree._Element) -> Iterator[etree._Element]:

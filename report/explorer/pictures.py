@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple, Self
 
 from rosprivacy.report.explorer.drawing import ROOM, SECONDS, Drawing
 from rosprivacy.report.explorer.legend import legend
-from rosprivacy.report.explorer.scenes import Scenes
+from rosprivacy.report.explorer.scenes import Scene, Scenes
 from rosprivacy.report.explorer.style_sheet import style_sheet
 from rosprivacy.report.pictures.phrases import Phrases
 
@@ -23,8 +23,9 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.findings.why_carried import WhyCarried
+    from rosprivacy.analysis.findings.witness import Witness
     from rosprivacy.report.explorer.live_svg import Links
-    from rosprivacy.report.pictures.picture import Key
+    from rosprivacy.report.pictures.picture import Key, Picture
 
 
 class Shown(NamedTuple):
@@ -99,6 +100,7 @@ class Pictures:
         *,
         everything: bool = False,
         why: WhyCarried | None = None,
+        way: Witness | None = None,
     ) -> Shown:
         """Return a picture; the same for the same analysis, element and kinds, to the byte.
 
@@ -117,12 +119,25 @@ class Pictures:
             Draw the whole system, above some 150 boxes in groups, and not only what matters.
         why
             Of the analysis, by who has it already.
+        way
+            As of ``Scenes.of``.
         """
         with self._lock:
             if self._seen is None or self._seen.analysis is not analysis:
                 self._seen = Scenes(analysis, self._say, why)
-            scene = (self._seen.whole if everything else self._seen.of)(focus, kinds)
+            scene = (self._seen.whole if everything else self._seen.of)(focus, kinds, way=way)
         picture = scene.picture
+        return Shown(self._drawing.svg(scene, links, room), legend(scene), picture.title, picture.notes, picture.ways)
+
+    def drawn(self, picture: Picture, links: Links | None = None, room: tuple[float, float] = ROOM) -> Shown:
+        """Return a picture that was made elsewhere, such as what a query of the database gives.
+
+        Parameters
+        ----------
+        links, room
+            As of ``of``.
+        """
+        scene = Scene(picture)
         return Shown(self._drawing.svg(scene, links, room), legend(scene), picture.title, picture.notes, picture.ways)
 
 

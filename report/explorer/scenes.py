@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.findings.why_carried import WhyCarried
+    from rosprivacy.analysis.findings.witness import Witness
     from rosprivacy.report.explorer.choice import Choice
     from rosprivacy.report.pictures.picture import Box, Key, Line
 
@@ -76,7 +77,13 @@ class Scenes:
         self._joined = Joined(analysis, why)
         self._reached: dict[tuple[str, ...], Reached] = {}
 
-    def of(self, focus: Key | None = None, kinds: Collection[str] | None = None, most: int = MOST) -> Scene:
+    def of(
+        self,
+        focus: Key | None = None,
+        kinds: Collection[str] | None = None,
+        most: int = MOST,
+        way: Witness | None = None,
+    ) -> Scene:
         """Return what matters of the system, seen from an element.
 
         Parameters
@@ -87,13 +94,15 @@ class Scenes:
             Names of emitted categories that are shown; None for all.
         most
             Boxes. There are more only if the paths to the element and the first path to a leak need them.
+        way
+            A path to the element that is in hand itself; None for the shortest ones.
 
         Notes
         -----
         O(flows) for the first picture of an analysis; then what the flows of the chosen elements take.
         """
         wanted = tuple(name for name in self.analysis.emitted if kinds is None or name in kinds)
-        choice = choose(self._joined, focus if focus and focus in self._joined else None, wanted, most)
+        choice = choose(self._joined, focus if focus and focus in self._joined else None, wanted, most, way)
         reached = self._reached_by(wanted)
         boxes = {box.key: box for box in reached.every_box(sorted({*choice.core, *choice.near}))}
         picture = Picture(
@@ -107,18 +116,24 @@ class Scenes:
         )
         return Scene(self._bounded(picture, choice, most), choice.focus)
 
-    def whole(self, focus: Key | None = None, kinds: Collection[str] | None = None, most: int = WHOLE) -> Scene:
+    def whole(
+        self,
+        focus: Key | None = None,
+        kinds: Collection[str] | None = None,
+        most: int = WHOLE,
+        way: Witness | None = None,
+    ) -> Scene:
         """Return the whole system; where that is more than some boxes, nodes that stand together are one.
 
         Paths to leaks and to the element in hand stay as they are.
 
         Parameters
         ----------
-        focus, kinds, most
+        focus, kinds, most, way
             As of ``of``.
         """
         wanted = tuple(name for name in self.analysis.emitted if kinds is None or name in kinds)
-        choice = choose(self._joined, focus if focus and focus in self._joined else None, wanted, most)
+        choice = choose(self._joined, focus if focus and focus in self._joined else None, wanted, most, way)
         reached, words = self._reached_by(wanted), self._say.words
         every, standard = self._joined.elements()
         alone, notes = every | choice.core, list[str]()

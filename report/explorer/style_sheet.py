@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosprivacy.report.explorer.unnamed_dot import SIZE, SMALL
-from rosprivacy.report.pictures.looks import BLUE, DRAWN_ROLES, INK, LINE_LOOKS, PALE, TEXT
+from rosprivacy.report.pictures.looks import BLUE, DRAWN_ROLES, INK, KIND_LOOKS, LINE_LOOKS, PALE, TEXT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -52,7 +52,7 @@ def style_sheet() -> str:
 
 
 def _boxes() -> Iterator[str]:
-    for name, look in DRAWN_ROLES.items():
+    for name, look in (*DRAWN_ROLES.items(), *KIND_LOOKS.items()):
         box = f".picture .box.look-{name}"
         if look.colour != PALE:
             yield f"{box} > .area {{ fill: {look.colour}; }}\n{box} text {{ fill: {TEXT}; }}\n"

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.text import shortened
 from rosprivacy.report.pictures.dot import label_lines, paired
-from rosprivacy.report.pictures.looks import LEAK, LINE_LOOKS, SHAPES, SHORTEST, SOURCE, box_look
+from rosprivacy.report.pictures.looks import LEAK, LINE_LOOKS, OTHER, SHAPES, SHORTEST, SOURCE, box_look
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -29,7 +29,7 @@ SMALL = 11  # of words below a name: the smallest that stand in a picture
 LETTER = "n"  # stands for every other: wider than most are
 WIDEST_NAME = 20  # signs of a line: a page is narrower than paper
 WIDEST_WORDS, LONGEST_WORDS = 22, 160  # signs of a line, and of all lines of a phrase
-TOLD_BY_SHAPE = ("node", "topic", "group")  # other shapes need a word
+TOLD_BY_SHAPE = ("node", "topic", "group", "record")  # other shapes need a word
 STRAIGHT, QUIET = 8, 2  # how much a line wants to be short and straight: on a path, to the element in hand
 
 
@@ -114,7 +114,7 @@ def _lines(scene: Scene) -> Iterator[str]:
         heads += [f"arrowtail={look.head}"] if both and heads else []
         attributes = [f"id=e{number}", f"penwidth={look.width:g}", *(["dir=both"] if both else []), *heads]
         attributes += [f"weight={weight}"] if weight > 1 else []
-        attributes += ['label="nn"'] if line.words else []
+        attributes += [f'label="{_room(caption(line))}"'] if line.words else []
         attributes += ["constraint=false"] if not (onward or backward or weight == STRAIGHT) else []
         ends = [picture.keys[line.source], picture.keys[line.target]]
         yield f"{' -> '.join(reversed(ends) if backward else ends)} [{', '.join(attributes)}];"
@@ -137,8 +137,18 @@ def levels(picture: Picture) -> dict[Key, int]:
     return found
 
 
+def caption(line: Line) -> Text:
+    """Return what stands on a line: the number of a step, or the type of a relationship that is no flow."""
+    return Text("nn", is_name=True) if is_step(line) else Text(shortened(line.words, WIDEST_WORDS), is_name=False)
+
+
+def is_step(line: Line) -> bool:
+    """Whether it is a numbered step to the element in hand."""
+    return bool(line.words) and line.look != OTHER
+
+
 def _on_path(line: Line) -> bool:
-    return line.look == SHORTEST or bool(line.words)
+    return line.look == SHORTEST or is_step(line)
 
 
 def _weight(scene: Scene, line: Line) -> int:

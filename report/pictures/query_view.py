@@ -41,13 +41,24 @@ if TYPE_CHECKING:
     from rosprivacy.report.stored import StoredNames
 
 
-def query_view(values: Iterable[GraphValue], names: StoredNames, title: str, notes: tuple[str, ...] = ()) -> Picture:
+def query_view(
+    values: Iterable[GraphValue],
+    names: StoredNames,
+    title: str,
+    notes: tuple[str, ...] = (),
+    say: Phrases | None = None,
+) -> Picture:
     """Return the picture of what a query gives.
 
     Elements are drawn as elsewhere: the legs of a service, the sides of a wildcard and an ``Intake`` with its element
     are one box. Other nodes are one box for each name.
+
+    Parameters
+    ----------
+    say
+        The words on the boxes; None for English.
     """
-    graph = _Graph(names)
+    graph = _Graph(names, say or Phrases())
     for value in values:
         graph.add(value)
     return graph.picture(title, notes)
@@ -56,8 +67,8 @@ def query_view(values: Iterable[GraphValue], names: StoredNames, title: str, not
 class _Graph:
     """What is drawn, by the ids of the server: each node and each relationship once."""
 
-    def __init__(self, names: StoredNames) -> None:
-        self._names = names
+    def __init__(self, names: StoredNames, say: Phrases) -> None:
+        self._names, self._say = names, say
         self._nodes: dict[str, Node] = {}
         self._relationships: dict[str, Relationship] = {}
 
@@ -75,7 +86,7 @@ class _Graph:
             together[keys[node.id]].append(node)
         kinds = {self._kind(id_) for id_ in self._relationships} if data else set()
         boxes = [
-            _carrying(key, nodes, elements[nodes[0].id], kinds)
+            _carrying(key, nodes, elements[nodes[0].id], kinds, self._say)
             if data
             else _plain(key, nodes[0], elements[nodes[0].id])
             for key, nodes in together.items()
@@ -89,7 +100,7 @@ class _Graph:
             if ends[0] != ends[1] or line.look == OTHER:
                 lines[slot] = _merged(lines[slot], line) if slot in lines else line
         view = PRIVACY if data else ROS
-        return Picture(view, title, sorted_boxes(boxes), sorted_lines(lines.values()), notes)
+        return Picture(view, title, sorted_boxes(boxes), sorted_lines(lines.values()), notes, words=self._say.words)
 
     def _kind(self, id_: str) -> str:
         """The kind of data that goes along a relationship, as its type writes it; empty where it is another type."""
@@ -139,7 +150,9 @@ def _plain(key: Key, node: Node, element: Mapping[str, Any] | None) -> Box:
     return Box(key, (record_name(node),), RECORD, (record_kind(node),))
 
 
-def _carrying(key: Key, nodes: Iterable[Node], element: Mapping[str, Any] | None, kinds: Iterable[str]) -> Box:
+def _carrying(
+    key: Key, nodes: Iterable[Node], element: Mapping[str, Any] | None, kinds: Iterable[str], say: Phrases
+) -> Box:
     """An element with its roles for some kinds of data; the legs of a service share them."""
     assert element
 
@@ -159,11 +172,10 @@ def _carrying(key: Key, nodes: Iterable[Node], element: Mapping[str, Any] | None
         OPEN: unknown,
         REVIEWED: True,
     }
-    say = Phrases()
     said = {"source": begins, "leak": leaks, "pseudonymises": hidden, "cleans": ended, "unreviewed": unknown}
     words = [say.of(text, categories, MOST) for text, categories in said.items() if categories]
     if made and not begins:
-        words.append(f"makes {say.listed((label[: -len('Source')] for label in made), MOST)}")
+        words.append(say.words("pic.makes", names=say.listed((label[: -len("Source")] for label in made), MOST)))
     look = next(role for role, holds in roles.items() if holds)
     return Box(key, (key[2],), look, tuple(words), bool(unknown), pattern=element["pattern"])
 

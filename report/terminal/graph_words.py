@@ -6,16 +6,18 @@ In: values of a query's rows. Out: text, not yet escaped for where it goes.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.model import CHANNELS
 from rosprivacy.queries.graph_values import Node, Relationship, graph_values, nodes_in
 from rosprivacy.report.naming import kind_of
 from rosprivacy.report.stored import flow_said, record_kind, record_name
 from rosprivacy.report.terminal.finding_lines import verb
-from rosprivacy.report.words.words import IN_ENGLISH
+from rosprivacy.report.words.words import IN_ENGLISH, Words
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from rosprivacy.queries.graph_values import GraphValue
     from rosprivacy.report.stored import StoredNames
 
@@ -28,16 +30,19 @@ class GraphWords:
     ----------
     robots
         Whether there are several, so that each element is named with its own.
+    words
+        Of the reader's language.
     """
 
     names: StoredNames
     robots: bool
+    words: Words = IN_ENGLISH
 
     @classmethod
-    def for_rows(cls, names: StoredNames, rows: object) -> GraphWords:
+    def for_rows(cls, names: StoredNames, rows: object, words: Words = IN_ENGLISH) -> GraphWords:
         """Return how the values of some rows are told."""
         elements = (names.element(node) for value in graph_values(rows) for node in nodes_in(value))
-        return cls(names, len({element["robot"] for element in elements if element} - {""}) > 1)
+        return cls(names, len({element["robot"] for element in elements if element} - {""}) > 1, words)
 
     def of(self, value: GraphValue) -> str:
         """Return a value in words: a path hop by hop, a relationship with its ends."""
@@ -55,7 +60,10 @@ class GraphWords:
         if element is None:
             return f"{record_name(node)} ({record_kind(node)})"
         robot = f"{element['robot']}:" if self.robots and element["robot"] else ""
-        return f"{robot}{element['name']} ({kind_of(element)})"
+        return f"{robot}{element['name']} ({self._kind(element)})"
+
+    def _kind(self, element: Mapping[str, Any]) -> str:
+        return kind_of(element) if self.words == IN_ENGLISH else self.words.kind(element)
 
     def _step(self, relationship: Relationship, before: Node) -> str:
         """What is between two nodes, with the place where it stands; an arrow that points where the data goes."""
@@ -71,5 +79,5 @@ class GraphWords:
         end = self.names.element(relationship.end)
         role, denied = flow_said(relationship)
         into_channel = end is not None and end["kind"] in CHANNELS
-        said = verb(role, into_channel=into_channel, words=IN_ENGLISH)
-        return f"{said} (denied)" if denied else said
+        said = verb(role, into_channel=into_channel, words=self.words)
+        return f"{said} ({self.words('pic.look.denied')})" if denied else said

@@ -27,6 +27,7 @@ PARTS = (
     "explorer_",
     "review_",
     "trials_",
+    "cypher_",
 )  # a module each
 
 

@@ -118,6 +118,7 @@ WORDS = {
     "pic.look.person": "Person",
     "pic.kind.person.one": "{n} Person",
     "pic.kind.person.many": "{n} Personen",
+    "pic.makes": "erzeugt {names}",
     "pic.look.untouched": "trägt nichts davon",
     "pic.look.asked": "wie Daten zum Gewählten gelangen, Schritt für Schritt",
     "pic.explore.asked": "Wie {what} zu {name} gelangt, und wohin es von dort gehen kann",

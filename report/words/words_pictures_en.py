@@ -118,6 +118,7 @@ WORDS = {
     "pic.look.person": "person",
     "pic.kind.person.one": "{n} person",
     "pic.kind.person.many": "{n} persons",
+    "pic.makes": "makes {names}",
     "pic.look.untouched": "carries none of it",
     "pic.look.asked": "how data gets to what is chosen, step by step",
     "pic.explore.asked": "How {what} gets to {name}, and where it can go from there",

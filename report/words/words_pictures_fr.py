@@ -120,6 +120,7 @@ _TYPED = {
     "pic.look.person": "personne",
     "pic.kind.person.one": "{n} personne",
     "pic.kind.person.many": "{n} personnes",
+    "pic.makes": "produit {names}",
     "pic.look.untouched": "n'en porte rien",
     "pic.look.asked": "comment les données arrivent à l'élément choisi, pas à pas",
     "pic.explore.asked": "Comment {what} arrive à {name}, et où cela peut aller ensuite",

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from rosprivacy.system import System
 
 
-def answer(system: System, question: Question, *, count_paths: bool = True) -> Result:
+def answer(system: System, question: Question, *, count_paths: bool = True, before: Result | None = None) -> Result:
     """Analyse a system and keep what the answer rests on.
 
     Parameters
@@ -42,6 +42,8 @@ def answer(system: System, question: Question, *, count_paths: bool = True) -> R
     count_paths
         As of ``Options``. Where people decided about findings, paths are counted in any case: a decision remembers how
         many there were.
+    before
+        An earlier answer about the same policies, of which all is taken over that is still so.
 
     Raises
     ------
@@ -68,7 +70,8 @@ def answer(system: System, question: Question, *, count_paths: bool = True) -> R
         from rosprivacy.analysis.kernel.type_limits import under_limits  # noqa: PLC0415 - light start
 
         bound = under_limits(system.graph, bound, system.vocabulary.hierarchy, limits)
-    analysis = analyse(system.graph, bound, system.vocabulary.hierarchy, options)
+    earlier = before.analysis.spread if before else None
+    analysis = analyse(system.graph, bound, system.vocabulary.hierarchy, options, earlier)
     if bound is not system.bound:
         analysis = _beside(system, options, analysis)
     elif limits and system.graph.view == View.declared:

@@ -7,9 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from os import PathLike, fspath
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, overload
 
 from rosprivacy.analysis.bounds import BOUNDS, Bounds
+from rosprivacy.analysis.errors import InputError
 from rosprivacy.analysis.findings.findings import MAX_PATHS
 from rosprivacy.ingest.labels import label_file
 from rosprivacy.ingest.labels.label_file import STANDARD, Labels
@@ -22,6 +23,7 @@ from rosprivacy.settings import Settings
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.modes import Article9Level, View
+    from rosprivacy.explorer.fleet_session import FleetSession
     from rosprivacy.explorer.session import Session
     from rosprivacy.labelling.suggesting import Suggested
     from rosprivacy.result import Result
@@ -336,12 +338,22 @@ def suggest_fleet(
     return suggested(result, settings, _paths(rules), _paths(packages), _paths(sources), _paths(libraries))
 
 
+@overload
 def explore(
     policies: Paths = (),
     labels: Path | Labels | Iterable[Path | Labels] = (),
     *,
     settings: Settings | None = None,
-) -> Session:
+) -> Session: ...
+@overload
+def explore(*, fleet: Path, settings: Settings | None = None) -> FleetSession: ...
+def explore(
+    policies: Paths = (),
+    labels: Path | Labels | Iterable[Path | Labels] = (),
+    *,
+    fleet: Path | None = None,
+    settings: Settings | None = None,
+) -> Session | FleetSession:
     """Begin a session: label elements, and see what follows from each label at once.
 
     Parameters
@@ -350,18 +362,23 @@ def explore(
         Files, folders and globs; they are read once.
     labels
         Label files. What is said goes to the first of them, when the session is saved; it need not be there yet.
+    fleet
+        A fleet file, in the place of both: it names policies and label files itself. Elements are then named with a
+        robot, and what is said goes to the label file of its model, or to its own.
     settings
         How to read and what to ask, as ``rosprivacy.settings.Settings``; by default as ``analyze`` does.
 
     Returns
     -------
-    Session
+    Session or FleetSession
         With ``label``, ``undo``, ``questions()``, ``findings``, ``save()``.
 
     Raises
     ------
     InputErrors
         With every problem of the input, one line each.
+    InputError
+        If policies or labels are named beside a fleet file.
 
     Examples
     --------
@@ -370,7 +387,18 @@ def explore(
     '/robot_arm_control'
     >>> session.label("/robot_camera", conduit=True).closed
     ('dc5715a35ba5591a',)
+    >>> hospital = explore(fleet="examples/fleet/fleet.yaml")
+    >>> len(hospital.target("carrier_lent").robots), len(hospital.target("carrier_lent", only_this_robot=True).robots)
+    (24, 1)
     """
+    if fleet is not None:
+        from rosprivacy.explorer.fleet_session import FleetSession  # noqa: PLC0415 - light start
+
+        named = (*_paths(policies), *_labels(labels))
+        if named:
+            hint = "leave policies and labels away: the fleet file names them"
+            raise InputError(fspath(fleet), 0, "is a fleet, and other files are named beside it", hint)
+        return FleetSession.open_fleet(fspath(fleet), settings)
     from rosprivacy.explorer.session import Session  # noqa: PLC0415 - light start
 
     return Session.open(_paths(policies), _labels(labels), settings)

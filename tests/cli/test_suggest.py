@@ -155,8 +155,8 @@ def test_who_asks_for_a_place_is_no_source_of_it(cli: Cli, tmp_path: Path) -> No
         ("n", "people_markers", "visualization_msgs/msg/MarkerArray", ["PersonTrack may"]),
         ("n", "imu", "sensor_msgs/msg/Imu", []),  # of the machine
         ("keyboard_teleop", "cmd_vel", TWIST, ["OperatorInput may"]),  # what an operator does can have any type
-        ("planner", "cmd_vel", TWIST, []),
-        ("camera", "cmd_vel", TWIST, []),
+        ("planner", "cmd_vel", TWIST, ["OperatorInput may"]),  # it reads nothing that it could be made of
+        ("camera", "cmd_vel", TWIST, ["OperatorInput may"]),  # and no Video
         ("n", "pir", "std_msgs/msg/Bool", ["Presence may"]),
         ("n", "face", "std_msgs/msg/Bool", []),
         ("demo_camera", "image", IMAGE, ["Video may"]),  # nobody measured it either

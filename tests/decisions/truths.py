@@ -6,10 +6,10 @@ paper's five rounds came to; the care home is the example of ours.
 
 from __future__ import annotations
 
-import json
 import re
 from typing import TYPE_CHECKING, NamedTuple
 
+from tests.helpers.papers_rounds import ROUNDS, labels_of, papers_round
 from tests.helpers.paths import ROOT
 from tests.helpers.turtlebot import TURTLEBOT3
 from tests.helpers.typist import POLICIES, STUDIES, Typist
@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 CARE = ROOT / "examples" / "care-home"
-PAPERS = "categorizations/JonasWoh__ROS2PrivacyGraph/categorizations/categorization_turtlebot3_step_5.json"
-LISTS = ("source", "leak", "conduit", "sensitive", "mundane")
 
 
 class Truth(NamedTuple):
@@ -59,7 +57,7 @@ def truths(corpus: Path, folder: Path) -> Iterator[Truth]:
     infrastructure = ("rosprivacy:infrastructure",)
     text = _typed("TurtleBot3", folder)
     yield Truth("TurtleBot3", str(corpus / TURTLEBOT3), text, infrastructure)
-    yield Truth("TurtleBot3, the paper's rounds", str(corpus / TURTLEBOT3), _of_paper(corpus / PAPERS))
+    yield Truth("TurtleBot3, the paper's rounds", str(corpus / TURTLEBOT3), labels_of(papers_round(corpus, ROUNDS - 1)))
     yield care_home()
 
 
@@ -89,13 +87,3 @@ def _typed(study: str, folder: Path) -> str:
     for block in re.findall(r"```yaml\n(.*?)```", STUDIES[study], re.DOTALL):
         typist.types(block)
     return typist.file.read_text("utf-8")
-
-
-def _of_paper(file: Path) -> str:
-    said = json.loads(file.read_text("utf-8"))
-    sections: dict[str, list[str]] = {"nodes": [], "channels": []}
-    for role in LISTS:
-        for name in said[role]:
-            value = f"{{{role}: [LaserScan]}}" if role in LISTS[:2] else role
-            sections["nodes" if role in LISTS[:3] else "channels"].append(f"  {name}: {value}\n")
-    return "labels: 1\n" + "".join(f"{section}:\n{''.join(lines)}" for section, lines in sections.items())

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+import rosprivacy
 from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.explorer.fleet_session import FleetSession
 from rosprivacy.explorer.saving import Conflict, Saved
@@ -191,6 +192,14 @@ def test_what_was_not_saved_is_offered_for_the_files_of_the_fleet_only(small: Pa
     assert again.unsaved == 2
     assert again.result.analysis.findings == session.result.analysis.findings
     again.close()
+
+
+def test_the_public_function_opens_the_same_session(small: Path) -> None:
+    session = rosprivacy.explore(fleet=small)
+    assert isinstance(session, rosprivacy.FleetSession)
+    assert session.result.to("json") == fresh(small).to("json")
+    with pytest.raises(InputError, match="other files are named beside it"):
+        rosprivacy.explore("p.xml", fleet=small)  # type: ignore[call-overload]
 
 
 def test_what_is_about_one_robot_is_refused_in_words(small: Path) -> None:

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import json
-import resource
 import shutil
-import signal
 import subprocess
 import sys
-from contextlib import contextmanager
 from random import Random
 from typing import TYPE_CHECKING
 
@@ -21,9 +18,9 @@ from rosprivacy.explorer.journal import read_journal
 from rosprivacy.explorer.saving import Saved
 from rosprivacy.explorer.session import Session
 from tests.helpers.factory import FACTORY
+from tests.helpers.full_disk import full_disk
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
     from pathlib import Path
 
 BEFORE = str(FACTORY / "before.policy.xml")
@@ -174,19 +171,6 @@ def test_a_journal_is_bounded(file: Path, monkeypatch: pytest.MonkeyPatch) -> No
     (journal,) = journals(file)
     assert journal.stat().st_size < 3000
     assert read_journal(journal).edits == session.edits[-1:]
-
-
-@contextmanager
-def full_disk(size: int) -> Iterator[None]:
-    """No file can grow beyond so many bytes."""
-    before = resource.getrlimit(resource.RLIMIT_FSIZE)
-    handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
-    try:
-        yield
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, before)
-        signal.signal(signal.SIGXFSZ, handler)
 
 
 def test_a_full_disk_loses_nothing_and_is_told(file: Path) -> None:

@@ -6,6 +6,7 @@ import base64
 import json
 import shutil
 from contextlib import contextmanager
+from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -63,8 +64,7 @@ def open_page(
     browser: WebDriver, address: str, *, width: int = DESKTOP, dark: bool = False, paper: bool = False
 ) -> list[str]:
     """Open a page; return the addresses that it asked for, itself first. What is in the page counts as no request."""
-    scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
-    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print" if paper else "", "features": [scheme]})
+    shade(browser, dark=dark, paper=paper)
     size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": width < DESKTOP and not paper}
     browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
     browser.get("about:blank")
@@ -72,6 +72,12 @@ def open_page(
     browser.get_log("browser")  # type: ignore[no-untyped-call]
     browser.get(address)
     return requests(browser)
+
+
+def shade(browser: WebDriver, *, dark: bool, paper: bool = False) -> None:
+    """Show what is open as somebody sees it who likes it dark, or light; or as it is printed."""
+    scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
+    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print" if paper else "", "features": [scheme]})
 
 
 def requests(browser: WebDriver) -> list[str]:
@@ -104,6 +110,14 @@ def pdf(browser: WebDriver) -> bytes:
 def wider(browser: WebDriver, selector: str) -> list[str]:
     """Return the elements that are wider than their box or the page."""
     return list(browser.execute_script(WIDER, selector))
+
+
+def axe(browser: WebDriver) -> list[tuple[str, str]]:
+    """Return what axe finds of WCAG 2.1 A and AA and of best practices: the rule, and the first element."""
+    if not browser.execute_script("return window.axe !== undefined"):
+        browser.execute_script(files("axe_core_python").joinpath("axe.min.js").read_text("utf-8"))
+    found = browser.execute_async_script("axe.run(document, {resultTypes: ['violations']}).then(arguments[0])")
+    return [(one["id"], one["nodes"][0]["html"]) for one in found["violations"]]
 
 
 def drop(browser: WebDriver, file: Path, at: tuple[int, int]) -> None:

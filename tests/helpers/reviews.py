@@ -10,12 +10,13 @@ if TYPE_CHECKING:
     from starlette.testclient import TestClient
 
 NAME = "A. Lee"
+NO_WORDS = "//code | //pre | //*[@lang='en'][not(self::html)]"
 MOST = 60  # questions of a small system
 EVERYWHERE = ("yaml", "topic", "sanitizer", "conduit", "policy", "frontier")
 INSIDERS = {
     "en": (" node", "enclave", "label", "mundane", "derivation", "element"),
     "de": ("knoten", "enklave", "enclave", "label", "policies", "kante", "senke"),
-    "fr": ("nœud", "noeud", "enclave", "annotation", "arête"),
+    "fr": ("nœud", "noeud", "enclave", "annotation", "arête", "étiquette"),
 }
 
 
@@ -52,9 +53,11 @@ def to_the_end(client: TestClient) -> list[str]:
 
 
 def insiders_in(text: str, language: str) -> list[str]:
-    """Words on a page that only people know who write policies; names and lines of files are no words."""
+    """Words on a page that only people know who write policies; names, kinds and lines of files are no words."""
     whole = html.fromstring(text)
-    for left in whole.xpath("//code | //*[@lang='en'][not(self::html)]"):
+    for left in whole.xpath(
+        "//code | //pre | //*[@lang='en'][not(self::html)] | //select[@name='brings' or @name='makes']"
+    ):
         left.drop_tree()
     said = whole.text_content().casefold()
     return [word for word in (*EVERYWHERE, *INSIDERS[language]) if word in said]

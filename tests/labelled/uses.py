@@ -13,12 +13,18 @@ from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedSeq
 
 from rosprivacy.analysis.model import Element
+from rosprivacy.analysis.suggesting.library_rules import ADDRESS, PYTHON
 from rosprivacy.ingest.annotations.source_files import read_sources
+from rosprivacy.ingest.suggestions.library_file import read_library_rules
 from rosprivacy.labelling.code_said import code_said
+from rosprivacy.ontology.vocabulary import load
 from tests.labelled.labelled_set import HERE
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
+
+    from rosprivacy.analysis.suggesting.library_rules import LibraryRules, NodeUse
 
 WIDTH = 120
 ROS = ("rclpy", "rclcpp", "ament_index_python", "launch", "launch_ros", "builtin_interfaces", "tf_transformations")
@@ -43,10 +49,11 @@ def _write(file: Path, sources: Path) -> int:
     top: Any = yaml.load(file.read_text("utf-8"))
     nodes = top["nodes"]
     names = [*nodes]
+    rules = read_library_rules((), load())[0]
     codes, of_others, _ = read_sources([str(sources)])
     said = code_said(codes, of_others, [Element("node", name) for name in names])
     for vertex, name in enumerate(names):
-        used = sorted({use.name for use in said.uses.get(vertex, ()) if _tells(use.name)})
+        used = sorted({told for use in said.uses.get(vertex, ()) for told in _told(use, rules)})
         nodes[name].pop("uses", None)
         if used:
             nodes[name]["uses"] = CommentedSeq(used)
@@ -57,6 +64,13 @@ def _write(file: Path, sources: Path) -> int:
     return sum("uses" in node for node in nodes.values())
 
 
-def _tells(name: str) -> bool:
-    head, _, rest = name.partition(".")
-    return head not in ROS and head not in PLAIN and rest.partition(".")[0] not in INTERFACES
+def _told(use: NodeUse, rules: LibraryRules) -> Iterator[str]:
+    """What is written of a use; of an address the parts that rules name: addresses of others are not ours to keep."""
+    if use.name.startswith(ADDRESS):
+        sections = (rules.brings_in, rules.makes, rules.lets_out)
+        parts = {part for section in sections for part in section[PYTHON].addresses}
+        yield from (f"{ADDRESS}{part}" for part in parts if part in use.name)
+        return
+    head, _, rest = use.name.partition(".")
+    if head not in ROS and head not in PLAIN and rest.partition(".")[0] not in INTERFACES:
+        yield use.name

@@ -9,7 +9,7 @@ import pytest
 from rosprivacy.analysis.errors import QueryError
 from rosprivacy.private_neo4j import connection
 from rosprivacy.queries.graph_values import Relationship, plain, value_of
-from rosprivacy.queries.run import run
+from rosprivacy.queries.run import DEEPEST, run
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -75,6 +75,17 @@ def test_values_are_those_of_json(driver: Driver) -> None:
         driver, "RETURN 1 AS a, 1.5 AS b, true AS c, null AS d, 'x' AS e, [1, {k: 'v'}] AS f, date('2026-01-02')"
     )
     assert rows.rows == ((1, 1.5, True, None, "x", [1, {"k": "v"}], "2026-01-02"),)
+
+
+@pytest.mark.parametrize("pair", ["()", "[]", "{}"])
+def test_brackets_that_the_server_would_not_survive_are_refused_before_it_gets_them(driver: Driver, pair: str) -> None:
+    def nested(depth: int) -> str:
+        return f"RETURN {pair[0] * depth}1{pair[1] * depth} AS x"
+
+    with pytest.raises(QueryError, match="brackets within brackets, more than 150 deep; ask for less"):
+        run(driver, nested(DEEPEST + 1))
+    if pair != "{}":
+        assert run(driver, nested(DEEPEST)).columns == ("x",)
 
 
 def test_nodes_relationships_and_paths(driver: Driver) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from functools import partial
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Annotated
 
@@ -17,11 +18,16 @@ from rosprivacy.report.installing import command_for
 
 if TYPE_CHECKING:
     import socket
+    from collections.abc import Callable
+    from contextlib import AbstractContextManager
     from pathlib import Path
 
+    from neo4j import Driver
     from starlette.types import ASGIApp
 
     from rosprivacy.explorer.session import Session
+
+    Opens = Callable[[], AbstractContextManager[Driver]]
 
 NEEDS = ("starlette", "uvicorn")
 DISPLAYS = ("DISPLAY", "WAYLAND_DISPLAY")
@@ -47,8 +53,8 @@ def explore(
     """Label elements and see the effect at once, on a local page: what is left to decide, why, and five answers.
 
     Edits go to the first label file (-l), when you save; it need not be there yet. Of a fleet they go to the label file
-    of the robot's model, or to that one robot's. What is in a database is shown only. Decisions go at once to the file
-    of --decisions, which need not be there yet either. Ctrl+C ends the program.
+    of the robot's model, or to that one robot's. What is in a database is shown only, and asked in Cypher.
+    Decisions go at once to the file of --decisions, which need not be there yet either. Ctrl+C ends the program.
     """
     missing = [name for name in NEEDS if find_spec(name) is None]
     if missing:
@@ -69,10 +75,15 @@ def explore(
     read_only = read_only or inputs.from_database
     settings = inputs.settings
     journal = None if read_only else journal_folder()
-    session = _session(inputs, journal)
+    session, ask = _session(inputs, journal)
     with bound_socket(port) as listening:
-        door = Door(listening.getsockname()[1], read_only)
-        site = (ReviewSite if review else Site)(session, settings, Words(lang.value), door)
+        door, words = Door(listening.getsockname()[1], read_only), Words(lang.value)
+        if ask:
+            from rosprivacy.explorer.web.cypher_site import StoredSite
+
+            site: Site = StoredSite(session, settings, words, door, ask)
+        else:
+            site = (ReviewSite if review else Site)(session, settings, words, door)
         _tell(door.link, door.port)
         if open:
             _open(door.link)
@@ -85,19 +96,21 @@ def explore(
         print(f"Not saved: what was said of {counted(session.unsaved, 'element')}", file=sys.stderr)
 
 
-def _session(inputs: Inputs, journal: Path | None) -> Session:
-    """Read what is named."""
-    from rosprivacy.cli.driver import driver_of
+def _session(inputs: Inputs, journal: Path | None) -> tuple[Session, Opens | None]:
+    """Read what is named; for a database, also what opens a driver to it again, and starts no server."""
     from rosprivacy.explorer.fleet_session import FleetSession
     from rosprivacy.explorer.session import Session
     from rosprivacy.explorer.stored_session import StoredSession
 
     if inputs.from_database:
-        with driver_of(inputs.neo4j) as driver:
-            return StoredSession.open_database(driver, inputs.settings)
+        from rosprivacy.private_neo4j.connection import connection, open_driver
+
+        opens = partial(open_driver, connection(inputs.neo4j))
+        with opens() as driver:
+            return StoredSession.open_database(driver, inputs.settings), opens
     if inputs.fleet:
-        return FleetSession.open_fleet(inputs.fleet, inputs.settings, journal=journal)
-    return Session.open(inputs.named, tuple(inputs.labels or ()), inputs.settings, journal=journal)
+        return FleetSession.open_fleet(inputs.fleet, inputs.settings, journal=journal), None
+    return Session.open(inputs.named, tuple(inputs.labels or ()), inputs.settings, journal=journal), None
 
 
 def _tell(link: str, port: int) -> None:

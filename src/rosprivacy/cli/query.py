@@ -19,8 +19,6 @@ from rosprivacy.cli.query_answer import RowFormat, answer, not_drawn
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from neo4j import Driver
-
     from rosprivacy.queries.library import Query
 
 
@@ -67,9 +65,8 @@ def query(
     neo4j: Server = None,
 ) -> None:
     """Ask the database: one of the questions that come with the program, or Cypher of your own, which only reads."""
-    from rosprivacy.ingest.database.other_schemas import HINT, ROBOTS, of_other_schemas
     from rosprivacy.queries.library import find, pack
-    from rosprivacy.queries.run import check_names, run
+    from rosprivacy.reading.stored_rows import rows_of
 
     given = list(values or ())
     if (cypher is not None) + (file is not None) + (name is not None and "=" not in name) > 1:
@@ -97,25 +94,12 @@ def query(
     if format is RowFormat.svg:
         _check_drawing(asked, output)
     with driver_of(neo4j) as driver:
-        if asked:
-            check_names(driver, asked, parameters)
-        rows = run(driver, text, parameters, limit=limit, timeout=timeout, known=_known_names(driver))
-        robots = run(driver, ROBOTS, limit=None, timeout=timeout)
+        rows, warning = rows_of(driver, text, parameters, limit=limit, timeout=timeout, asked=asked)
     emit(answer(rows, format, _title(asked, given, file, text), wide=output is not None), output)
     if rows.more:
         print(f"only the first {limit:,} rows are shown; --limit shows more", file=sys.stderr)
-    if others := of_other_schemas(dict(zip(robots.columns, row, strict=True)) for row in robots.rows):
-        print(f"warning: {others}, so rows can be missing or differ; {HINT}", file=sys.stderr)
-
-
-def _known_names(driver: Driver) -> dict[str, frozenset[str]]:
-    """The names that a query can ask for: those of the schema, and of all kinds of data, loaded or not."""
-    from rosprivacy.ingest.database.schema_names import LABELS_OF_CATEGORIES, schema_names
-    from rosprivacy.ontology.vocabulary import load
-    from rosprivacy.queries.run import run
-
-    stored = {str(label) for (label,) in run(driver, LABELS_OF_CATEGORIES, limit=None).rows}
-    return schema_names(stored | {category.label for category in load().categories.values()})
+    if warning:
+        print(f"warning: {warning}", file=sys.stderr)
 
 
 def _listed(queries: Iterable[Query]) -> str:

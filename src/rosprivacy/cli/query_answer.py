@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from rosprivacy.queries.run import Rows
-    from rosprivacy.report.stored import StoredNames
 
 WIDEST_TABLE = 400  # in a file or a pipe
 LESS = "ask for less, or use a lower --limit"
@@ -53,6 +52,7 @@ def answer(rows: Rows, form: RowFormat, title: str, *, wide: bool) -> str | byte
 def _drawing(rows: Rows, title: str) -> bytes:
     """All nodes, relationships and paths of some rows as one SVG; an error if there are none."""
     from rosprivacy.queries.graph_values import graph_values
+    from rosprivacy.reading.stored_rows import STORED_NAMES
     from rosprivacy.report.pictures.layout import drawn
     from rosprivacy.report.pictures.query_view import query_view
 
@@ -63,23 +63,17 @@ def _drawing(rows: Rows, title: str) -> bytes:
         raise QueryError(not_drawn(title, rows.columns))
     number = counted(len(rows.rows), "row")
     said = f"Only the first {number}: there are more, --limit draws more" if rows.more else number
-    picture = query_view(values, _stored_names(), title, (said,))
+    picture = query_view(values, STORED_NAMES, title, (said,))
     done = drawn(picture, "svg", direction="", less=LESS, instead=f"{LESS}, or take --format json")
     for note in done.said:
         print(note, file=sys.stderr)
     return done.data
 
 
-def _stored_names() -> StoredNames:
-    from rosprivacy.ingest.database.schema import CARRIES, FLOWS_TO, KIND_LABELS
-    from rosprivacy.report.stored import StoredNames
-
-    return StoredNames({label: kind for kind, label in KIND_LABELS.items()}, FLOWS_TO.type, CARRIES)
-
-
 def _text(rows: Rows, form: RowFormat, *, wide: bool) -> str:
     from rosprivacy.queries.graph_values import plain
     from rosprivacy.queries.run import as_cell
+    from rosprivacy.reading.stored_rows import STORED_NAMES
     from rosprivacy.report.json_text import as_text
     from rosprivacy.report.spreadsheet import as_csv
     from rosprivacy.report.terminal.graph_words import GraphWords
@@ -87,7 +81,7 @@ def _text(rows: Rows, form: RowFormat, *, wide: bool) -> str:
     if form is RowFormat.json:
         objects = [dict(zip(rows.columns, map(plain, row), strict=True)) for row in rows.rows]
         return as_text(objects)
-    words = GraphWords.for_rows(_stored_names(), rows.rows).of
+    words = GraphWords.for_rows(STORED_NAMES, rows.rows).of
     cells = [[as_cell(*cell, words) for cell in zip(row, rows.columns, strict=True)] for row in rows.rows]
     if form is RowFormat.csv:
         both = (zip(*pair, strict=True) for pair in zip(rows.rows, cells, strict=True))

@@ -179,7 +179,7 @@ class History:
     def _analyse(self, edits: Sequence[Edit]) -> None:
         """Have the answer after edits; if they are wrong, that of before is kept."""
         system = self._files.system(edits)
-        uncounted = answer(system, self._asked, count_paths=False)
+        uncounted = answer(system, self._asked, count_paths=False, before=self.uncounted)
         self._system, self.uncounted, self._whole = system, uncounted, None
 
     # --- what a session before left -----------------------------------------------------------------------------

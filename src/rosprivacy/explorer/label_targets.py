@@ -69,6 +69,7 @@ class Targets:
         self.fleet = fleet
         self._robots = {robot.id: robot for robot in (*fleet.robots, *fleet.infrastructure)}
         self._readers: dict[str, dict[str, Robot]] = defaultdict(dict)
+        self._chosen: dict[tuple[str, ...], int | None] = {}
         self._names: dict[str, set[tuple[str, bool]]] = defaultdict(set)
         for robot in self._robots.values():
             for files, alone in ((robot.labels, False), (robot.own, True)):
@@ -92,7 +93,9 @@ class Targets:
         found: dict[str, Target] = {}
         for one in self._of(robot):
             for files, alone in ((one.labels, False), (one.own, True)):
-                at = chosen(files)
+                if files not in self._chosen:
+                    self._chosen[files] = chosen(files)  # which looks into them
+                at = self._chosen[files]
                 if at is not None:
                     found.setdefault(os.path.realpath(files[at]), self._target(files[at], alone=alone))
         return tuple(sorted(found.values(), key=lambda target: target.alone))

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import partial
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.analysis.model import MERGED, REFUSED_NAME, SEEN_ALTHOUGH_DENIED, SHARED_ENCLAVE
@@ -19,6 +19,7 @@ from rosprivacy.ingest.keystore.exposed import with_exposed
 from rosprivacy.ingest.labels.add_non_ros import extend, extended
 from rosprivacy.ingest.labels.bag_storages import told_of_bags
 from rosprivacy.ingest.labels.binding import bind, join, remarks
+from rosprivacy.ingest.labels.graph_names import GraphNames
 from rosprivacy.ingest.labels.label_file import Labels, read_labels, unknown_categories
 from rosprivacy.ingest.labels.stated_types import in_order
 from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, Change, changed
@@ -32,7 +33,7 @@ from rosprivacy.reading.granted import Read, read_granted
 from rosprivacy.system import System
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Sequence
 
     from rosprivacy.analysis.model import Bound, Diagnostic, FlowGraph, Policy
     from rosprivacy.ingest.database.beyond_rows import Beyond
@@ -97,26 +98,39 @@ def system_reader(
 
 def _under(
     labels: tuple[str | Labels, ...], *, graph: FlowGraph, read: Read, types: Types, settings: Settings,
-    vocabulary: Vocabulary,
+    vocabulary: Vocabulary, last: _Whole | None = None,
 ) -> System:  # fmt: skip
     """Put policies that were read under labels; their graph is made once, and lasts for all labels."""
     files = read_label_files(labels, vocabulary, settings)
-    whole = extend(graph, files)
-    system = _joined(whole, bind(whole, files, settings.bounds), read, files, types, settings, vocabulary)
+    stated = [(file.own, file.elements, file.flows) for file in files]
+    if last is None or last.stated != stated:
+        whole = extend(graph, files)
+        last = _Whole(stated, whole, GraphNames(whole))
+    whole, names = last.graph, last.names
+    bound = bind(whole, files, settings.bounds, names=names)
+    system = _joined(whole, bound, read, files, types, settings, vocabulary, names)
     system = replace(system, diagnostics=(*system.diagnostics, *matching_nothing(whole, types)))
-    again = partial(_under, graph=graph, read=read, types=types, settings=settings, vocabulary=vocabulary)
+    again = partial(_under, graph=graph, read=read, types=types, settings=settings, vocabulary=vocabulary, last=last)
     return replace(system, under=again)
+
+
+class _Whole(NamedTuple):
+    """A graph with what label files state of elements outside ROS: the same for all that state the same."""
+
+    stated: Sequence[object]
+    graph: FlowGraph
+    names: GraphNames
 
 
 def _joined(
     graph: FlowGraph, bound: Bound, read: Read, files: list[Labels], types: Types, settings: Settings,
-    vocabulary: Vocabulary,
+    vocabulary: Vocabulary, names: GraphNames | None = None,
 ) -> System:  # fmt: skip
     policies, diagnostics = read
     said = tuple(d for policy in policies for d in policy.diagnostics) + diagnostics
     said += (
         tuple(d for file in files for d in file.diagnostics)
-        + tuple(remarks(graph, files))
+        + tuple(remarks(graph, files, names))
         + tuple(told_of_bags(graph, (stated for file in files for stated in file.elements)))
     )
     said += careful_notices(graph.careful)

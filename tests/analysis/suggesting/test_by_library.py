@@ -1,4 +1,4 @@
-"""What libraries say of nodes, by what these write and read: the four rules of ``by_library.py`` (issue 21)."""
+"""What libraries say of nodes, by what these write and read: the rules of ``by_library.py`` (issue 21)."""
 
 from __future__ import annotations
 
@@ -81,10 +81,21 @@ CAMERA, MICROPHONE, POSE = "cv2.VideoCapture(0)", "sounddevice.InputStream()", "
         ("", "", ["requests.post('x')"], {"leak PersonalData may"}),  # who knows what
         ("Twist", "", ["readchar.readkey()", "requests.post('x')"],
          {"source OperatorInput likely", "leak PersonalData may"}),
-        ("", "", [CAMERA, "requests.post('x')"], {"leak PersonalData likely"}),
+        ("Image", "", [CAMERA, "requests.post('x')"], {"source Video likely", "leak PersonalData likely"}),
+        ("", "Image", ["websocket.create_connection('x')"], {"leak PersonalData may"}),  # it may only listen
+        ("", "Image", ["websocket.create_connection('x').send(y)"],
+         {"leak PersonalData likely", "leak PersonalData may"}),
+        ("", "Image", ["sounddevice.play(x)"], {"leak PersonalData may"}),  # an alarm, or what somebody said
+        ("", "Image", ["pyttsx3.init()"], {"leak PersonalData likely"}),
+        ("", "Image", ["go('https://api.telegram.org/bot')"], {"leak PersonalData likely"}),
+        ("", "Image", ["go('https://example.org/')"], set()),
+        # 5. What it lets out itself, it need not write.
+        ("", "", [CAMERA, "requests.post('x')"], {"source Video may", "leak PersonalData likely"}),
+        ("", "Image", [POSE, "cv2.imshow('x', y)"], {"derivation Video BodyPose may", "leak Video may"}),
+        ("", "Image", [POSE], set()),
     ],
 )  # fmt: skip
-def test_the_four_rules(writes: str, reads: str, calls: list[str], told: set[str]) -> None:
+def test_the_rules(writes: str, reads: str, calls: list[str], told: set[str]) -> None:
     assert said(writes, reads, *calls) == told
 
 
@@ -126,3 +137,55 @@ def test_nothing_that_hides_a_leak_is_said_by_libraries() -> None:
     roles = {one.label.role for one in found if one.label.element.name == "/n"}
     assert "leak" in roles
     assert not roles & {"conduit", "sanitizer"}
+
+
+def test_a_detector_finds_what_it_was_taught_and_channels_say_what() -> None:
+    """YOLO knows persons and pots; only where a channel tells of one of them alone it is ``likely``."""
+    for topic, told in (
+        ("detections", {"PersonDetection may", "HouseholdObject may"}),
+        ("person_detections", {"PersonDetection likely", "HouseholdObject may"}),
+        ("object_poses", {"PersonDetection may", "HouseholdObject likely"}),
+    ):
+        code = HEAD.format(library="ultralytics") + LINE.format("ultralytics.YOLO('x')")
+        Path("n.py").write_text(code, "utf-8")
+        Path("p.xml").write_text(policy(f"/n>/{topic}</image", f"/m>/image</{topic}"), "utf-8")
+        found = suggest_labels(("p.xml",), (), Settings(), sources=("n.py",)).proposals
+        assert {
+            f"{one.label.to} {reason.confidence}" for one in found for reason in one.evidence if reason.ground == CODE
+        } == told, topic
+
+
+def entered(service: str, call: str) -> set[str]:
+    """What a node brings in by its code that asks for a service."""
+    code = f"import tkinter, os\n{HEAD.format(library='time')}{LINE.format(call)}"
+    Path("n.py").write_text(code, "utf-8")
+    enclave = '<enclave path="/{0}"><profiles><profile ns="/" node="{0}"><services {1}="ALLOW"><service>{2}</service>'
+    ends = "</services></profile></profiles></enclave>"
+    enclaves = "".join(enclave.format(node, role, service) + ends for node, role in (("n", "request"), ("m", "reply")))
+    Path("p.xml").write_text(f'<policy version="0.2.0"><enclaves>{enclaves}</enclaves></policy>', "utf-8")
+    found = suggest_labels(("p.xml",), (), Settings(), sources=("n.py",)).proposals
+    return {one.label.kind for one in found if one.label.role == "source" and one.label.element.name == "/n"}
+
+
+@pytest.mark.parametrize(
+    ("service", "call", "kinds"),
+    [
+        ("order_srv", "input('?')", {"OperatorInput", "DeliveryOrder"}),
+        ("llm/chat", "tkinter.Entry()", {"OperatorInput", "ConversationWithModel"}),
+        ("save_map", "input('?')", {"OperatorInput"}),  # nobody enters a map
+        ("order_srv", "os.getcwd()", set()),  # nobody acts on it
+    ],
+)
+def test_what_somebody_enters_goes_into_a_request(service: str, call: str, kinds: set[str]) -> None:
+    """6. By the name of the service that is asked for."""
+    assert entered(service, call) == kinds
+
+
+def test_what_a_driver_sends_goes_to_its_device() -> None:
+    for name, sure in (("arm_driver", "may"), ("arm", "likely")):
+        code = HEAD.format(library="requests").replace("'n'", f"'{name}'") + LINE.format("requests.post('x')")
+        Path("n.py").write_text(code, "utf-8")
+        Path("p.xml").write_text(policy(f"/{name}>/x</image", "/m>/image</x"), "utf-8")
+        found = suggest_labels(("p.xml",), (), Settings(), sources=("n.py",)).proposals
+        said = {str(one.confidence) for one in found if one.label.role == "leak" and one.evidence[0].ground == CODE}
+        assert said == {sure}, name

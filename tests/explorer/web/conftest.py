@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from contextlib import ExitStack
 from typing import TYPE_CHECKING, Any
+from urllib.parse import urlsplit
 
 import pytest
 
@@ -35,3 +36,12 @@ def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[WebDriver]:
     """A Chromium that reaches this machine only."""
     with chrome.chromium(tmp_path_factory.mktemp("profile"), chrome.HERE_ONLY) as found:
         yield found
+
+
+@pytest.fixture
+def quiet(browser: WebDriver) -> Iterator[None]:
+    """Whatever a test does, the console stays silent, and only our own server is asked."""
+    yield
+    assert chrome.console(browser) == []
+    asked = {urlsplit(address).netloc for address in chrome.requests(browser)}
+    assert {host.partition(":")[0] for host in asked} <= {"127.0.0.1"}

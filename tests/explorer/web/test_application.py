@@ -16,6 +16,7 @@ from rosprivacy.ingest.labels.label_file import parse_labels
 from rosprivacy.ontology.vocabulary import load
 from tests.helpers.explorers import BARE, FACTORY, Explorer, copied, label, node, version
 from tests.helpers.languages import english_in
+from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -103,6 +104,62 @@ def test_a_label_is_taken_away(explore: Explore, tmp_path: Path) -> None:
     assert label(client, CAMERA, "nothing").status_code == 303
     assert len(explorer.session.findings) == 1
     assert label(client, CAMERA, "nothing").status_code == 422  # there is none any more
+
+
+def test_what_is_looked_for_by_its_whole_name_is_found_first(explore: Explore, tmp_path: Path) -> None:
+    client = explore(BARE, tmp_path / "new.labels.yaml").client()
+    for wanted in ("/robot_camera", "/ROBOT_CAMERA/get_parameters", "get_parameters"):
+        page = html.fromstring(client.get("/", params={"find": wanted}).text)
+        first = page.cssselect("#rows .row .name")[0].text_content()
+        assert first == wanted.casefold() if wanted.startswith("/") else wanted in first
+
+
+@pytest.mark.parametrize("element", [CAMERA, ARCHIVE])
+def test_an_answer_about_nothing_chosen_takes_no_source_and_no_leak_away(
+    explore: Explore, tmp_path: Path, element: str
+) -> None:
+    """Where nothing is open, what an element brings in or lets out is not chosen beforehand: a key alone ended it."""
+    explorer = explore(BARE, copied(FACTORY / "run2.labels.yaml", tmp_path))
+    client = explorer.client()
+    there = f"/?at={element}"
+    form = next(one for one in html.fromstring(client.get(there).text).forms if one.get("id") == "answers")
+    assert ("about", "Video") not in form.form_values()
+    refused = client.post("/label", data={**dict(form.form_values()), "role": "conduit"})
+    assert refused.status_code == 422
+    assert "Choose the kinds of data" in refused.text
+    assert len(explorer.session.findings) == 2
+    assert label(client, element, "conduit", about="Video").status_code == 303  # a person who says so is believed
+    assert len(explorer.session.findings) == (1 if element == CAMERA else 0)
+
+
+def test_a_broader_kind_beside_a_narrower_one_can_be_answered_for(explore: Explore, tmp_path: Path) -> None:
+    """A tracker makes tracks of places: both go on, and each is a question of its own."""
+    file = tmp_path / "own.labels.yaml"
+    tracker = "{conduit: [Location], derives: [{from: Location, to: PersonTrack}]}"
+    file.write_text(f"labels: 1\nnodes:\n  /lidar: {{source: [Location]}}\n  /person_tracker: {tracker}\n", "utf-8")
+    explorer = explore(ROOT / "examples" / "care-home" / "care-home.policy.xml", file)
+    client, tracks = explorer.client(), element_id(("", "topic", "/person_tracker/tracks"))
+    form = next(one for one in html.fromstring(client.get(f"/?at={tracks}").text).forms if one.get("id") == "answers")
+    chosen = [value for name, value in form.form_values() if name == "about" and value]
+    assert chosen == ["Location", "PersonTrack"]
+
+
+def test_a_limit_of_a_channel_outlives_an_answer_about_one_kind_and_is_told_when_it_goes(
+    explore: Explore, tmp_path: Path
+) -> None:
+    file = tmp_path / "own.labels.yaml"
+    file.write_text(
+        "labels: 1\nnodes: {/safety_camera: {source: [Video]}}\ntopics:\n  /safety_video: {only: [Voice]}\n"
+    )
+    explorer = explore(BARE, file)
+    client, channel = explorer.client(), element_id(("", "topic", "/safety_video"))
+    there = ("topics", "/safety_video")
+    assert label(client, channel, "sensitive", about="Video").status_code == 303
+    assert explorer.session.entries[there] == {"only": ["Voice", "Video"]}
+    assert "a limit was stated" not in client.get("/").text
+    assert label(client, channel, "sensitive", about="*").status_code == 303
+    assert explorer.session.entries[there] == "sensitive"
+    assert "a limit was stated: it carries at most voice, video of persons." in client.get("/").text
 
 
 def test_a_file_that_somebody_else_changed_is_not_written_over(explore: Explore, tmp_path: Path) -> None:

@@ -44,6 +44,14 @@ def test_robots_that_are_alike_are_one_and_others_come_first(explore: Explore, h
     assert not [row for row in rows if row.startswith("carrier_02:")]
 
 
+def test_two_ways_out_of_the_same_data_at_one_place_are_told_apart(explore: Explore, hospital: Path) -> None:
+    page = html.fromstring(explore(hospital, hospital, fleet=True).client().get("/").text)
+    for row in page.cssselect("#rows li"):
+        told = [way.text_content() for way in row.cssselect(".way")]
+        assert len(set(told)) == len(told)
+    assert "transfer to a third country" in page.get_element_by_id("rows").text_content()
+
+
 def test_an_answer_is_of_the_model_or_of_one_robot(explore: Explore, hospital: Path) -> None:
     explorer = explore(hospital, hospital, fleet=True)
     client = explorer.client()

@@ -2,142 +2,28 @@
 
 from __future__ import annotations
 
-import json
-import shutil
-from contextlib import contextmanager
-from importlib.resources import files
-from typing import TYPE_CHECKING, Any
-from urllib.parse import urlsplit
+from typing import TYPE_CHECKING
 
 import pytest
 
-import rosprivacy
-from rosprivacy.reading.fleet_system import answer_fleet
-from rosprivacy.settings import Settings
 from tests.helpers import browser as chrome
-from tests.helpers import explorers
 from tests.helpers.browser import DESKTOP, PHONE
 from tests.helpers.explorers import BARE, FACTORY, FILTERED, copied, label
-from tests.helpers.paths import ROOT
+from tests.helpers.full_disk import full_disk
+from tests.helpers.page_reader import SECONDS, Reader, meaning, served
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
     from pathlib import Path
 
     from selenium.webdriver.chrome.webdriver import WebDriver
 
     from tests.helpers.explorers import Explorer
 
-pytestmark = [pytest.mark.browser, pytest.mark.slow]
-SECONDS = 20
-CURRENT = "const a = document.querySelector('#rows [aria-current] .name'); return a ? a.textContent : ''"
-TEXTS = "h1, h2:not(.unseen), h3, p:not(.unseen), .row, .answers, .about label, .hops li"
-SETTLED = "return !document.body.hasAttribute('aria-busy')"
+pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.usefixtures("quiet")]
 BOTTOMS = """
 return [...document.querySelectorAll('.hops li, .answers .answer')].map((e) => e.getBoundingClientRect().bottom)
 """
-LAST_OF_WHOSE = "const all = document.querySelectorAll('.whose input'); all[all.length - 1].click()"
-MEANS = ("verdict", "findings", "open", "roles", "carries", "sanitizers")
-SMALL = """
-return [...document.querySelectorAll('.answers button, .answers summary, .row, .tabs button')]
-  .filter((e) => e.offsetParent && e.getBoundingClientRect().height < 48).map((e) => e.textContent);
-"""
-
-
-@pytest.fixture(autouse=True)
-def _quiet(browser: WebDriver) -> Iterator[None]:
-    """Whatever a test does, the console stays silent, and only our own server is asked."""
-    yield
-    assert chrome.console(browser) == []
-    asked = {urlsplit(address).netloc for address in chrome.requests(browser)}
-    assert {host.partition(":")[0] for host in asked} <= {"127.0.0.1"}
-
-
-@contextmanager
-def served(browser: WebDriver, policy: Path, labels: Path, **how: Any) -> Iterator[Explorer]:
-    """The page on a server that ends after the page was left: it would be asked once more."""
-    with explorers.served(policy, labels, **how) as explorer:
-        yield explorer
-        browser.get("about:blank")
-
-
-class Reader:
-    """A person who has nothing but keys."""
-
-    def __init__(self, browser: WebDriver, explorer: Explorer, width: int = DESKTOP) -> None:
-        self.browser = browser
-        self.origins = {urlsplit(a).netloc for a in chrome.open_page(browser, explorer.door.link, width=width)}
-
-    def press(self, *keys: str) -> None:
-        """Press keys one after the other; after each, what it began is waited for."""
-        from selenium.webdriver import ActionChains
-        from selenium.webdriver.support.ui import WebDriverWait
-
-        for key in keys:
-            ActionChains(self.browser).send_keys(key).perform()
-            WebDriverWait(self.browser, SECONDS, 0.02).until(lambda b: b.execute_script(SETTLED))
-
-    def save(self) -> None:
-        from selenium.webdriver import ActionChains
-        from selenium.webdriver.common.keys import Keys
-
-        before = self.version
-        ActionChains(self.browser).key_down(Keys.CONTROL).send_keys("s").key_up(Keys.CONTROL).perform()
-        self.press()
-        self.wait(before + 1)
-
-    def wait(self, version: int) -> None:
-        """Wait until a version of the session is on the page."""
-        from selenium.webdriver.support.ui import WebDriverWait
-
-        shown = f"return document.body.dataset.version === '{version}'"
-        WebDriverWait(self.browser, SECONDS, 0.02).until(lambda b: b.execute_script(shown))
-
-    def answer(self, name: str, *keys: str) -> None:
-        """Go to an element of the list, answer, and see that the answer counts."""
-        self.go(name)
-        before = self.version
-        self.press(*keys)
-        self.wait(before + 1)
-
-    def go(self, name: str) -> None:
-        for key in ("k", "j"):
-            at = None
-            while self.current not in (name, at):
-                at = self.current
-                self.press(key)
-        if self.current != name:  # nobody asks about it
-            self.press("/", *name, "\n")
-        assert self.current == name
-
-    @property
-    def version(self) -> int:
-        return int(self.browser.execute_script("return document.body.dataset.version"))
-
-    @property
-    def current(self) -> str:
-        return str(self.browser.execute_script(CURRENT))
-
-    @property
-    def verdict(self) -> str:
-        return str(self.browser.execute_script("return document.querySelector('.verdict').classList[1]"))
-
-    def text(self, selector: str) -> str:
-        return str(self.browser.execute_script("return document.querySelector(arguments[0]).textContent", selector))
-
-    @property
-    def focused(self) -> str:
-        return str(self.browser.execute_script("return document.activeElement.className"))
-
-
-def meaning(policy: Path, labels: Path) -> Any:
-    """What a label file means for a policy, without where it stands."""
-    document = rosprivacy.analyze(policy, labels).document()
-    return json.loads(json.dumps({key: document[key] for key in MEANS}), object_hook=_without_place)
-
-
-def _without_place(said: dict[str, Any]) -> dict[str, Any]:
-    return {key: value for key, value in said.items() if key not in ("file", "line")}
 
 
 def test_the_five_runs_of_the_factory_by_keys_alone(browser: WebDriver, tmp_path: Path) -> None:
@@ -228,36 +114,49 @@ def test_a_second_window_is_told_and_a_stale_answer_does_nothing(browser: WebDri
 def test_a_phone_shows_everything_without_moving_sideways(browser: WebDriver, tmp_path: Path, language: str) -> None:
     with served(browser, BARE, copied(FACTORY / "run2.labels.yaml", tmp_path), language=language) as explorer:
         reader = Reader(browser, explorer, PHONE)
-        for number in range(3):
-            browser.execute_script(f"document.querySelectorAll('.tabs button')[{number}].click()")
-            assert browser.execute_script("return document.documentElement.scrollWidth") <= PHONE
-            assert (
-                chrome.wider(browser, "h1, h2:not(.unseen), h3, p:not(.unseen), .row, .answers, .about label, .hops li")
-                == []
-            )
-            assert browser.execute_script(SMALL) == []
+        assert reader.faults() == []
         assert reader.text(".hops li") != ""
-
-
-def axe(browser: WebDriver) -> list[tuple[str, str]]:
-    """What axe finds of WCAG 2.1 A and AA and of best practices: the rule, and the first element."""
-    browser.execute_script(files("axe_core_python").joinpath("axe.min.js").read_text("utf-8"))
-    found = browser.execute_async_script("axe.run(document, {resultTypes: ['violations']}).then(arguments[0])")
-    return [(one["id"], one["nodes"][0]["html"]) for one in found["violations"]]
 
 
 @pytest.mark.parametrize("width", [DESKTOP, PHONE])
 def test_axe_finds_nothing_in_any_pane(browser: WebDriver, tmp_path: Path, width: int) -> None:
     file = copied(FACTORY / "run2.labels.yaml", tmp_path)
     with served(browser, BARE, file) as explorer:
-        Reader(browser, explorer, width)
-        for pane in ("list", "picture", "element"):
-            browser.execute_script(f"document.querySelector('.tabs [data-pane={pane}]').click()")
-            for more in ("", "document.querySelectorAll('#hand details').forEach((d) => d.open = true)"):
-                browser.execute_script(more)
-                assert axe(browser) == []
+        reader = Reader(browser, explorer, width)
+        assert reader.faults() == []
+        for name in ("/robot_camera", "/safety_video"):  # a source with nothing open, and a channel
+            reader.go(name)
+            assert reader.faults() == []
+        reader.press("w", "1")  # the whole system, and a kind of data switched off
+        assert reader.faults() == []
         browser.execute_script("document.querySelector('#help').showModal()")
-        assert axe(browser) == []
+        assert chrome.axe(browser) == []
+
+
+@pytest.mark.parametrize("width", [DESKTOP, PHONE])
+def test_axe_finds_nothing_in_what_the_page_tells(browser: WebDriver, tmp_path: Path, width: int) -> None:
+    """The empty page, answers of an earlier session, a file that somebody else changed, and one that is only shown."""
+    file = tmp_path / "new.labels.yaml"
+    with served(browser, BARE, file, journal=tmp_path / "journal") as explorer:
+        reader = Reader(browser, explorer, width)
+        assert reader.faults() == []
+        reader.answer("/robot_camera", "a")
+        assert reader.faults() == []
+        explorer.session.close()
+    with served(browser, BARE, file, journal=tmp_path / "journal") as explorer:
+        reader = Reader(browser, explorer, width)
+        assert "earlier" in reader.text("#message")
+        assert reader.faults() == []
+        reader.focus("#message form button")
+        reader.press("\n")
+        file.write_text("labels: 1\nchannels:\n  /new_pose: mundane\n", "utf-8")
+        browser.refresh()
+        assert "+  /new_pose: mundane" in reader.text("#message")
+        assert reader.faults() == []
+    with served(browser, BARE, copied(FACTORY / "run2.labels.yaml", tmp_path), read_only=True) as explorer:
+        reader = Reader(browser, explorer, width)
+        assert "nothing can be changed" in reader.text("#head")
+        assert reader.faults() == []
 
 
 def test_the_first_question_its_path_and_the_answers_lie_within_the_first_screen(
@@ -286,23 +185,39 @@ def test_without_the_script_forms_and_links_work(explore: Callable[..., Explorer
     assert label(client, "e0", "leak").status_code == 422
 
 
-def test_a_fleet_is_decided_for_the_model_and_for_one_robot(browser: WebDriver, tmp_path: Path) -> None:
-    shutil.copytree(ROOT / "examples" / "fleet", tmp_path / "fleet")
-    file = tmp_path / "fleet" / "fleet.yaml"
-    model, own = file.parent / "carrier.labels.yaml", file.parent / "carrier_lent.labels.yaml"
-    model.write_text(model.read_text().replace("  /recorder: conduit\n", ""))
-    with served(browser, file, file, fleet=True) as explorer:
-        reader = Reader(browser, explorer)
-        assert reader.current == "carrier_lent:/recorder"
-        browser.execute_script(LAST_OF_WHOSE)
-        reader.answer("carrier_lent:/recorder", "c")
-        assert "stands for 23 robots" in reader.text("#element .facts")
-        for width in (DESKTOP, PHONE, DESKTOP):
-            size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": width == PHONE}
-            browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
-            assert chrome.wider(browser, "fieldset, .whose label, .row") == []
-        reader.answer("carrier_01:/recorder", "c")
+def test_two_explorers_stand_side_by_side_in_one_browser(browser: WebDriver, tmp_path: Path) -> None:
+    """A browser keeps the cookies of all ports of a machine together: each explorer has one of its own name."""
+    first = copied(FACTORY / "run1.labels.yaml", tmp_path)
+    with served(browser, BARE, first) as one, served(browser, FILTERED, tmp_path / "other.labels.yaml") as other:
+        reader = Reader(browser, one)
+        Reader(browser, other).answer("/robot_camera", "a")
+        browser.get(f"http://127.0.0.1:{one.door.port}/")
+        reader.answer("/archive_server", "l")
         reader.save()
-        assert explorer.session.result.to("json") == answer_fleet(str(file), Settings()).to("json")
-    for labels in (model, own):
-        assert "  /recorder: {conduit: [Video]}" in labels.read_text()
+        browser.get(f"http://127.0.0.1:{other.door.port}/")
+        reader.save()
+        assert {cookie["name"] for cookie in browser.get_cookies()} >= {one.door.cookie, other.door.cookie}
+    assert "/archive_server" in first.read_text("utf-8")
+    assert other.labels.is_file()
+
+
+def test_a_full_disk_in_mid_session_loses_nothing_and_is_told(browser: WebDriver, tmp_path: Path) -> None:
+    labels = copied(FACTORY / "run1.labels.yaml", tmp_path)
+    before = labels.read_bytes()
+    with served(browser, BARE, labels, journal=tmp_path / "journal") as explorer:
+        reader = Reader(browser, explorer)
+        with full_disk(100):
+            reader.answer("/archive_server", "l")
+            assert "edits are in this session only" in reader.text("#message")  # no journal can be written
+            reader.press_save()
+            assert "cannot be written" in reader.text("#message")
+            assert reader.text("[data-key='Ctrl+S']") == "Save 1"
+            reader.answer("/navigator", "c")  # it goes on
+        assert labels.read_bytes() == before
+        assert [file.name for file in tmp_path.glob("*.yaml*")] == [labels.name]  # and nothing is left beside it
+        (refused,) = chrome.console(browser)  # Chromium tells of every 422
+        assert "422" in refused["message"]
+        assert reader.verdict == "leak"
+        reader.save()
+        assert explorer.session.unsaved == 0
+    assert meaning(BARE, labels)["verdict"] == "leak"

@@ -71,7 +71,14 @@ def test_every_page_speaks_the_readers_language(explore: Explore, tmp_path: Path
 def test_no_page_says_words_of_insiders(explore: Explore, tmp_path: Path, language: str) -> None:
     client = explore(CARE, tmp_path / "new.labels.yaml", language=language, review=True).client()
     nothing = [client.get(address).text for address in ("/?step=source", "/?step=summary")]
-    for text in (*nothing, *to_the_end(client)):
+    file = copied(ROOT / "examples" / "care-home" / "care-home.labels.yaml", tmp_path)
+    explorer = explore(CARE, file, language=language, review=True)
+    labelled = explorer.client()
+    decided = [labelled.get(f"/?at={at}").text for at in explorer.site.standing.carried]  # limits of channels, too
+    file.write_text(file.read_text("utf-8") + "# by hand\n", "utf-8")
+    changed = labelled.get("/").text
+    assert 'role="alert"' in changed
+    for text in (*nothing, *decided, changed, *to_the_end(client)):
         assert insiders_in(text, language) == []
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shutil
-from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
@@ -78,13 +77,6 @@ def answer(browser: WebDriver, role: str) -> None:
     shown(browser, before)
 
 
-def axe(browser: WebDriver) -> list[tuple[str, str]]:
-    """What axe finds of WCAG 2.1 A and AA and of best practices: the rule, and the first element."""
-    browser.execute_script(files("axe_core_python").joinpath("axe.min.js").read_text("utf-8"))
-    found = browser.execute_async_script("axe.run(document, {resultTypes: ['violations']}).then(arguments[0])")
-    return [(one["id"], one["nodes"][0]["html"]) for one in found["violations"]]
-
-
 def test_the_factory_by_keys_alone_to_the_report(browser: WebDriver, tmp_path: Path) -> None:
     from selenium.webdriver.common.by import By
     from selenium.webdriver.common.keys import Keys
@@ -137,7 +129,7 @@ def test_question_and_summary_fit_and_axe_finds_nothing(
         for address in ("/", f"/?at={explorers.node('/navigator')}", "/?step=summary"):
             browser.get(origin + address)
             browser.execute_script("document.querySelectorAll('details').forEach((d) => d.open = true)")
-            assert axe(browser) == []
+            assert chrome.axe(browser) == []
             assert browser.execute_script("return document.documentElement.scrollWidth") <= width
             assert chrome.wider(browser, "h1, h2, p, li, fieldset, button, .pick, .field") == []
             name = address.strip("/?").partition("=")[2] or "question"
@@ -164,7 +156,7 @@ def test_a_fleet_is_reviewed_by_keys_and_said_of_one_robot_or_of_its_model(
         asked = []
         for robot in ("robot", "model"):
             asked.append(browser.execute_script(HEADING))
-            assert axe(browser) == []
+            assert chrome.axe(browser) == []
             assert browser.execute_script("return document.documentElement.scrollWidth") <= width
             assert chrome.wider(browser, "h1, h2, p, li, fieldset, button, .pick, .field") == []
             chrome.screenshot(browser, tmp_path / f"{robot}-{width}.png", width)
@@ -175,7 +167,7 @@ def test_a_fleet_is_reviewed_by_keys_and_said_of_one_robot_or_of_its_model(
             answer(browser, "conduit")
         assert [("carrier_lent" in one) for one in asked] == [True, True]  # it is not as its model
         browser.get(f"http://127.0.0.1:{explorer.door.port}/?step=summary")
-        assert axe(browser) == []
+        assert chrome.axe(browser) == []
         assert chrome.wider(browser, "h1, h2, p, li, fieldset, button, .pick, .field") == []
         chrome.screenshot(browser, tmp_path / f"summary-{width}.png", width)
         assert "carrier_lent only" in browser.find_element(By.TAG_NAME, "main").text

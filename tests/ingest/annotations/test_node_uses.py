@@ -49,6 +49,11 @@ def node(name: str = "n", line: str = "pass", of: str = "N") -> str:
         ("import sr\n" + NODE + node(line="with sr.Mic() as m: m.listen()"), "sr.Mic.listen"),
         ("import mq\n" + NODE + node(line="self.c = mq.Client(); self.c.publish('x')"), "mq.Client.publish"),
         ("import mq\n" + NODE + node(line="y = mq.A() if x else 0; self.run(target=mq.loop)"), "mq.loop"),
+        ("import mq\n" + NODE + node(line="self.c = None; self.c = mq.Client(); self.c.go('x')"), "mq.Client.go"),
+        ("from gui import *\n" + NODE + node(line="root = Tk(); root.title('x')"), "gui.Tk.title"),
+        (NODE + node(line="go('https://a.b/c?key=d')"), "@ https://a.b/c"),
+        (NODE + node(line="go(f'http://{host}:1/x/{y}')"), "@ http://{}:1/x/{}"),
+        (NODE + node(line="import sr; self.sr = sr; self.r = self.sr.Mic(); self.r.listen()"), "sr.Mic.listen"),
         (NODE + node(line="open('f', 'w').write('x')"), "open(w)"),
         (NODE + node(line="open('f', mode='ab')"), "open(w)"),
         (NODE + node(line="open('f')"), "open"),
@@ -71,6 +76,13 @@ def test_a_variable_that_may_be_two_things_is_none(tmp_path: Path) -> None:
     assert uses(tmp_path, own_py=code)["/n"] == ["a.X", "b.Y"]
 
 
+def test_what_the_file_names_itself_is_not_of_a_module_that_is_imported_whole(tmp_path: Path) -> None:
+    code = (
+        "from gui import *\n" + NODE + node(line="own = print(1); own.go(); self.f(Tk)") + "    def f(self, x): x.y()\n"
+    )
+    assert uses(tmp_path, own_py=code)["/n"] == ["gui.Tk"]
+
+
 def test_of_several_nodes_in_a_file_each_has_its_own(tmp_path: Path) -> None:
     code = "import lib\n" + NODE + node("a", "lib.a()", "A") + node("b", "lib.b(); both()", "B")
     code += "def both():\n    lib.c()\ndef main():\n    lib.d(); A(); B()\n"
@@ -84,6 +96,18 @@ def test_helpers_in_modules_of_the_package_belong_to_who_imports_them(tmp_path: 
         code = f"{first}\nfrom . import deep\n{NODE}" + node(line="Used(); deep.deeper()")
         found = uses(tmp_path, p__n_py=code, p__helper_py=helper, p__deep_py=deep)
         assert found == {"/n": ["lib.deep", "lib.used"], "": ["lib.other"]}, first
+
+
+def test_a_name_that_a_package_hands_on_is_what_it_imports(tmp_path: Path) -> None:
+    helper = "import lib\nclass Used:\n    x = lib.used()\nclass Other:\n    y = lib.other()\n"
+    code = "from tools import Used\n" + NODE + node(line="Used()")
+    first = tmp_path / "a/tools/__init__.py"
+    first.parent.mkdir(parents=True)
+    for hands_on in ("from .eyes import Used", "from .eyes import *", "from tools.eyes import Used"):
+        first.write_text(f"{hands_on}\n", "utf-8")
+        found = uses(tmp_path, a__tools__eyes_py=helper, a__n_py=code)
+        assert found == {"/n": ["lib.used"], "": ["lib.other"]}, hands_on
+    assert uses(tmp_path, a__tools__eyes_py="from . import Used\n")["/n"] == []  # in a circle
 
 
 def test_a_node_may_be_called_as_its_package(tmp_path: Path) -> None:

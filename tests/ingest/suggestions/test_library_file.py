@@ -54,12 +54,28 @@ def test_every_shipped_rule_names_its_page_and_none_is_certain() -> None:
         ("lets_out", "requests.exceptions.Timeout", ()),  # silent, and longer
         ("lets_out", "$ ros2 bag record", ("PersonalData", "file")),
         ("lets_out", "$ ros2 topic list", ()),
+        ("brings_in", "@ rtsp://10.0.0.1/live", ("Video", "")),
+        ("lets_out", "@ https://api.telegram.org/bot", ("PersonalData", "network")),
+        ("lets_out", "@ https://example.org", ()),
         ("makes", "whisper.load_model", ("Voice", "SpeechTranscript", "VoiceCommand", "")),
         ("makes", "face_recognition.face_locations", ("Video", "FaceImage", "PersonDetection", "")),
     ],
 )
 def test_the_longest_name_speaks_about_a_use(section: str, name: str, said: tuple[str, ...]) -> None:
     assert spoken(getattr(SHIPPED, section), name) == said
+
+
+def test_an_address_is_named_by_a_part(tmp_path: Path) -> None:
+    file = tmp_path / "own.yaml"
+    rule = "library_rules: 1\nlets_out:\n- {addresses: [%s], where: network, confidence: may, why: ours}\n"
+    file.write_text(rule % "portal.example, example/own", "utf-8")
+    own = read_library_rules((str(file),), VOCABULARY)[0].lets_out[PYTHON].of("@ wss://portal.example/own")
+    assert own is not None
+    assert (own[0], own[1].why) == ("portal.example", "ours")  # the longest part
+    file.write_text(rule % "'a b'", "utf-8")
+    with pytest.raises(InputErrors) as told:
+        read_library_rules((str(file),), VOCABULARY)
+    assert f"{file}:3: 'a b' is no part of an address" in str(told.value)
 
 
 def test_stars_and_languages() -> None:
@@ -95,7 +111,7 @@ def test_a_users_rules_stand_before_ours(tmp_path: Path) -> None:
         (OWN % "12", f"f.yaml:3: '12' is no name of a library; {NO_NAME}"),
         (OWN % "'a(r)'", f"f.yaml:3: 'a(r)' is no name of a library; {NO_NAME}"),
         ("library_rules: 1\nbrings_in:\n- {kinds: [Video], confidence: may, why: x}\n",
-         "f.yaml:3: a rule about no library; write python, c++, programs, or one of them"),
+         "f.yaml:3: a rule about no library; write python, c++, programs, addresses, or one of them"),
         ("library_rules: 1\nbrings_in:\n- {python: [a], kinds: [Vidoe], confidence: may, why: x}\n",
          "f.yaml:3: unknown category 'Vidoe'; did you mean Video or Voice?"),
         ("library_rules: 1\nmakes:\n- {c++: [a], kinds: [Video], confidence: may, why: x}\n",

@@ -60,7 +60,7 @@ OWN_KIND = """@prefix : <http://example.org/> . @prefix skos: <http://www.w3.org
         ("/fall_detection", "FallEvent"),
         ("/driver_state", "DriverOrOperatorState"),
         ("/presence", "Presence"),
-        ("/yolo/detections", "PersonDetection"),
+        ("/yolo/detections", "PersonDetection HouseholdObject"),
         ("/gps/fix", "GnssPosition"),
         ("/map", "HomeMap"),
         ("/global_costmap/costmap_raw", "HomeMap"),
@@ -82,7 +82,7 @@ OWN_KIND = """@prefix : <http://example.org/> . @prefix skos: <http://www.w3.org
         ("/carplate/ocr_text", "LicencePlate"),  # and not what somebody said
         ("/detect/object_map_coordinates", "HouseholdObject"),  # in the frame of a map, and no map
         ("/person_positions_map", "PersonTrack"),
-        ("/detected_object", "PersonDetection"),
+        ("/detected_object", "PersonDetection HouseholdObject"),
         ("/person_detected", "PersonDetection"),
         ("/delivery_order", "DeliveryOrder"),
         ("/camera/camera_info", ""),  # the last words say what it is

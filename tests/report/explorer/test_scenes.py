@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rosprivacy.analysis.findings.why_carried import WhyCarried
+from rosprivacy.analysis.findings.witness import Witness
 from rosprivacy.report.explorer.choice import choose
 from rosprivacy.report.explorer.folding import folded_by_place
 from rosprivacy.report.explorer.joined import Joined
@@ -51,6 +52,20 @@ def test_paths_are_drawn_whole_and_the_rest_is_counted(system: System, most: int
         paths = {e.identity for c in analysis.emitted if (path := why.path(element, c)) for e in path.elements}
         leaks = max((len(finding.witness) for finding in analysis.findings), default=0)
         assert len(picture.boxes) <= max(most, len(paths) + leaks + 1)
+
+
+@given(st.one_of(systems(), wildcards()))
+def test_of_a_finding_its_own_path_is_numbered(system: System) -> None:
+    """There may be a shorter one to the same place, from another source."""
+    analysis = analysed(system)
+    if analysis is None:
+        return
+    for finding in analysis.findings:
+        way = Witness(finding.witness, finding.steps)
+        picture = Scenes(analysis).of(finding.leak.identity, way=way).picture
+        steps = list(pairwise(element.identity for element in finding.witness))
+        numbered = {int(line.words): (line.source, line.target) for line in picture.lines if line.words}
+        assert numbered == {n: ends for n, ends in enumerate(steps, 1) if steps.index(ends) == n - 1}
 
 
 def test_the_paths_to_leaks_are_drawn_and_where_nothing_is_in_hand_nothing_else() -> None:

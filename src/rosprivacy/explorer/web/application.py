@@ -10,7 +10,7 @@ from contextlib import suppress
 from importlib.resources import files
 from itertools import count
 from threading import RLock
-from typing import TYPE_CHECKING, NamedTuple, cast
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, cast
 
 from starlette.applications import Starlette
 from starlette.concurrency import run_in_threadpool
@@ -27,8 +27,9 @@ from rosprivacy.explorer.web.kept_trials import Trials
 from rosprivacy.explorer.web.page import page_of
 from rosprivacy.explorer.web.page_picture import drawn, pictures_of
 from rosprivacy.explorer.web.rendering import Message, rendered
-from rosprivacy.explorer.web.saying import label_of
+from rosprivacy.explorer.web.saying import label_of, limit_of
 from rosprivacy.explorer.web.standing import Standing
+from rosprivacy.explorer.web.titles import title_of
 from rosprivacy.explorer.web.trial_forms import TOGETHER, tried_in
 from rosprivacy.explorer.web.view import trial_in, view_of
 from rosprivacy.explorer.web.whose import ROBOT, WHOSE
@@ -44,7 +45,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.explorer.edits import Label
     from rosprivacy.explorer.session import Session
-    from rosprivacy.explorer.web.forms import Form
+    from rosprivacy.explorer.web.forms import Answer, Form
     from rosprivacy.explorer.web.guard import Door
     from rosprivacy.explorer.web.view import View
     from rosprivacy.report.words.words import Words
@@ -53,6 +54,8 @@ if TYPE_CHECKING:
 STATIC = {
     "explore.css": "text/css",
     "explore.js": "text/javascript",
+    "cypher.css": "text/css",
+    "cypher.js": "text/javascript",
     "picture.css": "text/css",
     "review.css": "text/css",
 }
@@ -80,6 +83,9 @@ class Site:
         Of the reader's language.
     """
 
+    asks: ClassVar[bool] = False  # whether there is a database that can be asked
+    reading: ClassVar[tuple[str, ...]] = READING
+
     def __init__(self, session: Session, settings: Settings, words: Words, door: Door) -> None:
         self.session, self.door = session, door
         self._words = words
@@ -104,8 +110,13 @@ class Site:
             Route("/report", self._report),
             Route("/static/{name}", _static),
             *(Route(path, self._post(work), methods=["POST"]) for path, work in posts.items()),
+            *self.further_routes(),
         ]
-        return Guard(Starlette(routes=routes), self.door, READING)
+        return Guard(Starlette(routes=routes), self.door, self.reading)
+
+    def further_routes(self) -> list[Route]:
+        """Return what else is answered: nothing for a session of files."""
+        return []
 
     def close(self) -> None:
         """End what draws the pictures."""
@@ -169,6 +180,7 @@ class Site:
                 remarks=self.session.remarks,
                 by=self._by,
                 read_only=self.door.read_only,
+                asks=self.asks,
             )
         return HTMLResponse(text, told.status if told else 200)
 
@@ -224,13 +236,19 @@ class Site:
         standing = self.standing
         answer = forms.answer_in(form, standing.elements, standing.vocabulary.categories)
         alone = form.choice("whose", WHOSE) == ROBOT
-        label = None
+        label, now = None, standing.entry(answer.element, only_this_robot=alone)
         if answer.role != forms.NOTHING:
-            label = cast("Label", label_of(answer, standing.entry(answer.element, only_this_robot=alone)))
+            label = cast("Label", label_of(answer, now))
         self.session.answer_for(answer.element, label, only_this_robot=alone)
         self._by = answer.by or self._by
-        what = f"{shown(answer.element.full_name)} – {self._words(f'x.answer.{answer.role}')}"
-        return Told(200, Message(DONE, self._words("x.changed", what=what)))
+        return Told(200, self._answered(answer, now, self._words(f"x.answer.{answer.role}")))
+
+    def _answered(self, answer: Answer, before: Any, what: str) -> Message:
+        """Tell what was answered, and that a limit of the channel is gone where the answer is that all may go there."""
+        told = self._words("x.changed", what=f"{shown(answer.element.full_name)} – {what}")
+        limit = limit_of(before) if answer.role == forms.SENSITIVE and not answer.kinds else ()
+        titles = self._words.row(title_of(kind, self.standing.vocabulary, self._words) for kind in limit)
+        return Message(DONE, told, (self._words("x.limit.gone", data=titles),) if limit else ())
 
     def _undo(self, _: Form) -> Told:
         return Told(200, Message(DONE, self._words("x.undone")) if self.session.undo() else None)

@@ -127,8 +127,8 @@ class Pane(NamedTuple):
 def pane_of(standing: Standing, element: Element, view: View, words: Words) -> Pane:
     """Return what the page shows of an element."""
     at = element_id(element.identity)
-    carried = standing.carried.get(at, ())
     is_open = standing.open_kinds.get(at, ())
+    carried = sorted({*standing.carried.get(at, ()), *is_open})  # a broader kind is open beside a narrower one
     here = [kind for kind in carried if kind not in view.hidden]
     asked = [kind for kind in is_open if kind not in view.hidden]
     offers = standing.suggestions.of(element.identity)
@@ -145,7 +145,7 @@ def pane_of(standing: Standing, element: Element, view: View, words: Words) -> P
         is_open=bool(is_open),
         asked=words.row(title_of(kind, standing.vocabulary, words) for kind in asked or here),
         ways=tuple(_ways(standing, element, asked or here, view, words)),
-        about=_about(standing, carried, asked or here, words),
+        about=_about(standing, carried, asked or [kind for kind in here if not _ends(standing, at, kind)], words),
         offers=tuple(_offer(one, standing, words) for one in offers if _whole(one)),
         roles=tuple((role, KEYS[role]) for role in roles),
         kinds=_all_kinds(standing, words),
@@ -177,6 +177,11 @@ def _said(standing: Standing, at: str, words: Words) -> Iterable[str]:
 def _about(standing: Standing, carried: Sequence[str], chosen: Sequence[str], words: Words) -> tuple[About, ...]:
     offered = carried or standing.analysis.emitted
     return tuple(About(kind, title_of(kind, standing.vocabulary, words), kind in chosen) for kind in offered)
+
+
+def _ends(standing: Standing, at: str, kind: str) -> bool:
+    """Whether a label says that a kind comes in or goes out there: a person who takes that away chooses the kind."""
+    return not {forms.SOURCE, forms.LEAK}.isdisjoint(standing.roles.get(at, {}).get(kind, ()))
 
 
 def _all_kinds(standing: Standing, words: Words) -> tuple[tuple[str, str], ...]:

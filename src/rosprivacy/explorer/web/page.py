@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.model import DISCLOSURE
 from rosprivacy.explorer.element_ids import element_id
 from rosprivacy.explorer.questions import GROUPS
 from rosprivacy.explorer.web.element_pane import Pane, pane_of
@@ -187,6 +188,8 @@ def _exits(standing: Standing, view: View, words: Words) -> tuple[Row, ...]:
             elements[finding.leak.identity] = finding.leak
             source = shown(finding.source.full_name)
             told = words("x.exit", data=title_of(finding.category, standing.vocabulary, words), source=source)
+            if finding.kind != DISCLOSURE:  # the same data can get to one place in several ways
+                told = f"{told} · {words(f'finding.{finding.kind}')}"
             there = view.to(element_id(finding.leak.identity))._replace(finding=finding.id)
             way = Way(told, there.address, finding.id == view.finding)
             found.setdefault(finding.leak.identity, []).append(way)
@@ -206,6 +209,7 @@ def _found(standing: Standing, view: View, words: Words) -> tuple[Row, ...]:
     there = [element for element in standing.elements.values() if wanted in element.full_name.casefold()]
     beside = standing.result.fleet.likeness.second if standing.result.fleet else ()
     there = [element for element in there if element.robot not in beside]
+    there.sort(key=lambda element: element.full_name.casefold() != wanted)  # the very name first
     return tuple(_row(element, "", standing, view, words) for element in there[:MOST_FOUND])
 
 

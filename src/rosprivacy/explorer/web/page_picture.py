@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.findings.witness import Witness
 from rosprivacy.explorer.element_ids import element_id
 from rosprivacy.explorer.web.titles import titles_of
 from rosprivacy.report.explorer.live_svg import Links
@@ -27,7 +28,7 @@ def pictures_of(vocabulary: Vocabulary, words: Words) -> Pictures:
 
 
 def drawn(pictures: Pictures, standing: Standing, page: Page) -> Shown:
-    """Return the picture of a page, seen from the element in hand."""
+    """Return the picture of a page, seen from the element in hand; of a finding, with its own path."""
     at = standing.elements[page.pane.id].identity if page.pane else None
     kinds = [switch.name for switch in page.switches if switch.on] or [NO_KIND]
     view = page.view._replace(find="")
@@ -36,4 +37,6 @@ def drawn(pictures: Pictures, standing: Standing, page: Page) -> Shown:
         return view.to(element_id(key)).address
 
     links = Links(element_id, address)
-    return pictures.of(standing.analysis, at, kinds, links, ROOM, everything=view.whole, why=standing.why)
+    finding = standing.findings.get(view.finding)
+    way = Witness(finding.witness, finding.steps) if finding else None
+    return pictures.of(standing.analysis, at, kinds, links, ROOM, everything=view.whole, why=standing.why, way=way)

@@ -47,6 +47,7 @@ class Message(NamedTuple):
 def rendered(
     page: Page, words: Words, picture: Shown, beside: Beside, *, message: Message | None = None,
     left: Unsaved | None = None, remarks: Sequence[str] = (), by: str = "", read_only: bool = False,
+    asks: bool = False,
 ) -> str:  # fmt: skip
     """Return the page.
 
@@ -56,6 +57,8 @@ def rendered(
         Of the session: what an earlier one left, and what a person has to know.
     by
         Who gave the last answer.
+    asks
+        Whether there is a database that can be asked.
     """
     view = page.view
     after = view.to("")._replace(find="").address  # after an answer, the next question is looked at
@@ -78,6 +81,7 @@ def rendered(
         svg=Markup(picture.svg),  # noqa: S704 - made by the program, names in it are escaped
         by=by,
         read_only=read_only,
+        asks=asks,
         fixed=read_only or bool(view.trial),
     )  # fmt: skip
 

@@ -12,9 +12,9 @@ from urllib.parse import parse_qs
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from starlette.responses import HTMLResponse
 
-from rosprivacy.analysis.errors import RosPrivacyError, shown
+from rosprivacy.analysis.errors import RosPrivacyError
 from rosprivacy.explorer.web import forms
-from rosprivacy.explorer.web.application import DONE, PROBLEM, Site, Told
+from rosprivacy.explorer.web.application import PROBLEM, Site, Told
 from rosprivacy.explorer.web.left_open import bringing_nothing, leaving, left_of, note_before
 from rosprivacy.explorer.web.rendering import Message
 from rosprivacy.explorer.web.review_answers import NONE, REASONED, SKIP, NotYet, answer_in_review
@@ -90,8 +90,7 @@ class ReviewSite(Site):
         said = cast("Label", self._said(answer, now))
         self.session.answer_for(answer.element, said, only_this_robot=alone)
         self._entered, self._by = None, answer.by
-        what = f"{shown(answer.element.full_name)} – {self._words(f'rv.answer.{answer.role}')}"
-        return Told(200, Message(DONE, self._words("x.changed", what=what)))
+        return Told(200, self._answered(answer, now, self._words(f"rv.answer.{answer.role}")))
 
     def _said(self, answer: Answer, now: Any) -> dict[str, Any]:
         """What the label file then says; ``now`` is what it says now."""

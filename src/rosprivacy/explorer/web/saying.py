@@ -1,6 +1,7 @@
 """An answer about some kinds of data -> what the label then says of the whole element.
 
-What the label file says of other kinds stays: an answer about voice leaves alone what was said of video.
+What the label file says of other kinds stays: an answer about voice leaves alone what was said of video. A limit
+(``only``) stays, too: it is a statement about every kind that it does not name.
 """
 
 from __future__ import annotations
@@ -36,6 +37,8 @@ def label_of(answer: Answer, now: Any) -> dict[str, Any]:
     {'source': ['Voice'], 'conduit': True}
     >>> label_of(forms.Answer(node, "conduit", ("Video",)), "conduit")
     {'conduit': True}
+    >>> label_of(forms.Answer(Element("topic", "/scan"), "sensitive", ("Voice",)), {"only": ["Location"]})
+    {'only': ['Location', 'Voice']}
     """
     label = _source_of(now, answer) if _of_all(answer) else _without(now, answer)
     role, kinds = answer.role, list(answer.kinds)
@@ -45,6 +48,8 @@ def label_of(answer: Answer, now: Any) -> dict[str, Any]:
         label["sanitizer"] = {**_as_map(label.get("sanitizer")), **dict.fromkeys(kinds, answer.method)}
     elif role == forms.DERIVES:
         label["derives"] = [*_as_list(label.get("derives")), *({"from": kind, "to": answer.to} for kind in kinds)]
+    elif kinds and limit_of(now):
+        return _within(limit_of(now), answer, label) | _by_whom(answer)
     elif role == forms.MUNDANE and kinds:
         label["never"] = [*_as_list(label.get("never")), *kinds]
     elif not kinds or label.get(role) is True:
@@ -53,8 +58,34 @@ def label_of(answer: Answer, now: Any) -> dict[str, Any]:
         raise forms.FormError("What the label file says there names channels: change it in the file.")
     else:
         label[role] = [*_as_list(label.get(role)), *kinds]
-    said = {"note": answer.note if role != forms.ABSENT else "", "by": answer.by}
-    return label | {key: text for key, text in said.items() if text}
+    return label | _by_whom(answer)
+
+
+def limit_of(entry: Any) -> tuple[str, ...]:
+    """Return the kinds of data that an entry says a channel carries at most; none where it states no limit.
+
+    >>> limit_of({"only": ["Location"], "note": "seen"}), limit_of("sensitive")
+    (('Location',), ())
+    """
+    return tuple(_as_list(entry.get("only"))) if isinstance(entry, dict) else ()
+
+
+def _within(limit: tuple[str, ...], answer: Answer, label: dict[str, Any]) -> dict[str, Any]:
+    """What is said of a channel with a limit: a kind that it carries comes into the limit, one that it does not leaves.
+
+    A limit that nothing is left of says that no data is carried.
+    """
+    if answer.role == forms.SENSITIVE:
+        return label | {"only": list(dict.fromkeys((*limit, *answer.kinds)))}
+    left = [kind for kind in limit if kind not in answer.kinds]
+    if not left:
+        return {"mundane": True}
+    return label | {"only": left, "never": [*_as_list(label.get("never")), *answer.kinds]}
+
+
+def _by_whom(answer: Answer) -> dict[str, str]:
+    said = {"note": answer.note if answer.role != forms.ABSENT else "", "by": answer.by}
+    return {key: text for key, text in said.items() if text}
 
 
 def _of_all(answer: Answer) -> bool:
@@ -74,7 +105,10 @@ def _without(now: Any, answer: Answer) -> dict[str, Any]:
         return {now: True} if now in WHOLE and now in {answer.role, "conduit"} else {}
     if not isinstance(now, dict):
         return {}
-    left = {key: _less(now[key], answer) for key in PER_KIND if key in now}
+    if answer.role == forms.DERIVES:  # what is made of data says nothing of what becomes of the data itself
+        left = {key: now[key] for key in PER_KIND if key in now}
+    else:
+        left = {key: _less(now[key], answer) for key in PER_KIND if key in now}
     both = {forms.SOURCE: "leak", forms.LEAK: "source"}.get(answer.role, "")  # it may bring in and let out the same
     left |= {both: now[both]} if both in now else {}
     if "derives" in now:

@@ -107,10 +107,11 @@ def trial_pane(now: Standing, trials: Trials, view: View, words: Words) -> Trial
 def kept_trials(trials: Trials, view: View, words: Words) -> tuple[Kept, ...]:
     """Return the list of trials."""
     there = view.to("")._replace(find="")
-    return tuple(
-        Kept(name, words.row(words.first(trials.says(name), 1)), there._replace(trial=name).address, name == view.trial)
-        for name in trials.names
-    )
+    kept = []
+    for name in trials.names:
+        says = words.first([one.rstrip(".") for one in trials.says(name)], 1)  # sentences, as parts of a row
+        kept.append(Kept(name, words.row(says), there._replace(trial=name).address, name == view.trial))
+    return tuple(kept)
 
 
 def _told(ids: Iterable[str], standing: Standing, view: View, words: Words) -> Iterable[Told]:

@@ -88,7 +88,9 @@ document.addEventListener("click", (event) => {
   const link = event.target.closest("a[data-swap], a[data-element]");
   if (link && !event.ctrlKey && !event.metaKey && !event.shiftKey && event.button === 0) {
     event.preventDefault();
-    return void ask(link.getAttribute("href"), {}, link.matches(".switch, .button:not([data-leads])") ? "none" : "row");
+    const shows = link.dataset.shows; // a part further down, which is what was asked for
+    const asked = ask(link.getAttribute("href"), {}, link.matches(".switch, .button:not([data-leads])") ? "none" : "row");
+    return void asked.then(() => shows && one(`#${shows}`)?.scrollIntoView({ block: "start" }));
   }
   const button = event.target.closest("button");
   if (button?.dataset.pane) pane(button.dataset.pane);
@@ -107,7 +109,7 @@ function pane(name) {
 
 // --- keys ---------------------------------------------------------------------------------------------------------
 
-const typing = (target) => target.matches("input:not([type=checkbox]), select, textarea") || one("dialog[open]");
+const typing = (target) => target.matches("input:not([type=checkbox], [type=radio]), select, textarea") || one("dialog[open]");
 
 document.addEventListener("keydown", (event) => {
   if ((event.ctrlKey || event.metaKey) && event.key === "s") {
@@ -120,7 +122,8 @@ document.addEventListener("keydown", (event) => {
   if (event.key === "/") {
     event.preventDefault();
     pane("list");
-    return one("#find").focus();
+    one("#find").focus();
+    return one("#find").select(); // what was looked for before is typed over
   }
   if (event.key === "j" || event.key === "k") return step(event.key === "j" ? 1 : -1);
   if (press(event.key)) event.preventDefault(); // else the letter goes on into what is focused now
