@@ -104,8 +104,8 @@ def test_a_no_to_a_kind_is_one_to_narrower_kinds(cli: Cli, robot: Path, monkeypa
     assert "let such data out" not in ask(cli, robot, "q", monkeypatch).stdout
 
 
-LEAKING = "labels: 1\nauthor: Ada\nnodes:\n  /eye: {source: [Video]}\n  /ear: {source: [Voice]}\n  /box: {leak: none}\n"
-TWO_KINDS = policy_of({"eye": (["/front"], []), "ear": (["/front"], []), "box": ([], ["/front"])})
+LEAKING = "labels: 1\nauthor: Ada\nnodes:\n  /eye: {source: [Video]}\n  /two: {source: [Voice]}\n  /box: {leak: none}\n"
+TWO_KINDS = policy_of({"eye": (["/front"], []), "two": (["/front"], []), "box": ([], ["/front"])})
 
 
 @pytest.mark.parametrize("keys", ["10\n", "1", "0", "2", "9", "3\n", "/front 0", "/rear topic never Video and Voice\n"])
