@@ -411,6 +411,28 @@ def test_a_server_that_is_not_there_any_more_is_told_and_the_text_stays(loaded: 
         assert here.ask("RETURN 1 AS kept").status_code == 200
 
 
+@pytest.mark.slow
+def test_a_server_that_is_stopped_while_it_answers_is_told(private_neo4j: Connection) -> None:
+    with connection.open_driver(private_neo4j) as driver:
+        driver.execute_query("MATCH (n) DETACH DELETE n")
+        result = care_home()
+        load(driver, [rows_of("h1", result)], result.vocabulary)
+    with asker(private_neo4j, seconds=60) as here:
+        answers: list[Any] = []
+        asking = threading.Thread(target=lambda: answers.append(here.ask(ENDLESS)))
+        asking.start()
+        asking.join(3)
+        assert connection.stop()
+        asking.join()
+        assert answers[0].status_code == 503
+        assert told(answers[0]).endswith(("; start it, or check address and network", "; try again"))
+        again = here.ask(ENDLESS)
+        assert again.status_code == 503
+        assert "no Neo4j answers there" in told(again)
+        assert "UNWIND range(1, 1000000000)" in again.text
+        assert here.client.get("/").status_code == 200
+
+
 @pytest.mark.parametrize(("language", "words"), [("de", "Fragen an die Datenbank"), ("fr", "Questions à la base")])
 def test_it_speaks_the_language_of_its_reader(loaded: Connection, language: str, words: str) -> None:
     with asker(loaded, language=language) as here:
