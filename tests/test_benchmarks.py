@@ -23,6 +23,7 @@ PARTS = {  # scripts that declare no rows, and who has need of them
     "more_categories": "turtlebot",
     "neo4j_fleet": "graph_database",
     "vehicle": "views",
+    "labelled_systems": "explorer",
 }
 MADE_UP = """
 from measure import Measured, NotMeasured, Row

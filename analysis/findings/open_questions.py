@@ -55,14 +55,17 @@ def open_questions(net: Net, mask: int, unknown: Mapping[int, tuple[str, ...]] =
     _, nearest = from_sources(spread)
     first = _first(net, nearest.begun, uncovered)
     merged: dict[tuple[str, str, str, str], OpenQuestion] = {}
+    levels: dict[tuple[int, int], int] = spread.course.kept("levels", None, dict)
     names = {bits: spread.names(bits & mask) for bits in set(uncovered.values())}
     for vertex, everything in sorted(uncovered.items()):
         element, bits = elements[vertex], everything & mask
         if not bits:
             continue
+        if (vertex, bits) not in levels:
+            levels[vertex, bits] = nearest.level(vertex, bits) or 0
         frontier = not element.is_channel and bool(first.get(vertex, 0) & bits)
         missing = unknown.get(vertex, ())
-        question = OpenQuestion(element, names[everything], nearest.level(vertex, bits) or 0, frontier, missing)
+        question = OpenQuestion(element, names[everything], levels[vertex, bits], frontier, missing)
         known = merged.get(element.shown_as)  # the other side of a wildcard
         if known:
             categories = tuple(sorted({*known.categories, *question.categories}))

@@ -70,7 +70,7 @@ def review_order(analysis: Analysis) -> dict[Shown, Behind]:
     asked = {q.element.shown_as: kinds[q.categories] for q in analysis.open}
     following = spread.course.kept("following", None, lambda: _Following.of(spread))
     reached = spread.course.kept("reached", None, following.reached)
-    shown = {vertex: elements[vertex].shown_as for vertex in reached}
+    shown = spread.course.kept("shown", None, lambda: {vertex: elements[vertex].shown_as for vertex in reached})
     open_at = {vertex: one for vertex, one in shown.items() if one in asked}
     through = _through(following, {vertex: asked[one] for vertex, one in open_at.items()}, reached)
     leaks = {vertex for vertex, bits in spread.leaks.items() if bits & spread.present(vertex)}
@@ -175,12 +175,17 @@ class _Following(NamedTuple):
                 waiting.append(there)
         return list(reached)
 
-    def reaching(self, wanted: Iterable[int]) -> set[int]:
-        """The vertices from which data gets to one of some."""
+    def entering(self) -> dict[int, list[int]]:
+        """Vertex -> where flows with data to it begin."""
         entering: dict[int, list[int]] = defaultdict(list)
         for here, targets in self.single.items():
             for there in targets:
                 entering[there].append(here)
+        return entering
+
+    def reaching(self, wanted: Iterable[int]) -> set[int]:
+        """The vertices from which data gets to one of some."""
+        entering = self.spread.course.kept("entering", None, self.entering)
         read = _by_member((meeting.read, meeting) for meeting in self.meetings)
         met: dict[int, int] = defaultdict(int)  # bits of which all that write them to a meeting are found
         seen = set(wanted)
@@ -209,6 +214,15 @@ def _by_member(rows: Iterable[tuple[Iterable[int], Meeting]]) -> dict[int, list[
 
 def _through(following: _Following, asked: Mapping[int, int], reached: Iterable[int]) -> dict[int, int]:
     """Open vertex -> the vertex from which most of the kinds that are open there come along a flow."""
+    known: dict[tuple[int, int], int | None] = following.spread.course.kept("through", None, dict)
+    if left := {vertex: bits for vertex, bits in asked.items() if (vertex, bits) not in known}:
+        found = _found_through(following, left, reached)
+        known.update(((vertex, bits), found.get(vertex)) for vertex, bits in left.items())
+    through = ((vertex, known[vertex, bits]) for vertex, bits in asked.items())
+    return {vertex: source for vertex, source in through if source is not None}
+
+
+def _found_through(following: _Following, asked: Mapping[int, int], reached: Iterable[int]) -> dict[int, int]:
     spread = following.spread
     order = {vertex: place for place, vertex in enumerate(reached)}
     best: dict[int, tuple[int, int, int]] = {}

@@ -6,7 +6,6 @@ before judging it. ``why_not.py`` answers the opposite question.
 
 from __future__ import annotations
 
-from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.findings.witness import Witness, witness_of
@@ -14,7 +13,7 @@ from rosprivacy.analysis.kernel.search import from_sources, path_to
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Analysis
-    from rosprivacy.analysis.model import Element
+    from rosprivacy.analysis.model import Element, FlowGraph
 
 
 class WhyCarried:
@@ -39,9 +38,7 @@ class WhyCarried:
     def __init__(self, analysis: Analysis) -> None:
         spread = analysis.spread
         self.net, self._search = from_sources(spread)
-        self._vertices: dict[tuple[str, str, str, str], list[int]] = defaultdict(list)
-        for vertex, element in enumerate(spread.graph.elements):
-            self._vertices[element.shown_as].append(vertex)
+        self._vertices = spread.course.kept("vertices", None, lambda: _vertices(spread.graph))
 
     def path(self, element: Element, category: str) -> Witness | None:
         """Return one shortest path from a source to an element, along which a category gets there.
@@ -65,7 +62,7 @@ class WhyCarried:
         forms = spread.bits.forms(spread.categories.index(category))
         ways = [
             (level, bit, vertex)
-            for vertex in self._vertices[element.shown_as]
+            for vertex in self._vertices.get(element.shown_as, ())
             for bit in forms
             if spread.present(vertex) >> bit & 1 and (level := self._search.level(vertex, 1 << bit)) is not None
         ]
@@ -73,6 +70,14 @@ class WhyCarried:
             return None
         _, bit, vertex = min(ways)
         return witness_of(self.net, path_to(self.net, self._search, vertex, bit))
+
+
+def _vertices(graph: FlowGraph) -> dict[tuple[str, str, str, str], list[int]]:
+    """What a reader sees as one element -> its vertices."""
+    found: dict[tuple[str, str, str, str], list[int]] = {}
+    for vertex, element in enumerate(graph.elements):
+        found.setdefault(element.shown_as, []).append(vertex)
+    return found
 
 
 def why_carried(analysis: Analysis, element: Element, category: str) -> Witness | None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections import defaultdict
 from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 KINDS = {**SECTIONS, "elements": NON_ROS}
+Spot = tuple[str | tuple[str, ...], bool, str]
 _WORDS = {"yes": "true", "on": "true", "no": "false", "off": "false"} | {word: word for word in ("true", "false")}
 
 
@@ -102,26 +104,33 @@ def edited(labels: Labels, said: Sequence[Said], how: Written) -> Labels:
     """
     if not said:
         return labels
-    entries, elements = list(labels.entries), list(labels.elements)
+    entries: dict[int, Sequence[Entry]] = {at: (entry,) for at, entry in enumerate(labels.entries)}
+    elements = list(labels.elements)
+    places: dict[Spot, list[int]] = defaultdict(list)
+    for at, entry in enumerate(labels.entries):
+        places[_spot(entry.kinds, entry.name)].append(at)
     problems: list[LabelError] = []
     diagnostics = list(labels.diagnostics)
     below = how.lines + 1
     for one in said:
-        at = next((i for i, entry in enumerate(entries) if speaks_of(entry, one)), len(entries))
-        if one.value is None and at == len(entries):
+        spot = places[_spot(KINDS[one.section], one.name)]
+        there = [at for at in spot if entries[at]]
+        if one.value is None and not there:
             continue
-        line = entries[at].place.line if at < len(entries) else below
-        below += at == len(entries)
+        line = entries[there[0]][0].place.line if there else below
+        below += not there
         try:
             reader = read_entry(one, line, how)
         except InputErrors as error:
             problems += (LabelError(e.file, e.line, e.problem, e.hint) for e in error.errors)
             continue
-        gone = [entry for entry in entries if speaks_of(entry, one)]
-        diagnostics = [told for told in diagnostics if told.place not in {entry.place for entry in gone}]
+        gone = {entry.place for at in there for entry in entries[at]}
+        diagnostics = [told for told in diagnostics if told.place not in gone]
         diagnostics += reader.diagnostics
-        before, after = entries[:at], entries[at:]
-        entries = [*before, *reader.entries, *(entry for entry in after if entry not in gone)]
+        entries |= dict.fromkeys(there, ())
+        if not there:
+            spot.append(len(entries))
+        entries[there[0] if there else len(entries)] = reader.entries
         elements = _elements(elements, one, reader.elements)
     if problems:
         raise InputErrors(problems)
@@ -130,16 +139,16 @@ def edited(labels: Labels, said: Sequence[Said], how: Written) -> Labels:
         labels,
         file=f"{labels.file} with {counted(len(said), 'edit')} that {'is' if len(said) == 1 else 'are'} not saved",
         sha256=digest,
-        entries=tuple(entries),
+        entries=tuple(entry for some in entries.values() for entry in some),
         elements=tuple(elements),
         diagnostics=tuple(diagnostics),
     )
 
 
-def speaks_of(entry: Entry, said: Said) -> bool:
-    """Return whether an entry is the one that is said anew."""
-    there = entry.kinds[0] in NON_ROS if said.section == "elements" else entry.kinds == KINDS[said.section]
-    return there and same_name(entry.name, said.name)
+def _spot(kinds: tuple[str, ...], name: str) -> Spot:
+    """Two entries of one spot speak of the same: as ``same_name``, in one section."""
+    outside = kinds[0] in NON_ROS
+    return "elements" if outside else kinds, is_glob(name), name if is_glob(name) else meant(name)
 
 
 def _elements(elements: Iterable[Stated], said: Said, new: Iterable[Stated]) -> list[Stated]:

@@ -9,6 +9,7 @@ import pytest
 
 import rosprivacy
 from rosprivacy.analysis.errors import InputErrors, LabelError
+from rosprivacy.explorer.edits import Edit
 from rosprivacy.explorer.saving import Conflict, Saved
 from rosprivacy.explorer.session import Session
 from tests.helpers.factory import FACTORY
@@ -142,6 +143,16 @@ def test_what_was_saved_before_gives_way_to_what_somebody_else_said_later(sessio
     session.label("/navigator", leak="Video")
     session.save()
     assert "/archive_server: {leak: [Video]}" in file.read_text()
+
+
+def test_what_was_undone_is_saved_although_nothing_is_written(session: Session, file: Path) -> None:
+    session.label("/robot_camera", conduit=True)
+    session.do(Edit("channels", "/not_there", None))  # says nothing anew
+    session.save()
+    session.undo()
+    session.save()
+    assert session.result.assumptions["labels"][0]["file"] == str(file)
+    assert session.unsaved == 0
 
 
 def test_a_session_without_a_file_is_saved_under_a_name(tmp_path: Path) -> None:

@@ -134,7 +134,8 @@ def _open(link: str) -> None:
 def _serve(app: ASGIApp, listening: socket.socket) -> None:
     from contextlib import suppress
 
-    from rosprivacy.explorer.web.serving import server
+    from rosprivacy.explorer.web.serving import collect_garbage, server
 
+    collect_garbage()
     with suppress(KeyboardInterrupt):  # that is how it ends
         server(app).run(sockets=[listening])

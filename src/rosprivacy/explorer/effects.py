@@ -5,7 +5,6 @@ In: results, or entries by section and name. Out: ``Change``, ``Difference``, ed
 
 from __future__ import annotations
 
-from collections import Counter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.explorer.edits import Edit
@@ -63,7 +62,7 @@ def compared(before: Result, after: Result) -> Difference:
     """Return what differs between two answers."""
     stood, stands = ([f.id for f in result.analysis.findings if f.stands] for result in (before, after))
     had, has = set(stood), set(stands)
-    was, now = (Counter(q.element.shown_as for q in result.analysis.open) for result in (before, after))
+    was, now = ({q.element.shown_as for q in result.analysis.open} for result in (before, after))
     return Difference(
         before.analysis.verdict,
         after.analysis.verdict,

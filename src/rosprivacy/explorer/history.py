@@ -257,7 +257,8 @@ class History:
 
     def _written(self, known: str) -> None:
         """Go on with what was written, also where one of several files could not be."""
-        if self._files.digest != known:
+        # an edit and its undoing write nothing, and are saved all the same: the answer is that of the file then
+        if self._files.digest != known or not self._files.unsaved(self._done):
             self._remembers.begin_anew(self._files.digest, self._files.unsaved(self._done))
             self._analyse(self._done)
             self.version += 1

@@ -99,12 +99,16 @@ class Suggestions:
         return tuple(tuple(some) for some in found.values() if any(one.label.role in roles for one in some))
 
     def _of(self, identities: Collection[Identity]) -> tuple[Proposal, ...]:
+        if not identities:
+            return ()
         result, lasting = self._result, self._lasting
         said = [one for at in identities for one in lasting.said.get(at, ())]
         questions = [one for one in result.analysis.open if one.element.identity in identities]
         if questions:
             said += of_open(questions, lasting.graph, result.bound, lasting.told, self._known.rules)
-        return in_review_order(asked_by(said, result, self._found, self._refused), self._places)
+        asked = tuple(asked_by(said, result, self._found, self._refused))
+        alone = len({one.label.element.identity for one in asked}) <= 1  # then its place decides nothing
+        return in_review_order(asked, {} if alone else self._places)
 
     @cached_property
     def _found(self) -> frozenset[str]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import partial
 from types import MappingProxyType
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.analysis.model import MERGED, REFUSED_NAME, SEEN_ALTHOUGH_DENIED, SHARED_ENCLAVE
@@ -98,28 +98,32 @@ def system_reader(
 
 def _under(
     labels: tuple[str | Labels, ...], *, graph: FlowGraph, read: Read, types: Types, settings: Settings,
-    vocabulary: Vocabulary, last: _Whole | None = None,
+    vocabulary: Vocabulary, whole: _Whole | None = None,
 ) -> System:  # fmt: skip
     """Put policies that were read under labels; their graph is made once, and lasts for all labels."""
     files = read_label_files(labels, vocabulary, settings)
-    stated = [(file.own, file.elements, file.flows) for file in files]
-    if last is None or last.stated != stated:
-        whole = extend(graph, files)
-        last = _Whole(stated, whole, GraphNames(whole))
-    whole, names = last.graph, last.names
-    bound = bind(whole, files, settings.bounds, names=names)
-    system = _joined(whole, bound, read, files, types, settings, vocabulary, names)
-    system = replace(system, diagnostics=(*system.diagnostics, *matching_nothing(whole, types)))
-    again = partial(_under, graph=graph, read=read, types=types, settings=settings, vocabulary=vocabulary, last=last)
+    whole = whole or _Whole(graph)
+    names = whole.names_under(files)
+    bound = bind(names.graph, files, settings.bounds, names=names)
+    system = _joined(names.graph, bound, read, files, types, settings, vocabulary, names)
+    system = replace(system, diagnostics=(*system.diagnostics, *matching_nothing(names.graph, types)))
+    again = partial(_under, graph=graph, read=read, types=types, settings=settings, vocabulary=vocabulary, whole=whole)
     return replace(system, under=again)
 
 
-class _Whole(NamedTuple):
-    """A graph with what label files state of elements outside ROS: the same for all that state the same."""
+class _Whole:
+    """A graph with what label files state of elements outside ROS: the same for files that state the same."""
 
-    stated: Sequence[object]
-    graph: FlowGraph
-    names: GraphNames
+    def __init__(self, graph: FlowGraph) -> None:
+        self._graph = graph
+        self._last: tuple[object, GraphNames] | None = None
+
+    def names_under(self, files: Sequence[Labels]) -> GraphNames:
+        """Return the names of the whole graph, which is beside them."""
+        stated = [(file.own, file.elements, file.flows) for file in files]
+        if self._last is None or self._last[0] != stated:
+            self._last = stated, GraphNames(extend(self._graph, files))
+        return self._last[1]
 
 
 def _joined(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import http.client
 import threading
 from contextlib import contextmanager
@@ -16,8 +17,9 @@ from starlette.responses import PlainTextResponse
 from starlette.routing import Route
 from starlette.testclient import TestClient
 
+from rosprivacy.cli import ENOUGH
 from rosprivacy.explorer.web.guard import HEADERS, LARGEST, Door, Guard, refused
-from rosprivacy.explorer.web.serving import bound_socket, server, tunnel
+from rosprivacy.explorer.web.serving import bound_socket, collect_garbage, server, tunnel
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -262,3 +264,14 @@ def test_the_way_through_ssh_is_told_to_who_came_by_it() -> None:
     came = {"SSH_CONNECTION": "192.0.2.7 51234 2001:db8::9 2222", "LOGNAME": "anna"}
     assert tunnel(8700, came) == "ssh -N -p 2222 -L 8700:127.0.0.1:8700 anna@2001:db8::9"
     assert tunnel(8700, {"SSH_CONNECTION": "odd"}) == ""
+
+
+def test_a_server_looks_for_garbage_often(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A command that ends soon never does: a session that lasts for days would take all memory."""
+    before = gc.get_threshold()
+    monkeypatch.setattr(gc, "freeze", lambda: None)  # for all other tests
+    try:
+        collect_garbage()
+        assert gc.get_threshold()[0] < ENOUGH / 50
+    finally:
+        gc.set_threshold(*before)

@@ -5,6 +5,7 @@ The socket is bound here and handed to uvicorn, so that the port is known before
 
 from __future__ import annotations
 
+import gc
 import getpass
 import os
 import socket
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     import uvicorn
     from starlette.types import ASGIApp
 
+GARBAGE = 100_000  # new objects after which it is looked for: once in some answers
 SSH_PORT = "22"
 SSH_PARTS = 4  # of SSH_CONNECTION: address and port of the client, address and port of the server
 
@@ -53,6 +55,16 @@ def server(app: ASGIApp) -> uvicorn.Server:
         timeout_graceful_shutdown=1,
     )
     return uvicorn.Server(settings)
+
+
+def collect_garbage() -> None:
+    """Have Python look for garbage, as a program needs that runs for days: a command that ends soon need not.
+
+    What is there by now stays, and is not looked through each time.
+    """
+    gc.collect()
+    gc.freeze()
+    gc.set_threshold(GARBAGE, 10, 10)
 
 
 def tunnel(port: int, environment: Mapping[str, str] = os.environ) -> str:

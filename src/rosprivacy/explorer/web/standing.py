@@ -6,7 +6,7 @@ In: a ``Session``. Out: elements by id, questions, suggestions, why data gets to
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from rosprivacy.analysis.findings.why_carried import WhyCarried
 from rosprivacy.explorer.element_ids import by_id, element_id
@@ -15,12 +15,12 @@ from rosprivacy.mitigation import REPORTED, run_mitigation
 from rosprivacy.report.document.analysis import label_key
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
     from typing import Any
 
     from rosprivacy.analysis.answer import Analysis, Finding
     from rosprivacy.analysis.findings.review_order import Behind, Shown
-    from rosprivacy.analysis.model import Element
+    from rosprivacy.analysis.model import Element, FlowGraph
     from rosprivacy.explorer.edits import Edit
     from rosprivacy.explorer.questions import Question
     from rosprivacy.explorer.session import Session
@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from rosprivacy.mitigation import Mitigation
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.result import Result
+
+Found = TypeVar("Found")
 
 
 class Standing:
@@ -51,7 +53,7 @@ class Standing:
     @cached_property
     def elements(self) -> Mapping[str, Element]:
         """All elements, by id."""
-        return by_id(self.analysis.graph)
+        return self._kept("page: elements", None, lambda: by_id(self.analysis.graph))
 
     @cached_property
     def questions(self) -> Sequence[Question]:
@@ -105,11 +107,7 @@ class Standing:
     @cached_property
     def carried(self) -> Mapping[str, tuple[str, ...]]:
         """Id of an element -> kinds of data that are there, in whichever form."""
-        found: dict[str, set[str]] = {}
-        for one in self.analysis.carried:
-            kinds = found.setdefault(element_id(one.element.identity), set())
-            kinds.update(one.categories, one.pseudonymised)
-        return {name: tuple(sorted(kinds)) for name, kinds in found.items()}
+        return self._kept("page: carried", self.analysis.carried, lambda: _carried(self.analysis))
 
     @cached_property
     def roles(self) -> Mapping[str, Mapping[str, tuple[str, ...]]]:
@@ -119,10 +117,11 @@ class Standing:
     @cached_property
     def parts(self) -> Mapping[tuple[str, str, str], Sequence[Element]]:
         """Identity of an element -> its vertices: legs of services, sides of wildcards."""
-        found: dict[tuple[str, str, str], list[Element]] = {}
-        for element in self.analysis.graph.elements:
-            found.setdefault(element.identity, []).append(element)
-        return found
+        return self._kept("page: parts", None, lambda: _parts(self.analysis.graph))
+
+    def _kept(self, what: str, under: object, find: Callable[[], Found]) -> Found:
+        """Find what rests on the graph, and on what is named: once for all answers that move no data."""
+        return self.analysis.spread.course.kept(what, under, find)
 
     @cached_property
     def why(self) -> WhyCarried:
@@ -161,3 +160,18 @@ class Standing:
     def entry(self, element: Element, *, only_this_robot: bool = False) -> Any:
         """Return what the label file, with the edits, says of an element; None for nothing."""
         return self.session.said_of(element, only_this_robot=only_this_robot)
+
+
+def _carried(analysis: Analysis) -> dict[str, tuple[str, ...]]:
+    found: dict[str, set[str]] = {}
+    for one in analysis.carried:
+        kinds = found.setdefault(element_id(one.element.identity), set())
+        kinds.update(one.categories, one.pseudonymised)
+    return {name: tuple(sorted(kinds)) for name, kinds in found.items()}
+
+
+def _parts(graph: FlowGraph) -> dict[tuple[str, str, str], list[Element]]:
+    found: dict[tuple[str, str, str], list[Element]] = {}
+    for element in graph.elements:
+        found.setdefault(element.identity, []).append(element)
+    return found
