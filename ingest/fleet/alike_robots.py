@@ -68,6 +68,11 @@ class Alike:
             parts[tuple(file for file in (*robot.labels, *robot.own) if file in files)].append(robot)
         return [replace(self, robots=tuple(robots)) for robots in parts.values()]
 
+    def parted(self, robots: Collection[str]) -> list[Alike]:
+        """Return those that are among some robots, and those that are not."""
+        parts = [[one for one in self.robots if (one.id in robots) == inside] for inside in (True, False)]
+        return [replace(self, robots=tuple(part)) for part in parts if part]
+
 
 def alike(fleet: Fleet, told_apart: Callable[[str], object] = lambda _: None) -> tuple[Alike, ...]:
     """Group the robots of a fleet; infrastructure stands alone.

@@ -202,11 +202,7 @@ def test_the_public_function_opens_the_same_session(small: Path) -> None:
         rosprivacy.explore("p.xml", fleet=small)  # type: ignore[call-overload]
 
 
-def test_what_is_about_one_robot_is_refused_in_words(small: Path) -> None:
-    from rosprivacy.explorer.scenarios import WhatIf
-
+def test_a_fleet_has_no_label_file_to_be_saved_under_a_new_name(small: Path) -> None:
     session = begun(small)
-    with pytest.raises(InputErrors, match="is about one robot"):
-        session.scenario("a cut", WhatIf(cut=(("p.xml", 2),)))
     with pytest.raises(InputError, match="labels of a fleet"):
         session.save_as("new.yaml")

@@ -27,6 +27,14 @@ WILD = """\
 <topics subscribe="ALLOW"><topic>/*</topic></topics></profile></profiles></enclave>
 </enclaves></policy>
 """
+BLURRED = """\
+<policy version="0.2.0"><enclaves><enclave path="/a"><profiles>
+<profile ns="/" node="camera"><topics publish="ALLOW"><topic>video</topic></topics></profile>
+<profile ns="/" node="blur"><topics subscribe="ALLOW"><topic>video</topic></topics>
+<topics publish="ALLOW"><topic>blurred</topic></topics></profile>
+<profile ns="/" node="cloud"><topics subscribe="ALLOW"><topic>blurred</topic></topics></profile>
+</profiles></enclave></enclaves></policy>
+"""
 CARE = ROOT / "examples" / "care-home"
 
 
@@ -88,6 +96,21 @@ def test_a_doubted_sanitizer_cleans_nothing() -> None:
         by_label = rosprivacy.analyze(policy, labels).with_entry("nodes", name, entry or None)
         assert facts(found.result) == facts(by_label), name
     assert cleaning
+
+
+def test_what_is_no_longer_pseudonymised_is_told(tmp_path: Path) -> None:
+    """It is neither opened nor closed: the same finding was there, pseudonymised."""
+    (tmp_path / "p.xml").write_text(BLURRED)
+    (tmp_path / "l.yaml").write_text(
+        "labels: 1\nnodes:\n  /camera: {source: [Video]}\n  /blur: {sanitizer: {Video: pseudonymise}}\n"
+        "  /cloud: {leak: [Video]}\n"
+    )
+    session = Session.open([str(tmp_path / "p.xml")], [str(tmp_path / "l.yaml")])
+    (finding,) = session.findings
+    assert finding.pseudonymised
+    found = session.scenario("doubt", WhatIf(doubted=(("node", "/blur", ()),))).difference
+    assert (found.opened, found.closed, found.plainer) == ((), (), (finding.id,))
+    assert session.label("/blur", conduit=True).plainer == (finding.id,)
 
 
 @pytest.mark.parametrize(

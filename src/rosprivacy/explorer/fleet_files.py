@@ -19,12 +19,13 @@ from rosprivacy.explorer.own_file import read_own
 from rosprivacy.explorer.saving import Conflict, Saved
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
     from typing import Any
 
+    from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.question import Question as Asked
-    from rosprivacy.reading.fleet_system import FleetRead
-    from rosprivacy.system import System
+    from rosprivacy.reading.fleet_system import FleetRead, FleetSystem
+    from rosprivacy.reading.robot_reader import Tried
 
 
 class FleetFiles:
@@ -111,16 +112,26 @@ class FleetFiles:
         """Return what the files on the disk do not say, as the session knows them."""
         return [edit for file, labels in self._edited.items() for edit in labels.unsaved(_of(file, edits))]
 
-    def system(self, edits: Sequence[Edit]) -> System:
+    def system(self, edits: Sequence[Edit]) -> FleetSystem:
         """Return the fleet under the label files with edits."""
+        system = self.read.under(*self._with(edits))
+        for (name, _), there in self.read.reader.labels.items():
+            self._digests.setdefault(name, there.sha256)
+        return system
+
+    def tried(
+        self, edits: Sequence[Edit], robots: Collection[str], tried: Tried
+    ) -> tuple[FleetSystem, list[InputError]]:
+        """Return the fleet under them with edits, if something were otherwise on some robots; and what is missing."""
+        return self.read.tried(*self._with(edits), robots, tried)
+
+    def _with(self, edits: Sequence[Edit]) -> tuple[dict[tuple[str, bool], Labels], set[str]]:
+        """What those that were looked into mean with edits, and the names of those that are not as on the disk."""
         labels = {}
         for file, one in self._edited.items():
             labels.update(one.labels(_of(file, edits)))
         other = [one for file, one in self._edited.items() if one.unsaved(_of(file, edits))]
-        system = self.read.under(labels, {name for one in other for name, _ in one.read})
-        for (name, _), there in self.read.reader.labels.items():
-            self._digests.setdefault(name, there.sha256)
-        return system
+        return labels, {name for one in other for name, _ in one.read}
 
     # --- the files ----------------------------------------------------------------------------------------------
 

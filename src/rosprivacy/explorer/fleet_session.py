@@ -6,15 +6,17 @@ edited, and no other.
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.errors import FleetError, InputError, InputErrors, shown
+from rosprivacy.analysis.errors import FleetError, InputErrors, shown
 from rosprivacy.explorer.edits import Edit, place_of, section_of
 from rosprivacy.explorer.fleet_files import FleetFiles
+from rosprivacy.explorer.fleet_scenarios import tried_on_robots
 from rosprivacy.explorer.label_targets import Entry, Target, Targets, outliers
 from rosprivacy.explorer.session import Session
 from rosprivacy.question import question_of
-from rosprivacy.reading.fleet_system import read_once
+from rosprivacy.reading.fleet_system import FleetSystem, read_once
 from rosprivacy.settings import Settings
 
 if TYPE_CHECKING:
@@ -26,8 +28,9 @@ if TYPE_CHECKING:
     from rosprivacy.explorer.edits import Label
     from rosprivacy.explorer.effects import Change
     from rosprivacy.explorer.questions import Question
-    from rosprivacy.explorer.scenarios import Scenario, WhatIf
+    from rosprivacy.explorer.scenarios import WhatIf
     from rosprivacy.question import Question as Asked
+    from rosprivacy.result import Result
 
 
 class FleetSession(Session):
@@ -185,13 +188,27 @@ class FleetSession(Session):
         file = self.target(robot, only_this_robot=only_this_robot).file
         return self._files.entry(Edit(section_of(kind, rest, file), rest, None, file), self._done)
 
-    def scenario(self, name: str, what: WhatIf) -> Scenario:  # noqa: ARG002 - as of one robot
-        """Refuse: what would be otherwise is tried on one robot.
+    # --- what if ------------------------------------------------------------------------------------------------
 
-        Raises
-        ------
-        InputErrors
-            Always.
+    def robots_like(self, robot: str, *, only_this_robot: bool = False) -> tuple[str, ...]:
+        """Return the robots of the model of one, or this one only; none for what belongs to no robot.
+
+        >>> session = FleetSession.open_fleet("examples/fleet/fleet.yaml")
+        >>> len(session.robots_like("carrier_01")), session.robots_like("carrier_01", only_this_robot=True)
+        (24, ('carrier_01',))
         """
-        hint = "open the policies and label files of one robot: rosprivacy explore POLICY -l FILE"
-        raise InputErrors([InputError("what is tried", 0, "is about one robot, and not about a fleet", hint)])
+        fleet = self._files.read.fleet
+        found = next((one for one in (*fleet.robots, *fleet.infrastructure) if one.id == robot), None)
+        if found is None:
+            return ()
+        if only_this_robot or not found.model:
+            return (robot,)
+        return tuple(one.id for one in fleet.robots if one.model == found.model)
+
+    def model_of(self, robot: str) -> str:
+        """Return the model of a robot; empty where there is none."""
+        return next((one.model for one in self._files.read.fleet.robots if one.id == robot), "")
+
+    def _tried(self, what: WhatIf) -> tuple[Result, tuple[str, ...]]:
+        assert isinstance(self._system, FleetSystem), "of a fleet"
+        return tried_on_robots(self._system, partial(self._files.tried, self._done), self._asked, what)

@@ -24,11 +24,11 @@ from rosprivacy.ingest.mitigation.open_wildcards import open_ended
 from rosprivacy.reading.robot_system import lenient_system
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sized
+    from collections.abc import Iterable, Iterator, Mapping, Sized
 
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.mitigation.proposals import ProposedStep
-    from rosprivacy.analysis.model import Grant, Statement
+    from rosprivacy.analysis.model import Grant, Policy, Statement
     from rosprivacy.explorer.effects import Difference
     from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.question import Question
@@ -53,6 +53,9 @@ class WhatIf(NamedTuple):
         (from, to) of flows to them and from them; a name, or ``{kind: name}`` where several are called so.
     doubted
         (section or kind of element, name, kinds) of sanitizers that do not clean; without kinds, nothing at all.
+    robots
+        Of a fleet: the robots on which all of this is tried, by id. Names are then those on each of them; elements of
+        ``steps`` are those of one of them, or belong to no robot.
     steps
         Changes as ``mitigate`` proposes and proves them. A filter among them is one in a policy, with a channel of its
         own: what gets past it along wildcards, gets past it here too.
@@ -64,6 +67,7 @@ class WhatIf(NamedTuple):
     flows: tuple[tuple[End, End], ...] = ()
     doubted: tuple[tuple[str, str, tuple[str, ...]], ...] = ()
     steps: tuple[ProposedStep, ...] = ()
+    robots: tuple[str, ...] = ()
 
 
 class Scenario(NamedTuple):
@@ -97,7 +101,9 @@ def tried(system: System, asked: Question, what: WhatIf) -> tuple[Result, tuple[
     InputErrors
         If it names what is not there.
     """
-    grants, labels = _grants(system, what), _labels(asked, what)
+    if what.robots:
+        raise InputErrors([InputError("what is tried", 0, "names robots, and this is one robot", "leave robots away")])
+    grants, labels = cut(system.policies, what), stated(asked, what)
     files = (*system.labels, labels) if labels else system.labels
     remarks: tuple[str, ...] = ()
     if grants:
@@ -109,13 +115,21 @@ def tried(system: System, asked: Question, what: WhatIf) -> tuple[Result, tuple[
         there = system.under(files)
     else:
         there = system
-    return answer(_changed(_doubted(there, asked, what), what), asked), remarks
+    return answer(with_steps(doubting(there, asked, what), what), asked), remarks
 
 
-def _grants(system: System, what: WhatIf) -> list[Grant]:
+def cut(policies: Iterable[Policy], what: WhatIf) -> list[Grant]:
+    """Return the lines that are set to DENY.
+
+    Raises
+    ------
+    InputErrors
+        If a line allows nothing.
+    """
+    policies = tuple(policies)
     found = [
         grant
-        for policy in system.policies
+        for policy in policies
         for grant in policy.grants
         if grant.allow and (grant.place.file, grant.place.line) in what.cut
     ]
@@ -125,11 +139,11 @@ def _grants(system: System, what: WhatIf) -> list[Grant]:
     if problems:
         raise InputErrors(problems)
     chosen = {grant for step in what.steps if step.kind == DENY for grant in step.grants}
-    return found + [grant for policy in system.policies for grant in policy.grants if grant in chosen]
+    return found + [grant for policy in policies for grant in policy.grants if grant in chosen]
 
 
-def _labels(asked: Question, what: WhatIf) -> Labels | None:
-    """What a label file would say."""
+def stated(asked: Question, what: WhatIf) -> Labels | None:
+    """Return what a label file would say; None for nothing."""
     flows: list[dict[str, Any]] = [{"from": a, "to": b, "never": list(kinds)} for a, b, kinds in what.filters]
     flows += [{"from": a, "to": b} for a, b in what.flows]
     if not (flows or what.elements):
@@ -138,8 +152,19 @@ def _labels(asked: Question, what: WhatIf) -> Labels | None:
     return parse_labels(said, asked.vocabulary, name="what is tried", bounds=asked.settings.bounds)
 
 
-def _changed(system: System, what: WhatIf) -> System:
-    """The system after reviews and filters; what is set to DENY is gone already."""
+def with_steps(system: System, what: WhatIf, wild: Mapping[str, frozenset[int]] | None = None) -> System:
+    """Return the system after reviews and filters; what is set to DENY is gone already.
+
+    Parameters
+    ----------
+    wild
+        As of ``with_changes``; None for all wildcards of the graph.
+
+    Raises
+    ------
+    InputErrors
+        If there is nothing any more to review or to filter.
+    """
     steps = [step for step in what.steps if step.kind != DENY]
     if not steps:
         return system
@@ -154,12 +179,19 @@ def _changed(system: System, what: WhatIf) -> System:
         if not there:
             problem = f"there is nothing any more {'to filter' if step.kind == FILTER else 'to review'}"
             raise InputErrors([InputError("what is tried", 0, problem, "look at how it stands now, and try again")])
-    graph, bound = with_changes(system.graph, system.bound, steps, open_ended(system.graph))
+    wild = open_ended(system.graph) if wild is None else wild
+    graph, bound = with_changes(system.graph, system.bound, steps, wild)
     return replace(system, graph=graph, bound=bound)
 
 
-def _doubted(system: System, asked: Question, what: WhatIf) -> System:
-    """The system without what some sanitizers are said to clean."""
+def doubting(system: System, asked: Question, what: WhatIf) -> System:
+    """Return the system without what some sanitizers are said to clean.
+
+    Raises
+    ------
+    InputErrors
+        If one is none.
+    """
     elements = dict(system.bound.elements)
     for kind, name, kinds in what.doubted:
         section = section_of(kind, name, "what is tried")
@@ -167,6 +199,8 @@ def _doubted(system: System, asked: Question, what: WhatIf) -> System:
         touched = 0
         for vertex, said in system.bound.elements.items():
             element = system.graph.elements[vertex]
+            if what.robots and element.robot not in what.robots:
+                continue
             if element.kind in KINDS[section] and same_name(element.name, name):
                 elements[vertex] = tuple(one for one in said if not any(_cleans(one, kinds, hierarchy)))
                 touched += len(elements[vertex]) < len(said)
@@ -213,6 +247,9 @@ def together(first: WhatIf, second: WhatIf) -> WhatIf:
     >>> together(disk, disk) == disk
     True
     """
+    if first.robots != second.robots:
+        problem = "is not about the same robots"
+        raise InputErrors([InputError("what is tried", 0, problem, "try both on the same robots")])
     renamed = {name: _free(name, first, second) for name in second.elements}
     flows = tuple((_renamed(a, renamed), _renamed(b, renamed)) for a, b in second.flows)
     return WhatIf(
@@ -222,18 +259,19 @@ def together(first: WhatIf, second: WhatIf) -> WhatIf:
         flows=(*first.flows, *(flow for flow in flows if flow not in first.flows)),
         doubted=tuple(dict.fromkeys((*first.doubted, *second.doubted))),
         steps=tuple(dict.fromkeys((*first.steps, *second.steps))),
+        robots=first.robots,
     )
 
 
 def _free(name: str, first: WhatIf, second: WhatIf) -> str:
     """A name for an element of the second: its own, unless the first has another element of that name."""
-    if name not in first.elements or _stated(name, first) == _stated(name, second):
+    if name not in first.elements or _told_of(name, first) == _told_of(name, second):
         return name
     taken = first.elements.keys() | second.elements.keys()
     return next(other for number in count(2) if (other := f"{name} {number}") not in taken)
 
 
-def _stated(name: str, what: WhatIf) -> object:
+def _told_of(name: str, what: WhatIf) -> object:
     return what.elements[name], [flow for flow in what.flows if name in map(_name_of, flow)]
 
 

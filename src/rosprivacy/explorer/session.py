@@ -1,8 +1,8 @@
 """A session: policies that were read once, a label file that is edited, and what follows at once (issue 22).
 
 In: policies, label files, settings; then edits. Out: a ``Result`` after each edit, and the label file when it is saved.
-The history of edits is ``History``'s; here they get their names, and what else can be asked. Nothing here knows of the
-web.
+The history of edits is ``History``'s, what is tried ``Trying``'s; here elements get their names, and what else can be
+asked. Nothing here knows of the web.
 """
 
 from __future__ import annotations
@@ -15,12 +15,10 @@ from rosprivacy.analysis.errors import InputErrors, LabelError, shown
 from rosprivacy.decided import decisions_of
 from rosprivacy.explorer.deciding import Ruling, record
 from rosprivacy.explorer.edits import Edit, entry_of, section_of
-from rosprivacy.explorer.effects import Change, compared
-from rosprivacy.explorer.history import History
 from rosprivacy.explorer.label_targets import Entry
 from rosprivacy.explorer.one_file import opened
 from rosprivacy.explorer.questions import questions
-from rosprivacy.explorer.scenarios import Scenario, WhatIf, tried
+from rosprivacy.explorer.trying import Trying
 from rosprivacy.ingest.decisions.decision_writer import text_in
 from rosprivacy.question import question_of
 from rosprivacy.report.document.analysis import label_key
@@ -33,6 +31,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Element
     from rosprivacy.explorer.deciding import How
     from rosprivacy.explorer.edits import Label
+    from rosprivacy.explorer.effects import Change
     from rosprivacy.explorer.label_files import LabelFiles
     from rosprivacy.explorer.label_targets import Target
     from rosprivacy.explorer.questions import Question
@@ -42,7 +41,7 @@ if TYPE_CHECKING:
     from rosprivacy.system import System
 
 
-class Session(History):
+class Session(Trying):
     """Labelling with the effect of each label at once; made by ``Session.open``.
 
     Attributes
@@ -50,14 +49,13 @@ class Session(History):
     decisions_file
         Where decisions about findings are written; None where none was named.
     of_one_robot
-        Whether the policies of one robot are at hand, so that something can be tried.
+        Whether the policies of one robot are at hand, so that it can be asked what closes a finding.
     """
 
     of_one_robot = True
 
     def __init__(self, files: LabelFiles, system: System, asked: Asked) -> None:
         super().__init__(files, system, asked)
-        self._scenarios: dict[str, Scenario] = {}
         self.decisions_file: str | None = None
 
     @classmethod
@@ -144,6 +142,14 @@ class Session(History):
     def stands_for(self, robot: str) -> tuple[str, ...]:  # noqa: ARG002 - of a fleet
         """Return the robots that are alike to one, itself first, where there are several."""
         return ()
+
+    def robots_like(self, robot: str, *, only_this_robot: bool = False) -> tuple[str, ...]:  # noqa: ARG002 - of a fleet
+        """Return the robots on which something is tried, where there are several: those of the model, or one."""
+        return ()
+
+    def model_of(self, robot: str) -> str:  # noqa: ARG002 - of a fleet
+        """Return the model of a robot; empty where there is none."""
+        return ""
 
     @property
     def outliers(self) -> frozenset[str]:
@@ -249,40 +255,6 @@ class Session(History):
             what = f"says nothing of {shown(there.name)!r} under {there.section}"
             raise InputErrors([LabelError(there.file or self._files.name, 0, what, "there is nothing to take away")])
         return self.do(there._replace(value=None))
-
-    # --- what if ------------------------------------------------------------------------------------------------
-
-    def scenario(self, name: str, what: WhatIf) -> Scenario:
-        """Try something that is no edit, and compare it with now; it is kept by its name.
-
-        Raises
-        ------
-        InputErrors
-            If it names what is not there.
-
-        Examples
-        --------
-        >>> session = Session.open(["examples/factory/before.policy.xml"], ["examples/factory/run2.labels.yaml"])
-        >>> from rosprivacy.explorer.scenarios import WhatIf
-        >>> found = session.scenario("a filter", WhatIf(filters=(("/robot_camera", "/robot_video", ("Video",)),)))
-        >>> found.difference.closed, len(session.findings)
-        (('dc5715a35ba5591a',), 2)
-        """
-        with self._lock:
-            result, remarks = tried(self._system, self._asked, what)
-            found = Scenario(name, what, self.version, result, compared(self.uncounted, result), remarks)
-            self._scenarios[name] = found
-            return found
-
-    @property
-    def scenarios(self) -> Mapping[str, Scenario]:
-        """What was tried, by name; each is compared with the answer of now when it is asked for by ``scenario``."""
-        return dict(self._scenarios)
-
-    def drop_scenario(self, name: str) -> None:
-        """Forget what was tried under a name."""
-        with self._lock:
-            self._scenarios.pop(name, None)
 
     # --- decisions ----------------------------------------------------------------------------------------------
 

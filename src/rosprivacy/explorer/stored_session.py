@@ -36,7 +36,7 @@ SHOWN_ONLY = (
 class StoredSession(Session):
     """What is in a database, to be looked at; made by ``StoredSession.open_database``."""
 
-    of_one_robot = False
+    of_one_robot = can_try = False
 
     def __init__(self, system: System, asked: Asked) -> None:
         own = read_own(None, asked.vocabulary, asked.settings)

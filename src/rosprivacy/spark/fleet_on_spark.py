@@ -26,7 +26,7 @@ from rosprivacy.ingest.labels.countries import countries
 from rosprivacy.ingest.labels.label_file import read_labels
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.question import in_contexts, question_of
-from rosprivacy.reading.fleet_system import Reader
+from rosprivacy.reading.robot_reader import Reader
 from rosprivacy.spark.distributed import Task, analyse_in_parts
 from rosprivacy.spark.parquet import check_new, write
 from rosprivacy.spark.session import scatter, session

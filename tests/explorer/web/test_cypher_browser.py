@@ -21,6 +21,7 @@ from rosprivacy.settings import Settings
 from tests.helpers import browser as chrome
 from tests.helpers.browser import DESKTOP, PHONE, axe
 from tests.helpers.graphs import care_home, rows_of
+from tests.helpers.page_reader import Reader
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -176,6 +177,16 @@ def test_axe_finds_nothing_and_nothing_is_wider_than_a_phone(
         browser.execute_script("document.querySelector('#text').form.querySelector('button').click()")
         until(browser, "document.querySelector('[role=alert]')")
         assert axe(browser) == []
+
+
+@pytest.mark.parametrize("width", [DESKTOP, PHONE])
+def test_axe_finds_nothing_in_any_pane_of_what_is_stored(browser: WebDriver, loaded: Connection, width: int) -> None:
+    with served(browser, loaded) as door:
+        reader = Reader(browser, door, width)
+        assert "shown, and not changed" in reader.text("body")
+        for key in ("", "o", "w"):  # an element, a finding, the whole system
+            reader.press(*key)
+            assert reader.faults() == []
 
 
 def test_without_its_script_it_asks_as_well(browser: WebDriver, loaded: Connection) -> None:

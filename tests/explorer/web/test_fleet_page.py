@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 from typing import TYPE_CHECKING
 
@@ -17,6 +18,8 @@ from tests.helpers.paths import ROOT
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
+
+    from starlette.testclient import TestClient
 
     Explore = Callable[..., Explorer]
 
@@ -104,20 +107,89 @@ def test_what_cannot_be_said_is_refused_in_words(explore: Explore, hospital: Pat
     assert before == {path: path.read_bytes() for path in hospital.parent.iterdir()}
 
 
-def test_a_finding_of_a_fleet_is_shown_and_nothing_is_tried_or_decided(explore: Explore, hospital: Path) -> None:
-    """Both are about one robot: a form that asks for it all the same is refused."""
+def tried(client: TestClient, **said: str) -> str:
+    """What the pane says of a trial."""
+    answer = client.post("/try", data={"version": version(client), **said})
+    assert answer.status_code == 303
+    pane = html.fromstring(client.get(answer.headers["location"]).text).get_element_by_id("element")
+    return " ".join(pane.text_content().split())
+
+
+def test_a_filter_or_a_cut_on_a_path_is_tried_on_the_robots_of_its_model(explore: Explore, hospital: Path) -> None:
     explorer = explore(hospital, hospital, fleet=True)
     client = explorer.client()
-    way = html.fromstring(client.get("/").text).cssselect("a.way")[0].get("href")
-    page = html.fromstring(client.get(f"{way}&closes=1").text)
+    before = explorer.session.result.to("json")
+    rows = html.fromstring(client.get("/").text).cssselect("a.way")
+    way = next(one.get("href", "") for one in rows if "carrier_lent:/camera_driver" in one.text_content())
+    page = html.fromstring(client.get(way).text)
     assert "which lets it out" in page.get_element_by_id("h-element").text_content()
-    assert page.cssselect("#hand .hops li")
-    assert not page.cssselect("#hand form")
+    forms = [dict(form.form_values()) for form in page.forms if form.get("class") == "inline"]
+    assert {form["what"] for form in forms} == {"filter", "cut"}
+    assert not page.xpath("//form[starts-with(@action, '/decide')]")
+    assert not page.xpath("//a[@data-key='p']")  # what closes it is asked of one robot
+    for form in forms:
+        said = tried(client, **{key: value for key, value in form.items() if key != "version"})
+        assert re.search("of model (carrier: 24|guide: 12) robots|base only", said), said
+    cut = next(form for form in forms if form["what"] == "cut")
+    assert "On 24 robots: carrier_01, carrier_02, carrier_03, and 21 more." in tried(client, **{**cut, "name": "cut"})
+    assert explorer.session.version == 0
+    assert explorer.session.result.to("json") == before
+
+
+def test_at_an_element_it_is_chosen_whether_the_model_or_one_robot_is_meant(explore: Explore, hospital: Path) -> None:
+    explorer = explore(hospital, hospital, fleet=True, read_only=True)
+    client = explorer.client()
+    blur = on("carrier_01", "/blur")
+    page = html.fromstring(client.get(f"/?at={blur}").text)
+    (chosen,) = page.xpath("//select[@id='try-storage-whose']")
+    assert [(one.get("value"), one.text) for one in chosen.xpath("option")] == [
+        ("model", "of model carrier: 24 robots"), ("robot", "carrier_01 only"),
+    ]  # fmt: skip
+    of_model = tried(client, what="storage", element=blur, whose="model", name="all")
+    assert "1 path to assess opens" in of_model
+    assert "On 24 robots: carrier_01," in of_model
+    alone = tried(client, what="storage", element=blur, whose="robot", name="one")
+    assert "On 1 robot: carrier_01." in alone
+    trial = html.fromstring(client.get("/?trial=one&find=/blur").text)
+    rows = [
+        " ".join(row.text_content().split()) for row in trial.cssselect("#rows .row") if ":/blur" in row.text_content()
+    ]
+    assert any(row.startswith("carrier_02:/blur") and "stands for 22 robots" in row for row in rows)
+    assert not any("stands for 23" in row for row in rows)
+    doubted = tried(client, what="doubt", element=blur, whose="robot", data="*", name="two")
+    assert "On 1 robot: carrier_01." in doubted
+    together = html.fromstring(client.get("/?trial=one").text).xpath("//select[@id='try-second']/option")
+    assert [one.text for one in together] == ["two"]  # the other is about other robots
+    refused = {"version": version(client), "what": "together", "first": "one", "second": "all"}
+    assert client.post("/try", data=refused).status_code == 422
+    assert "On 1 robot: carrier_01." in tried(client, what="together", first="one", second="two", name="both")
+
+
+def test_what_belongs_to_no_robot_is_told_as_such(explore: Explore, hospital: Path) -> None:
+    explorer = explore(hospital, hospital, fleet=True)
+    client = explorer.client()
+    cloud = element_id(("hospital", "external-system", "fleet cloud"))
+    page = html.fromstring(client.get(f"/?at={cloud}").text)
+    assert "This belongs to no robot." in page.get_element_by_id("tries").text_content()
+    assert not page.xpath("//select[contains(@id, '-whose')]")
+    flows = {one.text: one.get("value") for one in page.xpath("//select[@id='try-flow']/option")}
+    beside = next(value for told, value in flows.items() if told.startswith("carrier_01:/uplink"))
+    assert "of model carrier: 24 robots" in tried(client, what="filter", flow=beside, data="*")
+    for said in ({"what": "storage", "element": cloud}, {"what": "doubt", "element": cloud, "data": "*"}):
+        assert client.post("/try", data={"version": version(client), **said}).status_code == 422
+
+
+def test_what_is_about_one_robot_is_refused_of_a_fleet(explore: Explore, hospital: Path) -> None:
+    explorer = explore(hospital, hospital, fleet=True)
+    client = explorer.client()
     finding = explorer.session.findings[0]
     forms = (
-        ("/try", {"what": "storage", "element": element_id(finding.source.identity)}),
+        ("/try", {"what": "proposal", "proposal": "0", "step": ""}),
+        ("/try", {"what": "storage", "element": on("carrier_01", "/blur"), "whose": "/etc/passwd"}),
+        ("/try", {"what": "cut", "line": "l0000000000000000"}),
         ("/decide", {"finding": finding.id, "choice": "avoid"}),
     )
     for path, said in forms:
         assert client.post(path, data={"version": version(client), **said}).status_code == 422
     assert explorer.session.version == 0
+    assert explorer.session.scenarios == {}

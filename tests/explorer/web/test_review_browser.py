@@ -126,7 +126,8 @@ def test_question_and_summary_fit_and_axe_finds_nothing(
     with explorers.served(BARE, labels, review=True, language=language) as explorer:
         chrome.open_page(browser, explorer.door.link, width=width)
         origin = f"http://127.0.0.1:{explorer.door.port}"
-        for address in ("/", f"/?at={explorers.node('/navigator')}", "/?step=summary"):
+        asked = f"/?at={explorers.node('/navigator')}", f"/?at={explorers.node('/robot_camera')}"
+        for address in ("/", *asked, "/?step=source", "/?step=summary"):
             browser.get(origin + address)
             browser.execute_script("document.querySelectorAll('details').forEach((d) => d.open = true)")
             assert chrome.axe(browser) == []
@@ -135,6 +136,39 @@ def test_question_and_summary_fit_and_axe_finds_nothing(
             name = address.strip("/?").partition("=")[2] or "question"
             chrome.screenshot(browser, tmp_path / f"{name}-{language}-{width}.png", width)
         browser.get("about:blank")
+
+
+@pytest.mark.parametrize("width", [DESKTOP, PHONE])
+def test_axe_finds_nothing_in_what_a_review_tells(browser: WebDriver, tmp_path: Path, width: int) -> None:
+    """Nothing asked yet, an answer, answers of an earlier session, and a file that somebody else changed."""
+    labels = tmp_path / "new.labels.yaml"
+    with explorers.served(BARE, labels, review=True, journal=tmp_path / "journal") as explorer:
+        chrome.open_page(browser, explorer.door.link, width=width)
+        assert _faults(browser, width) == []
+        answer(browser, "source")
+        assert browser.execute_script("return document.querySelector('.message') !== null")
+        assert _faults(browser, width) == []
+        explorer.session.close()
+    with explorers.served(BARE, labels, review=True, journal=tmp_path / "journal") as explorer:
+        chrome.open_page(browser, explorer.door.link, width=width)
+        assert browser.execute_script("return document.querySelector('[action=\"/resume\"]') !== null")
+        assert _faults(browser, width) == []
+        labels.write_text("labels: 1\nchannels:\n  /new_pose: mundane\n", "utf-8")
+        browser.refresh()
+        assert browser.execute_script("return document.querySelector('pre') !== null")
+        assert _faults(browser, width) == []
+        browser.get("about:blank")
+
+
+def _faults(browser: WebDriver, width: int) -> list[object]:
+    """What axe finds, light and dark, and what is too wide."""
+    found: list[object] = []
+    for dark in (True, False):
+        chrome.shade(browser, dark=dark)
+        found += chrome.axe(browser)
+    found += chrome.wider(browser, "h1, h2, p, li, fieldset, button, .pick, .field")
+    sideways = browser.execute_script("return document.documentElement.scrollWidth")
+    return [*found, *([f"it is {sideways} wide"] if sideways > width else [])]
 
 
 @pytest.mark.parametrize("width", [DESKTOP, PHONE])

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import shutil
 from typing import TYPE_CHECKING
 
 import pytest
 
+from rosprivacy.explorer.element_ids import element_id
+from tests.helpers import browser as chrome
 from tests.helpers.browser import DESKTOP, PHONE
 from tests.helpers.explorers import BARE, FACTORY, copied
 from tests.helpers.page_reader import Reader, served
+from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -87,3 +91,25 @@ def test_axe_finds_nothing_in_findings_decisions_and_trials(browser: WebDriver, 
 def _accepted(explorer: Explorer) -> str:
     """The finding that a decision is about."""
     return next(finding.id for finding in explorer.session.findings if not finding.stands)
+
+
+@pytest.mark.parametrize("width", [DESKTOP, PHONE])
+def test_trials_of_a_fleet_fit_and_say_on_how_many_robots(browser: WebDriver, tmp_path: Path, width: int) -> None:
+    shutil.copytree(ROOT / "examples" / "fleet", tmp_path / "fleet")
+    fleet = tmp_path / "fleet" / "fleet.yaml"
+    with served(browser, fleet, fleet, fleet=True) as explorer:
+        reader = Reader(browser, explorer, width)
+        blur = element_id(("carrier_01", "node", "/blur"))
+        browser.get(f"http://127.0.0.1:{explorer.door.port}/?at={blur}")
+        assert reader.faults() == []
+        chrome.screenshot(browser, tmp_path / f"offers-{width}.png", width)
+        reader.pane("element")
+        reader.focus("#try-storage-whose")
+        reader.press("c")  # "carrier_01 only"
+        assert reader.text("#try-storage-whose option:checked") == "carrier_01 only"
+        browser.execute_script("document.getElementById('try-storage-whose').form.querySelector('button').focus()")
+        reader.press("\ue007")
+        assert "On 1 robot: carrier_01." in reader.text("#element")
+        assert "1 path to assess opens" in reader.text("#element")
+        assert reader.faults() == []
+        chrome.screenshot(browser, tmp_path / f"trial-{width}.png", width)

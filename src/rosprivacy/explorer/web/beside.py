@@ -50,7 +50,7 @@ def beside(standing: Standing, now: Standing, page: Page, trials: Trials, words:
     """
     view = page.view
     finding = standing.findings.get(view.finding)
-    can_try = now.session.of_one_robot and not finding and not view.trial
+    can_try = now.session.can_try and not finding and not view.trial
     at = standing.elements.get(page.pane.id) if page.pane and can_try else None
     return Beside(
         finding_pane(standing, finding, view, words) if finding else None,

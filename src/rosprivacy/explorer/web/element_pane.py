@@ -151,7 +151,7 @@ def pane_of(standing: Standing, element: Element, view: View, words: Words) -> P
         kinds=_all_kinds(standing, words),
         brings=next((one.label.kind for one in offers if one.label.role == forms.SOURCE), "PersonalData"),
         labelled=labelled,
-        robots=stands_for(standing.session, element, words),
+        robots=stands_for(standing, element, words),
         whose=chosen,
     )
 

@@ -11,7 +11,7 @@ from rosprivacy.analysis.decisions import Choice
 from rosprivacy.analysis.model import ARTICLE_10
 from rosprivacy.explorer.element_ids import element_id
 from rosprivacy.explorer.web.closes_pane import Closes, closes_pane
-from rosprivacy.explorer.web.trial_offers import flow_id, line_id
+from rosprivacy.explorer.web.trial_offers import flow_id, line_id, lines_of
 from rosprivacy.report.page.finding_entries import finding_entries
 from rosprivacy.report.page.index import Index
 
@@ -35,13 +35,16 @@ class Hop(NamedTuple):
     flow
         Of a filter between it and the next one; empty at the end.
     lines
-        Of the lines that are told, what cuts each.
+        Of the lines that are told, what cuts each; empty for a line of no policy.
+    at
+        Id of the element whose lines they are: of the two, the one that is on a robot.
     """
 
     told: Told
     address: str
     flow: str
     lines: tuple[str, ...]
+    at: str
 
 
 class FindingPane(NamedTuple):
@@ -60,7 +63,9 @@ class FindingPane(NamedTuple):
     file
         The decisions file; empty where the program was started without one.
     can_try
-        Whether something can be tried and decided: of one robot, and not within a trial.
+        Whether something can be tried: not within a trial.
+    can_close
+        Whether it can be asked what closes it, and decided: of one robot.
     element
         Where its place of exit is in hand.
     """
@@ -75,6 +80,7 @@ class FindingPane(NamedTuple):
     file: str
     element: str
     can_try: bool
+    can_close: bool
 
 
 def finding_pane(standing: Standing, finding: Finding, view: View, words: Words) -> FindingPane:
@@ -83,18 +89,21 @@ def finding_pane(standing: Standing, finding: Finding, view: View, words: Words)
     said = next(one for one in document["findings"] if one["id"] == finding.id)
     index = Index({**document, "findings": [said]}, words)
     (entry,) = finding_entries(index)
-    can_try = standing.session.of_one_robot and not view.trial
+    session = standing.session
+    can_try = session.can_try and not view.trial
+    can_close = session.of_one_robot and not view.trial
     return FindingPane(
         id=finding.id,
         entry=entry,
         law=tuple(_law(said, index)),
-        hops=tuple(_hops(finding, entry, view)),
-        closes=closes_pane(standing, finding, index) if view.closes and can_try else None,
+        hops=tuple(_hops(finding, entry, standing, view)),
+        closes=closes_pane(standing, finding, index) if view.closes and can_close else None,
         ask=view._replace(closes=not view.closes).address,
         choices=tuple(choice.value for choice in Choice),
-        file=standing.session.decisions_file or "",
+        file=session.decisions_file or "",
         element=view.to(element_id(finding.leak.identity)).address,
         can_try=can_try,
+        can_close=can_close,
     )
 
 
@@ -108,14 +117,18 @@ def _law(said: Mapping[str, Any], index: Index) -> Iterable[str]:
             yield words.pair(provision, words.known(f"law.{row['verdict']}", row["verdict"]))
 
 
-def _hops(finding: Finding, entry: Entry, view: View) -> Iterable[Hop]:
+def _hops(finding: Finding, entry: Entry, standing: Standing, view: View) -> Iterable[Hop]:
     """The hops of the report, with their elements."""
+    session, known = standing.session, lines_of(standing)
     after = [*finding.witness[1:], None]
     for number, (element, target, told) in enumerate(zip(finding.witness, after, entry.hops, strict=True)):
         grants = finding.steps[number].grants if target else ()
+        on_robot = [one for one in (element, target) if one and session.robots_like(one.robot)]
+        lines = [line_id(grant.place) for grant, _ in zip(grants, told.lines, strict=False)]
         yield Hop(
             told,
             view.to(element_id(element.identity)).address,
             flow_id(element, target) if target else "",
-            tuple(line_id(grant.place) for grant, _ in zip(grants, told.lines, strict=False)),
+            tuple(one if one in known else "" for one in lines),
+            element_id((on_robot or [element])[0].identity),
         )

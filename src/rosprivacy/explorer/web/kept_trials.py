@@ -14,6 +14,8 @@ from rosprivacy.explorer.web.standing import Standing
 from rosprivacy.explorer.web.trial_forms import Tried
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from rosprivacy.explorer.scenarios import Scenario, WhatIf
     from rosprivacy.explorer.session import Session
     from rosprivacy.explorer.web.forms import Form
@@ -72,6 +74,11 @@ class Trials:
         names = form.choice("first", self.names), form.choice("second", self.names)
         first, second = (self._session.scenarios[name].what for name in names)
         return Tried(together(first, second), tuple(dict.fromkeys(said for name in names for said in self.says(name))))
+
+    def beside(self, name: str) -> Iterator[str]:
+        """Yield the others that can be tried together with one: on the same robots."""
+        kept = self._session.scenarios
+        yield from (one for one in kept if one != name and kept[one].what.robots == kept[name].what.robots)
 
     def drop(self, name: str) -> None:
         """Forget one."""

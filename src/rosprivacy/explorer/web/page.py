@@ -216,7 +216,7 @@ def _found(standing: Standing, view: View, words: Words) -> tuple[Row, ...]:
 def _row(element: Element, told: str, standing: Standing, view: View, words: Words) -> Row:
     name = element_id(element.identity)
     kind = words.known(f"kind.{element.kind}", element.kind)
-    told = " · ".join(part for part in (kind, told, stands_for(standing.session, element, words)) if part)
+    told = " · ".join(part for part in (kind, told, stands_for(standing, element, words)) if part)
     return Row(name, shown(element.full_name), told, view.to(name).address)
 
 

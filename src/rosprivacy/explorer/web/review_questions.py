@@ -146,7 +146,7 @@ def question_of(standing: Standing, element: Element, words: Words) -> Question:
 
 def named_with_robots(element: Element, standing: Standing, words: Words) -> str:
     """Return the same as ``named``; of a fleet with how many robots it is asked about."""
-    return words.row(filter(None, [named(element, words), stands_for(standing.session, element, words)]))
+    return words.row(filter(None, [named(element, words), stands_for(standing, element, words)]))
 
 
 def named(element: Element, words: Words) -> str:

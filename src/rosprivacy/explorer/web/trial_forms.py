@@ -16,6 +16,7 @@ from rosprivacy.explorer.scenarios import WhatIf
 from rosprivacy.explorer.web.forms import EVERY, FormError
 from rosprivacy.explorer.web.titles import title_of
 from rosprivacy.explorer.web.trial_offers import between, cleans, lines_of
+from rosprivacy.explorer.web.whose import ROBOT, WHOSE, robots_told
 from rosprivacy.report.document.analysis import label_key
 from rosprivacy.report.naming import name
 from rosprivacy.report.page.closing import change_told
@@ -50,7 +51,20 @@ def tried_in(form: Form, standing: Standing, words: Words) -> Tried:
     FormError
         If it tries nothing that can be tried.
     """
-    return _KINDS[form.choice("what", _KINDS)](form, standing, words)
+    found = _KINDS[form.choice("what", _KINDS)](form, standing, words)
+    robots = found.what.robots
+    if standing.session.of_one_robot:
+        return found
+    if not robots:
+        raise FormError("It belongs to no robot: what the fleet file states is changed there.")
+    return found._replace(says=(*found.says, robots_told(standing.session, robots, words)))
+
+
+def _robots(form: Form, standing: Standing, *elements: Element) -> tuple[str, ...]:
+    """Of a fleet, on which robots it is tried: those of the model of the first element on a robot, or that one."""
+    alone = form.choice("whose", WHOSE) == ROBOT
+    of = (standing.session.robots_like(element.robot, only_this_robot=alone) for element in elements)
+    return next(filter(None, of), ())
 
 
 def _filter(form: Form, standing: Standing, words: Words) -> Tried:
@@ -61,20 +75,25 @@ def _filter(form: Form, standing: Standing, words: Words) -> Tried:
     kinds, data = _kinds(form, standing, words)
     source, target = (shown(end.full_name) for end in ends[0])
     step = ProposedStep(FILTER, 0, kinds or _all(standing), between=ends)
-    return Tried(WhatIf(steps=(step,)), (words("z.filter", source=source, target=target, data=data),))
+    what = WhatIf(steps=(step,), robots=_robots(form, standing, *ends[0]))
+    return Tried(what, (words("z.filter", source=source, target=target, data=data),))
 
 
 def _cut(form: Form, standing: Standing, words: Words) -> Tried:
     lines = lines_of(standing)
     place = lines[form.choice("line", lines)]
-    return Tried(WhatIf(cut=((place.file, place.line),)), (words("x.try.says.cut", line=shown(str(place))),))
+    element = standing.elements.get(form.one("element"))
+    robots = _robots(form, standing, element) if element else ()
+    what = WhatIf(cut=((place.file, place.line),), robots=robots)
+    return Tried(what, (words("x.try.says.cut", line=shown(str(place))),))
 
 
 def _storage(form: Form, standing: Standing, words: Words) -> Tried:
     element = _element(form, standing)
     called = words("x.try.storage.name")
     said = {"kind": "storage", **_facts(form)}
-    what = WhatIf(elements={called: said}, flows=((_end(element), called),))
+    robots = _robots(form, standing, element)
+    what = WhatIf(elements={called: said}, flows=((_end(element), called),), robots=robots)
     facts = [words.pair(words("c.retention"), words.duration(said["retention"]))] if "retention" in said else []
     facts += [words.pair(words("c.place"), said["country"])] if "country" in said else []
     return Tried(what, (words("x.try.says.storage", element=shown(element.full_name)), *facts))
@@ -102,13 +121,14 @@ def _doubt(form: Form, standing: Standing, words: Words) -> Tried:
     if not cleans(standing, form.one("element")):
         raise FormError("It is not said to clean anything.")
     kinds, data = _kinds(form, standing, words)
-    what = WhatIf(doubted=((element.kind, element.name, kinds),))
+    robots = _robots(form, standing, element)
+    what = WhatIf(doubted=((element.kind, element.name, kinds),), robots=robots)
     return Tried(what, (words("x.try.says.doubt", element=shown(element.full_name), data=data),))
 
 
 def _proposal(form: Form, standing: Standing, words: Words) -> Tried:
     """A proposal of ``mitigate``, whole or one change of it."""
-    found = standing.mitigation
+    found = standing.mitigation if standing.session.of_one_robot else None
     proposals = found.proposals if found else ()
     number = form.number("proposal")
     if found is None or number >= len(proposals) or not proposals[number].steps:

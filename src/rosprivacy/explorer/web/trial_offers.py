@@ -14,11 +14,13 @@ from rosprivacy.analysis.many_flows import parted
 from rosprivacy.analysis.text import fit
 from rosprivacy.explorer.element_ids import DIGITS, element_id
 from rosprivacy.explorer.web.titles import title_of
+from rosprivacy.explorer.web.whose import MODEL, ROBOT, robots_told
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.model import Element, Flow, Place
+    from rosprivacy.explorer.session import Session
     from rosprivacy.explorer.web.standing import Standing
     from rosprivacy.report.words.words import Words
 
@@ -43,6 +45,10 @@ class Offers(NamedTuple):
         Of data that is there.
     cleans
         Whether labels say that the element cleans something.
+    whose
+        Of a fleet: the robots on which it can be tried.
+    shared
+        Whether the element belongs to no robot of a fleet: what is on no robot is changed in the fleet file.
     """
 
     element: str
@@ -50,6 +56,8 @@ class Offers(NamedTuple):
     lines: tuple[Offer, ...]
     kinds: tuple[Offer, ...]
     cleans: bool
+    whose: tuple[Offer, ...]
+    shared: bool
 
 
 def flow_id(source: Element, target: Element) -> str:
@@ -73,14 +81,29 @@ def offers_at(standing: Standing, element: Element, words: Words) -> Offers:
     ends = ((flow, _id(flow.source, standing), _id(flow.target, standing)) for flow in _flows(standing, element))
     flows = [flow for flow, source, target in ends if {source, target} <= standing.carried.keys()]
     kinds = standing.carried.get(at, ())
+    whose = tuple(_whose(standing.session, element, words))
+    shared = not (standing.session.of_one_robot or whose)
     places = dict.fromkeys(grant.place for flow in flows for grant in flow.grants)
+    if standing.result.fleet:  # a line of the fleet file is none of a policy
+        places = {place: None for place in places if line_id(place) in lines_of(standing)}
     return Offers(
         element=at,
         flows=tuple(_told(flows, standing))[:MOST],
-        lines=tuple(Offer(line_id(place), fit(str(place))) for place in places)[:MOST],
+        lines=() if shared else tuple(Offer(line_id(place), fit(str(place))) for place in places)[:MOST],
         kinds=tuple(Offer(kind, title_of(kind, standing.vocabulary, words)) for kind in kinds),
-        cleans=cleans(standing, at),
+        cleans=cleans(standing, at) and not shared,
+        whose=whose,
+        shared=shared,
     )
+
+
+def _whose(session: Session, element: Element, words: Words) -> Iterator[Offer]:
+    """All robots of the model, and this one only; once where these are the same."""
+    model, alone = (session.robots_like(element.robot, only_this_robot=one) for one in (False, True))
+    if model != alone:
+        yield Offer(MODEL, robots_told(session, model, words))
+    if alone:
+        yield Offer(ROBOT, robots_told(session, alone, words))
 
 
 def cleans(standing: Standing, at: str) -> bool:

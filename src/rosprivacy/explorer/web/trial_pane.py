@@ -8,25 +8,35 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import shown
+from rosprivacy.explorer.effects import CLOSED, OPENED, PLAINER
 from rosprivacy.report.page.finding_entries import sentence_of
 from rosprivacy.report.page.index import Index
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from rosprivacy.explorer.effects import Difference
     from rosprivacy.explorer.web.kept_trials import Trials
     from rosprivacy.explorer.web.standing import Standing
     from rosprivacy.explorer.web.view import View
     from rosprivacy.report.words.words import Words
 
 MOST = 40  # sentences of one list
+NAMED = 3  # robots
 
 
 class Told(NamedTuple):
-    """A finding that the trial opens or closes; one that it closes is to be found only where it stands."""
+    """A finding that the trial opens or closes; one that it closes is to be found only where it stands.
+
+    Attributes
+    ----------
+    robots
+        What else to know, in words: that it is no longer pseudonymised; of a fleet, on which robots it is so.
+    """
 
     sentence: str
     address: str
+    robots: str = ""
 
 
 class TrialPane(NamedTuple):
@@ -85,6 +95,7 @@ def trial_pane(now: Standing, trials: Trials, view: View, words: Words) -> Trial
     counts = [
         words.count(len(difference.closed), "x.trial.closes"),
         words.count(len(difference.opened), "x.trial.opens"),
+        *([words.count(len(difference.plainer), "x.trial.plainer")] if difference.plainer else []),
         words.count(left, "x.trial.left"),
         *([words.count(difference.fewer, "x.trial.fewer")] if difference.fewer else []),
         *([words.count(difference.more, "x.trial.more")] if difference.more else []),
@@ -94,13 +105,17 @@ def trial_pane(now: Standing, trials: Trials, view: View, words: Words) -> Trial
         says=trials.says(name),
         verdicts=(f"code.{difference.before}", f"code.{difference.verdict}"),
         counts=tuple(counts),
-        closed=tuple(_told(difference.closed[:MOST], now, out, words)),
-        opened=tuple(_told(difference.opened[:MOST], there, view.to("")._replace(find=""), words)),
+        closed=tuple(_told(difference, CLOSED, now, out, words)),
+        opened=tuple(
+            told
+            for what in (OPENED, PLAINER)
+            for told in _told(difference, what, there, view.to("")._replace(find=""), words)
+        ),
         more=(len(difference.closed[MOST:]), len(difference.opened[MOST:])),
         remarks=tuple(map(shown, trials.scenario(name).remarks)),
         address=view.to("")._replace(find="").address,
         leads=out.address,
-        others=tuple(one for one in trials.names if one != name),
+        others=tuple(trials.beside(name)),
     )
 
 
@@ -114,7 +129,17 @@ def kept_trials(trials: Trials, view: View, words: Words) -> tuple[Kept, ...]:
     return tuple(kept)
 
 
-def _told(ids: Iterable[str], standing: Standing, view: View, words: Words) -> Iterable[Told]:
+def _told(difference: Difference, what: str, standing: Standing, view: View, words: Words) -> Iterable[Told]:
     index = Index(standing.document, words)
-    for one in ids:
-        yield Told(sentence_of(index.by_id[one], index), view._replace(finding=one).address)
+    told = words("x.trial.plainly") if what == PLAINER else ""
+    for one in _ids(difference, what)[:MOST]:
+        robots = difference.robots.get((what, one), ())
+        names = words.row(words.first(list(map(shown, robots)), NAMED))
+        on = words("x.trial.robots", robots=words.count(len(robots), "robot"), names=names) if robots else ""
+        yield Told(
+            sentence_of(index.by_id[one], index), view._replace(finding=one).address, " ".join(filter(None, [told, on]))
+        )
+
+
+def _ids(difference: Difference, what: str) -> tuple[str, ...]:
+    return {OPENED: difference.opened, CLOSED: difference.closed, PLAINER: difference.plainer}[what]

@@ -7,9 +7,12 @@ from typing import TYPE_CHECKING, NamedTuple
 from rosprivacy.analysis.errors import shown
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from rosprivacy.analysis.model import Element
     from rosprivacy.explorer.label_targets import Target
     from rosprivacy.explorer.session import Session
+    from rosprivacy.explorer.web.standing import Standing
     from rosprivacy.report.words.words import Words
 
 MODEL, ROBOT = "model", "robot"
@@ -56,11 +59,29 @@ def target_told(target: Target, words: Words) -> str:
     return told
 
 
-def stands_for(session: Session, element: Element, words: Words) -> str:
+def robots_told(session: Session, robots: Sequence[str], words: Words) -> str:
+    """Return in words on which robots something is tried: those of one model, or one.
+
+    >>> from rosprivacy.explorer.fleet_session import FleetSession
+    >>> from rosprivacy.report.words.words import IN_ENGLISH
+    >>> session = FleetSession.open_fleet("examples/fleet/fleet.yaml")
+    >>> robots_told(session, session.robots_like("guide_01"), IN_ENGLISH)
+    'of model guide: 12 robots'
+    """
+    n = len(robots)
+    if n == 1:
+        return words("x.whose.robot", robot=shown(robots[0]))
+    told = words("x.whose.robots", n=n)
+    model = session.model_of(robots[0])
+    return words("x.whose.model", models=shown(model), robots=told) if model else told
+
+
+def stands_for(standing: Standing, element: Element, words: Words) -> str:
     """Return in words for how many robots one stands, and whether it is not as its model; empty for one like itself."""
     parts = []
-    if element.robot in session.outliers:
+    fleet = standing.result.fleet
+    if element.robot in standing.session.outliers:
         parts.append(words("x.outlier"))
-    if (n := len(session.stands_for(element.robot))) > 1:
+    if fleet and (n := len(fleet.likeness.placed(element.robot))) > 1:
         parts.append(words("x.stands", n=n))
     return words.row(parts)
