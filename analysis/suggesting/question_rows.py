@@ -29,7 +29,7 @@ from rosprivacy.analysis.suggesting.written import WrittenLabel, written
 from rosprivacy.analysis.written_names import literal
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.answer import Analysis, Finding, OpenQuestion
     from rosprivacy.analysis.hierarchy import Hierarchy
@@ -122,9 +122,19 @@ class Question(NamedTuple):
 
 
 def questions(
-    proposals: Sequence[Proposal], analysis: Analysis, bound: Bound, told: Traffic, hierarchy: Hierarchy
+    proposals: Sequence[Proposal],
+    analysis: Analysis,
+    bound: Bound,
+    told: Traffic,
+    hierarchy: Hierarchy,
+    refused: Callable[[Label], bool] = lambda _: False,
 ) -> tuple[Question, ...]:
     """Return what a person is asked next, in review order.
+
+    Parameters
+    ----------
+    refused
+        Whether a person has said no to a label.
 
     Examples
     --------
@@ -141,7 +151,7 @@ def questions(
     >>> one.about, [(row.element.name, row.kinds, [reply.key for reply in row.replies]) for row in one.rows]
     ('brings-in', [('/camera', ('FaceImage',), ['y']), ('/camera', ('Voice',), ['y'])])
     """
-    asked = _Asked(proposals, analysis, bound, told, hierarchy)
+    asked = _Asked(proposals, analysis, bound, told, hierarchy, refused)
     ends = asked.ends()
     first = {row.element.identity for rows in ends.values() for row in rows}
     groups = [*ends.items(), *asked.unreviewed(first)]
@@ -167,16 +177,21 @@ class _Asked:
     """One answer and what is proposed of its elements."""
 
     def __init__(
-        self, proposals: Sequence[Proposal], analysis: Analysis, bound: Bound, told: Traffic, hierarchy: Hierarchy
+        self,
+        proposals: Sequence[Proposal],
+        analysis: Analysis,
+        bound: Bound,
+        told: Traffic,
+        hierarchy: Hierarchy,
+        refused: Callable[[Label], bool],
     ) -> None:
+        self.refused = refused
         self.proposals, self.analysis, self.told, self.hierarchy = proposals, analysis, told, hierarchy
         self.said = said_of(analysis.graph, bound)
         self.of: dict[Identity, list[Proposal]] = defaultdict(list)
         for one in proposals:
             self.of[one.label.element.identity].append(one)
-        self.reached = _kinds_by_element(
-            (one.element, (*one.categories, *one.pseudonymised)) for one in analysis.carried
-        )
+        self.reached = reached_kinds(analysis)
         self.writes = {analysis.graph.elements[vertex].identity for vertex, there in told.writes.items() if there}
 
     def ends(self) -> dict[str, list[Row]]:
@@ -198,21 +213,16 @@ class _Asked:
             return None
         element = leaks[0].label.element
         reached = self.reached.get(element.identity, ())
-        kinds = {kind for one in leaks for kind in self._narrowed(one.label.kind, reached)}
+        asked = {kind for one in leaks for kind in narrowed(one.label.kind, reached, self.hierarchy)}
         said = self.said.get(element.identity, ())
-        kinds = {kind for kind in kinds if not spoken_of(Label(element, LEAK, kind), said, self.hierarchy)}
+        labels = [Label(element, LEAK, kind) for kind in sorted(asked)]
+        labels = [one for one in labels if not (spoken_of(one, said, self.hierarchy) or self.refused(one))]
+        kinds = [one.kind for one in labels]
         if not kinds:
             return None
-        reply = Reply(YES, _written(element, LEAK, sorted(kinds)))
-        refused = tuple(written(one.label) for one in leaks)
-        return Row(element, tuple(sorted(kinds)), (reply,), _reasons(leaks), refused)
-
-    def _narrowed(self, kind: str, reached: Iterable[str]) -> Iterator[str]:
-        for one in reached:
-            if kind in self.hierarchy.ancestors[one]:
-                yield one
-            elif self.hierarchy.overlap(kind, one) is not None:
-                yield kind
+        reply = Reply(YES, _written(element, LEAK, kinds))
+        refused = tuple(map(written, labels))  # of what is asked, and not of the broader kind that is suggested
+        return Row(element, tuple(kinds), (reply,), _reasons(leaks), refused)
 
     def unreviewed(self, first: Collection[Identity]) -> Iterator[tuple[str, list[Row]]]:
         """Yield open elements: nodes that data reaches first and channels; and if there are none, the nodes behind.
@@ -296,8 +306,27 @@ def _reasons(about: Iterable[Proposal]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(reason.reason for one in about for reason in one.evidence))
 
 
-def _kinds_by_element(pairs: Iterable[tuple[Element, Sequence[str]]]) -> dict[Identity, tuple[str, ...]]:
+def reached_kinds(analysis: Analysis) -> dict[Identity, tuple[str, ...]]:
+    """Return by element the kinds of data that get there, pseudonymised ones too.
+
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.findings.findings import analyse
+    >>> [kinds for (_, _, name), kinds in reached_kinds(analyse(*factory())).items() if name == "/faces"]
+    [('FaceTemplate',)]
+    """
     found: dict[Identity, set[str]] = defaultdict(set)
-    for element, kinds in pairs:
-        found[element.identity].update(kinds)
+    for one in analysis.carried:
+        found[one.element.identity].update((*one.categories, *one.pseudonymised))
     return {identity: tuple(sorted(kinds)) for identity, kinds in found.items()}
+
+
+def narrowed(kind: str, reached: Iterable[str], hierarchy: Hierarchy) -> frozenset[str]:
+    """Return what of a kind gets somewhere: the narrower kinds that do, or the kind itself where broader ones do.
+
+    >>> from rosprivacy.analysis.example import factory
+    >>> hierarchy = factory()[2]
+    >>> sorted(narrowed("Biometric", ["FaceTemplate", "Voice"], hierarchy)), sorted(narrowed("Voice", [], hierarchy))
+    (['FaceTemplate'], [])
+    """
+    there = [one for one in reached if hierarchy.overlap(kind, one) is not None]
+    return frozenset(one if kind in hierarchy.ancestors[one] else kind for one in there)

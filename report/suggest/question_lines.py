@@ -72,7 +72,12 @@ def keys_line(question: Question, picked: Collection[int], keys: Collection[str]
         return _list_line(len(question.rows), picked)
     of = f"{' '.join(ascii_uppercase[at] for at in sorted(picked))}: " if picked else ""
     of = of or ("all: " if len(question.rows) > 1 else "")
-    said = [f"{one.key} {_words(one)}" for one in question.rows[0].replies if one.key in keys]
+    several = len(picked) > 1
+    said = [
+        f"{one.key} {_words(one)}{' (as a list)' if several and one.key == NOTHING else ''}"
+        for one in question.rows[0].replies
+        if one.key in keys
+    ]
     more = [f"{key} {word}" for key, word in OF_KEYS.items() if key in (*keys, "q")]
     letters = ["A-Z pick some"] if len(question.rows) > 1 else []
     return f"  {of}{', '.join([*said, *more, *letters])}"

@@ -158,6 +158,7 @@ def concluded(
         options=options,
         again=partial(_again, system.under, question) if system.under else None,
         closes=_proposed if system.policies else None,
+        label_files=system.label_files,
     )
 
 

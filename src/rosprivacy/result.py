@@ -51,6 +51,8 @@ class Result(Answer):
         Analyses the same policies, as they were read, under other labels; None of a fleet and of a database.
     closes
         Proposes changes that remove the open findings; None where the policies are not at hand.
+    label_files
+        Of a fleet: by robot, the label files that it was read with.
     """
 
     policies: tuple[Policy, ...] = ()
@@ -59,6 +61,7 @@ class Result(Answer):
     options: Options = field(default_factory=Options)
     again: Callable[[tuple[str | Labels, ...]], Result] | None = field(default=None, compare=False)
     closes: Callable[[Result], Mapping[str, Any] | str] | None = field(default=None, compare=False)
+    label_files: Mapping[str, tuple[str, ...]] = field(default_factory=dict, compare=False)
 
     def __repr__(self) -> str:
         return f"<Result: {self._verdict()}>"

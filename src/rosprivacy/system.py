@@ -5,7 +5,7 @@ In: what ``robot_system``, ``fleet_system``, ``stored_system`` or Spark have rea
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.fleet.likeness import NO_ROBOTS
@@ -38,6 +38,8 @@ class System:
         Whether it is told as one, with patterns and robots counted.
     under
         The same policies, as they were read, under other labels; None where labels stand elsewhere.
+    label_files
+        Of a fleet: by robot, the label files that it was read with.
     """
 
     graph: FlowGraph
@@ -51,3 +53,4 @@ class System:
     is_fleet: bool = False
     under: Callable[[tuple[str | Labels, ...]], System] | None = None
     types: tuple[TypesFile, ...] = ()
+    label_files: Mapping[str, tuple[str, ...]] = field(default_factory=dict)

@@ -395,6 +395,24 @@ def test_a_package_of_the_sources_that_is_called_as_a_library_is_told(cli: Cli, 
     assert "notice" not in text
 
 
+@pytest.mark.parametrize("now", [IDS, STRING])
+def test_a_limit_whose_type_is_another_one_now_is_told(cli: Cli, robot: Path, now: str) -> None:
+    """Somebody accepted it from a list, since nothing of it can be in identifiers."""
+    note = "answered by Ada on 2026-01-01 in a list of 2: type hri_msgs/msg/IdsList of /c is not made for Video"
+    (robot / "l.yaml").write_text(
+        "labels: 1\nnodes:\n  /driver: {source: [Video]}\ntopics:\n"
+        f'  /c: {{types: [{now}], never: [Video], note: "{note}"}}\n',
+        "utf-8",
+    )
+    told = (
+        f"never of /c was accepted since its type was hri_msgs/msg/IdsList; it is {now} now (l.yaml:5): look at it anew"
+    )
+    for command in ("suggest", "analyze"):
+        done = cli(command, "p.xml", "-l", "l.yaml", cwd=robot)
+        shown = " ".join((done.stdout + done.stderr).split())
+        assert (told in shown) is (now != IDS), shown
+
+
 def test_code_tells_types_with_its_line(cli: Cli, robot: Path) -> None:
     (robot / "l.yaml").write_text("labels: 1\n", "utf-8")
     (robot / "driver.py").write_text(
@@ -525,6 +543,24 @@ def test_a_no_of_one_robot_of_a_fleet_is_none_of_another(cli: Cli, tmp_path: Pat
     assert re.search(r"one:/camera +source Video ", told)
     alone = cli("suggest", "p.xml", "-l", "two.yaml", cwd=tmp_path).stdout
     assert not re.search(r"/camera +source Video ", alone)
+
+
+def test_a_no_in_a_models_file_is_one_of_its_robots_and_of_no_others(cli: Cli, tmp_path: Path) -> None:
+    (tmp_path / "p.xml").write_text(policy_of({"camera": (["/front"], []), "box": ([], ["/front"])}), "utf-8")
+    no = '# not: {"nodes": {"/camera": {"source": ["Video"]}}} by Ada on 2026-01-01\n'
+    for name, more in (("m", no), ("n", ""), ("own", no)):
+        (tmp_path / f"{name}.yaml").write_text(f"labels: 1\nnodes:\n  /box: conduit\n{more}", "utf-8")
+    (tmp_path / "fleet.yaml").write_text(
+        "fleet: 1\nmodels:\n  m: {policies: [p.xml], labels: [m.yaml]}\n  n: {policies: [p.xml], labels: [n.yaml]}\n"
+        "groups: [{robots: 2, model: m}, {robots: 2, model: n}]\n"
+        "robots:\n  mine: {model: n, labels: [own.yaml]}\n  theirs: {model: n}\n",
+        "utf-8",
+    )
+    told = cli("suggest", "--fleet", "fleet.yaml", cwd=tmp_path).stdout
+    asked = re.findall(r"(\w+):/camera +source Video ", told)
+    assert "mine" not in asked
+    assert asked
+    assert not [name for name in asked if name.startswith("m")]
 
 
 def test_suggestions_for_a_fleet_are_not_written_into_one_label_file(cli: Cli, tmp_path: Path) -> None:

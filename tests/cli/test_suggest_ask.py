@@ -75,7 +75,7 @@ def test_a_no_is_kept_with_who_and_when_and_not_asked_again(
 ) -> None:
     first = ask(cli, robot, "nq", monkeypatch, "--by", "Bo")
     assert "node /customer_bridge: Video" in first.stdout
-    line = '# not: {"nodes": {"/customer_bridge": {"leak": ["PersonalData"]}}} by Bo on 2026-01-01'
+    line = '# not: {"nodes": {"/customer_bridge": {"leak": ["Video"]}}} by Bo on 2026-01-01'
     assert (robot / "l.yaml").read_text("utf-8") == f"{SOURCE}{line}\n"
     again = ask(cli, robot, "q", monkeypatch)
     assert "let such data out" not in again.stdout
@@ -86,8 +86,26 @@ def test_a_no_is_kept_with_who_and_when_and_not_asked_again(
     assert "let such data out" in ask(cli, robot, "q", monkeypatch).stdout
 
 
-LEAKING = "labels: 1\nauthor: Ada\nnodes:\n  /eye: {source: [Video]}\n  /ear: {source: [Voice]}\n  /box: {leak: none}\n"
-TWO_KINDS = policy_of({"eye": (["/front"], []), "ear": (["/front"], []), "box": ([], ["/front"])})
+def test_a_no_to_one_kind_silences_no_other(cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The suggestion is of a leak of everything; what was asked about is the pictures."""
+    ask(cli, robot, "nq", monkeypatch)
+    later = (robot / "l.yaml").read_text("utf-8").replace("[Video]}\n", "[Video]}\n  /middle: {source: [Voice]}\n", 1)
+    (robot / "l.yaml").write_text(later, "utf-8")
+    assert "leak PersonalData" in cli("suggest", "p.xml", "-l", "l.yaml", cwd=robot).stdout
+    again = ask(cli, robot, "nq", monkeypatch).stdout
+    assert "let such data out" in again
+    assert "node /customer_bridge: Voice\n" in again
+    assert "leak PersonalData" not in cli("suggest", "p.xml", "-l", "l.yaml", cwd=robot).stdout
+
+
+def test_a_no_to_a_kind_is_one_to_narrower_kinds(cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    no = '# not: {"nodes": {"/customer_bridge": {"leak": ["PersonalData"]}}} by Bo on 2026-01-01\n'
+    (robot / "l.yaml").write_text(f"{SOURCE}{no}", "utf-8")
+    assert "let such data out" not in ask(cli, robot, "q", monkeypatch).stdout
+
+
+LEAKING = "labels: 1\nauthor: Ada\nnodes:\n  /eye: {source: [Video]}\n  /two: {source: [Voice]}\n  /box: {leak: none}\n"
+TWO_KINDS = policy_of({"eye": (["/front"], []), "two": (["/front"], []), "box": ([], ["/front"])})
 
 
 @pytest.mark.parametrize("keys", ["10\n", "1", "0", "2", "9", "3\n", "/front 0", "/rear topic never Video and Voice\n"])

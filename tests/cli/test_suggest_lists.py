@@ -6,6 +6,7 @@ import io
 import subprocess
 import sys
 import time
+from string import ascii_uppercase
 from typing import TYPE_CHECKING
 
 import pytest
@@ -13,9 +14,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import rosprivacy
-from rosprivacy.analysis.suggesting.question_rows import NOTHING_THROUGH
+from rosprivacy.analysis.suggesting.question_rows import GOES_THROUGH, NOTHING, NOTHING_THROUGH
 from rosprivacy.labelling.asking import asked_now, with_answer
-from rosprivacy.labelling.conversation import QUIT, SKIP, Conversation
+from rosprivacy.labelling.closing_lists import closing
+from rosprivacy.labelling.conversation import QUIT, SKIP, Conversation, allowed
 from rosprivacy.labelling.suggesting import suggest_labels
 from rosprivacy.settings import Settings
 from tests.helpers.command import cli
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from rosprivacy.analysis.suggesting.question_rows import Question
+    from rosprivacy.labelling.suggesting import Suggested
     from tests.helpers.command import Cli, Done
     from tests.helpers.little_robots import Nodes
 
@@ -212,18 +215,77 @@ class Careless:
         raise AssertionError(remark)
 
 
+class Picking:
+    """Somebody who picks all channels that are asked about together, says that nothing goes through, and confirms."""
+
+    def __init__(self, last: str = "") -> None:
+        self.last = last
+        self.remarks: list[str] = []
+        self.lists: list[tuple[str, ...]] = []
+
+    def key(self, question: Question, picked: frozenset[int]) -> str:
+        if question.about == NOTHING_THROUGH:
+            self.lists.append(tuple(row.element.name for row in question.rows))
+            return self.last or str(len(question.rows))
+        left = [at for at in range(len(question.rows)) if at not in picked]
+        if question.about != GOES_THROUGH or len(question.rows) == 1:
+            return SKIP
+        return ascii_uppercase[left[0]] if left else NOTHING
+
+    def told(self, remark: str) -> None:
+        self.remarks.append(remark)
+
+
+def test_channels_that_a_person_picks_are_asked_as_a_list(robot: Path) -> None:
+    """Also those of which nobody knows the type: each was picked by its letter, and is shown again."""
+    (robot / "l.yaml").write_text(HEAD + "  /here: conduit\n", "utf-8")
+    stopped = Picking(QUIT)
+    conversation(robot / "p.xml", robot / "l.yaml", stopped).run()
+    assert stopped.lists == [("/a", "/arm", "/grid", "/joints", "/plain", "/text")]  # the name of /battery says more
+    assert "never" not in (robot / "l.yaml").read_text("utf-8")
+    conversation(robot / "p.xml", robot / "l.yaml", Picking()).run()
+    text = (robot / "l.yaml").read_text("utf-8")
+    assert text.count('never: [Video], note: "answered by Ada on 2026-11-23 in a list of 6"') == 6
+
+
+def test_a_picked_channel_that_would_close_a_finding_is_asked_by_itself(robot: Path) -> None:
+    nodes: Nodes = NODES | {"out": ([], ["/joints"])}
+    (robot / "p.xml").write_text(policy_of(nodes), "utf-8")
+    (robot / "l.yaml").write_text(f"{HEAD}  /here: conduit\n  /out: {{leak: [Video]}}\n", "utf-8")
+    before = found(robot / "p.xml", robot / "l.yaml")
+    person = Picking()
+    conversation(robot / "p.xml", robot / "l.yaml", person).run()
+    assert person.lists == [("/arm", "/grid", "/plain", "/text")]
+    told = "it could close a known finding, and is asked by itself"
+    assert person.remarks == [f"topic /a: {told}", f"topic /joints: {told}"]
+    assert found(robot / "p.xml", robot / "l.yaml") == before
+
+
+def test_of_rows_that_nobody_picked_nothing_is_said_together(robot: Path) -> None:
+    (robot / "l.yaml").write_text(HEAD + "  /here: conduit\n", "utf-8")
+    question = next(one for one in asked_of(robot) if one.about == GOES_THROUGH)
+    assert NOTHING not in allowed(question)
+    assert NOTHING in allowed(question, {0, 1})
+
+
+def asked_of(robot: Path) -> tuple[Question, ...]:
+    return asked_now(suggest_labels((str(robot / "p.xml"),), (str(robot / "l.yaml"),), Settings()))
+
+
 def conversation(policy: Path, file: Path, person: object) -> Conversation:
     options = Settings()
+    last: list[Suggested] = []
 
     def now() -> tuple[Question, ...]:
-        return asked_now(suggest_labels((str(policy),), (str(file),), options))
+        last[:] = [suggest_labels((str(policy),), (str(file),), options)]
+        return asked_now(last[0])
 
     def keep(question: Question, key: str) -> tuple[str, ...]:
         written = with_answer(str(file), question, key, "Ada", "2026-11-23", options)
         file.write_text(written.text, "utf-8")
         return written.remarks
 
-    return Conversation(now, keep, person)  # type: ignore[arg-type]  # two kinds of persons
+    return Conversation(now, keep, person, lambda rows: closing(rows, last[0].result))  # type: ignore[arg-type]  # several kinds of persons
 
 
 CHANNELS = ("joints", "battery", "arm", "text", "plain")
@@ -254,6 +316,10 @@ def test_an_accepted_list_closes_no_known_finding(
     before = found(policy, file)
     conversation(policy, file, Careless()).run()
     assert found(policy, file) == before
+    picked = tmp_path / "picked.yaml"
+    picked.write_text(file.read_text("utf-8"), "utf-8")
+    conversation(policy, picked, Picking()).run()
+    assert found(policy, picked) == before
     text = (tmp_path / "l.yaml").read_text("utf-8")
     assert not any(f"  /{name}: {{never" in text for name in ("text", "plain", "a"))
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.ingest.policies.names import covered
 from rosprivacy.labelling.asking import asked_now, with_answer
+from rosprivacy.labelling.closing_lists import closing
 from rosprivacy.labelling.conversation import Conversation
 from rosprivacy.labelling.suggesting import suggest_labels
 from rosprivacy.reading.robot_system import answer_robot
@@ -18,10 +19,10 @@ from tests.decisions.scripted_person import Knowledge, ScriptedPerson
 from tests.decisions.truths import entries
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Sequence
     from pathlib import Path
 
-    from rosprivacy.analysis.suggesting.question_rows import Question
+    from rosprivacy.analysis.suggesting.question_rows import Question, Row
     from rosprivacy.result import Result
     from tests.decisions.scripted_person import Identity
     from tests.decisions.truths import Entry, Truth
@@ -91,7 +92,7 @@ class _Session:
         self.file.write_text("labels: 1\n", "utf-8")
 
     def run(self) -> tuple[Count, ScriptedPerson]:
-        conversation = Conversation(self._now, self._keep, self.person)
+        conversation = Conversation(self._now, self._keep, self.person, self._closing)
         proposed = {row.element.name for one in self._now() for row in one.rows}
         for line in [*self.left]:
             if any(word in "".join(line.lines) for word in FIRST) and line.name not in proposed:
@@ -99,7 +100,7 @@ class _Session:
         conversation.run()
         while not self._reached() and self.left:
             self._type(next((line for line in self.left if self._missing(line)), self.left[0]))
-            again = Conversation(self._now, self._keep, self.person)
+            again = Conversation(self._now, self._keep, self.person, self._closing)
             again.run()
             conversation.answers += again.answers
             conversation.lists += again.lists
@@ -162,6 +163,9 @@ class _Session:
         if self._reached():
             return ()
         return asked_now(suggest_labels((self.truth.policy,), (str(self.file), *self.truth.more), self.settings))
+
+    def _closing(self, rows: Sequence[Row]) -> Sequence[Row]:
+        return closing(rows, self._result())
 
     def _keep(self, question: Question, key: str) -> tuple[str, ...]:
         written = with_answer(str(self.file), question, key, WHO, DAY, self.settings)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.model import GLOB
 from rosprivacy.analysis.suggesting.question_rows import (
     BRINGS_IN,
+    GOES_THROUGH,
     LETS_OUT,
     MAKES,
     NOTHING,
@@ -140,7 +141,8 @@ class ScriptedPerson:
         for at, row in enumerate(question.rows):
             key = self.knowledge.key(question, row)
             reply = row.reply(key)
-            parts[key, at if reply and reply.takes_away else -1].append(at)
+            alone = reply and reply.takes_away and not (question.about == GOES_THROUGH and key == NOTHING)
+            parts[key, at if alone else -1].append(at)
         if {key for key, _ in parts} == {YES, NO}:
             yield from (ascii_uppercase[at] for at in parts[YES, -1])
             yield EXACTLY
@@ -148,6 +150,6 @@ class ScriptedPerson:
         (key, _), rows = min(parts.items(), key=lambda part: len(part[1]))
         if key == SKIP:
             self.typed([question.rows[at].element.identity for at in rows])
-        if len(parts) > 1:
+        if len(parts) > 1 or (key == NOTHING and len(rows) > 1):
             yield from (ascii_uppercase[at] for at in rows)
         yield key

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from rosprivacy.labelling.conversation import BY_ITSELF
 from tests.decisions.counting import asked, by_hand
 from tests.decisions.truths import care_home, entries, truths
 from tests.helpers.paths import ROOT
@@ -39,7 +40,7 @@ def test_the_figures_of_the_page(corpus: Path, tmp_path: Path) -> None:
     for truth in truths(corpus, tmp_path):
         hand, (count, person) = by_hand(truth), asked(truth, tmp_path / "labels.yaml")
         assert count.same, truth.name
-        assert person.remarks == []
+        assert all(remark.endswith(BY_ITSELF) for remark in person.remarks)
         row = [
             truth.name, f"{hand.decisions} ({hand.taking_away})", f"{count.decisions} ({count.taking_away})",
             f"{count.typed}", f"{hand.keys}", f"{count.keys}", f"{count.rows}",

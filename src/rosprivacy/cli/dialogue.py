@@ -15,6 +15,7 @@ from rosprivacy.analysis.text import counted
 from rosprivacy.cli.output import emit
 from rosprivacy.clock import today
 from rosprivacy.labelling.asking import asked_now, with_answer
+from rosprivacy.labelling.closing_lists import closing
 from rosprivacy.labelling.conversation import Conversation, allowed
 from rosprivacy.labelling.named_answers import AND, BEGINS, keys_of, lines_of, takes_away
 from rosprivacy.labelling.suggested_lines import who_says
@@ -58,7 +59,7 @@ def ask(file: Path, told: Callable[[], Suggested], by: str | None, settings: Set
                 emit(written.text, file, edited=file)
         return written.remarks
 
-    conversation = Conversation(now, keep, _Terminal())
+    conversation = Conversation(now, keep, _Terminal(), lambda rows: closing(rows, last[0].result))
     whole = conversation.run()
     if not whole:
         last[:] = [told()]
@@ -114,7 +115,8 @@ class _Terminal:
             return key
         rows = tuple(row for at, row in enumerate(question.rows) if (at in picked) is not whole or not picked)
         lines = lines_of(question._replace(rows=rows), key) if whole or key in can else ()
-        problem = f"{BY_LINE}: {shown(AND.join(lines))}" if lines else f"is no answer here: {OUT_OF_STEP}"
+        said = AND.join(lines) if whole else " or ".join(lines)
+        problem = f"{BY_LINE}: {shown(said)}" if lines else f"is no answer here: {OUT_OF_STEP}"
         typer.echo(f"{key!r} {problem}")
         return ""
 

@@ -14,6 +14,7 @@ from rosprivacy.ingest.suggestions.refusals import refusal, with_refusals
 from rosprivacy.labelling.closing_lists import without_closing
 from rosprivacy.labelling.conversation import NO
 from rosprivacy.labelling.label_lines import Written
+from rosprivacy.labelling.refused import refused_in
 from rosprivacy.labelling.suggested_lines import check_room, text_of
 from rosprivacy.ontology.vocabulary import load
 
@@ -30,7 +31,8 @@ def asked_now(told: Suggested) -> tuple[Question, ...]:
     result = told.result
     graph = result.analysis.graph
     hierarchy = result.vocabulary.hierarchy
-    made = questions(told.proposals, result.analysis, result.bound, traffic(graph, result.bound), hierarchy)
+    read = traffic(graph, result.bound)
+    made = questions(told.proposals, result.analysis, result.bound, read, hierarchy, refused_in(result).says)
     return tuple(without_closing(one, result) for one in made)
 
 
@@ -61,7 +63,7 @@ def _labels(question: Question, key: str, note: str) -> Iterator[NewLabel]:
     for row in question.rows:
         reply = row.reply(key)
         if reply:
-            said = key == YES or question.about == NOTHING_THROUGH
+            said = key == YES or row.alike  # of rows that a person has picked, the reasons may say the opposite
             why = f": {'; '.join(row.reasons)}" if said and row.reasons else ""
             yield NewLabel(*reply.label, f"{note}{why}")
 

@@ -33,14 +33,21 @@ def without_closing(question: Question, result: Result) -> Question:
         parts[row.alike].append(row)
     apart: list[Row] = []
     for likeness, rows in parts.items():
-        if likeness and len(rows) > 1 and _closes(rows, result):
-            alone = [row for row in rows if _closes([row], result)]
-            apart += alone if alone and not _closes([row for row in rows if row not in alone], result) else rows
+        if likeness and len(rows) > 1:
+            apart += closing(rows, result)
     if not apart:
         return question
     return question._replace(
         rows=tuple(row._replace(alike=frozenset()) if row in apart else row for row in question.rows)
     )
+
+
+def closing(rows: Sequence[Row], result: Result) -> Sequence[Row]:
+    """Return the channels of a list that would close a finding: those that do alone, or all if only several do."""
+    if not _closes(rows, result):
+        return ()
+    alone = [row for row in rows if _closes([row], result)]
+    return alone if alone and not _closes([row for row in rows if row not in alone], result) else rows
 
 
 def _closes(rows: Sequence[Row], result: Result) -> bool:

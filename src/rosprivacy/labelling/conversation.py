@@ -5,8 +5,8 @@ the command line and the tests put theirs in. Every answer is kept before the ne
 
 The keys: a letter from A on picks a row, or puts it back; all others speak of the picked rows, or of all if none is
 picked. ``x`` says yes to the picked rows and no to the others. What takes data away is said of one row alone; or of a
-list of channels that are alike, by the number of its rows. There a letter takes a row out, and ``o`` takes out all;
-what is taken out is asked like any other channel.
+list of channels, by the number of its rows: of those that are alike, or of those that the person has picked one by one
+before ``0``. There a letter takes a row out, and ``o`` takes out all; what is taken out is asked as other channels are.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from dataclasses import dataclass, field
 from string import ascii_uppercase
 from typing import TYPE_CHECKING, Protocol
 
+from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.suggesting.question_rows import (
     BRINGS_IN,
     GOES_THROUGH,
@@ -28,13 +29,14 @@ from rosprivacy.analysis.suggesting.question_rows import (
 from rosprivacy.analysis.text import counted
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Iterator
+    from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 
     from rosprivacy.analysis.suggesting.alike_channels import Alike
     from rosprivacy.analysis.suggesting.question_rows import Row
 
 NO, OPEN, SKIP, QUIT, EXACTLY = "n", "o", "s", "q", "x"
 FEWEST = 2  # rows of a list: one row is asked by itself
+BY_ITSELF = "it could close a known finding, and is asked by itself"
 CHANGED = "this list is not as it was any more: nothing is kept, and it is asked anew"
 Said = tuple[str, tuple[str, str, str], tuple[str, ...]]  # what a row asks, in this conversation
 
@@ -61,6 +63,8 @@ class Conversation:
         What is asked under the labels as they are.
     keep
         Keeps what is said of all rows of a question by a key, before it returns; returns remarks if it could not.
+    closing
+        Which of some channels would close a finding if nothing went through any of them: no list has these.
     lists
         How many rows each list had that was confirmed.
     """
@@ -68,6 +72,7 @@ class Conversation:
     now: Callable[[], Iterable[Question]]
     keep: Callable[[Question, str], tuple[str, ...]]
     person: Person
+    closing: Callable[[Sequence[Row]], Sequence[Row]] = lambda rows: rows
     answers: int = 0
     _later: set[Said] = field(default_factory=set)
     lists: list[int] = field(default_factory=list)
@@ -88,6 +93,10 @@ class Conversation:
                 if answer is None:
                     return False
                 key, rows = answer
+                if key == NOTHING and len(rows) > 1:
+                    if not self._picked(question, rows):
+                        return False
+                    break
                 kept = kept or key not in (OPEN, SKIP)
                 rest = [row for row in question.rows if row not in rows]
                 if key == OPEN:
@@ -120,8 +129,23 @@ class Conversation:
                 yield Question(question.about, together)
             yield from (Question(question.about, (row,)) for row in rows if row not in (*together, *in_lists))
 
-    def _listed(self, question: Question) -> bool:
-        """Ask about a list; return False if the person stops."""
+    def _picked(self, question: Question, rows: Sequence[Row]) -> bool:
+        """Ask about channels that the person has picked, as a list; return False if the person stops."""
+        apart = self.closing(rows)
+        for row in apart:
+            self.person.told(f"{row.element.kind} {shown(row.element.name)}: {BY_ITSELF}")
+        self._alone.update(_said(question, row) for row in apart)
+        listed = tuple(row for row in rows if row not in apart)
+        return len(listed) < FEWEST or self._listed(Question(NOTHING_THROUGH, listed), by_hand=True)
+
+    def _listed(self, question: Question, *, by_hand: bool = False) -> bool:
+        """Ask about a list; return False if the person stops.
+
+        Parameters
+        ----------
+        by_hand
+            Whether the person has picked its rows.
+        """
         out: set[int] = set()
         while True:
             key = self.person.key(question, frozenset(out))
@@ -137,17 +161,22 @@ class Conversation:
             elif key == SKIP:
                 self._later.update(map(_of_channel, rows))
             elif key == str(len(rows)) and len(rows) >= FEWEST:
-                self._confirmed(Question(NOTHING_THROUGH, rows))
+                self._confirmed(Question(NOTHING_THROUGH, rows), by_hand=by_hand)
             else:
                 self.person.told(f"{key!r} is no answer here; {counted(len(rows), 'row')} left")
                 continue
             self._taken_out.update(_of_channel(question.rows[one]) for one in out)
             return True
 
-    def _confirmed(self, question: Question) -> None:
+    def _confirmed(self, question: Question, *, by_hand: bool) -> None:
         """Keep what is said of a list, if it would still be asked: the file may have changed meanwhile."""
-        still = [row for one in self.now() if one.about == GOES_THROUGH for row in one.rows if row.alike]
-        if any(row not in still for row in question.rows):
+        still = [row for one in self.now() if one.about == GOES_THROUGH for row in one.rows]
+        if by_hand:
+            asked = {_of_channel(row) for row in still}
+            same = all(_of_channel(row) in asked for row in question.rows) and not self.closing(question.rows)
+        else:
+            same = all(row in still and row.alike for row in question.rows)
+        if not same:
             self.person.told(CHANGED)
             return
         remarks = self.keep(question, NOTHING)
@@ -194,7 +223,8 @@ def allowed(question: Question, picked: Collection[int] = ()) -> tuple[str, ...]
     keys = Question(question.about, rows).keys()
     refuse = all(row.refused for row in question.rows)
     exactly = refuse and YES in keys and len(rows) < len(question.rows)
-    more = ((EXACTLY, exactly), (NO, refuse), (OPEN, len(rows) > 1), (SKIP, True))
+    together = question.about == GOES_THROUGH and len(picked) >= FEWEST and all(row.reply(NOTHING) for row in rows)
+    more = ((NOTHING, together), (EXACTLY, exactly), (NO, refuse), (OPEN, len(rows) > 1), (SKIP, True))
     return (*keys, *(key for key, there in more if there))
 
 

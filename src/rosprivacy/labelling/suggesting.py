@@ -19,16 +19,16 @@ from rosprivacy.analysis.suggesting.evidence import LEAK, SOURCE, TYPE
 from rosprivacy.analysis.suggesting.library_rules import NO_LIBRARIES
 from rosprivacy.analysis.suggesting.nodes import of_nodes
 from rosprivacy.analysis.suggesting.open_elements import of_channels, of_open
+from rosprivacy.analysis.suggesting.outdated_reasons import outdated_reasons
+from rosprivacy.analysis.suggesting.question_rows import reached_kinds
 from rosprivacy.analysis.suggesting.traffic import traffic
 from rosprivacy.analysis.suggesting.unprompted import unprompted
 from rosprivacy.analysis.suggesting.unsaid import unsaid
 from rosprivacy.analysis.suggesting.weighing import closes_finding, proposals
-from rosprivacy.analysis.suggesting.written import written
 from rosprivacy.analysis.text import counted
 from rosprivacy.ingest.packages.package_folders import read_packages, replacements, rests_on
 from rosprivacy.ingest.suggestions.library_file import read_library_rules
 from rosprivacy.ingest.suggestions.name_file import read_name_rules
-from rosprivacy.ingest.suggestions.refusals import refusal_key
 from rosprivacy.ingest.types import TABLE
 from rosprivacy.ingest.types.type_table import read_table
 from rosprivacy.labelling.basis import NO_CODE, Basis
@@ -49,6 +49,7 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.annotations.code_units import Local
     from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.labelling.interview import Interview
+    from rosprivacy.labelling.refused import Refused
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.report.contract.suggested import ModelEntry, SuggestionsDocument
     from rosprivacy.result import Result
@@ -241,12 +242,16 @@ def suggested_by(
         tuple(use for use in basis.code.unplaced if known.libraries.speaks(use)),
         basis.code.problems,
         basis.code.of_others,
-        (*replacements(known.packages), *_named_alike(basis.code.local, known.libraries)),
+        (
+            *replacements(known.packages),
+            *_named_alike(basis.code.local, known.libraries),
+            *outdated_reasons(result.analysis.graph, result.bound),
+        ),
     )
 
 
 def asked_by(
-    said: Iterable[Evidence], result: Result, found: Collection[str], refused: Collection[str]
+    said: Iterable[Evidence], result: Result, found: Collection[str], refused: Refused
 ) -> tuple[Proposal, ...]:
     """Return what a person is asked of what evidence says; of each element it depends on its own evidence alone.
 
@@ -255,10 +260,12 @@ def asked_by(
     found
         As ``with_findings`` returns.
     refused
-        What a person has said no to, as ``refusal_key`` has it.
+        What a person has said no to.
     """
     made = proposals(said, found)
-    made = tuple(one for one in made if refusal_key(written(one.label)) not in refused) if refused else made
+    if any(refused.of_robots.values()):
+        reached = reached_kinds(result.analysis)
+        made = tuple(one for one in made if not refused.silences(one.label, reached))
     return unsaid(_once(made, result), result.analysis.graph, result.bound, result.vocabulary.hierarchy)
 
 

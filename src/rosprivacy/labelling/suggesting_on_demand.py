@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import FlowGraph, MessageType
     from rosprivacy.analysis.suggesting.evidence import Evidence, Proposal
     from rosprivacy.analysis.suggesting.traffic import Traffic
+    from rosprivacy.labelling.refused import Refused
     from rosprivacy.labelling.suggesting import Identity, Known
     from rosprivacy.result import Result
 
@@ -114,7 +115,7 @@ class Suggestions:
         return with_findings(self._result)
 
     @cached_property
-    def _refused(self) -> frozenset[str]:
+    def _refused(self) -> Refused:
         return refused_in(self._result)
 
     @cached_property

@@ -187,11 +187,12 @@ def _made(
     files = [{"file": name, "sha256": digest} for name, digest in fleet.sources]
     seen = {one.file: one for member in members.values() for one in member.types}
     types = tuple(one for _, one in sorted(seen.items()))
+    files_by_robot = {robot.id: (*robot.labels, *robot.own) for group in groups for robot in group.robots}
     return FleetSystem(
         placed.graph, placed.bound, question.vocabulary, tuple(diagnostics),
         {**files_read(policies, labels, settings), **types_read(types), "fleet": files},
         tuple({policy.file: policy for policy in policies}.values()), labels, placed.likeness, is_fleet=True,
-        fleet=fleet, groups=groups, members=members, placed=placed, joins=joins,
+        fleet=fleet, groups=groups, members=members, placed=placed, joins=joins, label_files=files_by_robot,
     )  # fmt: skip
 
 

@@ -9,6 +9,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import InputError, InputErrors
+from rosprivacy.analysis.suggesting.outdated_reasons import outdated_reasons
 from rosprivacy.ingest.fleet.dds_domains import Member, stripped
 from rosprivacy.ingest.keystore.exposed import with_exposed
 from rosprivacy.ingest.labels.add_non_ros import extended
@@ -132,6 +133,7 @@ class Reader:
         bound, missing = join(whole, files, settings.bounds, robot.surroundings)
         self._refuse(missing)
         bound = with_exposed(whole, with_types(whole, bound, types, written), policies)
+        diagnostics += outdated_reasons(whole, bound)
         return Member(
             robot, policies, whole, bound, full, graph.profiles, tuple(files), tuple(dict.fromkeys(diagnostics)),
             types, robot.add,

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.analysis.model import MERGED, REFUSED_NAME, SEEN_ALTHOUGH_DENIED, SHARED_ENCLAVE
+from rosprivacy.analysis.suggesting.outdated_reasons import outdated_reasons
 from rosprivacy.answering import answer
 from rosprivacy.assumptions import files_read, remembered, types_read
 from rosprivacy.ingest.keystore.exposed import with_exposed
@@ -139,6 +140,7 @@ def _joined(
     said += careful_notices(graph.careful)
     rests_on = {**files_read(policies, files, settings), **types_read(types)}
     bound = with_exposed(graph, with_types(graph, bound, types), policies)
+    said += tuple(outdated_reasons(graph, bound))
     said = tuple(dict.fromkeys(said))  # several enclaves share what is said of their governance
     return System(graph, bound, vocabulary, said, rests_on, policies, tuple(files), types=types)
 

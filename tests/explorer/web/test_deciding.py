@@ -10,6 +10,7 @@ from lxml import html
 from rosprivacy.ingest.decisions.decisions_file import parse_decisions
 from rosprivacy.ontology.vocabulary import load
 from tests.helpers.explorers import BARE, FACTORY, Explorer, copied, version
+from tests.helpers.full_disk import full_disk
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -28,6 +29,21 @@ def begun(explore: Explore, tmp_path: Path) -> Explorer:
 def decide(explorer: Explorer, client: Any, **fields: Any) -> Any:
     said = {"version": version(client), "finding": explorer.session.findings[0].id, **fields}
     return client.post(f"/decide?finding={explorer.session.findings[0].id}", data=said)
+
+
+def test_a_decision_on_a_full_disk_is_told_and_decides_nothing(begun: Explorer, tmp_path: Path) -> None:
+    client = begun.client()
+    assert decide(begun, client, **SIGNED).status_code == 303
+    before, standing = (tmp_path / "d.yaml").read_bytes(), [f.id for f in begun.session.findings if f.stands]
+    with full_disk(10):
+        refused = client.post("/decide", data={"version": version(client), "finding": standing[0], **SIGNED})
+    assert refused.status_code == 422
+    assert "cannot be written" in refused.text
+    assert [f.id for f in begun.session.findings if f.stands] == standing
+    assert (tmp_path / "d.yaml").read_bytes() == before
+    assert sorted(file.name for file in tmp_path.glob("*d.yaml*")) == ["d.yaml"]  # and nothing is left beside it
+    again = client.post("/decide", data={"version": version(client), "finding": standing[0], **SIGNED})
+    assert again.status_code == 303
 
 
 def test_a_decision_is_written_at_once_and_shown(begun: Explorer, tmp_path: Path) -> None:
