@@ -62,7 +62,7 @@ def explore(
     from rosprivacy.explorer.journal import journal_folder
     from rosprivacy.explorer.web.application import Site
     from rosprivacy.explorer.web.guard import Door
-    from rosprivacy.explorer.web.review_site import ReviewSite
+    from rosprivacy.explorer.web.review.review_site import ReviewSite
     from rosprivacy.explorer.web.serving import bound_socket
     from rosprivacy.report.words.words import Words
 
@@ -79,7 +79,7 @@ def explore(
     with bound_socket(port) as listening:
         door, words = Door(listening.getsockname()[1], read_only), Words(lang.value)
         if ask:
-            from rosprivacy.explorer.web.cypher_site import StoredSite
+            from rosprivacy.explorer.web.cypher.cypher_site import StoredSite
 
             site: Site = StoredSite(session, settings, words, door, ask)
         else:

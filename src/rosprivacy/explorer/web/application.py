@@ -23,14 +23,14 @@ from rosprivacy.explorer.web import forms
 from rosprivacy.explorer.web.beside import beside
 from rosprivacy.explorer.web.decision_form import decision_in
 from rosprivacy.explorer.web.guard import Guard
-from rosprivacy.explorer.web.kept_trials import Trials
 from rosprivacy.explorer.web.page import page_of
 from rosprivacy.explorer.web.page_picture import drawn, pictures_of
 from rosprivacy.explorer.web.rendering import Message, rendered
 from rosprivacy.explorer.web.saying import label_of, limit_of
 from rosprivacy.explorer.web.standing import Standing
 from rosprivacy.explorer.web.titles import title_of
-from rosprivacy.explorer.web.trial_forms import TOGETHER, tried_in
+from rosprivacy.explorer.web.trials.kept_trials import Trials
+from rosprivacy.explorer.web.trials.trial_forms import TOGETHER, tried_in
 from rosprivacy.explorer.web.view import trial_in, view_of
 from rosprivacy.explorer.web.whose import ROBOT, WHOSE
 from rosprivacy.labelling.suggesting import what_is_known

@@ -8,16 +8,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.explorer.web.finding_pane import finding_pane
-from rosprivacy.explorer.web.trial_offers import offers_at
-from rosprivacy.explorer.web.trial_pane import kept_trials, trial_pane
+from rosprivacy.explorer.web.trials.trial_offers import offers_at
+from rosprivacy.explorer.web.trials.trial_pane import kept_trials, trial_pane
 
 if TYPE_CHECKING:
     from rosprivacy.explorer.web.finding_pane import FindingPane
-    from rosprivacy.explorer.web.kept_trials import Trials
     from rosprivacy.explorer.web.page import Page
     from rosprivacy.explorer.web.standing import Standing
-    from rosprivacy.explorer.web.trial_offers import Offers
-    from rosprivacy.explorer.web.trial_pane import Kept, TrialPane
+    from rosprivacy.explorer.web.trials.kept_trials import Trials
+    from rosprivacy.explorer.web.trials.trial_offers import Offers
+    from rosprivacy.explorer.web.trials.trial_pane import Kept, TrialPane
     from rosprivacy.report.words.words import Words
 
 

@@ -11,7 +11,7 @@ from rosprivacy.analysis.decisions import Choice
 from rosprivacy.analysis.model import ARTICLE_10
 from rosprivacy.explorer.element_ids import element_id
 from rosprivacy.explorer.web.closes_pane import Closes, closes_pane
-from rosprivacy.explorer.web.trial_offers import flow_id, line_id, lines_of
+from rosprivacy.explorer.web.trials.trial_offers import flow_id, line_id, lines_of
 from rosprivacy.report.page.finding_entries import finding_entries
 from rosprivacy.report.page.index import Index
 

@@ -11,7 +11,7 @@ from rosprivacy.analysis.errors import shown
 from rosprivacy.explorer.edits import ROLES
 from rosprivacy.explorer.web.left_open import note_before
 from rosprivacy.explorer.web.page import verdict_of
-from rosprivacy.explorer.web.review_questions import named_with_robots
+from rosprivacy.explorer.web.review.review_questions import named_with_robots
 from rosprivacy.explorer.web.titles import titles_of
 from rosprivacy.explorer.web.whose import target_told
 from rosprivacy.report.page.finding_entries import finding_entries
@@ -21,7 +21,7 @@ from rosprivacy.report.page.kinds import kinds
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from rosprivacy.explorer.web.review_questions import Asked
+    from rosprivacy.explorer.web.review.review_questions import Asked
     from rosprivacy.explorer.web.standing import Standing
     from rosprivacy.report.page.kinds import Kind
     from rosprivacy.report.words.words import Words

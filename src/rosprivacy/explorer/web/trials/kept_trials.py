@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.explorer.scenarios import together, told
 from rosprivacy.explorer.web.forms import FormError
 from rosprivacy.explorer.web.standing import Standing
-from rosprivacy.explorer.web.trial_forms import Tried
+from rosprivacy.explorer.web.trials.trial_forms import Tried
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -17,10 +17,10 @@ from rosprivacy.explorer.web import forms
 from rosprivacy.explorer.web.application import PROBLEM, Site, Told
 from rosprivacy.explorer.web.left_open import bringing_nothing, leaving, left_of, note_before
 from rosprivacy.explorer.web.rendering import Message
-from rosprivacy.explorer.web.review_answers import NONE, REASONED, SKIP, NotYet, answer_in_review
-from rosprivacy.explorer.web.review_questions import asked, progress, question_of
-from rosprivacy.explorer.web.review_sources import sources_of
-from rosprivacy.explorer.web.review_summary import summary_of
+from rosprivacy.explorer.web.review.review_answers import NONE, REASONED, SKIP, NotYet, answer_in_review
+from rosprivacy.explorer.web.review.review_questions import asked, progress, question_of
+from rosprivacy.explorer.web.review.review_sources import sources_of
+from rosprivacy.explorer.web.review.review_summary import summary_of
 from rosprivacy.explorer.web.saying import label_of
 from rosprivacy.explorer.web.view import LONGEST
 from rosprivacy.explorer.web.whose import ROBOT, WHOSE

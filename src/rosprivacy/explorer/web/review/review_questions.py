@@ -13,7 +13,7 @@ from rosprivacy.analysis.errors import shown
 from rosprivacy.explorer.element_ids import element_id
 from rosprivacy.explorer.web.element_pane import pane_of
 from rosprivacy.explorer.web.left_open import brings_nothing, left_of, note_before, says_of_data
-from rosprivacy.explorer.web.review_answers import offered
+from rosprivacy.explorer.web.review.review_answers import offered
 from rosprivacy.explorer.web.view import View
 from rosprivacy.explorer.web.whose import stands_for
 

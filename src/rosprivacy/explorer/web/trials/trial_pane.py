@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from rosprivacy.explorer.effects import Difference
-    from rosprivacy.explorer.web.kept_trials import Trials
     from rosprivacy.explorer.web.standing import Standing
+    from rosprivacy.explorer.web.trials.kept_trials import Trials
     from rosprivacy.explorer.web.view import View
     from rosprivacy.report.words.words import Words
 

@@ -15,7 +15,7 @@ from rosprivacy.analysis.mitigation.proposals import ProposedStep
 from rosprivacy.explorer.scenarios import WhatIf
 from rosprivacy.explorer.web.forms import EVERY, FormError
 from rosprivacy.explorer.web.titles import title_of
-from rosprivacy.explorer.web.trial_offers import between, cleans, lines_of
+from rosprivacy.explorer.web.trials.trial_offers import between, cleans, lines_of
 from rosprivacy.explorer.web.whose import ROBOT, WHOSE, robots_told
 from rosprivacy.report.document.analysis import label_key
 from rosprivacy.report.naming import name

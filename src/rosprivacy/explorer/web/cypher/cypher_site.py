@@ -23,8 +23,8 @@ from rosprivacy.analysis.errors import DatabaseError, RosPrivacyError
 from rosprivacy.analysis.text import shortened
 from rosprivacy.explorer.element_ids import element_id
 from rosprivacy.explorer.web.application import DONE, PROBLEM, READING, Site
-from rosprivacy.explorer.web.cypher_answer import ROWS, picture_of, table_of
-from rosprivacy.explorer.web.cypher_form import EDIT, FIELD, LONGEST_TEXT, Asked, asked_in, prefilled
+from rosprivacy.explorer.web.cypher.cypher_answer import ROWS, picture_of, table_of
+from rosprivacy.explorer.web.cypher.cypher_form import EDIT, FIELD, LONGEST_TEXT, Asked, asked_in, prefilled
 from rosprivacy.explorer.web.forms import Form, FormError
 from rosprivacy.explorer.web.rendering import Message
 from rosprivacy.explorer.web.titles import titles_of
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from starlette.responses import Response
 
     from rosprivacy.explorer.session import Session
-    from rosprivacy.explorer.web.cypher_answer import Table
+    from rosprivacy.explorer.web.cypher.cypher_answer import Table
     from rosprivacy.explorer.web.guard import Door
     from rosprivacy.explorer.web.standing import Standing
     from rosprivacy.report.explorer.pictures import Shown

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.explorer.web.left_open import left_of, note_before
-from rosprivacy.explorer.web.review_questions import named_with_robots
+from rosprivacy.explorer.web.review.review_questions import named_with_robots
 
 if TYPE_CHECKING:
     from rosprivacy.explorer.web.standing import Standing
