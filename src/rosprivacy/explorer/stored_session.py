@@ -85,6 +85,26 @@ class StoredSession(Session):
         """
         raise InputErrors([InputError(name, 0, *_refusal())])
 
+    def save(self) -> Saved:
+        """Refuse to write: there is no label file.
+
+        Raises
+        ------
+        InputError
+            Always.
+        """
+        raise InputError(self._files.name, 0, *_refusal())
+
+    def merge(self) -> tuple[Edit, ...]:
+        """Refuse to read anew: there is no label file.
+
+        Raises
+        ------
+        InputError
+            Always.
+        """
+        raise InputError(self._files.name, 0, *_refusal())
+
     def save_as(self, file: str) -> Saved:
         """Refuse to write a label file.
 
