@@ -174,6 +174,10 @@ def test_whatever_is_understood_is_of_closed_lists(
         ),
         ({"only": ["Location"]}, Answer(TOPIC, "sensitive"), {"sensitive": True}),
         ("conduit", Answer(NODE, "absent", note="tests only"), {"absent": "tests only"}),
+        ({"leak": "none"}, Answer(NODE, "conduit", ("Video",)), {"leak": "none", "conduit": ["Video"]}),
+        ({"leak": "none"}, Answer(NODE, "leak", ("Video",)), {"leak": ["Video"]}),
+        ({"source": "none"}, Answer(NODE, "source", ("Video",)), {"source": ["Video"]}),
+        ({"source": "none"}, Answer(NODE, "leak", ("Video",)), {"source": "none", "leak": ["Video"]}),
     ],
 )
 def test_an_answer_about_some_kinds_leaves_the_others_alone(now: Any, answer: Answer, label: dict[str, Any]) -> None:

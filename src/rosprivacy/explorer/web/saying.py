@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.explorer.web import forms
+from rosprivacy.ingest.labels.label_reader import NONE
 
 if TYPE_CHECKING:
     from rosprivacy.explorer.web.forms import Answer
@@ -37,6 +38,8 @@ def label_of(answer: Answer, now: Any) -> dict[str, Any]:
     {'source': ['Voice'], 'conduit': True}
     >>> label_of(forms.Answer(node, "conduit", ("Video",)), "conduit")
     {'conduit': True}
+    >>> label_of(forms.Answer(node, "conduit", ("Video",)), {"leak": "none"})
+    {'leak': 'none', 'conduit': ['Video']}
     >>> label_of(forms.Answer(Element("topic", "/scan"), "sensitive", ("Voice",)), {"only": ["Location"]})
     {'only': ['Location', 'Voice']}
     """
@@ -119,9 +122,9 @@ def _without(now: Any, answer: Answer) -> dict[str, Any]:
 
 
 def _less(said: Any, answer: Answer) -> Any:
-    """Kinds that are said, without those of an answer."""
-    if said is True:
-        return True
+    """Kinds that are said, without those of an answer; that none is said stays, until one is."""
+    if said is True or said == NONE:
+        return said
     if isinstance(said, dict):
         return {kind: how for kind, how in said.items() if kind not in answer.kinds}
     return [kind for kind in _as_list(said) if kind not in answer.kinds]
@@ -137,4 +140,4 @@ def _as_map(said: Any) -> dict[str, Any]:
 
 
 def _as_list(said: Any) -> list[Any]:
-    return [] if said is None else list(said) if isinstance(said, list | tuple) else [said]
+    return [] if said in (None, NONE) else list(said) if isinstance(said, list | tuple) else [said]
