@@ -183,7 +183,7 @@ def house() -> str:
         for _, wing, below in ladder:
             if wing and (folder / wing / "__init__.py").is_file():
                 rows.append(house_row(folder / wing, f"of its room: {', '.join(below) or 'no other wing'}"))
-                inner = sorted(file.parent for file in (folder / wing).glob("*/__init__.py"))
+                inner = sorted(file.parent for file in (folder / wing).rglob("*/__init__.py"))
                 rows += [house_row(one, "as its wing") for one in inner]
     return "\n".join(["| folder | what it is | may import |", "| --- | --- | --- |", *rows, ""])
 
