@@ -129,7 +129,7 @@ class _Contents:
     """What stands for files when robots are compared; each is read once, and parsed only if another has its content."""
 
     def __init__(self, policies: Iterable[str]) -> None:
-        self._digests = {file: _digest(file) for file in dict.fromkeys(policies)}
+        self._digests = {file: digest(file) for file in dict.fromkeys(policies)}
         self._shared = {digest for digest, files in Counter(self._digests.values()).items() if files > 1}
         self._labels: dict[str, str] = {}
         self._alone: dict[str, bool] = {}
@@ -166,12 +166,12 @@ class _Contents:
     def _label_file(self, file: str) -> str:
         """The content; the name of one that comes with the program."""
         if file not in self._labels:
-            self._labels[file] = file if file.startswith(OURS) else _digest(file) or file
+            self._labels[file] = file if file.startswith(OURS) else digest(file) or file
         return self._labels[file]
 
 
-def _digest(file: str) -> str:
-    """The SHA-256 of what is in a file; empty where there is none to be read."""
+def digest(file: str) -> str:
+    """Return the SHA-256 of what is in a file; empty where there is none to be read."""
     data = _bytes(file)
     return "" if data is None else hashlib.sha256(data).hexdigest()
 

@@ -206,3 +206,21 @@ def test_a_fleet_has_no_label_file_to_be_saved_under_a_new_name(small: Path) -> 
     session = begun(small)
     with pytest.raises(InputError, match="labels of a fleet"):
         session.save_as("new.yaml")
+
+
+def test_robots_that_somebody_made_alike_meanwhile_stay_apart(tmp_path: Path) -> None:
+    """Saving compares robots by what is on the disk; of a file that was not read again, the answer rests on the old."""
+    (tmp_path / "p.xml").write_text(POLICY)
+    (tmp_path / "model.yaml").write_text("labels: 1\nnodes:\n  /camera: {source: [Video]}\n")
+    (tmp_path / "one.yaml").write_text("labels: 1\nnodes: {/recorder: conduit}\n")
+    (tmp_path / "two.yaml").write_text("labels: 1\nnodes: {/recorder: {leak: [Video]}}\n")
+    file = tmp_path / "fleet.yaml"
+    file.write_text(
+        "fleet: 1\nmodels:\n  cart: {policies: [p.xml], labels: [model.yaml]}\n"
+        "robots:\n  r1: {model: cart, labels: [one.yaml]}\n  r2: {model: cart, labels: [two.yaml]}\n"
+    )
+    session = FleetSession.open_fleet(str(file))
+    (tmp_path / "one.yaml").write_text((tmp_path / "two.yaml").read_text())
+    session.label("r1:/camera", source=["Video"], note="seen")
+    assert isinstance(session.save(), Saved)
+    assert [finding.leak.full_name for finding in session.findings] == ["r2:/recorder"]

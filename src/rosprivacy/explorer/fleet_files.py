@@ -150,6 +150,7 @@ class FleetFiles:
                 saved.append(done)
         finally:
             if saved:
+                self.read.reader.relabel(self._with(edits)[0])  # what was written is known, and is compared
                 self.read = self.read.again()
         remarks = tuple(remark for one in saved for remark in one.remarks)
         names = ", ".join(one.file for one in saved)

@@ -159,8 +159,13 @@ class FleetRead:
         return system, other.missing
 
     def again(self) -> FleetRead:
-        """Return the same with robots compared anew, by what their files hold now."""
-        return replace(self, groups=_groups(self.fleet, self.question))
+        """Return the same with robots compared anew, by what their files hold now.
+
+        What a label file holds that somebody else changed is not what was read: who reads it is like nobody else.
+        """
+        groups = _groups(self.fleet, self.question)
+        other = self.reader.changed()
+        return replace(self, groups=tuple(part for group in groups for part in group.apart(other)))
 
 
 def _made(

@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.analysis.suggesting.outdated_reasons import outdated_reasons
+from rosprivacy.ingest.fleet.alike_robots import digest
 from rosprivacy.ingest.fleet.dds_domains import Member, stripped
 from rosprivacy.ingest.keystore.exposed import with_exposed
 from rosprivacy.ingest.labels.add_non_ros import extended
 from rosprivacy.ingest.labels.bag_storages import told_of_bags
 from rosprivacy.ingest.labels.binding import join, remarks
-from rosprivacy.ingest.labels.label_file import read_labels
+from rosprivacy.ingest.labels.label_file import OURS, read_labels
 from rosprivacy.ingest.mitigation.deny_lines import with_denied
 from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, Change, changed
 from rosprivacy.ingest.policies.comparisons import careful_notices
@@ -104,6 +105,11 @@ class Reader:
         self._members = {
             key: member for key, member in self._members.items() if other.isdisjoint(files_of(member.robot))
         }
+
+    def changed(self) -> frozenset[str]:
+        """Return the label files that hold something else now than what was read."""
+        there = {file: digest(file) for file, _ in self.labels if not file.startswith(OURS)}
+        return frozenset(file for (file, _), one in self.labels.items() if there.get(file, one.sha256) != one.sha256)
 
     def _read_policies(self, robot: Robot) -> tuple[tuple[Policy, ...], tuple[Diagnostic, ...]]:
         settings = self._settings
