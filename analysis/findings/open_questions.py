@@ -104,8 +104,20 @@ def _first(net: Net, sources: Iterable[int], uncovered: Mapping[int, int]) -> di
     first: dict[int, int] = dict.fromkeys(nodes, 0)
     for own in [asked & ~made, *(spread.bits.both(i) & asked for i in sorted(spread.made))]:
         if own:
-            ends = {v: nodes.get(v, 0) | spread.leaks.get(v, 0) & own for v in {*nodes, *spread.leaks}}
-            reached = search(net, sources, spread.all_bits if own & made else own, ends)
-            for vertex in nodes:
-                first[vertex] |= present(reached, vertex) & own
+            ends = nodes | {v: nodes.get(v, 0) | there for v, bits in spread.leaks.items() if (there := bits & own)}
+            reached = search(net, sources, _becoming(spread, own), ends)
+            for vertex, bits in nodes.items():
+                if bits & own:
+                    first[vertex] |= present(reached, vertex) & own
     return first
+
+
+def _becoming(spread: Spread, bits: int) -> int:
+    """Some bits, and those that they are made of somewhere: nothing else can become one of them on its way."""
+    pairs = {pair for there in spread.derives.values() for pair in there}
+    found = 0
+    while found != bits:
+        found = bits
+        for before, after in pairs:
+            bits |= (bits >> after & 1) << before
+    return found

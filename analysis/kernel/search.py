@@ -50,15 +50,13 @@ class Search:
         if self.begun.get(vertex, 0) & bits:
             return 0
         arrived = self.arrived.get(vertex, ())
-        levels = [level for level, new, _ in arrived if new & bits]
-        made = [
-            level
-            for bits_out, origin in self.left.get(vertex, ())
-            if bits_out & bits and origin is not None and origin != START
-            for level, new, _ in arrived
-            if new >> origin & 1
-        ]
-        return min(levels + made, default=None)
+        nearest = next((level for level, new, _ in arrived if new & bits), None)
+        for made, origin in self.left.get(vertex, ()):
+            if origin is not None and origin != START and made & bits:
+                level = next((level for level, new, _ in arrived if new >> origin & 1), None)
+                if level is not None and (nearest is None or level < nearest):
+                    nearest = level
+        return nearest
 
     def arrives_first(self, vertex: int, bit: int) -> bool:
         """Whether a bit arrives at a vertex no later than it is made there."""

@@ -3,29 +3,24 @@
 from __future__ import annotations
 
 import threading
-from contextlib import closing, contextmanager
 from functools import partial
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import pytest
 from lxml import html
 from starlette.testclient import TestClient
 
 from rosprivacy.explorer.element_ids import element_id
-from rosprivacy.explorer.stored_session import StoredSession
 from rosprivacy.explorer.web.application import Site
 from rosprivacy.explorer.web.cypher.cypher_answer import BOXES, LETTERS, LONGEST_CELL, ROWS
 from rosprivacy.explorer.web.cypher.cypher_form import LONGEST_TEXT
 from rosprivacy.explorer.web.cypher.cypher_site import AT_ONCE, StoredSite
-from rosprivacy.explorer.web.guard import LARGEST, Door
-from rosprivacy.ingest.database.loading import load
+from rosprivacy.explorer.web.guard import LARGEST
 from rosprivacy.private_neo4j import connection
 from rosprivacy.private_neo4j.connection import Connection
 from rosprivacy.queries.library import pack
-from rosprivacy.report.words.words import Words
-from rosprivacy.settings import Settings
-from tests.helpers.explorers import BARE, PORT, node
-from tests.helpers.graphs import care_home, rows_of
+from tests.helpers.askers import ENDLESS, HERE, Asker, asker, load_care_home, told
+from tests.helpers.explorers import BARE, node
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -35,56 +30,17 @@ if TYPE_CHECKING:
     from tests.helpers.explorers import Explorer
 
 pytestmark = pytest.mark.database
-HERE = {"origin": f"http://127.0.0.1:{PORT}"}
 HOSTILE = """<script>alert(1)</script>"' onload=x {{7*7}}"""
-ENDLESS = "UNWIND range(1, 1000000000) AS x WITH x WHERE x < 0 RETURN x"
-
-
-class Asker(NamedTuple):
-    """A browser that opened the link, and the site behind it."""
-
-    site: StoredSite
-    client: TestClient
-
-    def ask(self, text: str = "", **fields: str) -> Any:
-        return self.client.post("/cypher", data={"text": text, **fields})
-
-    def page(self, text: str = "", **fields: str) -> Any:
-        answer = self.ask(text, **fields)
-        assert answer.status_code == 200, told(answer)
-        return html.fromstring(answer.text)
-
-
-def told(answer: Any) -> str:
-    """What the page says above of a question that was not answered."""
-    return "\n".join(p.text_content() for p in html.fromstring(answer.text).xpath("//*[@role='alert']/p"))
 
 
 def cells(page: Any) -> list[list[str]]:
     return [[cell.text_content() for cell in row.xpath("./td")] for row in page.xpath("//tbody/tr")]
 
 
-@contextmanager
-def asker(to: Connection, *, read_only: bool = True, language: str = "en", seconds: float = 20.0) -> Iterator[Asker]:
-    with connection.open_driver(to) as driver:
-        session = StoredSession.open_database(driver)
-    door = Door(PORT, read_only)
-    opens = partial(connection.open_driver, to)
-    site = StoredSite(session, Settings(), Words(language), door, opens, seconds)
-    with closing(site):
-        client = TestClient(site.application(), base_url=HERE["origin"], follow_redirects=False)
-        client.headers.update(HERE)
-        client.get(door.link)
-        yield Asker(site, client)
-
-
 @pytest.fixture(scope="module")
 def loaded(neo4j_server: Connection) -> Connection:
     """The care home as robot h1."""
-    with connection.open_driver(neo4j_server) as driver:
-        driver.execute_query("MATCH (n) DETACH DELETE n")
-        result = care_home()
-        load(driver, [rows_of("h1", result)], result.vocabulary)
+    load_care_home(neo4j_server)
     return neo4j_server
 
 
@@ -409,28 +365,6 @@ def test_a_server_that_is_not_there_any_more_is_told_and_the_text_stays(loaded: 
             assert here.client.get("/").status_code == 200
         here.site._opened = partial(connection.open_driver, loaded)  # it is there again
         assert here.ask("RETURN 1 AS kept").status_code == 200
-
-
-@pytest.mark.slow
-def test_a_server_that_is_stopped_while_it_answers_is_told(private_neo4j: Connection) -> None:
-    with connection.open_driver(private_neo4j) as driver:
-        driver.execute_query("MATCH (n) DETACH DELETE n")
-        result = care_home()
-        load(driver, [rows_of("h1", result)], result.vocabulary)
-    with asker(private_neo4j, seconds=60) as here:
-        answers: list[Any] = []
-        asking = threading.Thread(target=lambda: answers.append(here.ask(ENDLESS)))
-        asking.start()
-        asking.join(3)
-        assert connection.stop()
-        asking.join()
-        assert answers[0].status_code == 503
-        assert told(answers[0]).endswith(("; start it, or check address and network", "; try again"))
-        again = here.ask(ENDLESS)
-        assert again.status_code == 503
-        assert "no Neo4j answers there" in told(again)
-        assert "UNWIND range(1, 1000000000)" in again.text
-        assert here.client.get("/").status_code == 200
 
 
 @pytest.mark.parametrize(("language", "words"), [("de", "Fragen an die Datenbank"), ("fr", "Questions à la base")])
