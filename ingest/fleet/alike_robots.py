@@ -62,10 +62,10 @@ class Alike:
         return self.robots[: 2 if self.joined else 1]
 
     def apart(self, files: Collection[str]) -> list[Alike]:
-        """Return them in parts: together are those that read the same ones of some label files."""
+        """Return them in parts: together are those that read the same ones of some files."""
         parts: dict[object, list[Robot]] = defaultdict(list)
         for robot in self.robots:
-            parts[tuple(file for file in (*robot.labels, *robot.own) if file in files)].append(robot)
+            parts[tuple(file for file in robot.files if file in files)].append(robot)
         return [replace(self, robots=tuple(robots)) for robots in parts.values()]
 
     def parted(self, robots: Collection[str]) -> list[Alike]:

@@ -74,6 +74,11 @@ class Robot:
     surroundings: Surroundings = Surroundings()  # noqa: RUF009 - it is frozen
     types: tuple[str, ...] = ()
 
+    @property
+    def files(self) -> tuple[str, ...]:
+        """All that it is read from; robots that are alike have files in the same order."""
+        return (*self.policies, *self.labels, *self.own, *self.types)
+
 
 @dataclass(frozen=True, slots=True)
 class Fleet:

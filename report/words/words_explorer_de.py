@@ -145,6 +145,10 @@ WORDS = {
     "x.refused": "Das lässt sich nicht sagen",
     "x.elsewhere": "In einem anderen Fenster wurde etwas geändert.",
     "x.disk": "Jemand hat die Datei auf der Platte geändert, in die Ihre Antworten kommen.",
+    "x.inputs": (
+        "Diese Dateien haben sich geändert, seit sie gelesen wurden: {files}. "
+        "Was gezeigt wird, beruht auf den alten; speichern Sie, und starten Sie neu."
+    ),
     "x.reload": "Zeigen",
     "x.gone": "Das Programm antwortet nicht mehr. Starten Sie es neu; es gibt einen neuen Link aus.",
 }

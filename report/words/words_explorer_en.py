@@ -145,6 +145,10 @@ WORDS = {
     "x.refused": "This cannot be said",
     "x.elsewhere": "Something was changed in another window.",
     "x.disk": "Somebody changed the file on the disk that your answers go to.",
+    "x.inputs": (
+        "These files have changed since they were read: {files}. "
+        "What is shown is about the old ones; save, and start again."
+    ),
     "x.reload": "Show it",
     "x.gone": "The program does not answer any more. Start it again; it prints a new link.",
 }

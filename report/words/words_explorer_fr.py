@@ -147,6 +147,10 @@ _TYPED = {
     "x.refused": "Cela ne peut pas être dit",
     "x.elsewhere": "Quelque chose a été changé dans une autre fenêtre.",
     "x.disk": "Quelqu'un a modifié sur le disque le fichier où vont vos réponses.",
+    "x.inputs": (
+        "Ces fichiers ont changé depuis leur lecture : {files}. "
+        "Ce qui est affiché repose sur les anciens ; enregistrez, puis redémarrez."
+    ),
     "x.reload": "Le montrer",
     "x.gone": "Le programme ne répond plus. Relancez-le ; il affiche un nouveau lien.",
 }

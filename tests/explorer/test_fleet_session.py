@@ -224,3 +224,42 @@ def test_robots_that_somebody_made_alike_meanwhile_stay_apart(tmp_path: Path) ->
     session.label("r1:/camera", source=["Video"], note="seen")
     assert isinstance(session.save(), Saved)
     assert [finding.leak.full_name for finding in session.findings] == ["r2:/recorder"]
+
+
+def test_robots_whose_policies_somebody_made_alike_meanwhile_stay_apart(tmp_path: Path) -> None:
+    """As with label files: a policy is read once, and what it lets through now is not what was read."""
+    (tmp_path / "one.xml").write_text(POLICY.replace('subscribe="ALLOW"', 'subscribe="DENY"'))
+    (tmp_path / "two.xml").write_text(POLICY)
+    (tmp_path / "l.yaml").write_text("labels: 1\nnodes: {/camera: {source: [Video]}, /recorder: {leak: [Video]}}\n")
+    file = tmp_path / "fleet.yaml"
+    file.write_text(
+        "fleet: 1\nrobots:\n  r1: {policies: [one.xml], labels: [l.yaml]}\n"
+        "  r2: {policies: [two.xml], labels: [l.yaml]}\n"
+    )
+    session = FleetSession.open_fleet(str(file))
+    assert [finding.leak.full_name for finding in session.findings] == ["r2:/recorder"]
+    (tmp_path / "one.xml").write_text(POLICY)
+    assert session.changed_inputs == (str(tmp_path / "one.xml"),)
+    session.label("r2:/camera", source=["Video"], note="seen")
+    assert isinstance(session.save(), Saved)
+    assert [finding.leak.full_name for finding in session.findings] == ["r2:/recorder"]
+    assert session.changed_inputs == (str(tmp_path / "one.xml"),)
+
+
+def test_robots_whose_types_somebody_made_alike_meanwhile_stay_apart(tmp_path: Path) -> None:
+    seen = "types: 1\nobserved: {from: 2026-01-01T10:00:00Z, to: 2026-01-02T10:00:00Z}\n"
+    (tmp_path / "p.xml").write_text(POLICY)
+    (tmp_path / "one.yaml").write_text(f"{seen}topics: {{/image: [{{type: geometry_msgs/msg/Twist}}]}}\n")
+    (tmp_path / "two.yaml").write_text(f"{seen}topics: {{/image: [{{type: sensor_msgs/msg/Image}}]}}\n")
+    (tmp_path / "l.yaml").write_text(LABELS)
+    file = tmp_path / "fleet.yaml"
+    file.write_text(
+        "fleet: 1\nmodels: {m: {policies: [p.xml], labels: [l.yaml]}}\n"
+        "robots:\n  r1: {model: m, types: [one.yaml]}\n  r2: {model: m, types: [two.yaml]}\n"
+    )
+    session = FleetSession.open_fleet(str(file))
+    (tmp_path / "one.yaml").write_text((tmp_path / "two.yaml").read_text())
+    session.label("r2:/camera", source=["Video"], note="seen again")
+    assert isinstance(session.save(), Saved)
+    assert session.stands_for("r1") == ("r1",)
+    assert session.changed_inputs == (str(tmp_path / "one.yaml"),)

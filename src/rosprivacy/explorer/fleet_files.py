@@ -60,6 +60,27 @@ class FleetFiles:
         held = sorted({**self._digests, **known}.items())
         return hashlib.sha256(repr(held).encode("utf-8", "surrogatepass")).hexdigest()
 
+    @property
+    def beside(self) -> list[tuple[str, str]]:
+        """The other files that were read, with their hashes: all that no answer went to.
+
+        Of files that are alike one was read, in the place of all.
+        """
+        edited = {name for one in self._edited.values() for name, _ in one.read}
+        return [*self.read.fleet.sources, *(one for one in self._read_so() if one[0] not in edited)]
+
+    def _read_so(self) -> set[tuple[str, str]]:
+        """What robots are read from, also those for which others are read."""
+        last = {name: one.last[0] for one in self._edited.values() for name, _ in one.read}
+        read = {(file, digest) for file, digest in self.read.reader.read if file not in last} | set(last.items())
+        known = dict(read)
+        for group in self.read.groups:
+            first = group.robots[0].files
+            for robot in group.robots[1:]:
+                alike = zip(robot.files, first, strict=True)
+                read |= {(mine, known[its]) for mine, its in alike if mine not in known and its in known}
+        return read
+
     def entries(self, edits: Sequence[Edit]) -> dict[tuple[str, str], Any]:
         """Return what those that were looked into say with edits: (section, file and name) -> entry."""
         return {
@@ -84,7 +105,7 @@ class FleetFiles:
         first = names[0][0]
         if first not in self._edited:
             labels = read_fleet_labels(names, self._asked, self.read.fleet.root)
-            if self._digests.get(first, labels.own.digest) != labels.own.digest:
+            if dict(self._read_so()).get(first, labels.own.digest) != labels.own.digest:
                 what = "was changed since the fleet was read"
                 raise InputErrors([LabelError(file, 0, what, "save what is said, and begin again")])
             self._edited[first] = labels

@@ -13,6 +13,7 @@ from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.answering import answer
 from rosprivacy.explorer.effects import Change, compared
 from rosprivacy.explorer.remembering import Remembering, remembering
+from rosprivacy.explorer.watched_files import WatchedFiles, files_in
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
     from rosprivacy.question import Question as Asked
     from rosprivacy.result import Result
     from rosprivacy.system import System
+
+OF_QUESTION = ("ontologies", "type_limits", "decisions")  # files that the answer rests on, whatever system it is about
 
 
 class History:
@@ -48,6 +51,7 @@ class History:
         self._done: list[Edit] = []
         self._undone: list[Edit] = []
         self._remembers = Remembering()
+        self._watched = WatchedFiles()
         self.version = 0
         self.uncounted = answer(system, asked, count_paths=False)
         self._whole: Result | None = None
@@ -267,6 +271,16 @@ class History:
         """Return how the label file differs from what this session read or wrote; None if it does not."""
         with self._lock:
             return self._files.changed_on_disk()
+
+    @property
+    def changed_inputs(self) -> tuple[str, ...]:
+        """The other files that the answer rests on (rule S12) and that are not what was read; gone is changed, too.
+
+        The answer stays one about what was read. Label files that answers went to are told by ``changed_on_disk``.
+        """
+        with self._lock:
+            asked = {key: self.uncounted.assumptions.get(key) for key in OF_QUESTION}
+            return self._watched.changed([*self._files.beside, *files_in(asked)])
 
     def merge(self) -> tuple[Edit, ...]:
         """Read the label file anew, and make the edits again on what it says now.

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from rosprivacy.explorer.edits import Edit
     from rosprivacy.explorer.saving import Conflict, Saved
@@ -41,6 +41,10 @@ class LabelFiles(Protocol):
     @property
     def digest(self) -> str:
         """Of what they hold, as the session knows it."""
+
+    @property
+    def beside(self) -> Iterable[tuple[str, str]]:
+        """The other files that were read, with their hashes: all that answers do not go to."""
 
     def entries(self, edits: Sequence[Edit]) -> dict[tuple[str, str], Any]:
         """Return what they say with edits: (section, name) -> entry."""

@@ -13,13 +13,14 @@ from rosprivacy.explorer.effects import differences, merged
 from rosprivacy.explorer.label_files import Merging
 from rosprivacy.explorer.own_file import chosen, read_own
 from rosprivacy.explorer.saving import Conflict, Saved, difference, digest_of, on_disk, save, save_as
+from rosprivacy.explorer.watched_files import files_in
+from rosprivacy.ingest.labels.label_file import Labels
 from rosprivacy.reading.robot_system import read_label_files, robot_system
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Sequence
 
     from rosprivacy.explorer.own_file import OwnFile
-    from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.question import Question as Asked
     from rosprivacy.system import System
 
@@ -33,10 +34,15 @@ class OneFile:
         The policies as they were read, under the label files as they were.
     own
         The label file that is edited, as it was read.
+    beside
+        The other files that were read, with their hashes.
     """
 
-    def __init__(self, read: System, asked: Asked, files: Sequence[Labels], own: OwnFile, at: int = 0) -> None:
-        self.read, self.own, self._asked = read, own, asked
+    def __init__(
+        self, read: System, asked: Asked, files: Sequence[Labels], own: OwnFile, at: int = 0,
+        beside: Collection[tuple[str, str]] = (),
+    ) -> None:  # fmt: skip
+        self.read, self.own, self.beside, self._asked = read, own, beside, asked
         self._files, self._at = tuple(files), at
         self._last = (own.digest, own.text or "")
         self._saved: tuple[dict[tuple[str, str], Any], Labels] | None = None  # what was written, and what it means
@@ -121,7 +127,7 @@ class OneFile:
         own = read_own(self.own.file or None, self._asked.vocabulary, self._asked.settings)
         found = merged(self._known, own.says, self.entries(edits))
         gone = {(edit.section, edit.name) for edit in found.theirs}
-        there = OneFile(self.read, self._asked, self._files, own, self._at)
+        there = OneFile(self.read, self._asked, self._files, own, self._at, self.beside)
         return Merging(there, [edit for edit in edits if (edit.section, edit.name) not in gone], found.both)
 
 
@@ -142,4 +148,7 @@ def opened(policies: Sequence[str], labels: Sequence[str | Labels], asked: Asked
         named[where] = own.labels
     files = read_label_files(tuple(named), asked.vocabulary, asked.settings)
     at = next(i for i, file in enumerate(files) if file is own.labels)
-    return OneFile(robot_system(tuple(policies), tuple(files), asked), asked, files, own, at)
+    read = robot_system(tuple(policies), tuple(files), asked)
+    elsewhere = {(one.file, one.sha256) for one in named if isinstance(one, Labels)}  # the edited one, and from memory
+    beside = [one for one in files_in(read.rests_on) if one not in elsewhere]
+    return OneFile(read, asked, files, own, at, beside)

@@ -161,7 +161,7 @@ class FleetRead:
     def again(self) -> FleetRead:
         """Return the same with robots compared anew, by what their files hold now.
 
-        What a label file holds that somebody else changed is not what was read: who reads it is like nobody else.
+        What a file holds that somebody else changed is not what was read: who reads it is like nobody else.
         """
         groups = _groups(self.fleet, self.question)
         other = self.reader.changed()

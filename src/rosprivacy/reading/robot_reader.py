@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Diagnostic, Grant, Policy
     from rosprivacy.ingest.fleet.fleet_file import Robot
     from rosprivacy.ingest.labels.label_file import Labels
+    from rosprivacy.ingest.types.types_file import TypesFile
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.settings import Settings
 
@@ -63,7 +64,7 @@ class Reader:
 
     Attributes
     ----------
-    labels, policies
+    labels, policies, types
         That were read.
     missing
         Labels of what is gone with lines that are set to DENY.
@@ -72,6 +73,7 @@ class Reader:
     def __init__(self, vocabulary: Vocabulary, settings: Settings, root: str, tried: Tried = Tried()) -> None:  # noqa: B008 - a constant
         self.labels: dict[tuple[str, bool], Labels] = {}
         self.policies: dict[tuple[str, ...], tuple[tuple[Policy, ...], tuple[Diagnostic, ...]]] = {}
+        self.types: dict[str, TypesFile] = {}
         self.missing: list[InputError] = []
         self._tried = tried
         self._vocabulary = vocabulary
@@ -95,7 +97,7 @@ class Reader:
     def trying(self, tried: Tried) -> Reader:
         """Return a reader of the same files, as they were read, with something otherwise."""
         reader = Reader(self._vocabulary, self._settings, self._root, tried)
-        reader.labels, reader.policies = self.labels, self.policies
+        reader.labels, reader.policies, reader.types = self.labels, self.policies, self.types
         return reader
 
     def relabel(self, labels: Mapping[tuple[str, bool], Labels]) -> None:
@@ -106,10 +108,18 @@ class Reader:
             key: member for key, member in self._members.items() if other.isdisjoint(files_of(member.robot))
         }
 
+    @property
+    def read(self) -> frozenset[tuple[str, str]]:
+        """The files that were read, with the hashes of what they held; of label files with edits the hash of these."""
+        policies = {source for there, _ in self.policies.values() for policy in there for source in policy.sources}
+        labels = {(file, one.sha256) for (file, _), one in self.labels.items()}
+        return frozenset(policies | labels | {(types.file, types.sha256) for types in self.types.values()})
+
     def changed(self) -> frozenset[str]:
-        """Return the label files that hold something else now than what was read."""
-        there = {file: digest(file) for file, _ in self.labels if not file.startswith(OURS)}
-        return frozenset(file for (file, _), one in self.labels.items() if there.get(file, one.sha256) != one.sha256)
+        """Return the files that hold something else now than what was read."""
+        read = [(file, held) for file, held in self.read if not file.startswith(OURS)]
+        now = {file: digest(file) for file in {file for file, _ in read}}
+        return frozenset(file for file, held in read if now[file] != held)
 
     def _read_policies(self, robot: Robot) -> tuple[tuple[Policy, ...], tuple[Diagnostic, ...]]:
         settings = self._settings
@@ -133,7 +143,8 @@ class Reader:
         self._refuse(missing)
         diagnostics += (*remarks(whole, files), *careful_notices(whole.careful))
         diagnostics += told_of_bags(whole, (stated for labels in files for stated in labels.elements))
-        types = tuple(one for _, one in sorted(read_types_files(robot.types, settings).items()))
+        self.types |= read_types_files((name for name in robot.types if name not in self.types), settings)
+        types = tuple(self.types[name] for name in sorted(set(robot.types)))
         written = full if robot.strip else {}
         diagnostics += matching_nothing(whole, types, written)
         bound, missing = join(whole, files, settings.bounds, robot.surroundings)

@@ -14,6 +14,7 @@ import rosprivacy
 from rosprivacy.explorer.element_ids import element_id
 from rosprivacy.ingest.labels.label_file import parse_labels
 from rosprivacy.ontology.vocabulary import load
+from rosprivacy.report.words.words import Words
 from tests.helpers.explorers import BARE, FACTORY, Explorer, copied, label, node, version
 from tests.helpers.languages import english_in
 from tests.helpers.paths import ROOT
@@ -50,7 +51,7 @@ def test_an_answer_is_in_the_session_and_saved_when_that_is_asked(explore: Explo
 def test_a_file_that_is_not_there_yet_was_changed_by_nobody(explore: Explore, tmp_path: Path) -> None:
     explorer = explore(BARE, tmp_path / "new.labels.yaml")
     client = explorer.client()
-    assert client.get("/now").json() == {"version": 0, "disk": False}
+    assert client.get("/now").json() == {"version": 0, "disk": False, "inputs": ""}
     assert 'role="alert"' not in client.get("/").text
     explorer.labels.write_text("labels: 1\nnodes: {/navigator: conduit}\n", "utf-8")
     assert client.get("/now").json()["disk"]
@@ -170,7 +171,7 @@ def test_a_file_that_somebody_else_changed_is_not_written_over(explore: Explore,
     client.get("/")
     others = file.read_text("utf-8") + "channels:\n  /new_pose: mundane  # by hand <b>\n"
     file.write_text(others, "utf-8")
-    assert client.get("/now").json() == {"version": 1, "disk": True}
+    assert client.get("/now").json() == {"version": 1, "disk": True, "inputs": ""}
     assert "+  /new_pose: mundane  # by hand &lt;b&gt;" in client.get("/").text
     answer = client.post("/save", data={"version": version(client)})
     assert answer.status_code == 409
@@ -182,6 +183,25 @@ def test_a_file_that_somebody_else_changed_is_not_written_over(explore: Explore,
     text = file.read_text("utf-8")
     assert "/new_pose: mundane  # by hand <b>" in text
     assert "/archive_server" in text
+
+
+@pytest.mark.parametrize("review", [False, True])
+@pytest.mark.parametrize("language", ["en", "de", "fr"])
+def test_files_that_are_not_what_was_read_are_told_as_long_as_they_are_not(
+    explore: Explore, tmp_path: Path, language: str, *, review: bool
+) -> None:
+    """An editor's change of a policy; its name is shown as text."""
+    copied(FACTORY / "node.xml", tmp_path)
+    policy = copied(BARE, tmp_path).rename(tmp_path / "<b>.policy.xml")
+    labels = copied(FACTORY / "run1.labels.yaml", tmp_path)
+    client = explore(policy, labels, language=language, review=review).client()
+    assert 'id="inputs"' not in client.get("/").text
+    policy.write_text(policy.read_text("utf-8") + "<!-- more -->", "utf-8")
+    told = Words(language)("x.inputs", files=str(policy))
+    assert client.get("/now").json() == {"version": 0, "disk": False, "inputs": told}
+    for _ in range(2):  # it stands there, whoever looks again
+        (said,) = html.fromstring(client.get("/").text).xpath("//*[@role='alert']/*[@id='inputs']")
+        assert said.text_content() == told
 
 
 def test_what_a_session_left_is_offered_once(explore: Explore, tmp_path: Path) -> None:

@@ -92,6 +92,23 @@ def test_no_key_does_anything_while_somebody_types(browser: WebDriver, tmp_path:
         assert reader.version == 0
 
 
+def test_a_policy_that_somebody_changed_is_told_without_an_answer(browser: WebDriver, tmp_path: Path) -> None:
+    from selenium.webdriver.support.ui import WebDriverWait
+
+    copied(FACTORY / "node.xml", tmp_path)
+    policy = copied(BARE, tmp_path)
+    with served(browser, policy, copied(FACTORY / "run1.labels.yaml", tmp_path)) as explorer:
+        reader = Reader(browser, explorer)
+        reader.go("/navigator")
+        policy.write_text(policy.read_text("utf-8") + "<!-- more -->", "utf-8")
+        told = "return document.querySelector('#elsewhere').textContent"
+        wanted = f"These files have changed since they were read: {policy}. "
+        WebDriverWait(browser, SECONDS, 0.05).until(lambda b: wanted in b.execute_script(told))
+        reader.press("c")
+        assert wanted in reader.text("#inputs")
+        assert reader.version == 1
+
+
 def test_a_second_window_is_told_and_a_stale_answer_does_nothing(browser: WebDriver, tmp_path: Path) -> None:
     from selenium.webdriver.support.ui import WebDriverWait
 

@@ -60,6 +60,7 @@ STATIC = {
     "review.css": "text/css",
 }
 PICTURE = "picture.css"  # of which the pictures themselves know what it says
+MOST_NAMED = 5  # files in a message
 DONE, PROBLEM = "done", "problem"
 READING = ("/try", "/drop")  # what is tried is kept in memory only
 
@@ -150,7 +151,7 @@ class Site:
             changed = self.session.changed_on_disk() is not None
         except RosPrivacyError:  # it cannot be read now: saving will say why
             changed = True
-        return JSONResponse({"version": self.session.version, "disk": changed})
+        return JSONResponse({"version": self.session.version, "disk": changed, "inputs": self._changed_inputs()})
 
     async def _report(self, _: Request) -> Response:
         """Give the report of now as a file: a page of its own, with a style of its own, that is shown nowhere here."""
@@ -178,6 +179,7 @@ class Site:
                 message=message,
                 left=self.session.unsaved_from_before,
                 remarks=self.session.remarks,
+                inputs=self._changed_inputs(),
                 by=self._by,
                 read_only=self.door.read_only,
                 asks=self.asks,
@@ -204,6 +206,13 @@ class Site:
             changed = self.session.changed_on_disk()
             return Message(PROBLEM, self._words("x.disk"), diff=changed.diff) if changed else None
         return None
+
+    def _changed_inputs(self) -> str:
+        """What stands on the page as long as files are not what was read; empty if all are."""
+        changed = [shown(file) for file in self.session.changed_inputs]
+        if not changed:
+            return ""
+        return self._words("x.inputs", files=self._words.row(self._words.first(changed, MOST_NAMED)))
 
     def _changed(self, work: Callable[[Form], Told], body: bytes, query: str) -> Response:
         """Do what a form says; a page that is loaded again does it no second time."""

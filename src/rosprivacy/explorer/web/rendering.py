@@ -46,8 +46,8 @@ class Message(NamedTuple):
 
 def rendered(
     page: Page, words: Words, picture: Shown, beside: Beside, *, message: Message | None = None,
-    left: Unsaved | None = None, remarks: Sequence[str] = (), by: str = "", read_only: bool = False,
-    asks: bool = False,
+    left: Unsaved | None = None, remarks: Sequence[str] = (), inputs: str = "", by: str = "",
+    read_only: bool = False, asks: bool = False,
 ) -> str:  # fmt: skip
     """Return the page.
 
@@ -55,6 +55,8 @@ def rendered(
     ----------
     left, remarks
         Of the session: what an earlier one left, and what a person has to know.
+    inputs
+        That files are not what was read; empty if all are.
     by
         Who gave the last answer.
     asks
@@ -68,6 +70,7 @@ def rendered(
         message=message,
         left=left,
         remarks=remarks,
+        inputs=inputs,
         kept=[
             *(("hide", kind) for kind in view.hidden),
             *([("draw", ALL)] if view.whole else []),

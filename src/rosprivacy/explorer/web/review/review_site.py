@@ -60,6 +60,7 @@ class ReviewSite(Site):
                 "progress": progress(standing, questions), "unsaved": self.session.unsaved,
                 "can_undo": self.session.can_undo, "read_only": self.door.read_only,
                 "before": self.session.unsaved_from_before, "remarks": self.session.remarks,
+                "inputs": self._changed_inputs(),
                 "title": words("rv.title.fleet" if standing.result.fleet else "rv.title"),
             }  # fmt: skip
             if element is None and step == "source":

@@ -220,6 +220,7 @@ async function news() {
       const now = await (await fetch("/now")).json();
       if (!busy && String(now.version) !== body.dataset.version) tell("changed");
       else if (now.disk && !one("#message pre")) tell("disk");
+      else if (now.inputs && now.inputs !== one("#inputs")?.textContent) tell("inputs", now.inputs);
     } catch {
       return tell("gone");
     }

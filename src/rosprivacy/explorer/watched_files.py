@@ -1,0 +1,76 @@
+"""Whether files are still what was read: each is looked at first, and read again only if it looks otherwise.
+
+In: names of files, with the hashes of what was read. Out: the names of those that hold something else now.
+"""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from stat import S_ISREG
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from rosprivacy.explorer.saving import digest_of
+from rosprivacy.ingest.labels.label_file import OURS
+from rosprivacy.ingest.reading.bounded_file import contents
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+SETTLED = 2_000_000_000  # nanoseconds: a file system may not tell apart two changes that are nearer to each other
+
+
+class _Look(NamedTuple):
+    """How a file looks without being read."""
+
+    size: int
+    modified: int
+    changed: int
+    inode: int
+
+
+class WatchedFiles:
+    """Remembers how files look, and what they held then."""
+
+    def __init__(self) -> None:
+        self._seen: dict[str, tuple[_Look, str]] = {}
+
+    def changed(self, read: Iterable[tuple[str, str]]) -> tuple[str, ...]:
+        """Return those that hold something else than what was read, sorted; one that is gone or closed is changed, too.
+
+        Parameters
+        ----------
+        read
+            (file, SHA-256 of what was read). What comes with the program does not change.
+        """
+        there = ((file, digest) for file, digest in read if not file.startswith(OURS))
+        return tuple(sorted({file for file, digest in there if self._holds(file) not in (digest, None)}))
+
+    def _holds(self, file: str) -> str | None:
+        """The SHA-256 of what a file holds; empty if it cannot be read, None for what can be read only once."""
+        try:
+            status = Path(file).stat()
+            if not S_ISREG(status.st_mode):
+                return None
+            look = _Look(status.st_size, status.st_mtime_ns, status.st_ctime_ns, status.st_ino)
+            seen = self._seen.get(file)
+            if seen and seen[0] == look:
+                return seen[1]
+            digest = digest_of(contents(Path(file)))
+        except OSError:
+            return ""
+        if max(look.modified, look.changed) + SETTLED < time.time_ns():
+            self._seen[file] = look, digest
+        return digest
+
+
+def files_in(rests_on: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """Return the files that an answer rests on, with their hashes (rule S12).
+
+    >>> list(files_in({"view": "declared", "types": [{"file": "t", "sha256": "1"}], "decisions": None}))
+    [('t', '1')]
+    """
+    for said in rests_on.values():
+        for one in said if isinstance(said, list) else [said]:
+            if isinstance(one, dict) and "file" in one and "sha256" in one:
+                yield one["file"], one["sha256"]
