@@ -44,6 +44,6 @@ WORDS = {
     "cy.about": "Interroger la base de données",
     "cy.about.sources": "De quelles sources viennent les données ?",
     "cy.about.labels": "Que disent les labels à ce sujet ?",
-    "cy.about.paths": "Les chemins de telles données vers les fuites, avec image",
-    "cy.about.leak": "Qu’est-ce qui parvient encore à cette fuite ?",
+    "cy.about.paths": "Les chemins de telles données vers une sortie, avec image",
+    "cy.about.leak": "Qu’est-ce qui parvient encore à cette sortie ?",
 }
