@@ -31,7 +31,7 @@ from rosprivacy.ingest.suggestions.comments import as_written, hides, taken_apar
 from rosprivacy.ingest.suggestions.refusals import without_refusals
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Sequence
+    from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 
     from rosprivacy.ingest.labels.entries import Entry
     from rosprivacy.ingest.suggestions.comments import Comment
@@ -164,13 +164,28 @@ def with_labels(file: str, text: str, labels: Sequence[NewLabel], vocabulary: Vo
     return Accepted(with_comments(new, [*refusals, *left]), tuple(taken), tuple(remarks))
 
 
+def could_close(said: Mapping[str, Any], known: Iterable[tuple[str, str]], vocabulary: Vocabulary) -> tuple[str, ...]:
+    """Return what is told of the known findings that a label could close: those of such data.
+
+    Parameters
+    ----------
+    said
+        One role and what it names.
+    known
+        The findings: (category, what to tell of it).
+    """
+    if LIMITING.isdisjoint(said):
+        return ()
+    (value,) = said.values()
+    return tuple(told for kind, told in known if overlap(value, [kind], vocabulary) or "only" in said)
+
+
 def _closing(comment: Comment, known: Collection[tuple[str, str]] | None, vocabulary: Vocabulary) -> str:
     """Why what takes data away is not accepted: a finding is known that it could close, or nobody has looked."""
     if known is None:
         hint = "name the policies as well, so that findings that it could close are known"
         return f"would take data away; {hint}"
-    (value,) = comment.said.values()
-    closed = [told for kind, told in known if overlap(value, [kind], vocabulary) or "only" in comment.said]
+    closed = could_close(comment.said, known, vocabulary)
     if not closed:
         return ""
     return (

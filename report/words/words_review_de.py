@@ -37,6 +37,7 @@ WORDS = {
     "rv.evidence.none": "keine Zeile",
     "rv.guesses": "Was das Programm vermutet",
     "rv.guesses.means": "Eine Vermutung ist keine Antwort. Jemand muss es wissen.",
+    "rv.guess.closes": "Wenn das so ist, werden Daten nicht weiter verfolgt, von denen ein zu beurteilender Weg bekannt ist. Schließen könnte es:",
     "rv.answers": "Ihre Antwort",
     "rv.reasoned": "(braucht einen Grund)",
     "rv.answer.source": "Es bringt Daten von Personen herein",

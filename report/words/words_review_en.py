@@ -37,6 +37,7 @@ WORDS = {
     "rv.evidence.none": "no line",
     "rv.guesses": "What the program guesses",
     "rv.guesses.means": "A guess is no answer. Somebody has to know.",
+    "rv.guess.closes": "If it is so, data of which a path to assess is known are not followed any further. It could close:",
     "rv.answers": "Your answer",
     "rv.reasoned": "(needs a reason)",
     "rv.answer.source": "It brings data of persons in",

@@ -37,6 +37,7 @@ WORDS = {
     "rv.evidence.none": "aucune ligne",
     "rv.guesses": "Ce que le programme suppose",
     "rv.guesses.means": "Une supposition n'est pas une réponse. Quelqu'un doit le savoir.",
+    "rv.guess.closes": "Si c'est le cas, des données dont un chemin à évaluer est connu ne sont plus suivies. Cela pourrait fermer :",
     "rv.answers": "Votre réponse",
     "rv.reasoned": "(demande une raison)",
     "rv.answer.source": "Il fait entrer des données de personnes",

@@ -685,6 +685,19 @@ def test_a_limit_on_the_way_of_data_that_are_accepted_later_is_told(cli: Cli, li
     )
 
 
+def test_a_limit_is_told_of_each_source_of_the_same_kind(cli: Cli, limited: Path) -> None:
+    """The line took the pictures of one camera away already; that it takes those of another one, too, nobody knew."""
+    rights = {"camera": (["/front", "/side"], []), "second": (["/front"], []), "box": ([], ["/front"])}
+    (limited / "p.xml").write_text(policy_of(rights | {"third": (["/side"], []), "other": ([], ["/side"])}), "utf-8")
+    cli("labels", "p.xml", "-l", "l.yaml", "--accept", "/camera", cwd=limited)
+    for name, told in (("/second", True), ("/third", False)):
+        text = (limited / "l.yaml").read_text("utf-8")
+        (limited / "l.yaml").write_text(f"{text}{suggestion('nodes', name, {'source': ['Video']})}", "utf-8")
+        done = cli("labels", "p.xml", "-l", "l.yaml", "--accept", name, cwd=limited)
+        assert done.stderr.endswith("l.yaml: 1 suggestion accepted\n")
+        assert (": never of topic /front takes Video away, which is accepted now" in done.stderr) is told
+
+
 def test_without_policies_a_limit_that_may_be_on_the_way_is_told(cli: Cli, limited: Path) -> None:
     done = cli("labels", "-l", "l.yaml", "--accept", "likely", cwd=limited)
     assert (done.returncode, done.stderr) == (

@@ -70,6 +70,22 @@ def test_from_a_source_to_the_answer_by_single_keys(cli: Cli, robot: Path, monke
     assert [(one.source.name, one.leak.name) for one in found] == [("/eye", "/customer_bridge")]
 
 
+def test_a_limit_on_the_way_of_a_source_that_gets_a_yes_is_told(
+    cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Also where it takes the same data of another source away already; and never where nothing gets to it."""
+    told = "\nl.yaml:7: never of topic /a takes Video away, which is accepted now; see whether it is still so\n"
+    limited = f"{SOURCE}topics:\n  /a: {{never: [Video]}}\n"
+    for writes, there in (("/a", 1), ("/other", 0)):
+        (robot / "p.xml").write_text(policy_of({**NODES, "second_camera": ([writes], [])}), "utf-8")
+        (robot / "l.yaml").write_text(limited, "utf-8")
+        done = ask(cli, robot, "y", monkeypatch)
+        assert "/second_camera: {source: [Video]" in (robot / "l.yaml").read_text("utf-8")
+        assert done.stdout.count(told) == there
+        (robot / "l.yaml").write_text(limited, "utf-8")
+        assert told not in ask(cli, robot, "n", monkeypatch).stdout
+
+
 def test_a_no_is_kept_with_who_and_when_and_not_asked_again(
     cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

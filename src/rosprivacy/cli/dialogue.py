@@ -17,6 +17,7 @@ from rosprivacy.clock import today
 from rosprivacy.labelling.asking import asked_now, with_answer
 from rosprivacy.labelling.closing_lists import closing
 from rosprivacy.labelling.conversation import Conversation, allowed
+from rosprivacy.labelling.limits_on_the_way import brings, limits_on_the_way
 from rosprivacy.labelling.named_answers import AND, BEGINS, keys_of, lines_of, takes_away
 from rosprivacy.labelling.suggested_lines import who_says
 from rosprivacy.report.editing import editing
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from rosprivacy.analysis.suggesting.question_rows import Question
+    from rosprivacy.analysis.suggesting.written import WrittenLabel
     from rosprivacy.labelling.suggesting import Suggested
     from rosprivacy.settings import Settings
 
@@ -46,10 +48,19 @@ def ask(file: Path, told: Callable[[], Suggested], by: str | None, settings: Set
         With every problem of the input; what was answered before is kept.
     """
     who = who_says(str(file), by, "answers")
+    person = _Terminal()
     last: list[Suggested] = []
+    brought: list[WrittenLabel] = []  # since the questions were made
+
+    def again() -> None:
+        before, last[:] = tuple(last), [told()]
+        if before and brought:
+            for line in limits_on_the_way(before[0].result, last[0].result):
+                person.told(line)
+        brought.clear()
 
     def now() -> tuple[Question, ...]:
-        last[:] = [told()]
+        again()
         return asked_now(last[0])
 
     def keep(question: Question, key: str) -> tuple[str, ...]:
@@ -57,12 +68,13 @@ def ask(file: Path, told: Callable[[], Suggested], by: str | None, settings: Set
             written = with_answer(str(file), question, key, who, today(os.environ), settings)
             if written.added:
                 emit(written.text, file, edited=file)
+                brought.extend(brings(reply.label for row in question.rows if (reply := row.reply(key))))
         return written.remarks
 
-    conversation = Conversation(now, keep, _Terminal(), lambda rows: closing(rows, last[0].result))
+    conversation = Conversation(now, keep, person, lambda rows: closing(rows, last[0].result))
     whole = conversation.run()
     if not whole:
-        last[:] = [told()]
+        again()
     verdict, left = last[0].result.analysis.verdict, len(last[0].result.analysis.open)
     end = "nothing is left to ask" if whole else "the same command goes on from here"
     typer.echo(f"{counted(conversation.answers, 'answer')} in {file}; {end}")

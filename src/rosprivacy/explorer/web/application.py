@@ -26,7 +26,7 @@ from rosprivacy.explorer.web.guard import Guard
 from rosprivacy.explorer.web.page import page_of
 from rosprivacy.explorer.web.page_picture import drawn, pictures_of
 from rosprivacy.explorer.web.rendering import Message, rendered
-from rosprivacy.explorer.web.saying import label_of, limit_of
+from rosprivacy.explorer.web.saying import label_of, limit_of, made_by
 from rosprivacy.explorer.web.standing import Standing
 from rosprivacy.explorer.web.titles import title_of
 from rosprivacy.explorer.web.trials.kept_trials import Trials
@@ -38,7 +38,7 @@ from rosprivacy.labelling.suggesting_on_demand import Suggester
 from rosprivacy.report.explorer.style_sheet import style_sheet
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
     from starlette.requests import Request
     from starlette.types import ASGIApp
@@ -253,11 +253,17 @@ class Site:
         return Told(200, self._answered(answer, now, self._words(f"x.answer.{answer.role}")))
 
     def _answered(self, answer: Answer, before: Any, what: str) -> Message:
-        """Tell what was answered, and that a limit of the channel is gone where the answer is that all may go there."""
+        """Tell what was answered, and what was said that it takes away: a limit, or derivations."""
         told = self._words("x.changed", what=f"{shown(answer.element.full_name)} – {what}")
         limit = limit_of(before) if answer.role == forms.SENSITIVE and not answer.kinds else ()
-        titles = self._words.row(title_of(kind, self.standing.vocabulary, self._words) for kind in limit)
-        return Message(DONE, told, (self._words("x.limit.gone", data=titles),) if limit else ())
+        made = made_by(before) if answer.role == forms.ABSENT else ()
+        gone = (("x.limit.gone", limit), ("x.derives.gone", made))
+        return Message(DONE, told, tuple(self._words(key, data=self._titles(kinds)) for key, kinds in gone if kinds))
+
+    def _titles(self, kinds: Iterable[str]) -> str:
+        vocabulary = self.standing.vocabulary
+        found = (vocabulary.find(kind) for kind in kinds)
+        return self._words.row(title_of(one.name, vocabulary, self._words) for one in found if one)
 
     def _undo(self, _: Form) -> Told:
         return Told(200, Message(DONE, self._words("x.undone")) if self.session.undo() else None)

@@ -8,10 +8,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.suggesting.written import written
 from rosprivacy.explorer.element_ids import element_id
 from rosprivacy.explorer.web import forms
 from rosprivacy.explorer.web.titles import title_of
 from rosprivacy.explorer.web.whose import ROBOT, Whose, stands_for, whose
+from rosprivacy.ingest.suggestions.accepting import LIMITING, could_close
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -25,6 +27,7 @@ if TYPE_CHECKING:
     from rosprivacy.report.words.words import Words
 
 REASONS = 2  # of a suggestion
+FINDINGS = 3  # that a suggestion could close
 LINES = 3  # of the policy lines that allow a step
 KEYS = {
     forms.SOURCE: "s", forms.LEAK: "l", forms.SANITIZER: "z", forms.CONDUIT: "c", forms.DERIVES: "d",
@@ -76,11 +79,21 @@ class About(NamedTuple):
 
 
 class Offer(NamedTuple):
-    """What could be said of the element, with reasons; the fields are those of the form."""
+    """What could be said of the element, with reasons; the fields are those of the form.
+
+    Attributes
+    ----------
+    takes
+        Whether it takes data away.
+    closes
+        The known findings that it could close: then nobody takes it by one key.
+    """
 
     told: str
     reasons: tuple[str, ...]
     fields: tuple[tuple[str, str], ...]
+    takes: bool
+    closes: tuple[str, ...]
 
 
 class Pane(NamedTuple):
@@ -203,7 +216,18 @@ def _offer(one: Proposal, standing: Standing, words: Words) -> Offer:
     fields = [("role", role), ("about" if role != forms.SOURCE else "brings", label.kind or forms.EVERY)]
     fields += [("method", str(label.method.value))] if label.method else []
     fields += [("makes", label.to)] if label.to else []
-    return Offer(told, words.first([shown(reason.reason) for reason in one.evidence], REASONS), tuple(fields))
+    reasons = words.first([shown(reason.reason) for reason in one.evidence], REASONS)
+    said = written(label).said
+    closes = could_close(said, _findings(standing, words), standing.vocabulary)
+    return Offer(told, reasons, tuple(fields), not LIMITING.isdisjoint(said), words.first(closes, FINDINGS))
+
+
+def _findings(standing: Standing, words: Words) -> Iterable[tuple[str, str]]:
+    """All findings, whatever a page shows of them: (kind, what to tell of it)."""
+    for one in standing.result.analysis.findings:
+        data = title_of(one.category, standing.vocabulary, words)
+        way = f"{shown(one.source.full_name)} → {shown(one.leak.full_name)}"
+        yield one.category, words.pair(data, way)
 
 
 def _ways(standing: Standing, element: Element, kinds: Iterable[str], view: View, words: Words) -> Iterable[Way]:

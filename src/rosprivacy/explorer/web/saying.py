@@ -34,6 +34,8 @@ def label_of(answer: Answer, now: Any) -> dict[str, Any]:
     {'sanitizer': {'Video': 'drop'}, 'leak': ['Voice']}
     >>> label_of(forms.Answer(node, "conduit"), {"leak": ["Voice"]})
     {'conduit': True}
+    >>> label_of(forms.Answer(node, "conduit"), {"leak": ["Voice"], "derives": [{"from": "Video", "to": "Voice"}]})
+    {'derives': [{'from': 'Video', 'to': 'Voice'}], 'conduit': True}
     >>> label_of(forms.Answer(node, "conduit"), {"source": ["Voice"]})
     {'source': ['Voice'], 'conduit': True}
     >>> label_of(forms.Answer(node, "conduit", ("Video",)), "conduit")
@@ -43,7 +45,7 @@ def label_of(answer: Answer, now: Any) -> dict[str, Any]:
     >>> label_of(forms.Answer(Element("topic", "/scan"), "sensitive", ("Voice",)), {"only": ["Location"]})
     {'only': ['Location', 'Voice']}
     """
-    label = _source_of(now, answer) if _of_all(answer) else _without(now, answer)
+    label = _kept(now, answer) if _of_all(answer) else _without(now, answer)
     role, kinds = answer.role, list(answer.kinds)
     if role == forms.ABSENT:
         label["absent"] = answer.note
@@ -96,10 +98,23 @@ def _of_all(answer: Answer) -> bool:
     return answer.role == forms.ABSENT or (not answer.kinds and answer.role != forms.SOURCE)
 
 
-def _source_of(now: Any, answer: Answer) -> dict[str, Any]:
-    """What an entry says that the element brings in: an answer about every kind that gets there takes none back."""
-    stays = isinstance(now, dict) and "source" in now and answer.role != forms.ABSENT
-    return {"source": now["source"]} if stays else {}
+def _kept(now: Any, answer: Answer) -> dict[str, Any]:
+    """What an entry says that the element brings in, or makes of data: an answer about every kind takes none back.
+
+    Such an answer says what becomes of the data that get there, and nothing of what is made of them.
+    """
+    stays = isinstance(now, dict) and answer.role != forms.ABSENT
+    return {key: now[key] for key in ("source", "derives") if key in now} if stays else {}
+
+
+def made_by(entry: Any) -> tuple[str, ...]:
+    """Return what an entry says that an element makes of other data.
+
+    >>> made_by({"derives": [{"from": "Video", "to": "FaceTemplate"}]}), made_by("conduit")
+    (('FaceTemplate',), ())
+    """
+    said = _as_list(entry.get("derives")) if isinstance(entry, dict) else []
+    return tuple(dict.fromkeys(str(one["to"]) for one in said if isinstance(one, dict) and "to" in one))
 
 
 def _without(now: Any, answer: Answer) -> dict[str, Any]:

@@ -82,14 +82,11 @@ class Question(NamedTuple):
         As of ``Asked``.
     robot
         Of the element; empty where there is one robot only.
-    guesses
-        What the program takes for likely: what, and why (in English).
     """
 
     pane: Pane
     text: str
     ways: tuple[Way, ...]
-    guesses: tuple[tuple[str, str], ...]
     roles: tuple[str, ...]
     reached: bool
     left: str
@@ -134,7 +131,6 @@ def question_of(standing: Standing, element: Element, words: Words) -> Question:
         pane=pane,
         text=_text(element, pane, words, reached=reached),
         ways=tuple(Way(way.title, tuple(_sentences(way.hops, words))) for way in pane.ways),
-        guesses=tuple((offer.told, "; ".join(offer.reasons)) for offer in pane.offers),
         roles=offered(element, reached=reached),
         reached=reached,
         left=_left(said),

@@ -1,0 +1,108 @@
+"""Suggestions on the page: none that could close a known finding is taken by one key (issue 22)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+from lxml import html
+
+from rosprivacy.explorer.element_ids import element_id
+from rosprivacy.report.words.words import Words
+from tests.helpers.explorers import Explorer, label, node
+from tests.helpers.little_robots import policy_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from starlette.testclient import TestClient
+
+    Explore = Callable[..., Explorer]
+
+RIGHTS = {"camera": (["/battery_state"], []), "box": ([], ["/battery_state"])}
+LABELS = "labels: 1\nnodes:\n  /camera: {source: [Video, Voice]}\n  /box: {leak: [Video]}\n"
+WITHOUT_LEAK = LABELS.replace("leak: [Video]", "conduit: [Video, Voice]")
+FINDING = "video of persons: {}/camera → {}/box"
+
+
+@pytest.fixture
+def robot(tmp_path: Path) -> Path:
+    """Pictures and voices go through a channel of that name; the pictures go on to a leak."""
+    (tmp_path / "robot.policy.xml").write_text(policy_of(RIGHTS), "utf-8")
+    (tmp_path / "labels.yaml").write_text(LABELS, "utf-8")
+    return tmp_path
+
+
+def battery(client: TestClient, robot: str = "") -> html.HtmlElement:
+    at = element_id((robot, "topic", "/battery_state"))
+    return html.fromstring(client.get(f"/?at={at}").text)
+
+
+def opened(explore: Explore, robot: Path, **how: object) -> Explorer:
+    return explore(robot / "robot.policy.xml", robot / "labels.yaml", **how)
+
+
+def test_what_could_close_a_finding_has_no_key_and_no_button(explore: Explore, robot: Path) -> None:
+    page = battery(opened(explore, robot).client())
+    by_hand = page.cssselect(".offer")[0]
+    assert "It perhaps carries nothing of: video" in by_hand.text_content()
+    assert [one.text_content() for one in by_hand.cssselect("li")] == [FINDING.format("", "")]
+    assert not by_hand.cssselect("button, input")
+    assert not page.cssselect("[data-key=a]")
+    assert page.cssselect("#answers [data-key=m]")  # a person who knows can say so
+
+
+def test_what_closes_none_keeps_its_key_and_says_that_it_takes_data_away(explore: Explore, robot: Path) -> None:
+    (robot / "labels.yaml").write_text(WITHOUT_LEAK, "utf-8")
+    explorer = opened(explore, robot)
+    client = explorer.client()
+    offer = next(form for form in battery(client).forms if form.get("class") == "offer")
+    assert offer.cssselect("button[data-key=a]")
+    assert Words("en")("x.offer.takes") in offer.text_content()
+    assert client.post("/label", data=dict(offer.form_values())).status_code == 303
+    assert explorer.session.version == 1
+
+
+def test_what_adds_data_says_nothing_of_that(explore: Explore, robot: Path) -> None:
+    (robot / "labels.yaml").write_text("labels: 1\n", "utf-8")
+    page = html.fromstring(opened(explore, robot).client().get(f"/?at={node('/camera')}").text)
+    assert page.cssselect("form.offer button[data-key=a]")
+    assert Words("en")("x.offer.takes") not in page.text_content()
+
+
+def test_a_review_names_the_findings_beside_the_guess(explore: Explore, robot: Path) -> None:
+    page = battery(opened(explore, robot, review=True).client())
+    assert Words("en")("rv.guess.closes") in page.text_content()
+    assert FINDING.format("", "") in page.text_content()
+    (robot / "labels.yaml").write_text(WITHOUT_LEAK, "utf-8")
+    page = battery(opened(explore, robot, review=True).client())
+    assert Words("en")("rv.guess.closes") not in page.text_content()
+    assert Words("en")("x.offer.takes") in page.text_content()
+
+
+def test_of_a_fleet_it_is_the_same(explore: Explore, robot: Path) -> None:
+    fleet = robot / "fleet.yaml"
+    fleet.write_text(
+        "fleet: 1\nmodels:\n  m: {policies: [robot.policy.xml], labels: [labels.yaml]}\n"
+        "robots:\n  m_1: {model: m}\n  m_2: {model: m}\n",
+        "utf-8",
+    )
+    page = battery(explore(fleet, fleet, fleet=True).client(), "m_1")
+    assert [one.text_content() for one in page.cssselect(".by-hand li")] == [FINDING.format("m_1:", "m_1:")]
+    assert not page.cssselect("[data-key=a]")
+
+
+def test_an_answer_about_every_kind_leaves_what_is_made_of_data(explore: Explore, robot: Path) -> None:
+    said = LABELS.replace("leak: [Video]", "leak: [Video], derives: [{from: Video, to: FaceTemplate}]")
+    (robot / "labels.yaml").write_text(said, "utf-8")
+    explorer = opened(explore, robot)
+    client = explorer.client()
+    assert label(client, node("/box"), "conduit", about="*").status_code == 303
+    box = next(one for one in explorer.session.result.analysis.graph.elements if one.name == "/box")
+    assert explorer.session.said_of(box)["derives"] == [{"from": "Video", "to": "FaceTemplate"}]
+    gone = Words("en")("x.derives.gone", data="face template")
+    assert gone not in client.get("/").text
+    assert label(client, node("/box"), "absent", reason="only in tests").status_code == 303
+    assert "derives" not in explorer.session.said_of(box)
+    assert gone in client.get("/").text
