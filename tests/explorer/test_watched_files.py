@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 from typing import TYPE_CHECKING
 
 import pytest
@@ -124,6 +125,16 @@ def test_nothing_is_told_of_the_examples() -> None:
     factory = ROOT / "examples" / "factory"
     assert list(hospital.changed_inputs) == []
     assert rosprivacy.explore(factory / "before.policy.xml", factory / "run2.labels.yaml").changed_inputs == ()
+
+
+def test_a_signed_file_is_told_when_it_changes_and_not_before(tmp_path: Path) -> None:
+    """What is read is the text within: its hash is not that of the file."""
+    keystore = shutil.copytree(ROOT / "tests" / "cases" / "unprotected" / "keystore", tmp_path / "keystore")
+    session = Session.open([str(keystore)])
+    assert list(session.changed_inputs) == []
+    file = keystore / "enclaves" / "camera" / "permissions.p7s"
+    file.write_bytes(file.read_bytes() + b"\n")
+    assert list(session.changed_inputs) == [str(file)]
 
 
 def test_a_file_that_looks_as_before_is_not_read_again(tmp_path: Path) -> None:

@@ -55,6 +55,7 @@ class History:
         self.version = 0
         self.uncounted = answer(system, asked, count_paths=False)
         self._whole: Result | None = None
+        self._watched.changed(self._others())
 
     def _remember(self, folder: Path, file: str, named: tuple[str, ...], *, resume: bool) -> None:
         """Begin a journal; make the edits again that a session before left, if that is wanted and still the same."""
@@ -279,8 +280,12 @@ class History:
         The answer stays one about what was read. Label files that answers went to are told by ``changed_on_disk``.
         """
         with self._lock:
-            asked = {key: self.uncounted.assumptions.get(key) for key in OF_QUESTION}
-            return self._watched.changed([*self._files.beside, *files_in(asked)])
+            return self._watched.changed(self._others())
+
+    def _others(self) -> list[tuple[str, str]]:
+        """The files that the answer rests on and that answers do not go to, with their hashes."""
+        asked = {key: self.uncounted.assumptions.get(key) for key in OF_QUESTION}
+        return [*self._files.beside, *files_in(asked)]
 
     def merge(self) -> tuple[Edit, ...]:
         """Read the label file anew, and make the edits again on what it says now.

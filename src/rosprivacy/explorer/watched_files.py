@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
 SETTLED = 2_000_000_000  # nanoseconds: a file system may not tell apart two changes that are nearer to each other
+SECURED = b"</dds>"  # of a security file, signed or not, the text within is read, and has another hash than the file
 
 
 class _Look(NamedTuple):
@@ -34,6 +35,7 @@ class WatchedFiles:
 
     def __init__(self) -> None:
         self._seen: dict[str, tuple[_Look, str]] = {}
+        self._first: dict[str, str | None] = {}  # of security files: what they held when they were looked at first
 
     def changed(self, read: Iterable[tuple[str, str]]) -> tuple[str, ...]:
         """Return those that hold something else than what was read, sorted; one that is gone or closed is changed, too.
@@ -44,21 +46,26 @@ class WatchedFiles:
             (file, SHA-256 of what was read). What comes with the program does not change.
         """
         there = ((file, digest) for file, digest in read if not file.startswith(OURS))
-        return tuple(sorted({file for file, digest in there if self._holds(file) not in (digest, None)}))
+        held = ((file, digest, self._holds(file)) for file, digest in there)
+        return tuple(sorted({file for file, digest, now in held if now not in (digest, self._first[file], None)}))
 
     def _holds(self, file: str) -> str | None:
         """The SHA-256 of what a file holds; empty if it cannot be read, None for what can be read only once."""
         try:
             status = Path(file).stat()
             if not S_ISREG(status.st_mode):
+                self._first.setdefault(file, None)
                 return None
             look = _Look(status.st_size, status.st_mtime_ns, status.st_ctime_ns, status.st_ino)
             seen = self._seen.get(file)
             if seen and seen[0] == look:
                 return seen[1]
-            digest = digest_of(contents(Path(file)))
+            data = contents(Path(file))
         except OSError:
+            self._first.setdefault(file, None)
             return ""
+        digest = digest_of(data)
+        self._first.setdefault(file, digest if SECURED in data else None)
         if max(look.modified, look.changed) + SETTLED < time.time_ns():
             self._seen[file] = look, digest
         return digest

@@ -39,7 +39,7 @@ def test_every_word_is_used_and_every_use_has_a_word() -> None:
     folders = [ROOT / "report" / wing for wing in ("page", "docx", "cnil", "terminal", "pictures", "explorer", "words")]
     folders.append(ROOT / "src" / "rosprivacy" / "explorer" / "web")
     files = [ROOT / "analysis" / "durations.py", *(ROOT / "report").glob("*.py")]  # the first has the units
-    files += [file for folder in folders for file in (*folder.glob("*.py"), *(folder / "templates").glob("*.j2"))]
+    files += [file for folder in folders for file in (*folder.rglob("*.py"), *(folder / "templates").glob("*.j2"))]
     source = "\n".join(file.read_text("utf-8") for file in files if not file.name.startswith("words_"))
     used = set(re.findall(r"[\"']([a-z0-9-]+(?:\.[a-z0-9_-]+)+)[\"']", source))
     ends = {".one", ".many"}
