@@ -99,7 +99,7 @@ def prefilled(query: Query, element: Element | None, finding: Finding | None) ->
 
     >>> from rosprivacy.analysis.model import Element
     >>> from rosprivacy.queries.library import find
-    >>> prefilled(find("sources-of-element"), Element("r1", "node", "/planner"), None)
+    >>> prefilled(find("sources-of-element"), Element("node", "/planner", "r1"), None)
     {'element': '/planner', 'robot': 'r1'}
     """
     known: dict[str, str] = {}
