@@ -23,7 +23,7 @@ from rosprivacy.analysis.suggesting.library_rules import (
     Names,
 )
 from rosprivacy.analysis.suggesting.ros_package import WHERE
-from rosprivacy.ingest.reading.format_reader import FileReader
+from rosprivacy.ingest.suggestions.rule_reader import RuleReader, read_each
 from rosprivacy.ingest.suggestions.rule_text import read_rule_text
 
 if TYPE_CHECKING:
@@ -86,15 +86,7 @@ def read_library_rules(
     >>> rules.brings_in["python"].of("cv2.VideoCapture")[1].kinds
     ('Video',)
     """
-    read: list[LibraryFile] = []
-    problems: list[InputError] = []
-    for file in dict.fromkeys((LIBRARIES, *files)):
-        try:
-            read.append(_read(file, vocabulary, bounds))
-        except InputErrors as error:
-            problems += error.errors
-    if problems:
-        raise InputErrors(problems)
+    read = read_each((LIBRARIES, *files), lambda file: _read(file, vocabulary, bounds))
     joined = {section: _joined(one.sections[section] for one in read) for section in SECTIONS}
     spoken = {key for one in read[1:] for section in one.sections.values() for key in section}
     silent = (read[0].silent.keys() - spoken).union(*(one.silent for one in read[1:]))
@@ -125,10 +117,9 @@ def _read(file: str, vocabulary: Vocabulary, bounds: Bounds) -> LibraryFile:
 
 
 @dataclass(eq=False, repr=False)
-class _Reader(FileReader):
+class _Reader(RuleReader):
     """One file."""
 
-    vocabulary: Vocabulary
     lines: dict[str, dict[Key, int]] = field(default_factory=lambda: {name: {} for name in (*SECTIONS, SILENT)})
 
     def document(self, top: Value, digest: str) -> LibraryFile:
@@ -142,7 +133,7 @@ class _Reader(FileReader):
             self.version(top, "library_rules", "rules")
             said = {key: value for key, _, value in self.entries_of(top, PARTS)}
         for section in (*SECTIONS, SILENT):
-            for item in self._items(said, section):
+            for item in self.items(said, section):
                 entry = self._entry(item, section)
                 rule = self._rule(entry, item.line)
                 for key in self._names(entry, section):
@@ -150,14 +141,8 @@ class _Reader(FileReader):
                         sections[section][key] = rule
         return LibraryFile(self.file, digest, sections, self.lines[SILENT])
 
-    def _items(self, said: dict[str, Value], key: str) -> tuple[Value, ...]:
-        return self.list_of(said[key], key) if key in said else ()
-
     def _entry(self, item: Value, section: str) -> dict[str, Value]:
-        said = {key: value for key, _, value in self.entries_of(item, KEYS[section])}
-        for key in NEEDED[section]:
-            if key not in said or not (said[key].text or said[key].items):
-                self.problem(item.line, f"a rule without {key}", f"write {', '.join(NEEDED[section])}")
+        said = self.rule(item, KEYS[section], NEEDED[section])
         if not set(said) & set(NAMED):
             self.problem(item.line, "a rule about no library", f"write {', '.join(NAMED)}, or one of them")
         return said
@@ -170,15 +155,15 @@ class _Reader(FileReader):
             Place(self.file, line),
             self._kinds(said, "to"),
             self._one_of(said, "where", WHERE),
-            self._is_true(said, "any_type"),
-            self._is_true(said, "by_itself"),
-            self._is_true(said, "either"),
+            self.is_true(said, "any_type"),
+            self.is_true(said, "by_itself"),
+            self.is_true(said, "either"),
         )
 
     def _names(self, said: dict[str, Value], section: str) -> Iterator[Key]:
         known = self.lines[section]
         for key, languages in NAMED.items():
-            for item in self._items(said, key):
+            for item in self.items(said, key):
                 if item.kind != "text" or not (PART if key == ADDRESSES else NAME).fullmatch(item.text):
                     hint = "write names such as cv2.VideoCapture, cv::VideoCapture, curl_easy_*, open(w), or a program"
                     hint = "write a part of it, such as api.openai.com or rtsp://" if key == ADDRESSES else hint
@@ -199,20 +184,5 @@ class _Reader(FileReader):
         self.problem(value.line, f"{key} {shown(value.text)!r}", f"write {', '.join(known[:-1])} or {known[-1]}")
         return ""
 
-    def _is_true(self, said: dict[str, Value], key: str) -> bool:
-        if key in said and said[key].text != "true":
-            value = said[key]
-            self.problem(value.line, f"{key} {shown(value.text or value.kind)!r}", "write true or leave it out")
-        return key in said
-
     def _kinds(self, said: dict[str, Value], key: str) -> tuple[str, ...]:
-        found = (self._kind(item) for item in self._items(said, key))
-        return tuple(dict.fromkeys(name for name in found if name))
-
-    def _kind(self, item: Value) -> str:
-        category = self.vocabulary.find(item.text) if item.kind == "text" else None
-        if category is None:
-            hint = self.vocabulary.hint(item.text)
-            self.problem(item.line, f"unknown category {shown(item.text or item.kind)!r}", hint)
-            return ""
-        return category.name
+        return tuple(dict.fromkeys(self.kinds(said, key)))

@@ -12,7 +12,7 @@ from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import InputError, InputErrors, shown
 from rosprivacy.analysis.model import Confidence, Place
 from rosprivacy.analysis.suggesting.name_rules import LONGEST_PHRASE, NameRule, NameRules, words
-from rosprivacy.ingest.reading.format_reader import FileReader
+from rosprivacy.ingest.suggestions.rule_reader import RuleReader, read_each
 from rosprivacy.ingest.suggestions.rule_text import read_rule_text
 
 if TYPE_CHECKING:
@@ -89,15 +89,7 @@ def read_name_rules(
     >>> rules.carries["lidar",].kinds, ("camera", "info") in rules.silent
     (('LaserScan',), True)
     """
-    read: list[NameFile] = []
-    problems: list[InputError] = []
-    for file in dict.fromkeys((NAMES, *files)):
-        try:
-            read.append(_read(file, vocabulary, bounds))
-        except InputErrors as error:
-            problems += error.errors
-    if problems:
-        raise InputErrors(problems)
+    read = read_each((NAMES, *files), lambda file: _read(file, vocabulary, bounds))
     joined = {
         name: {phrase: rule for one in read for phrase, rule in one.sections[name].items()}
         for name in (*WITH_KINDS, *WITHOUT_KINDS)
@@ -141,10 +133,9 @@ def _read(file: str, vocabulary: Vocabulary, bounds: Bounds) -> NameFile:
 
 
 @dataclass(eq=False, repr=False)
-class _Reader(FileReader):
+class _Reader(RuleReader):
     """One file."""
 
-    vocabulary: Vocabulary
     sections: dict[str, dict[Phrase, NameRule]] = field(
         default_factory=lambda: {name: {} for name in (*WITH_KINDS, *WITHOUT_KINDS, "becomes")}
     )
@@ -157,18 +148,18 @@ class _Reader(FileReader):
             self.version(top, "name_rules", "rules")
             said = {key: value for key, _, value in self.entries_of(top, PARTS)}
         for section in (*WITH_KINDS, *WITHOUT_KINDS):
-            for item in self._items(said, section):
+            for item in self.items(said, section):
                 self._rule(section, item)
-        for item in self._items(said, "becomes"):
+        for item in self.items(said, "becomes"):
             self._becomes(item)
         return NameFile(
             self.file,
             digest,
             silent=self._phrases(said, "silent"),
             neutral=self._words(said, "neutral"),
-            computed=frozenset(self._kinds(said, "computed")),
-            not_by_type=frozenset(self._kinds(said, "not_by_type")),
-            entered=frozenset(self._kinds(said, "entered")),
+            computed=frozenset(self.kinds(said, "computed")),
+            not_by_type=frozenset(self.kinds(said, "not_by_type")),
+            entered=frozenset(self.kinds(said, "entered")),
             wanted=self._phrases(said, "wanted"),
             commanding=self._words(said, "commanding"),
             reworked=self._words(said, "reworked"),
@@ -180,27 +171,24 @@ class _Reader(FileReader):
         )
 
     def _phrases(self, said: dict[str, Value], key: str) -> frozenset[Phrase]:
-        return frozenset(phrase for item in self._items(said, key) if (phrase := self._phrase(item)))
+        return frozenset(phrase for item in self.items(said, key) if (phrase := self._phrase(item)))
 
     def _words(self, said: dict[str, Value], key: str) -> frozenset[str]:
-        return frozenset(word for item in self._items(said, key) for word in self._phrase(item))
-
-    def _items(self, said: dict[str, Value], key: str) -> tuple[Value, ...]:
-        return self.list_of(said[key], key) if key in said else ()
+        return frozenset(word for item in self.items(said, key) for word in self._phrase(item))
 
     def _rule(self, section: str, item: Value) -> None:
         keys = KEYS if section in WITH_KINDS else tuple(key for key in KEYS if key not in OF_KINDS)
-        said = self._entry(item, keys, ("words", "why", *(("kinds",) if section in WITH_KINDS else ())))
+        said = self.rule(item, keys, ("words", "why", *(("kinds",) if section in WITH_KINDS else ())))
         rule = NameRule(
-            self._kinds(said, "kinds"),
+            tuple(self.kinds(said, "kinds")),
             self._confidence(said),
             said["why"].text if "why" in said else "",
             Place(self.file, item.line),
-            self._kinds(said, "instead_of"),
-            self._is_true(said, "any_type"),
+            tuple(self.kinds(said, "instead_of")),
+            self.is_true(said, "any_type"),
         )
         known = self.sections[section]
-        for word in self._items(said, "words"):
+        for word in self.items(said, "words"):
             phrase = self._phrase(word)
             if phrase in known:
                 what = f"{'_'.join(phrase)} again, first in line {known[phrase].place.line}"
@@ -209,19 +197,12 @@ class _Reader(FileReader):
                 known[phrase] = rule
 
     def _becomes(self, item: Value) -> None:
-        said = self._entry(item, ("from", "to", "confidence", "why", "source"), ("from", "to", "why"))
+        said = self.rule(item, ("from", "to", "confidence", "why", "source"), ("from", "to", "why"))
         confidence, why = self._confidence(said), said["why"].text if "why" in said else ""
-        source = self._kind(said["from"]) if "from" in said else ""
-        for made in self._kinds(said, "to"):
+        source = self.kind(said["from"]) if "from" in said else ""
+        for made in self.kinds(said, "to"):
             if source:
                 self.sections["becomes"][source, made] = NameRule((made,), confidence, why, Place(self.file, item.line))
-
-    def _entry(self, item: Value, keys: tuple[str, ...], needed: tuple[str, ...]) -> dict[str, Value]:
-        said = {key: value for key, _, value in self.entries_of(item, keys)}
-        for key in needed:
-            if key not in said or not (said[key].text or said[key].items):
-                self.problem(item.line, f"a rule without {key}", f"write {', '.join(needed)}")
-        return said
 
     def _phrase(self, item: Value) -> Phrase:
         phrase = words(item.text) if item.kind == "text" else ()
@@ -230,13 +211,6 @@ class _Reader(FileReader):
             self.problem(item.line, f"{shown(item.text or item.kind)!r} is no word of a name", hint)
             return ()
         return phrase
-
-    def _is_true(self, said: dict[str, Value], key: str) -> bool:
-        if key in said and said[key].text != "true":
-            self.problem(
-                said[key].line, f"{key} {shown(said[key].text or said[key].kind)!r}", "write true or leave it out"
-            )
-        return key in said
 
     def _confidence(self, said: dict[str, Value]) -> Confidence:
         if "confidence" not in said:
@@ -247,14 +221,3 @@ class _Reader(FileReader):
             self.problem(value.line, f"confidence {shown(value.text or value.kind)!r}", hint)
             return Confidence.MAY
         return Confidence(value.text)
-
-    def _kinds(self, said: dict[str, Value], key: str) -> tuple[str, ...]:
-        return tuple(name for item in self._items(said, key) if (name := self._kind(item)))
-
-    def _kind(self, item: Value) -> str:
-        category = self.vocabulary.find(item.text) if item.kind == "text" else None
-        if category is None:
-            hint = self.vocabulary.hint(item.text)
-            self.problem(item.line, f"unknown category {shown(item.text or item.kind)!r}", hint)
-            return ""
-        return category.name
