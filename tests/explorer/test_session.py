@@ -50,6 +50,20 @@ def test_paths_are_counted_when_somebody_asks_for_the_whole_answer(session: Sess
     assert [finding.disjoint_paths for finding in session.result.findings] == [1, 1]
 
 
+def test_undo_and_redo_give_the_answers_that_were_there(session: Session) -> None:
+    """They are kept, not made again, as long as the files are the same."""
+    first = session.uncounted
+    session.label("/robot_camera", conduit=True)
+    second = session.uncounted
+    session.undo()
+    assert session.uncounted is first
+    session.redo()
+    assert session.uncounted is second
+    session.save()  # the answer names the file with its hash
+    session.undo()
+    assert session.uncounted is not first
+
+
 def test_a_label_replaces_what_the_file_says(session: Session) -> None:
     change = session.label("/robot_camera", conduit=True)
     assert change.closed == ("dc5715a35ba5591a",)

@@ -7,7 +7,7 @@ is a function of what was read and of the edits; undo takes the last edit away.
 from __future__ import annotations
 
 from threading import RLock
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.answering import answer
@@ -30,6 +30,15 @@ if TYPE_CHECKING:
     from rosprivacy.system import System
 
 OF_QUESTION = ("ontologies", "type_limits", "decisions")  # files that the answer rests on, whatever system it is about
+
+
+class _State(NamedTuple):
+    """Where a session was: the edits that were made, and what followed from them."""
+
+    done: tuple[Edit, ...]
+    system: System
+    uncounted: Result
+    whole: Result | None
 
 
 class History:
@@ -55,6 +64,7 @@ class History:
         self.version = 0
         self.uncounted = answer(system, asked, count_paths=False)
         self._whole: Result | None = None
+        self._last: _State | None = None  # before the last edit, undo or redo
         self._watched.changed(self._others())
 
     def _remember(self, folder: Path, file: str, named: tuple[str, ...], *, resume: bool) -> None:
@@ -176,8 +186,12 @@ class History:
     def _go(self, done: list[Edit], undone: list[Edit]) -> None:
         """Be where these edits are made and those are taken back."""
         said = self._files.differences(self._done, done)
-        self._analyse(done)
-        self._done, self._undone = done, undone
+        here, last = _State(tuple(self._done), self._system, self.uncounted, self._whole), self._last
+        if last is not None and last.done == tuple(done):  # as undo has it, and redo after it
+            _, self._system, self.uncounted, self._whole = last
+        else:
+            self._analyse(done)
+        self._done, self._undone, self._last = done, undone, here
         self.version += 1
         self._remembers.note(said, self._files.unsaved(done))
 
@@ -185,7 +199,7 @@ class History:
         """Have the answer after edits; if they are wrong, that of before is kept."""
         system = self._files.system(edits)
         uncounted = answer(system, self._asked, count_paths=False, before=self.uncounted)
-        self._system, self.uncounted, self._whole = system, uncounted, None
+        self._system, self.uncounted, self._whole, self._last = system, uncounted, None, None
 
     # --- what a session before left -----------------------------------------------------------------------------
 
