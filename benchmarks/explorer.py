@@ -26,6 +26,7 @@ from labelled_systems import KINDS, large, turtlebot
 from measure import Measured, Row, compared, processor, run, side_by_side
 
 import rosprivacy
+from rosprivacy.explorer.element_ids import element_id
 from rosprivacy.explorer.session import Session
 from rosprivacy.explorer.web.application import Site
 from rosprivacy.explorer.web.guard import Door
@@ -47,7 +48,15 @@ ANSWERS, PICTURES, EDITS = 10, 40, 5  # of a round
 FIFTH = 0.2  # of a whole analysis (issue 22)
 EARLY, LATE = 10, 200  # answers of one session after which its memory is looked at
 GROWN = 1.3
-FIELDS = re.compile(r'name="(element)" value="(\w+)"|data-version="(\d+)"|class="answer" name="role" value="(\w+)"')
+FIELDS = re.compile(r'name="element" value="(\w+)"|class="answer" name="role" value="(\w+)"')
+
+
+class Deed(NamedTuple):
+    """What a person does at the page, and what is done before and after it that is not counted."""
+
+    timed: Callable[[Browser], None]
+    before: Callable[[Browser], None] = lambda _: None
+    after: Callable[[Browser], None] = lambda _: None
 
 
 class System(NamedTuple):
@@ -75,6 +84,7 @@ class Browser:
         )
         self._ask("GET", door.link)
         self.page = self._ask("GET", "/")
+        self._numbers = count()
 
     def _ask(self, method: str, address: str, form: dict[str, str] | None = None) -> str:
         answer = self._portal.call(partial(self._client.request, method, address, data=form, follow_redirects=True))
@@ -83,20 +93,25 @@ class Browser:
 
     def pass_on(self) -> None:
         """Say of the element in hand that it passes data on, or of a channel that it may carry it; get the page."""
-        self._answer(node={"role": "conduit"}, channel={"role": "sensitive"})
+        found = list(FIELDS.finditer(self.page))
+        element = next(one[1] for one in found if one[1])
+        role = "conduit" if any(one[2] == "conduit" for one in found) else "sensitive"
+        self._answer(element, {"role": role})
 
     def end(self) -> None:
-        """Say of the element in hand that data ends there, and take it back: data goes another way twice."""
-        self._answer(node={"role": "sanitizer", "method": "drop", "about": "PersonalData"}, channel={"role": "mundane"})
+        """Say of an open element that data ends there, each time of another one: data goes other ways; get the page."""
+        questions = self.site.standing.questions
+        element = questions[next(self._numbers) % len(questions)].element
+        drop = {"role": "sanitizer", "method": "drop", "about": "PersonalData"}
+        self._answer(element_id(element.identity), drop if element.is_node else {"role": "mundane"})
+
+    def undo(self) -> None:
+        """Take the last answer back; get the page."""
         self.page = self._ask("POST", "/undo", {"version": str(self.session.version)})
 
-    def _answer(self, node: dict[str, str], channel: dict[str, str]) -> None:
-        found = list(FIELDS.finditer(self.page))
-        element = next(one[2] for one in found if one[2])
-        version = next(one[3] for one in found if one[3])
-        roles = {one[4] for one in found if one[4]}
-        form = node if "conduit" in roles else channel
-        self.page = self._ask("POST", "/label", {"version": version, "element": element, "about": "*", **form})
+    def _answer(self, element: str, label: dict[str, str]) -> None:
+        form = {"version": str(self.session.version), "element": element, "about": "*", **label}
+        self.page = self._ask("POST", "/label", form)
 
     def close(self) -> None:
         """End the process of Graphviz."""
@@ -118,12 +133,13 @@ def rows(*, quick: bool) -> Iterator[Row]:
         held = partial(_memory, usual)
         yield Row(f"memory after {LATE} answers, {usual.name}", f"after {EARLY}", held, GROWN)
         for one in systems:
-            for what, rounds_of, answer, pages in (
-                ("an answer and its page", ANSWERS, Browser.pass_on, 1),
-                ("an answer that ends data, its page, and back", ANSWERS // 2, Browser.end, 2),
+            everywhere = one is systems[-1]
+            for what, deed, goal in (
+                ("an answer and its page", Deed(Browser.pass_on), False),
+                ("an answer that ends data, and its page", Deed(Browser.end, after=Browser.undo), everywhere),
+                ("taking it back, and its page", Deed(Browser.undo, before=Browser.end), False),
             ):
-                measure = partial(_pages, one, rounds, partial(_often, rounds_of, answer), rounds_of * pages)
-                goal = pages > 1
+                measure = partial(_pages, one, rounds, deed)
                 yield Row(f"{what}, {one.name}", "the command analyze", measure, FIFTH, goal)
             if not quick:
                 edit = partial(_edits, one, rounds)
@@ -138,16 +154,24 @@ def _often(times: int, answer: Callable[[Browser], None], browser: Browser) -> N
         answer(browser)
 
 
-def _pages(system: System, rounds: int, answer: Callable[[Browser], None], pages: int) -> Measured:
+def _pages(system: System, rounds: int, deed: Deed) -> Measured:
     answers, commands = list[float](), list[float]()
     with start_blocking_portal() as portal:
         for _ in range(rounds + 1):
             browser = Browser(system, portal)
-            answers.append(_seconds(partial(answer, browser)) / pages)
+            answers.append(sum(_one(deed, browser) for _ in range(ANSWERS)) / ANSWERS)
             commands.append(_seconds(system.analysed))
             elements = len(browser.session.uncounted.analysis.graph.elements)
             browser.close()
     return compared((answers[1:], commands[1:]), f"{elements:,} elements")  # the first round warms up
+
+
+def _one(deed: Deed, browser: Browser) -> float:
+    """The processor's seconds of one deed, without what comes before and after it."""
+    deed.before(browser)
+    seconds = _seconds(partial(deed.timed, browser))
+    deed.after(browser)
+    return seconds
 
 
 def _edits(system: System, rounds: int) -> Measured:

@@ -26,7 +26,8 @@ from rosprivacy.analysis.findings.unknown_ends import unknown_ends
 from rosprivacy.analysis.findings.witness import witness_of
 from rosprivacy.analysis.kernel import spreading, standard_channels
 from rosprivacy.analysis.kernel.bits import bits_of
-from rosprivacy.analysis.kernel.search import START, Search, path_to, present, search
+from rosprivacy.analysis.kernel.search import START, Search, path_to, present
+from rosprivacy.analysis.kernel.searches import ROOM, searches
 from rosprivacy.analysis.kernel.states import Net
 from rosprivacy.analysis.model import DISCLOSURE, PATHS_NOT_COUNTED, Diagnostic, Element, Place, Severity
 from rosprivacy.analysis.modes import Paths
@@ -223,11 +224,12 @@ def _findings(net: Net, mask: int, kinds: Sequence[Concern], options: Options, w
     reached = [(concern, leaks) for concern, leaks in ends if leaks]
     results: list[tuple[int, int, int, str, bool, Finding]] = []
     stops = _Stops(spread)
+    room = 0 if options.count_paths else ROOM  # only where these wait for who asks, another answer follows
     chosen = options.choose(spread, kinds, mask) if options.choose and reached else None
     sources = [v for v in spread.facts if spread.begins(v)] if chosen is None else chosen
     for source in sorted(sources) if reached else ():
         only = None if chosen is None else chosen[source]
-        whole = search(net, [source], spread.all_bits, {})
+        whole = searches(spread, room).of(net, source, spread.all_bits, {}, None)
         work.searches.add(len(whole.seen), NOWHERE)
         memory: dict[Any, Any] = {}
         for concern, leaks in reached:
@@ -325,7 +327,8 @@ def _search_free(
     together = [i] if i in spread.made else [j for j, _ in enumerate(spread.categories) if j not in spread.made]
     ends = sum(map(spread.bits.both, together))
     stop = stops.of(ends, accepted)
-    result = search(net, [source], spread.all_bits if i in spread.made else ends, stop)
+    allowed = spread.all_bits if i in spread.made else ends
+    result = searches(spread).of(net, source, allowed, stop, (ends, frozenset(accepted.items())))
     free.update(dict.fromkeys(together, (result, stop)))
 
 

@@ -71,7 +71,8 @@ def open_questions(net: Net, mask: int, unknown: Mapping[int, tuple[str, ...]] =
             categories = tuple(sorted({*known.categories, *question.categories}))
             question = known._replace(categories=categories, distance=min(known.distance, question.distance))
         merged[element.shown_as] = question
-    return tuple(sorted(merged.values(), key=lambda q: (not q.frontier, q.distance, q.element.sort_key())))
+    # the elements of a graph are sorted, and so are these; what is alike here stays in that order
+    return tuple(sorted(merged.values(), key=lambda q: (not q.frontier, q.distance)))
 
 
 def open_bits(spread: Spread, unknown: Collection[int]) -> dict[int, int]:

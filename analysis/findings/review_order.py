@@ -12,7 +12,7 @@ from functools import cache
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.kernel.dominators import immediate_dominators
-from rosprivacy.analysis.many_flows import parted
+from rosprivacy.analysis.kernel.states import Net
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -68,7 +68,7 @@ def review_order(analysis: Analysis) -> dict[Shown, Behind]:
     elements = spread.graph.elements
     kinds = {q.categories: spread.bits.merged(sum(map(spread.both, q.categories))) for q in analysis.open}
     asked = {q.element.shown_as: kinds[q.categories] for q in analysis.open}
-    following = spread.course.kept("following", None, lambda: _Following.of(spread))
+    following = spread.course.kept("following", None, lambda: _Following.of(Net.kept(spread)))
     reached = spread.course.kept("reached", None, following.reached)
     shown = spread.course.kept("shown", None, lambda: {vertex: elements[vertex].shown_as for vertex in reached})
     open_at = {vertex: one for vertex, one in shown.items() if one in asked}
@@ -99,7 +99,7 @@ class _Following(NamedTuple):
     Attributes
     ----------
     along
-        Flow -> what goes along it and is taken up, where there is any.
+        Vertex -> (target, what goes there and is taken up) of each flow with data.
     single
         Vertex -> where flows with data lead.
     meetings
@@ -107,21 +107,21 @@ class _Following(NamedTuple):
     """
 
     spread: Spread
-    along: dict[int, int]
+    along: dict[int, list[tuple[int, int]]]
     single: dict[int, list[int]]
     meetings: tuple[Meeting, ...]
 
     @classmethod
-    def of(cls, spread: Spread) -> _Following:
-        own, meetings = parted(spread.graph.flows, spread.told_apart)
-        along: dict[int, int] = {}
-        single: dict[int, list[int]] = defaultdict(list)
-        for index, flow in own:
-            if bits := spread.along(index):
-                along[index] = bits
-                single[flow.source].append(flow.target)
-        single[START] = [vertex for vertex in range(len(spread.graph.elements)) if spread.begins(vertex)]
-        return cls(spread, along, single, meetings)
+    def of(cls, net: Net) -> _Following:
+        spread = net.spread
+        sent, emits = spread.sent, spread.flow_emits
+        along: dict[int, list[tuple[int, int]]] = {}
+        for source, moves in net.flows.items():
+            here = sent.get(source, 0)
+            along[source] = [(to, bits) for i, to, takes in moves if (bits := (here | emits.get(i, 0)) & takes)]
+        single = {source: [target for target, _ in ways] for source, ways in along.items() if ways}
+        single[START] = sorted(vertex for vertex in spread.facts if spread.begins(vertex))
+        return cls(spread, along, single, tuple({id(m): m for met in net.meetings.values() for m in met}.values()))
 
     def sent(self, source: int) -> int:
         """What is sent in a meeting."""
@@ -141,6 +141,8 @@ class _Following(NamedTuple):
 
     def with_hubs(self) -> dict[int, list[int]]:
         """Return all flows; what of a meeting is sent alike goes through one vertex more: dominators stay."""
+        if not self.meetings:
+            return self.single
         flows: dict[int, list[int]] = {vertex: list(targets) for vertex, targets in self.single.items()}
         hub = len(self.spread.graph.elements)
         for meeting in self.meetings:
@@ -235,11 +237,10 @@ def _found_through(following: _Following, asked: Mapping[int, int], reached: Ite
             if target not in best or one < best[target]:
                 best[target] = one
 
-    own, meetings = parted(spread.graph.flows, spread.told_apart)
-    for index, flow in own:
-        if index in following.along:
-            comes(flow.source, flow.target, following.along[index])
-    for meeting in meetings:
+    for source, ways in following.along.items():
+        for target, bits in ways:
+            comes(source, target, bits)
+    for meeting in following.meetings:
         first: dict[int, int] = {}  # what is sent -> the first that sends it
         for source in sorted(set(meeting.written) & order.keys(), key=lambda one: -order[one]):
             first[following.sent(source)] = source

@@ -57,7 +57,7 @@ def unknown_ends(spread: Spread, mask: int) -> tuple[UnknownEnd, ...]:
 def _unread(spread: Spread, mask: int) -> Iterator[int]:
     """Channels with data from which no flow leads to anything but channels."""
     elements = spread.graph.elements
-    known = spread.course.kept("readable", None, lambda: _readable(spread.graph))
+    known = spread.shape.kept("readable", None, lambda: _readable(spread.graph))
     for vertex in sorted(spread.leaves):
         if elements[vertex].is_channel and spread.present(vertex) & mask and vertex not in known:
             yield vertex

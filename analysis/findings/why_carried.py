@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.findings.witness import Witness, witness_of
 from rosprivacy.analysis.kernel.search import from_sources, path_to
+from rosprivacy.analysis.kernel.vertices import by_shown
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Analysis
-    from rosprivacy.analysis.model import Element, FlowGraph
+    from rosprivacy.analysis.model import Element
 
 
 class WhyCarried:
@@ -38,7 +39,7 @@ class WhyCarried:
     def __init__(self, analysis: Analysis) -> None:
         spread = analysis.spread
         self.net, self._search = from_sources(spread)
-        self._vertices = spread.course.kept("vertices", None, lambda: _vertices(spread.graph))
+        self._vertices = by_shown(spread)
 
     def path(self, element: Element, category: str) -> Witness | None:
         """Return one shortest path from a source to an element, along which a category gets there.
@@ -70,14 +71,6 @@ class WhyCarried:
             return None
         _, bit, vertex = min(ways)
         return witness_of(self.net, path_to(self.net, self._search, vertex, bit))
-
-
-def _vertices(graph: FlowGraph) -> dict[tuple[str, str, str, str], list[int]]:
-    """What a reader sees as one element -> its vertices."""
-    found: dict[tuple[str, str, str, str], list[int]] = {}
-    for vertex, element in enumerate(graph.elements):
-        found.setdefault(element.shown_as, []).append(vertex)
-    return found
 
 
 def why_carried(analysis: Analysis, element: Element, category: str) -> Witness | None:

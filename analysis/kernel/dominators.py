@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Mapping
 
 UNKNOWN = -1
 
@@ -42,7 +42,13 @@ def immediate_dominators(following: Mapping[int, Iterable[int]], start: int) -> 
             dominator = UNKNOWN
             for other in entering[vertex]:
                 if above[other] != UNKNOWN and other != dominator:
-                    dominator = other if dominator == UNKNOWN else _common(above, dominator, other)
+                    if dominator == UNKNOWN:
+                        dominator = other
+                    while other != dominator:  # up to the nearest that dominates both; a higher rank is nearer
+                        if other < dominator:
+                            other = above[other]  # noqa: PLW2901
+                        else:
+                            dominator = above[dominator]
             if above[vertex] != dominator:
                 above[vertex] = dominator
                 changed = True
@@ -65,13 +71,3 @@ def _finished(following: Mapping[int, Iterable[int]], start: int) -> list[int]:
             stack.pop()
             finished.append(vertex)
     return finished
-
-
-def _common(above: Sequence[int], one: int, other: int) -> int:
-    """The nearest vertex that dominates both; a higher rank is nearer to the start."""
-    while one != other:
-        while one < other:
-            one = above[one]
-        while other < one:
-            other = above[other]
-    return one

@@ -50,18 +50,25 @@ class Search:
         if self.begun.get(vertex, 0) & bits:
             return 0
         arrived = self.arrived.get(vertex, ())
-        nearest = next((level for level, new, _ in arrived if new & bits), None)
+        nearest = _first_level(arrived, bits)
         for made, origin in self.left.get(vertex, ()):
             if origin is not None and origin != START and made & bits:
-                level = next((level for level, new, _ in arrived if new >> origin & 1), None)
+                level = _first_level(arrived, 1 << origin)
                 if level is not None and (nearest is None or level < nearest):
                     nearest = level
         return nearest
 
     def arrives_first(self, vertex: int, bit: int) -> bool:
         """Whether a bit arrives at a vertex no later than it is made there."""
-        arrival = next((level for level, new, _ in self.arrived.get(vertex, ()) if new >> bit & 1), None)
+        arrival = _first_level(self.arrived.get(vertex, ()), 1 << bit)
         return arrival is not None and arrival == self.level(vertex, 1 << bit)
+
+
+def _first_level(arrived: Iterable[tuple[int, int, int]], bits: int) -> int | None:
+    for level, new, _ in arrived:
+        if new & bits:
+            return level
+    return None
 
 
 def search(net: Net, starts: Iterable[int], allowed: int, stop: Mapping[int, int]) -> Search:
@@ -93,7 +100,8 @@ def search(net: Net, starts: Iterable[int], allowed: int, stop: Mapping[int, int
     """
     spread = net.spread
     reach = Search()
-    seen, gone = reach.seen, reach.gone
+    arrived, seen, gone = reach.arrived, reach.seen, reach.gone
+    flows, meetings = net.flows, net.meetings
     keeps, derives, everything = spread.keeps, spread.derives, spread.all_bits
     level = 0
     leaving: dict[int, int] = defaultdict(int)
@@ -111,10 +119,13 @@ def search(net: Net, starts: Iterable[int], allowed: int, stop: Mapping[int, int
         single = []
         for vertex in sorted(leaving):
             bits = leaving[vertex]
-            for index, target, passing in net.flows.get(vertex, ()):
-                if bits & passing & ~seen.get(target, 0):
-                    _arrive(reach, target, bits & passing, level, index, arriving)
-            for meeting in net.meetings.get(vertex, ()):
+            for index, target, passing in flows.get(vertex, ()):
+                known = seen.get(target, 0)
+                if new := bits & passing & ~known:  # ``_arrive``, written out: most of the time is spent here
+                    seen[target] = known | new
+                    arrived[target].append((level, new, index))
+                    arriving[target] |= new
+            for meeting in meetings.get(vertex, ()):
                 if new := bits & ~met[id(meeting)]:
                     met[id(meeting)] |= new
                     _arrive_at_all(net, reach, vertex, meeting.read, new, level, arriving)

@@ -75,6 +75,10 @@ class Spread:
         By which it was decided.
     course
         What is found of how data goes on; the same one where it goes the same ways as in an answer before.
+    shape
+        What is found of the graph alone; the same one as in an answer before about the same graph.
+    own
+        What is found of this answer only.
     """
 
     graph: FlowGraph
@@ -105,6 +109,8 @@ class Spread:
     decisions: dict[tuple[Statement, ...], dict[str, Facts]] = field(default_factory=dict)
     hierarchy: Hierarchy | None = None
     course: Course = field(default_factory=Course, init=False)
+    shape: Course = field(default_factory=Course, init=False)
+    own: Course = field(default_factory=Course, init=False)
     _both: Mapping[str, int] = field(init=False, repr=False, compare=False)
     _names: dict[int, tuple[str, ...]] = field(default_factory=dict, init=False, repr=False, compare=False)
 

@@ -15,6 +15,7 @@ from rosprivacy.analysis.kernel.named_channels import keep_named, named, stated_
 from rosprivacy.analysis.kernel.overruled import overruled
 from rosprivacy.analysis.kernel.ranks import applies
 from rosprivacy.analysis.kernel.roles import Facts, facts
+from rosprivacy.analysis.kernel.searches import searches_after
 from rosprivacy.analysis.kernel.spread import Spread
 from rosprivacy.analysis.model import Method
 
@@ -31,7 +32,8 @@ def spread(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, before: Spread 
     Parameters
     ----------
     before
-        The spread of an earlier answer: where data goes the same ways, what was found of that holds here, too.
+        The spread of an earlier answer: what was found of the same graph holds here, too, and where data goes the same
+        ways what was found of that.
 
     Raises
     ------
@@ -46,6 +48,9 @@ def spread(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, before: Spread 
     (('FaceTemplate',), ('Video',))
     """
     result = meaning(graph, bound, hierarchy, emitted(bound.elements.values()), before=before)
+    if before is not None and before.graph is graph:
+        result.shape = before.shape
+        searches_after(before, result)
     if before is not None and result.goes_like(before):
         result.course = before.course
         result.arrives, result.leaves, result.sent = before.arrives, before.leaves, before.sent

@@ -8,15 +8,17 @@ A state is (vertex, bit): data of a category, in one of its forms, has arrived a
 from __future__ import annotations
 
 from collections import defaultdict
+from functools import cache
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.many_flows import number, one_by_one, parted
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Collection, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.meeting import Meeting
+    from rosprivacy.analysis.model import Flow
 
 Move = tuple[int, int, int]  # flow, its target, bits that go along it and are taken up there
 
@@ -45,14 +47,17 @@ class Net(NamedTuple):
         graph = spread.graph
         flows: dict[int, list[Move]] = defaultdict(list)
         inner: dict[int, list[Move]] = defaultdict(list)
-        own, meetings = parted(graph.flows, spread.told_apart)
-        for index, flow in own:
-            if spread.leaves.get(flow.source):
-                move = (index, flow.target, spread.passing(index))
-                flows[flow.source].append(move)
-                written, read = graph.elements[flow.source], graph.elements[flow.target]
-                if written.pattern and written.shown_as == read.shown_as:
-                    inner[flow.source].append(move)
+        by_source, meetings = spread.shape.kept(
+            "flows by source", spread.told_apart, lambda: _by_source(graph.flows, spread.told_apart)
+        )
+        taken, keeps, everything = cache(spread.taken), spread.flow_keeps, spread.all_bits
+        for source, ways in by_source.items():
+            if spread.leaves.get(source):
+                moves = [(index, target, taken(target) & keeps.get(index, everything)) for index, target in ways]
+                flows[source] = moves
+                if graph.elements[source].pattern:
+                    shown = graph.elements[source].shown_as
+                    inner[source] += [move for move in moves if graph.elements[move[1]].shown_as == shown]
         met: dict[int, list[Meeting]] = defaultdict(list)
         for meeting in meetings:
             sides: dict[tuple[str, str, str, str], list[int]] = defaultdict(list)
@@ -76,6 +81,17 @@ class Net(NamedTuple):
             return moves
         one_by_one(self.spread.graph.flows)
         return sorted([*moves, *(_move(self.spread, vertex, t) for meeting in meetings for t in meeting.read)])
+
+
+def _by_source(
+    flows: Sequence[Flow], told_apart: Collection[int]
+) -> tuple[Mapping[int, Sequence[tuple[int, int]]], tuple[Meeting, ...]]:
+    """Source -> (index, target) of its flows, and the meetings."""
+    own, meetings = parted(flows, told_apart)
+    found: dict[int, list[tuple[int, int]]] = defaultdict(list)
+    for index, flow in own:
+        found[flow.source].append((index, flow.target))
+    return dict(found), meetings
 
 
 def _move(spread: Spread, source: int, target: int) -> Move:

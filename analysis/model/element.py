@@ -36,6 +36,10 @@ class Element:
         Only of a pattern: the DDS expressions that a DENY of its enclave takes out of it (rule S5), sorted.
     is_channel
         Whether this is a topic, service or action: it only passes on; all others take part like nodes (rule S9).
+    identity
+        (robot, kind, name), rule S1: legs and sides are parts of one element.
+    shown_as
+        What a reader sees: the identity and the leg, without the side of a pattern.
     """
 
     kind: str
@@ -45,11 +49,15 @@ class Element:
     side: str = ""
     without: tuple[str, ...] = ()
     is_channel: bool = field(init=False, repr=False, compare=False)
+    identity: tuple[str, str, str] = field(init=False, repr=False, compare=False)
+    shown_as: tuple[str, str, str, str] = field(init=False, repr=False, compare=False)
     _hash: int = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         """Reckon once what is asked for most often."""
         object.__setattr__(self, "is_channel", self.kind in CHANNELS)
+        object.__setattr__(self, "identity", (self.robot, self.kind, self.name))
+        object.__setattr__(self, "shown_as", (self.robot, self.kind, self.name, self.leg))
         object.__setattr__(self, "_hash", hash((self.name, self.robot, self.leg, self.kind)))
 
     def __hash__(self) -> int:
@@ -73,16 +81,6 @@ class Element:
     def full_name(self) -> str:
         """The name, with the robot's where there are several."""
         return f"{self.robot}:{self.name}" if self.robot else self.name
-
-    @property
-    def identity(self) -> tuple[str, str, str]:
-        """(robot, kind, name), rule S1: legs and sides are parts of one element."""
-        return (self.robot, self.kind, self.name)
-
-    @property
-    def shown_as(self) -> tuple[str, str, str, str]:
-        """What a reader sees: the identity and the leg, without the side of a pattern."""
-        return (self.robot, self.kind, self.name, self.leg)
 
     def sort_key(self) -> tuple[object, ...]:
         """Nodes first, then by robot, name and part: the order of all output (rule S14)."""

@@ -5,14 +5,14 @@ In: an ``Analysis``. Out: neighbours of an element, flows between elements, shor
 
 from __future__ import annotations
 
-from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.findings.why_carried import WhyCarried
+from rosprivacy.analysis.kernel.vertices import by_identity
 from rosprivacy.analysis.many_flows import number, parted
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Iterator
+    from collections.abc import Collection, Iterable, Iterator, Sequence
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.findings.witness import Witness
@@ -36,17 +36,15 @@ class Joined:
     def __init__(self, analysis: Analysis, why: WhyCarried | None = None) -> None:
         self.analysis, self.why = analysis, why or WhyCarried(analysis)
         self._spread, self._net = analysis.spread, self.why.net
-        self._vertices: dict[Key, list[int]] = defaultdict(list)
-        for vertex, element in enumerate(analysis.graph.elements):
-            self._vertices[element.identity].append(vertex)
+        self._vertices = by_identity(analysis.spread)
 
     def __contains__(self, key: Key) -> bool:
         """Whether there is such an element."""
         return key in self._vertices
 
-    def vertices(self, key: Key) -> list[int]:
+    def vertices(self, key: Key) -> Sequence[int]:
         """Return the vertices of an element: its legs, its sides."""
-        return self._vertices[key]
+        return self._vertices.get(key, ())
 
     def unjudged(self, bits: int) -> set[Key]:
         """Return the elements that nobody has judged for some kind of some bits."""
@@ -61,7 +59,7 @@ class Joined:
 
     def paths(self, key: Key, kinds: Iterable[str]) -> list[Witness]:
         """Return the shortest path of each kind that gets to an element, the shortest first, each path once."""
-        elements = {self.analysis.graph.elements[vertex].shown_as: vertex for vertex in self._vertices[key]}
+        elements = {self.analysis.graph.elements[vertex].shown_as: vertex for vertex in self._vertices.get(key, ())}
         every = [
             path
             for kind in kinds
@@ -73,12 +71,12 @@ class Joined:
 
     def after(self, key: Key, bits: int) -> list[Key]:
         """Return the elements that some bits go to from one, sorted."""
-        ends = {there for vertex in self._vertices[key] for there, along in self._from(vertex) if along & bits}
+        ends = {there for vertex in self._vertices.get(key, ()) for there, along in self._from(vertex) if along & bits}
         return self._others(key, ends)
 
     def before(self, key: Key, bits: int) -> list[Key]:
         """Return the elements that some bits come from to one, sorted; O(flows)."""
-        own, found = set(self._vertices[key]), set()
+        own, found = set(self._vertices.get(key, ())), set()
         for source, moves in self._net.flows.items():
             if any(target in own for _, target, _ in moves) and any(
                 there in own and along & bits for there, along in self._from(source)
@@ -98,7 +96,7 @@ class Joined:
 
     def granted(self, key: Key) -> Iterable[Flow]:
         """Return the flows of an element, whether data goes along them or not; O(flows)."""
-        own, flows = set(self._vertices[key]), self.analysis.graph.flows
+        own, flows = set(self._vertices.get(key, ())), self.analysis.graph.flows
         stored, meetings = parted(flows)
         yield from (flow for _, flow in stored if {flow.source, flow.target} & own)
         for meeting in meetings:
@@ -107,7 +105,7 @@ class Joined:
 
     def flows(self, keys: Collection[Key]) -> list[int]:
         """Return the flows between some elements along which anything is sent, by number."""
-        inside = {vertex for key in keys for vertex in self._vertices[key]}
+        inside = {vertex for key in keys for vertex in self._vertices.get(key, ())}
         found = []
         for vertex in sorted(inside):
             found += [index for index, target, _ in self._net.flows.get(vertex, ()) if target in inside]

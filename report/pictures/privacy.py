@@ -7,6 +7,7 @@ from functools import cached_property, reduce
 from operator import or_
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.kernel.vertices import by_identity
 from rosprivacy.analysis.many_flows import one_by_one
 from rosprivacy.analysis.model import CHANNELS, DISCLOSURE
 from rosprivacy.report.pictures.looks import DERIVATION, END, LEAK, OPEN, REVIEWED, SANITIZER, SOURCE, UNTOUCHED
@@ -16,7 +17,7 @@ from rosprivacy.report.pictures.wording import listed
 from rosprivacy.report.words.typography import plain
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Iterator
+    from collections.abc import Collection, Iterable, Iterator, Sequence
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.report.pictures.picture import Key
@@ -57,9 +58,7 @@ class Reached:
         if categories is not None and any(found.categories.index(category) in found.made for category in wanted):
             self._mask = found.all_bits
         self._several = len(found.names(self._mask)) > 1
-        self._of: dict[Key, list[int]] = defaultdict(list)
-        for vertex, element in enumerate(self.graph.elements):
-            self._of[element.identity].append(vertex)
+        self._of = by_identity(found)
         self._ending = ends_of(analysis)
         self._types = analysis.types
         self._ends = {vertex: reduce(or_, kinds.values()) for vertex, kinds in self._ending.items()}
@@ -75,20 +74,20 @@ class Reached:
     def boxes(self, keys: Collection[Key] | None = None) -> Iterator[Box]:
         """What data gets to and does not end at without leaving or getting out; of some elements, or of all."""
         for key in self._of if keys is None else keys:
-            vertices = self._of[key]
+            vertices = self._of.get(key, ())
             if self._drawn(key, vertices):
                 yield self._box(key, vertices)
 
     def every_box(self, keys: Collection[Key]) -> Iterator[Box]:
         """Some elements, also those that end what comes to them, and those that no data gets to."""
         for key in keys:
-            vertices = self._of[key]
+            vertices = self._of.get(key, ())
             if self._drawn(key, vertices):
                 yield self._box(key, vertices)
             else:
                 yield self._quiet(key, vertices)
 
-    def _quiet(self, key: Key, vertices: list[int]) -> Box:
+    def _quiet(self, key: Key, vertices: Sequence[int]) -> Box:
         """What data does not go on from."""
         first, arrives = self.graph.elements[vertices[0]], 0
         for vertex in vertices:
@@ -98,7 +97,7 @@ class Reached:
         look = END if arrives else UNTOUCHED
         return Box(key, (key[2],), look, tuple(words), pattern=first.pattern, types=types)
 
-    def _drawn(self, key: Key, vertices: list[int]) -> bool:
+    def _drawn(self, key: Key, vertices: Sequence[int]) -> bool:
         """Whether data goes on from there or gets out, or the element is open: a storage that cleans has a country."""
         return bool(self._open.get(key)) or any(self._goes_on(vertex) for vertex in vertices)
 
@@ -171,7 +170,7 @@ class Reached:
             notes.append(words.count(apart, "pic.apart"))
         return tuple(map(plain, notes))
 
-    def _box(self, key: Key, vertices: list[int]) -> Box:
+    def _box(self, key: Key, vertices: Sequence[int]) -> Box:
         bits = {"present": 0, "begins": 0, "leaks": 0, "arrives": 0, "ends": 0}
         for vertex in vertices:
             present = self._found.present(vertex) & self._mask
@@ -198,7 +197,7 @@ class Reached:
         types = self._types.get(first, ())
         return Box(key, (key[2],), look, tuple(words), bool(open_for), pattern=first.pattern, types=types)
 
-    def _said(self, vertices: list[int], present: int) -> tuple[list[str], list[str]]:
+    def _said(self, vertices: Sequence[int], present: int) -> tuple[list[str], list[str]]:
         """What labels say that is made of what is here, and how it is cleaned, in words."""
         made: dict[str, None] = {}
         cleaned: dict[str, None] = {}
@@ -218,7 +217,7 @@ class Reached:
         return self._say.of("makes", [category], MOST, to=self._say.title(to))
 
     def _words(
-        self, key: Key, bits: dict[str, int], made: list[str], cleaned: list[str], vertices: list[int]
+        self, key: Key, bits: dict[str, int], made: list[str], cleaned: list[str], vertices: Sequence[int]
     ) -> list[str]:
         found, say = self._found, self._say
         if key[1] in CHANNELS:
@@ -236,7 +235,7 @@ class Reached:
             words.append(say.of(kind, found.names(ending & bits["present"]), MOST))
         return [*words, *made[:MOST], *cleaned[:MOST]]
 
-    def _ending_at(self, vertices: list[int]) -> dict[str, int]:
+    def _ending_at(self, vertices: Sequence[int]) -> dict[str, int]:
         """Of one element: kind of a finding that ends there -> bits."""
         ending: dict[str, int] = defaultdict(int)
         for vertex in vertices:
@@ -245,7 +244,7 @@ class Reached:
                     ending[kind] |= bits & self._mask
         return dict(sorted(ending.items()))
 
-    def _own(self, vertices: list[int], begins: int) -> list[str]:
+    def _own(self, vertices: Sequence[int], begins: int) -> list[str]:
         """What labels call it a source of; what it makes of its own data begins here too."""
         said = [self._found.facts.get(vertex, {}) for vertex in vertices]
         return [c for c in self._found.names(begins) if any(c in facts and facts[c].emits for facts in said)]

@@ -234,7 +234,7 @@ def _ways(standing: Standing, element: Element, kinds: Iterable[str], view: View
     """One shortest path for each kind; the same path of several kinds once."""
     told: dict[tuple[Element, ...], str] = {}
     for kind in kinds:
-        paths = [path for part in standing.parts[element.identity] if (path := standing.why.path(part, kind))]
+        paths = [path for part in standing.parts(element.identity) if (path := standing.why.path(part, kind))]
         if paths:
             path = min(paths, key=lambda one: len(one.steps))
             if path.elements not in told:

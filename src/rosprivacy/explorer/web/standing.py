@@ -5,22 +5,23 @@ In: a ``Session``. Out: elements by id, questions, suggestions, why data gets to
 
 from __future__ import annotations
 
-from functools import cached_property
-from typing import TYPE_CHECKING, TypeVar
+from functools import cache, cached_property
+from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.findings.why_carried import WhyCarried
+from rosprivacy.analysis.kernel.vertices import by_identity
 from rosprivacy.explorer.element_ids import by_id, element_id
 from rosprivacy.explorer.questions import questions
 from rosprivacy.mitigation import REPORTED, run_mitigation
 from rosprivacy.report.document.analysis import label_key
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
     from typing import Any
 
     from rosprivacy.analysis.answer import Analysis, Finding
     from rosprivacy.analysis.findings.review_order import Behind, Shown
-    from rosprivacy.analysis.model import Element, FlowGraph
+    from rosprivacy.analysis.model import Element
     from rosprivacy.explorer.edits import Edit
     from rosprivacy.explorer.questions import Question
     from rosprivacy.explorer.session import Session
@@ -28,8 +29,6 @@ if TYPE_CHECKING:
     from rosprivacy.mitigation import Mitigation
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.result import Result
-
-Found = TypeVar("Found")
 
 
 class Standing:
@@ -53,7 +52,7 @@ class Standing:
     @cached_property
     def elements(self) -> Mapping[str, Element]:
         """All elements, by id."""
-        return self._kept("page: elements", None, lambda: by_id(self.analysis.graph))
+        return self.analysis.spread.shape.kept("page: elements", None, lambda: by_id(self.analysis.graph))
 
     @cached_property
     def questions(self) -> Sequence[Question]:
@@ -107,21 +106,18 @@ class Standing:
     @cached_property
     def carried(self) -> Mapping[str, tuple[str, ...]]:
         """Id of an element -> kinds of data that are there, in whichever form."""
-        return self._kept("page: carried", self.analysis.carried, lambda: _carried(self.analysis))
+        kept = self.analysis.spread.course.kept
+        return kept("page: carried", self.analysis.carried, lambda: _carried(self.analysis))
 
     @cached_property
     def roles(self) -> Mapping[str, Mapping[str, tuple[str, ...]]]:
         """Id of an element -> kind of data -> what labels say that it does with it."""
         return {element_id(element.identity): roles for element, roles in self.analysis.roles.items()}
 
-    @cached_property
-    def parts(self) -> Mapping[tuple[str, str, str], Sequence[Element]]:
-        """Identity of an element -> its vertices: legs of services, sides of wildcards."""
-        return self._kept("page: parts", None, lambda: _parts(self.analysis.graph))
-
-    def _kept(self, what: str, under: object, find: Callable[[], Found]) -> Found:
-        """Find what rests on the graph, and on what is named: once for all answers that move no data."""
-        return self.analysis.spread.course.kept(what, under, find)
+    def parts(self, identity: tuple[str, str, str]) -> tuple[Element, ...]:
+        """Return what an element is made of: legs of services, sides of wildcards."""
+        elements = self.analysis.graph.elements
+        return tuple(elements[vertex] for vertex in by_identity(self.analysis.spread)[identity])
 
     @cached_property
     def why(self) -> WhyCarried:
@@ -163,15 +159,9 @@ class Standing:
 
 
 def _carried(analysis: Analysis) -> dict[str, tuple[str, ...]]:
-    found: dict[str, set[str]] = {}
+    joined = cache(lambda *some: tuple(sorted({kind for kinds in some for kind in kinds})))
+    found: dict[str, tuple[str, ...]] = {}
     for one in analysis.carried:
-        kinds = found.setdefault(element_id(one.element.identity), set())
-        kinds.update(one.categories, one.pseudonymised)
-    return {name: tuple(sorted(kinds)) for name, kinds in found.items()}
-
-
-def _parts(graph: FlowGraph) -> dict[tuple[str, str, str], list[Element]]:
-    found: dict[tuple[str, str, str], list[Element]] = {}
-    for element in graph.elements:
-        found.setdefault(element.identity, []).append(element)
+        at = element_id(one.element.identity)
+        found[at] = joined(found.get(at, ()), one.categories, one.pseudonymised)
     return found

@@ -10,6 +10,7 @@ from hashlib import sha256
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.kernel.vertices import by_identity
 from rosprivacy.analysis.many_flows import parted
 from rosprivacy.analysis.text import fit
 from rosprivacy.explorer.element_ids import DIGITS, element_id
@@ -132,7 +133,7 @@ def between(standing: Standing, flow: str) -> tuple[tuple[Element, Element], ...
 def _flows(standing: Standing, element: Element) -> Iterator[Flow]:
     """The flows of an element from and to others; of meetings those only that it takes part in."""
     graph = standing.analysis.graph
-    here = {number for number, one in enumerate(graph.elements) if one.identity == element.identity}
+    here = set(by_identity(standing.analysis.spread)[element.identity])
     stored, meetings = parted(graph.flows)
     yield from (flow for _, flow in stored if (flow.source in here) != (flow.target in here))
     for meeting in meetings:

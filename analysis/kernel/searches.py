@@ -1,0 +1,114 @@
+"""Searches from one source each, made once: those of the answer before hold where nothing they met is otherwise now.
+
+In: a ``Net`` and what is searched. Out: a ``Search``. An edit of a label changes what happens at a few elements; a
+search that came to none of them goes as it went.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypeVar
+
+from rosprivacy.analysis.kernel.search import search
+from rosprivacy.analysis.many_flows import parted
+
+if TYPE_CHECKING:
+    from collections.abc import Hashable, Iterator, Mapping
+
+    from rosprivacy.analysis.kernel.search import Search
+    from rosprivacy.analysis.kernel.spread import Spread
+    from rosprivacy.analysis.kernel.states import Net
+
+    Key = tuple[int, int, Hashable]
+    Said = TypeVar("Said")
+
+ROOM = 20_000  # vertices to which the searches that are kept came in all: some 20 MB
+
+
+class Searches:
+    """The searches of one answer.
+
+    Parameters
+    ----------
+    room
+        To how many vertices the searches may come in all that are kept; by default none are, since only where one
+        answer follows another they are of use.
+    made
+        Those that hold already.
+    """
+
+    def __init__(self, room: int = 0, made: Mapping[Key, Search] | None = None) -> None:
+        self._made = dict(made or {})
+        self._room = room - sum(len(one.seen) for one in self._made.values())
+
+    def past(self, changed: set[int]) -> Searches:
+        """Return those that came to none of some vertices, with room for more."""
+        return Searches(ROOM, {key: one for key, one in self._made.items() if _untouched(key[0], one, changed)})
+
+    def of(self, net: Net, source: int, allowed: int, stop: Mapping[int, int], named: Hashable) -> Search:
+        """Return a search as ``search`` makes it, from one source.
+
+        Parameters
+        ----------
+        named
+            What ``stop`` is made of beside ``Spread.leaks``; equal only where it is made alike.
+        """
+        key = source, allowed, named
+        known = self._made.get(key)
+        if known is not None:
+            return known
+        made = search(net, [source], allowed, stop)
+        if len(made.seen) <= self._room:
+            self._room -= len(made.seen)
+            self._made[key] = made
+        return made
+
+
+def searches(spread: Spread, room: int = 0) -> Searches:
+    """Return the searches of an answer, with those of the answer before that hold for it.
+
+    Parameters
+    ----------
+    room
+        As of ``Searches``, where there was no answer before.
+    """
+    return spread.own.kept("searches", None, lambda: Searches(room))
+
+
+def searches_after(before: Spread, now: Spread) -> None:
+    """Let the searches of an answer hold for the next one, where they came to nothing that is otherwise there."""
+    changed = _otherwise(before, now)
+    left = Searches(ROOM) if changed is None else searches(before).past(changed)
+    now.own.kept("searches", None, lambda: left)
+
+
+def _untouched(source: int, made: Search, changed: set[int]) -> bool:
+    return source not in changed and not any(vertex in made.seen for vertex in changed)
+
+
+def _otherwise(before: Spread, now: Spread) -> set[int] | None:
+    """The vertices where something else happens to data than before; None where that cannot be said of single ones.
+
+    Where a channel takes up other data, it is its writers from which data goes on otherwise.
+    """
+    if before.graph is not now.graph or before.categories != now.categories:
+        return None
+    if (before.flow_emits, before.flow_keeps) != (now.flow_emits, now.flow_keeps):
+        return None
+    kept = set(_differing(before.keeps, now.keeps, now.all_bits))
+    changed = {
+        *kept,
+        *_differing(before.emits, now.emits, 0),
+        *_differing(before.flow_begins, now.flow_begins, 0),
+        *_differing(before.leaks, now.leaks, 0),
+        *_differing(before.derives, now.derives, ()),
+    }
+    channels = {vertex for vertex in kept if now.graph.elements[vertex].is_channel}
+    if channels:
+        own, meetings = parted(now.graph.flows, now.told_apart)
+        changed.update(flow.source for _, flow in own if flow.target in channels)
+        changed.update(vertex for one in meetings if not channels.isdisjoint(one.read) for vertex in one.written)
+    return changed
+
+
+def _differing(before: Mapping[int, Said], now: Mapping[int, Said], nothing: Said) -> Iterator[int]:
+    return (v for v in before.keys() | now.keys() if before.get(v, nothing) != now.get(v, nothing))
