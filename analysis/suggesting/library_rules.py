@@ -57,8 +57,6 @@ class LibraryRule(NamedTuple):
         Whether it can have any form, a flag or a velocity, so that no message type speaks against it.
     by_itself
         Of what makes something: whether it reads ROS by itself, as a listener of transforms does.
-    either
-        Of what makes something: whether it makes one or another of the kinds, by what it was taught.
     """
 
     kinds: tuple[str, ...]
@@ -69,7 +67,6 @@ class LibraryRule(NamedTuple):
     where: str = ""
     any_type: bool = False
     by_itself: bool = False
-    either: bool = False
 
 
 class Names(NamedTuple):

@@ -5,7 +5,8 @@ The rules, in full (docs/suggestions.md):
 1. A proposal is as sure as its surest evidence.
 2. Where two independent grounds (code, type, name) each say no more than ``may``, both together are ``likely``. Who
    wrote of a package that it ``may`` knew its types. Agreement never makes anything ``certain``: that is for one ground
-   to say. Of a leak it is none: a name that says cloud, and code that writes a file, speak of two ways out.
+   to say. Of a leak it is none: a name that says cloud, and code that writes a file, speak of two ways out. Of a
+   derivation neither: the name of a package and the library that it stands on say the same thing once.
 3. What could hide a leak (sanitizer, conduit, mundane, never) is ``may``, whatever agrees; it is ``likely`` only if the
    catalogue of packages says so.
 4. What takes data away (all of these but conduit) is ``may`` also there, for a kind of which a finding is known.
@@ -18,6 +19,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import Confidence
 from rosprivacy.analysis.suggesting.evidence import (
+    DERIVATION,
     GROUNDS,
     HIDING,
     INDEPENDENT,
@@ -94,7 +96,7 @@ def _confidence(label: Label, reasons: Sequence[Evidence], found: Collection[str
         sure = any(surer(one, Confidence.MAY) for one in said) and not closes_finding(label, found)
         return Confidence.LIKELY if sure else Confidence.MAY
     surest = reasons[0].confidence
-    several = len(reasons) > 1 and surest is Confidence.MAY and label.role != LEAK
+    several = len(reasons) > 1 and surest is Confidence.MAY and label.role not in (LEAK, DERIVATION)
     if several and len({one.ground for one in reasons} & INDEPENDENT) > 1:
         return Confidence.LIKELY
     return surest

@@ -91,7 +91,7 @@ def read_python(file: str, data: bytes) -> Code:
     classes, sites = [], []
     for node, where in _walk(tree):
         if isinstance(node, ast.ClassDef):
-            classes.append(_class(node))
+            classes.append(_class(node, imports))
             lines = classes[-1].lines
             sites.append(Site(NODE, None, lines, lines, class_owner(node.name), head=True))
         elif isinstance(node, ast.Call) and (site := _site(node, where, imports)):
@@ -134,11 +134,13 @@ def _lines(node: ast.AST) -> Lines:
     return Lines(first, int(getattr(node, "end_lineno", None) or first))
 
 
-def _class(node: ast.ClassDef) -> NodeClass:
+def _class(node: ast.ClassDef, imports: Mapping[str, str]) -> NodeClass:
+    """A class with its bases, by the names that they were imported from (``Node as RclNode``)."""
     head = [*node.bases, *node.keywords]
     first = min([node.lineno, *(_lines(one).first for one in node.decorator_list)])
     last = max([node.lineno, *(_lines(one).last for one in head)])
-    bases = tuple(name.rpartition(".")[2] for name in map(_dotted, node.bases) if name)
+    named = [name for name in map(_dotted, node.bases) if name]
+    bases = tuple((_whole(name, imports) or name).rpartition(".")[2] for name in named)
     return NodeClass(node.name, bases, Lines(first, last))
 
 

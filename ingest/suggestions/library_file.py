@@ -44,7 +44,7 @@ ALL = (*NAMED, "confidence", "why", "source")
 KEYS = {
     BRINGS_IN: (*ALL, "kinds", "any_type"),
     LETS_OUT: (*ALL, "kinds", "where"),
-    MAKES: (*ALL, "kinds", "to", "any_type", "by_itself", "either"),
+    MAKES: (*ALL, "kinds", "to", "any_type", "by_itself"),
     SILENT: (*NAMED, "why"),
 }
 NEEDED = {
@@ -157,7 +157,6 @@ class _Reader(RuleReader):
             self._one_of(said, "where", WHERE),
             self.is_true(said, "any_type"),
             self.is_true(said, "by_itself"),
-            self.is_true(said, "either"),
         )
 
     def _names(self, said: dict[str, Value], section: str) -> Iterator[Key]:

@@ -11,13 +11,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ruamel.yaml import YAML
 
+from rosprivacy.analysis.suggesting.carried_kinds import ANYTHING
+
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence
 
 HERE = Path(__file__).parent
 # KINDS: what the protocol lets a reader say.
 READERS = ("reader_a", "reader_b")
-TUNED = (1, 2, 3)  # batches that rules may be tuned on, whole; each was measured once before
+TUNED = (1, 2, 3, 4)  # batches that rules may be tuned on, whole; each was measured once before
 HALVED = (1, 2)  # of these, those that were split by hash before
 SOURCE, DERIVES, LEAK = "source", "derives", "leak"
 KINDS = frozenset([
@@ -103,11 +105,9 @@ def judged(some: Iterable[System], overlaps: Mapping[str, Collection[str]]) -> J
 
 
 def met(pair: Pair, others: Iterable[Pair], overlaps: Mapping[str, Collection[str]]) -> bool:
-    """Return whether one of some statements says the same, a broader or a narrower kind."""
-    return any(
-        pair[:3] == other[:3] and (pair.kind == other.kind or other.kind in overlaps.get(pair.kind, ()))
-        for other in others
-    )
+    """Return whether one of some statements says the same, a broader or a narrower kind; the broadest says nothing."""
+    near = {pair.kind, *overlaps.get(pair.kind, ())} - {ANYTHING} if pair.kind != ANYTHING else ()
+    return any(pair[:3] == other[:3] and other.kind in near for other in others)
 
 
 def kappa(some: Iterable[System]) -> float:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from rosprivacy.analysis.suggesting.carried_kinds import ANYTHING
 from rosprivacy.ontology.vocabulary import load
 from tests.helpers.paths import ROOT
 from tests.labelled.labelled_set import (
@@ -74,6 +75,14 @@ def test_kinds_that_cover_each_other_agree() -> None:
     assert met(depth, [image], overlaps)
     assert not met(voice, [image], overlaps)
     assert not met(image._replace(node="/m"), [image], overlaps)
+
+
+def test_the_broadest_kind_finds_nothing() -> None:
+    """Who says of every node that it brings in some personal data has said nothing."""
+    overlaps = load().hierarchy.overlaps
+    voice, anything = (Pair("s", "/n", "source", kind) for kind in ("Voice", ANYTHING))
+    assert not met(voice, [anything], overlaps)
+    assert not met(anything, [voice], overlaps)
 
 
 def test_what_is_missed_is_agreed_and_not_suggested(tmp_path: Path) -> None:

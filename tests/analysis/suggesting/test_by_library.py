@@ -14,7 +14,7 @@ from tests.helpers.fleet_files import policy
 HEAD = (
     "import {library}\nfrom rclpy.node import Node\nfrom sensor_msgs.msg import Image\n"
     "from std_msgs.msg import Bool, String\nfrom vision_msgs.msg import Detection2DArray as Found\n"
-    "from geometry_msgs.msg import Twist\nfrom hri_msgs.msg import Skeleton2D\n"
+    "from geometry_msgs.msg import Twist, Vector3\nfrom hri_msgs.msg import Skeleton2D\n"
     "class N(Node):\n    def __init__(self):\n        super().__init__('n')\n"
 )
 LINE = "        self.x = {}\n"
@@ -60,14 +60,15 @@ CAMERA, MICROPHONE, POSE = "cv2.VideoCapture(0)", "sounddevice.InputStream()", "
         ("Found", "", [CAMERA], {"source PersonDetection may", "source HouseholdObject may"}),
         ("Skeleton2D", "", [CAMERA], {"source BodyPose likely"}),  # as its type says
         ("Twist", "", [CAMERA], set()),
+        ("Vector3", "", ["pynmea2.parse(x)"], {"source GnssPosition may"}),  # three numbers, of any sort
         # 3. What makes one kind of another.
-        ("Skeleton2D", "Image", [POSE], {"derivation Video BodyPose likely"}),
-        ("Skeleton2D", "", [CAMERA, POSE], {"source BodyPose likely"}),
+        ("Skeleton2D", "Image", [POSE], {"derivation Video BodyPose may"}),  # of pictures it finds what it was taught
+        ("Skeleton2D", "", [CAMERA, POSE], {"source BodyPose likely", "source BodyPose may"}),  # 2: by the type alone
         ("Skeleton2D", "", [POSE], {"source BodyPose may"}),
         ("Skeleton2D", "Bool", [POSE], {"derivation Video BodyPose may"}),
         ("Twist", "Image", [POSE], set()),
         ("String", "", [MICROPHONE, "vosk.Model()"], {"source SpeechTranscript may", "source VoiceCommand may"}),
-        ("Skeleton2D", "Image", [CAMERA, POSE], {"derivation Video BodyPose likely"}),  # and no source of it
+        ("Skeleton2D", "Image", [CAMERA, POSE], {"derivation Video BodyPose may"}),  # and no source of it
         ("String", "Image", ["onnxruntime.InferenceSession('x')"], set()),  # may twice is nothing
         ("Bool", "Image", ["face_recognition.face_locations(x)"], {"derivation Video PersonDetection may"}),  # a flag
         ("Image", "", ["tf2_ros.Buffer().lookup_transform('x', 'y', t)"], set()),  # may, and no place is written
@@ -81,16 +82,18 @@ CAMERA, MICROPHONE, POSE = "cv2.VideoCapture(0)", "sounddevice.InputStream()", "
         ("", "", ["requests.post('x')"], {"leak PersonalData may"}),  # who knows what
         ("Twist", "", ["readchar.readkey()", "requests.post('x')"],
          {"source OperatorInput likely", "leak PersonalData may"}),
-        ("Image", "", [CAMERA, "requests.post('x')"], {"source Video likely", "leak PersonalData likely"}),
+        ("Image", "", [CAMERA, "requests.post('x')"], {"source Video likely", "leak PersonalData may"}),
+        ("Image", "", [CAMERA, "flask.Flask('x')"],
+         {"source Video likely", "source OperatorInput may", "leak PersonalData likely"}),
         ("", "Image", ["websocket.create_connection('x')"], {"leak PersonalData may"}),  # it may only listen
-        ("", "Image", ["websocket.create_connection('x').send(y)"],
-         {"leak PersonalData likely", "leak PersonalData may"}),
+        ("", "Image", ["websocket.create_connection('x').send(y)"], {"leak PersonalData may"}),  # who knows what
+        ("", "Image", ["csv.writer(x)"], {"leak PersonalData may"}),  # who knows which numbers
         ("", "Image", ["sounddevice.play(x)"], {"leak PersonalData may"}),  # an alarm, or what somebody said
         ("", "Image", ["pyttsx3.init()"], {"leak PersonalData likely"}),
         ("", "Image", ["go('https://api.telegram.org/bot')"], {"leak PersonalData likely"}),
         ("", "Image", ["go('https://example.org/')"], set()),
         # 5. What it lets out itself, it need not write.
-        ("", "", [CAMERA, "requests.post('x')"], {"source Video may", "leak PersonalData likely"}),
+        ("", "", [CAMERA, "cv2.imwrite('x', y)"], {"source Video may", "leak Video likely"}),
         ("", "Image", [POSE, "cv2.imshow('x', y)"], {"derivation Video BodyPose may", "leak Video may"}),
         ("", "Image", [POSE], set()),
     ],
@@ -110,12 +113,19 @@ def test_what_reads_ros_by_itself_makes_no_source() -> None:
     assert by_code == {"derivation"}
 
 
-@pytest.mark.parametrize(
-    ("call", "sure"),
-    [("paho.mqtt.client.Client().publish('x')", "likely"), ("paho.mqtt.client.Client().subscribe('x')", "may")],
-)
-def test_who_listens_to_a_broker_does_not_yet_publish(call: str, sure: str) -> None:
-    assert f"leak PersonalData {sure}" in said("", "Image", call)
+@pytest.mark.parametrize("call", ["publish('x')", "subscribe('x')"])
+def test_of_a_broker_nobody_knows_what_it_gets(call: str) -> None:
+    assert "leak PersonalData may" in said("", "Image", f"paho.mqtt.client.Client().{call}")
+
+
+@pytest.mark.parametrize(("name", "sure"), [("n", "likely"), ("fake_camera", "may"), ("video_file_publisher", "may")])
+def test_what_simulates_measures_nothing(name: str, sure: str) -> None:
+    """1. A film that is played is taken by the same call as the pictures of a camera."""
+    said("Image", "", CAMERA)
+    Path("n.py").write_text(Path("n.py").read_text("utf-8").replace("'n'", f"'{name}'"), "utf-8")
+    Path("p.xml").write_text(policy(f"/{name}>/w", "/m</w"), "utf-8")
+    found = suggest_labels(("p.xml",), (), Settings(), sources=("n.py",)).proposals
+    assert [str(one.confidence) for one in found if one.label.role == "source" and one.label.kind == "Video"] == [sure]
 
 
 def test_a_use_in_a_namespace_of_the_policy_is_found_by_the_own_name_of_the_node() -> None:
@@ -139,20 +149,16 @@ def test_nothing_that_hides_a_leak_is_said_by_libraries() -> None:
     assert not roles & {"conduit", "sanitizer"}
 
 
-def test_a_detector_finds_what_it_was_taught_and_channels_say_what() -> None:
-    """YOLO knows persons and pots; only where a channel tells of one of them alone it is ``likely``."""
-    for topic, told in (
-        ("detections", {"PersonDetection may", "HouseholdObject may"}),
-        ("person_detections", {"PersonDetection likely", "HouseholdObject may"}),
-        ("object_poses", {"PersonDetection may", "HouseholdObject likely"}),
-    ):
-        code = HEAD.format(library="ultralytics") + LINE.format("ultralytics.YOLO('x')")
-        Path("n.py").write_text(code, "utf-8")
-        Path("p.xml").write_text(policy(f"/n>/{topic}</image", f"/m>/image</{topic}"), "utf-8")
-        found = suggest_labels(("p.xml",), (), Settings(), sources=("n.py",)).proposals
-        assert {
-            f"{one.label.to} {reason.confidence}" for one in found for reason in one.evidence if reason.ground == CODE
-        } == told, topic
+@pytest.mark.parametrize("topic", ["detections", "person_detections", "object_poses"])
+def test_a_detector_finds_what_it_was_taught(topic: str) -> None:
+    """3. YOLO knows persons and pots, and cars where somebody taught it so, whatever a channel is called."""
+    code = HEAD.format(library="ultralytics") + LINE.format("ultralytics.YOLO('x')")
+    Path("n.py").write_text(code, "utf-8")
+    Path("p.xml").write_text(policy(f"/n>/{topic}</image", f"/m>/image</{topic}"), "utf-8")
+    found = suggest_labels(("p.xml",), (), Settings(), sources=("n.py",)).proposals
+    derived = {(one.label.to, str(one.confidence)) for one in found if one.label.role == "derivation"}
+    assert {("PersonDetection", "may"), ("HouseholdObject", "may")} <= derived
+    assert {sure for _, sure in derived} == {"may"}
 
 
 def entered(service: str, call: str) -> set[str]:
@@ -181,9 +187,32 @@ def test_what_somebody_enters_goes_into_a_request(service: str, call: str, kinds
     assert entered(service, call) == kinds
 
 
+@pytest.mark.parametrize(
+    ("written", "call", "read", "ordered"),
+    [
+        ("/chatter", "input('?')", "/order_status", True),  # it shows what became of them
+        ("/chatter", "input('?')", "/state", False),
+        ("/chatter", "pass", "/order_status", False),  # nobody acts on it
+        ("/chatter", "input('?')", "/state,/orders", True),
+    ],
+)
+def test_an_order_is_entered_at_one_place_and_told_of_at_others(
+    written: str,
+    call: str,
+    read: str,
+    ordered: bool,  # noqa: FBT001 - a row of the table
+) -> None:
+    """6. By what the channels of a node are called."""
+    Path("n.py").write_text(HEAD.format(library="os") + LINE.format(call if call != "pass" else "0"), "utf-8")
+    Path("p.xml").write_text(policy(f"/n>{written}<{read}", f"/m>/order_status,/orders,/state<{written}"), "utf-8")
+    found = suggest_labels(("p.xml",), (), Settings(), sources=("n.py",)).proposals
+    of_n = [one for one in found if one.label.element.name == "/n" and one.label.role == "source"]
+    assert [str(one.confidence) for one in of_n if one.label.kind == "DeliveryOrder"] == ["may"] * ordered
+
+
 def test_what_a_driver_sends_goes_to_its_device() -> None:
     for name, sure in (("arm_driver", "may"), ("arm", "likely")):
-        code = HEAD.format(library="requests").replace("'n'", f"'{name}'") + LINE.format("requests.post('x')")
+        code = HEAD.format(library="supabase").replace("'n'", f"'{name}'") + LINE.format("supabase.create_client('x')")
         Path("n.py").write_text(code, "utf-8")
         Path("p.xml").write_text(policy(f"/{name}>/x</image", "/m>/image</x"), "utf-8")
         found = suggest_labels(("p.xml",), (), Settings(), sources=("n.py",)).proposals

@@ -9,8 +9,10 @@ from rosprivacy.analysis.suggesting.evidence import (
     CODE,
     CONDUIT,
     DATA_FLOW,
+    DERIVATION,
     GROUNDS,
     HIDING,
+    LEAK,
     NAMED,
     NEIGHBOUR,
     PACKAGE,
@@ -61,6 +63,12 @@ def test_two_independent_grounds_that_agree_are_likely(grounds: list[str], expec
 def test_two_reasons_of_one_ground_do_not_agree_with_each_other() -> None:
     one, other = said(SOURCE, (NAMED, MAY), (NAMED, MAY))
     assert weighed(one, other._replace(reason="another word of it")) is MAY
+
+
+@pytest.mark.parametrize("role", [LEAK, DERIVATION])
+def test_of_what_goes_out_and_of_what_is_made_nothing_agrees(role: str) -> None:
+    """Two ways out are two; a package and the library that it stands on are one."""
+    assert weighed(*said(role, (CODE, MAY), (NAMED, MAY))) is MAY
 
 
 def test_agreement_never_makes_anything_certain() -> None:

@@ -43,6 +43,7 @@ def node(name: str = "n", line: str = "pass", of: str = "N") -> str:
     ("code", "name"),
     [
         ("import cv2\n" + NODE + node(line="cv2.VideoCapture(0)"), "cv2.VideoCapture"),
+        ("import cv2\nfrom rclpy.node import Node as B\n" + node(line="cv2.x").replace("(Node)", "(B)"), "cv2.x"),
         ("import cv2 as c\n" + NODE + node(line="self.x = c.VideoCapture(0)"), "cv2.VideoCapture"),
         ("from cv2 import VideoCapture as V\n" + NODE + node(line="V(0)"), "cv2.VideoCapture"),
         ("import a.b.c\n" + NODE + node(line="x = [a.b.c.d() for _ in y]"), "a.b.c.d"),

@@ -68,7 +68,7 @@ OWN_KIND = """@prefix : <http://example.org/> . @prefix skos: <http://www.w3.org
         ("/odom", "RobotPosition"),
         ("/joy", "OperatorInput"),
         ("/ble/beacons", "WirelessDeviceId"),
-        ("/rfid", "StaffBadge"),
+        ("/rfid", "StaffBadge DeviceIdentifier"),
         ("/voice_text", "SpeechTranscript"),  # text is no sound
         ("/asr/text", "SpeechTranscript"),
         ("/llm_response", "ConversationWithModel"),
@@ -130,7 +130,7 @@ def test_what_is_made_for_the_machine(name: str, nothing: int) -> None:
         ("/person_detector", "PersonDetection"),
         ("/people_tracker", "PersonTrack"),
         ("/pir_node", "Presence"),
-        ("/rfid_reader", "StaffBadge"),
+        ("/rfid_reader", "StaffBadge DeviceIdentifier"),
         ("/audio_input_node", "Voice"),
         ("/keyboard_driver", "OperatorInput"),
         ("/web_gui", "OperatorInput"),
