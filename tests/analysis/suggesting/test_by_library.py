@@ -161,13 +161,15 @@ def test_a_detector_finds_what_it_was_taught(topic: str) -> None:
     assert {sure for _, sure in derived} == {"may"}
 
 
-def entered(service: str, call: str) -> set[str]:
-    """What a node brings in by its code that asks for a service."""
+def entered(service: str, call: str, server: str = "m") -> set[str]:
+    """What a node brings in by its code that asks for a service of another one."""
     code = f"import tkinter, os\n{HEAD.format(library='time')}{LINE.format(call)}"
     Path("n.py").write_text(code, "utf-8")
     enclave = '<enclave path="/{0}"><profiles><profile ns="/" node="{0}"><services {1}="ALLOW"><service>{2}</service>'
     ends = "</services></profile></profiles></enclave>"
-    enclaves = "".join(enclave.format(node, role, service) + ends for node, role in (("n", "request"), ("m", "reply")))
+    enclaves = "".join(
+        enclave.format(node, role, service) + ends for node, role in (("n", "request"), (server, "reply"))
+    )
     Path("p.xml").write_text(f'<policy version="0.2.0"><enclaves>{enclaves}</enclaves></policy>', "utf-8")
     found = suggest_labels(("p.xml",), (), Settings(), sources=("n.py",)).proposals
     return {one.label.kind for one in found if one.label.role == "source" and one.label.element.name == "/n"}
@@ -208,6 +210,15 @@ def test_an_order_is_entered_at_one_place_and_told_of_at_others(
     found = suggest_labels(("p.xml",), (), Settings(), sources=("n.py",)).proposals
     of_n = [one for one in found if one.label.element.name == "/n" and one.label.role == "source"]
     assert [str(one.confidence) for one in of_n if one.label.kind == "DeliveryOrder"] == ["may"] * ordered
+
+
+@pytest.mark.parametrize(
+    ("call", "kinds"), [("input('?')", {"OperatorInput", "DeliveryOrder"}), ("os.getcwd()", set())]
+)
+def test_who_asks_for_a_service_where_a_name_speaks_of_orders_may_order(call: str, kinds: set[str]) -> None:
+    """6. ``/butler`` is asked to bring what was ordered; the name of the service need not say so."""
+    assert entered("butler", call, "order_manager") == kinds
+    assert entered("butler", call) == kinds - {"DeliveryOrder"}
 
 
 def test_what_a_driver_sends_goes_to_its_device() -> None:
