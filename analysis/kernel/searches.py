@@ -70,12 +70,33 @@ def searches(spread: Spread, room: int = 0) -> Searches:
     ----------
     room
         As of ``Searches``, where there was no answer before.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import ARCHIVE, CAMERA, factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> from rosprivacy.analysis.kernel.states import Net
+    >>> carried = spread(*factory())
+    >>> made = searches(carried, ROOM).of(Net.of(carried), CAMERA, carried.all_bits, {}, None)
+    >>> made.level(ARCHIVE, carried.both("FaceTemplate"))
+    4
     """
     return spread.own.kept("searches", None, lambda: Searches(room))
 
 
 def searches_after(before: Spread, now: Spread) -> None:
-    """Let the searches of an answer hold for the next one, where they came to nothing that is otherwise there."""
+    """Let the searches of an answer hold for the next one, where they came to nothing that is otherwise there.
+
+    >>> from rosprivacy.analysis.example import CAMERA, factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> from rosprivacy.analysis.kernel.states import Net
+    >>> first, same = spread(*factory()), factory()
+    >>> made = searches(first, ROOM).of(Net.of(first), CAMERA, first.all_bits, {}, None)
+    >>> now = spread(first.graph, *same[1:])
+    >>> searches_after(first, now)
+    >>> searches(now).of(Net.of(now), CAMERA, now.all_bits, {}, None) is made
+    True
+    """
     changed = _otherwise(before, now)
     left = Searches(ROOM) if changed is None else searches(before).past(changed)
     now.own.kept("searches", None, lambda: left)
