@@ -12,13 +12,12 @@ from rosprivacy.analysis.suggesting.question_rows import (
     GOES_ON,
     GOES_THROUGH,
     LETS_OUT,
+    LISTED,
     MAKES,
-    NOTHING,
-    NOTHING_THROUGH,
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator
+    from collections.abc import Collection, Iterator, Sequence
 
     from rosprivacy.analysis.suggesting.question_rows import Question, Reply, Row
 
@@ -32,32 +31,77 @@ ASKED = {
         "{kinds} gets there, and no policy lets it go on. What happens to it in these?",
     ),
     GOES_THROUGH: ("Can {kinds} go through?", "Can {kinds} go through these?"),
-    NOTHING_THROUGH: (
-        "",
-        "Is it so that no {kinds} goes through any of these? Read each row: a wrong one hides a leak.",
-    ),
 }
-OF_KEYS = {"x": "yes, and no to the others", "n": "no", "o": "one by one", "s": "later", "q": "stop"}
-SHOWN = 3  # reasons of an element
+LISTS = {
+    "never": "Is it so that no {kinds} goes through any of these? Read each row: a wrong one hides a leak.",
+    "only": "Is it so that of {kinds} only {left} goes through each of these? Read each row: a wrong one hides a leak.",
+}
+BESIDE = "such data as stand beside it"  # where rows are about different kinds
+KEYS = {  # a word, and what it means
+    "x": ("yes, and no to the others", "yes to the rows that are picked, and no to all others"),
+    "n": ("no", "no to all that stands there; it is remembered, and not asked again"),
+    "o": ("one by one", "asks about each row by itself"),
+    "k": ("kind by kind", "asks about each kind of data by itself"),
+    "s": ("later", "not in this conversation any more; what you have written into the file meanwhile is read"),
+    "q": ("stop", "ends it; the same command goes on from there"),
+    "?": ("help", "shows this"),
+}
+PICK = "picks a row, or puts it back; other keys speak of the picked rows, or of all if none is picked"
+ONE_FIRST = ": pick a row of which this can be said"
+LISTED_FIRST = ": pick one row; or several, which are then shown and confirmed as a list"
+OUT = "takes a row out of the list, or puts it back"
+CLOSES_NONE, MAY_HANG = "of which this list closes none", "which may hang on this"
+SHOWN = 3  # reasons of an element, findings of a question, kinds of a key
 
 
 def question_lines(question: Question) -> Iterator[str]:
     """Yield what is asked, each row with its reasons, and the findings that may hang on the answer."""
     rows = question.rows
     yield ""
-    yield ASKED[question.about][len(rows) > 1].format(kinds=" and ".join(rows[0].kinds))
+    yield _asked(question)
     for letter, row in zip(ascii_uppercase, rows, strict=False):
         at = f"{letter}  " if len(rows) > 1 else ""
         yield f"  {at}{row.element.kind} {shown(row.element.name)}{_of_row(question, row)}"
-        whole = question.about == NOTHING_THROUGH
+        whole = question.about == LISTED
         yield from (f"       {shown(reason)}" for reason in row.reasons[: None if whole else SHOWN])
         if len(row.reasons) > SHOWN and not whole:
             yield f"       and {len(row.reasons) - SHOWN} more reasons"
-    if question.about == NOTHING_THROUGH:
-        return  # none of it would close one
     closes = dict.fromkeys(told for row in rows for told in row.closes)
-    if closes and any(one.takes_away for one in rows[0].replies):
-        yield f"  known findings, which may hang on this: {shown('; '.join(closes))}"
+    if closes and any(one.takes_away for row in rows for one in row.replies):
+        yield f"  known findings, {CLOSES_NONE if question.about == LISTED else MAY_HANG}:"
+        most = SHOWN if len(rows) > 1 else len(closes)
+        yield from (f"       {shown(told)}" for told in list(closes)[:most])
+        if len(closes) > most:
+            yield f"       and {len(closes) - most} more findings"
+
+
+def _asked(question: Question) -> str:
+    rows = question.rows
+    kinds = " and ".join(rows[0].kinds) if _same_kinds(rows) else BESIDE
+    if question.about != LISTED:
+        return ASKED[question.about][len(rows) > 1].format(kinds=kinds)
+    ((role, left),) = rows[0].replies[0].label.said.items()
+    return LISTS[role].format(kinds=kinds, left=", ".join(left))
+
+
+def help_lines(question: Question, keys: Collection[str]) -> Iterator[str]:
+    """Yield what each key means, one line each.
+
+    Parameters
+    ----------
+    keys
+        Those that answer the question as it is picked.
+    """
+    if len(question.rows) > 1:
+        yield f"  A-Z  {OUT if question.about == LISTED else PICK}"
+    if question.about == LISTED:
+        yield "  the number of rows that are left, and Enter: it is so of all of these"
+    said = {each.key: each for row in question.rows for each in row.replies}
+    for key, reply in sorted(said.items(), key=lambda one: (one[0].isdigit(), one[0])):
+        first = LISTED_FIRST if question.about == GOES_THROUGH else ONE_FIRST
+        if question.about != LISTED:
+            yield f"  {key}  {_words(reply, question.rows)}{'' if key in keys else first}"
+    yield from (f"  {key}  {means}" for key, (_, means) in KEYS.items() if key in (*keys, "q", "?"))
 
 
 def keys_line(question: Question, picked: Collection[int], keys: Collection[str]) -> str:
@@ -68,17 +112,17 @@ def keys_line(question: Question, picked: Collection[int], keys: Collection[str]
     keys
         Those that answer the question as it is picked.
     """
-    if question.about == NOTHING_THROUGH:
+    if question.about == LISTED:
         return _list_line(len(question.rows), picked)
     of = f"{' '.join(ascii_uppercase[at] for at in sorted(picked))}: " if picked else ""
     of = of or ("all: " if len(question.rows) > 1 else "")
-    several = len(picked) > 1
+    rows = [row for at, row in enumerate(question.rows) if at in picked or not picked]
     said = [
-        f"{one.key} {_words(one)}{' (as a list)' if several and one.key == NOTHING else ''}"
-        for one in question.rows[0].replies
+        f"{one.key} {_words(one, rows)}{' (as a list)' if len(rows) > 1 and one.takes_away else ''}"
+        for one in rows[0].replies
         if one.key in keys
     ]
-    more = [f"{key} {word}" for key, word in OF_KEYS.items() if key in (*keys, "q")]
+    more = [f"{key} {word}" for key, (word, _) in KEYS.items() if key in (*keys, "q", "?")]
     letters = ["A-Z pick some"] if len(question.rows) > 1 else []
     return f"  {of}{', '.join([*said, *more, *letters])}"
 
@@ -86,13 +130,13 @@ def keys_line(question: Question, picked: Collection[int], keys: Collection[str]
 def _list_line(rows: int, out: Collection[int]) -> str:
     """How a list is confirmed.
 
-    >>> _list_line(3, {1})
-    '  without B: 2 and Enter for none of it in all 2, A-Z take out or put back, o not as a list, s later, q stop'
+    >>> _list_line(3, {1}).partition(", o ")[0]
+    '  without B: 2 and Enter for none of it in all 2, A-Z take out or put back'
     """
     left = rows - len(out)
     without = f"without {' '.join(ascii_uppercase[at] for at in sorted(out))}: " if out else ""
     confirm = f"{left} and Enter for none of it in all {left}, " if left > 1 else ""
-    return f"  {without}{confirm}A-Z take out or put back, o not as a list, s later, q stop"
+    return f"  {without}{confirm}A-Z take out or put back, o not as a list, s later, q stop, ? help"
 
 
 def _of_row(question: Question, row: Row) -> str:
@@ -100,22 +144,35 @@ def _of_row(question: Question, row: Row) -> str:
     if question.about == MAKES:
         (made,) = row.replies[0].label.said["derives"]
         return f": {made['to']} from {made['from']}"
-    return f": {', '.join(row.kinds)}" if question.about in (BRINGS_IN, LETS_OUT) else ""
+    differ = question.about in (BRINGS_IN, LETS_OUT) or not _same_kinds(question.rows)
+    return f": {', '.join(row.kinds)}" if differ else ""
 
 
-def _words(reply: Reply) -> str:
-    """What a key says.
+def _same_kinds(rows: Sequence[Row]) -> bool:
+    return len({row.kinds for row in rows}) == 1
 
-    >>> from rosprivacy.analysis.suggesting.question_rows import Reply
+
+def _words(reply: Reply, rows: Sequence[Row]) -> str:
+    """What a key says of rows, and of which kinds of data where there are several.
+
+    >>> from rosprivacy.analysis.model import Element
+    >>> from rosprivacy.analysis.suggesting.question_rows import Reply, Row
     >>> from rosprivacy.analysis.suggesting.written import WrittenLabel
-    >>> _words(Reply("1", WrittenLabel("topics", "/t", {"only": ["Video"]}), True))
-    'Video at most'
+    >>> one = Reply("1", WrittenLabel("topics", "/t", {"only": ["Video"]}), True)
+    >>> all_ = Reply("y", WrittenLabel("topics", "/t", {"sensitive": ["Video", "Voice"]}))
+    >>> row = Row(Element("topic", "/t"), ("Video", "Voice"), (one, all_), ())
+    >>> _words(one, [row]), _words(all_, [row])
+    ('Video at most', 'yes (Video and Voice)')
     """
     ((role, value),) = reply.label.said.items()
     if role == "sanitizer":
-        return f"ends them ({', '.join(map(str, value.values()))})"
+        return " and ".join(f"ends {kind} ({method})" for kind, method in value.items())
     if role == "only":
         return f"{', '.join(value)} at most"
-    if reply.key == NOTHING:
-        return "none of it"
-    return {"conduit": "only passes on or drops", "leak": "lets out"}.get(role, "yes")
+    word = (
+        "none of it" if role == "never" else {"conduit": "only passes on or drops", "leak": "lets out"}.get(role, "yes")
+    )
+    if all(len(row.kinds) == 1 for row in rows):
+        return word
+    kinds = " and ".join(value) if len(value) <= SHOWN else f"all {len(value)} kinds"
+    return f"{word} ({kinds if _same_kinds(rows) else BESIDE})"

@@ -14,7 +14,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import rosprivacy
-from rosprivacy.analysis.suggesting.question_rows import GOES_THROUGH, NOTHING, NOTHING_THROUGH
+from rosprivacy.analysis.suggesting.question_rows import GOES_THROUGH, LISTED, NOTHING
 from rosprivacy.labelling.asking import asked_now, with_answer
 from rosprivacy.labelling.closing_lists import closing
 from rosprivacy.labelling.conversation import QUIT, SKIP, Conversation, allowed
@@ -52,7 +52,7 @@ NODES: Nodes = {
     "here": ([], ["/joints", "/battery", "/arm", "/text", "/grid", "/plain"]),
 }
 HEAD = "labels: 1\nauthor: Ada\nnodes:\n  /eye: {source: [Video]}\n  /middle: conduit\n"
-LISTED = "Is it so that no Video goes through any of these?"
+HEADING = "Is it so that no Video goes through any of these?"
 
 
 def labels_of(types: dict[str, str], more: str = "") -> str:
@@ -74,11 +74,11 @@ def ask(cli: Cli, folder: Path, keys: str, patch: pytest.MonkeyPatch) -> Done:
 
 def list_shown(text: str) -> list[str]:
     """The channels of the last list that was shown."""
-    lines = text.rpartition(LISTED)[2].partition("\n> ")[0].splitlines()
+    lines = text.rpartition(HEADING)[2].partition("\n> ")[0].splitlines()
     return [line.split()[2] for line in lines if " topic " in line]
 
 
-BEFORE = "ss"  # the end of the data, and what is asked before the list
+BEFORE = "s"  # the end of the data
 
 
 def test_only_what_a_type_says_is_in_a_list_and_all_of_it_is_shown(
@@ -116,7 +116,7 @@ def test_no_other_number_confirms_it(robot: Path, number: str) -> None:
 
         def key(self, question: Question, picked: frozenset[int]) -> str:
             del picked
-            return self.keys.pop(0) if question.about == NOTHING_THROUGH else SKIP
+            return self.keys.pop(0) if question.about == LISTED else SKIP
 
         def told(self, remark: str) -> None:
             told.append(remark)
@@ -156,7 +156,7 @@ def test_a_file_of_keys_confirms_the_rows_that_it_names(cli: Cli, robot: Path, m
 
 def test_rows_are_taken_out_and_asked_by_themselves(cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     ask(cli, robot, f"{BEFORE}{line('battery', 'joints')}q", monkeypatch)
-    out = list_shown(ask(cli, robot, "ssssq", monkeypatch).stdout)
+    out = list_shown(ask(cli, robot, "sssq", monkeypatch).stdout)
     assert out == []  # one channel makes no list
     (robot / "l.yaml").write_text(labels_of(TYPES), "utf-8")
     assert "Can Video go through these?" in ask(cli, robot, f"{BEFORE}oq", monkeypatch).stdout
@@ -170,8 +170,8 @@ def test_a_known_finding_is_asked_by_itself_also_where_only_all_together_would_c
     (robot / "p.xml").write_text(policy_of(nodes), "utf-8")
     (robot / "l.yaml").write_text(labels_of(TYPES, "  /out: {leak: [Video]}\n"), "utf-8")
     shown = ask(cli, robot, "sssssq", monkeypatch).stdout
-    assert LISTED not in shown
-    assert "known findings, which may hang on this: Video: /eye -> /out [" in shown
+    assert HEADING not in shown
+    assert "known findings, which may hang on this:\n       Video: /eye -> /out [" in shown
     (robot / "p.xml").write_text(policy_of(NODES | {"out": ([], ["/joints"])}), "utf-8")
     shown = ask(cli, robot, "sssq", monkeypatch).stdout
     assert sorted(list_shown(shown)) == ["/arm", "/battery"]
@@ -188,7 +188,7 @@ def test_a_leak_that_becomes_known_while_a_list_is_shown_is_not_closed_by_it(rob
 
         def key(self, question: Question, picked: frozenset[int]) -> str:
             del picked
-            if question.about != NOTHING_THROUGH or self.done:
+            if question.about != LISTED or self.done:
                 return SKIP if not self.done else QUIT
             self.done = True
             file.write_text(labels_of(TYPES, "  /out: {leak: [Video]}\n"), "utf-8")
@@ -209,7 +209,7 @@ class Careless:
 
     def key(self, question: Question, picked: frozenset[int]) -> str:
         del picked
-        return str(len(question.rows)) if question.about == NOTHING_THROUGH else SKIP
+        return str(len(question.rows)) if question.about == LISTED else SKIP
 
     def told(self, remark: str) -> None:
         raise AssertionError(remark)
@@ -224,7 +224,7 @@ class Picking:
         self.lists: list[tuple[str, ...]] = []
 
     def key(self, question: Question, picked: frozenset[int]) -> str:
-        if question.about == NOTHING_THROUGH:
+        if question.about == LISTED:
             self.lists.append(tuple(row.element.name for row in question.rows))
             return self.last or str(len(question.rows))
         left = [at for at in range(len(question.rows)) if at not in picked]
@@ -241,11 +241,11 @@ def test_channels_that_a_person_picks_are_asked_as_a_list(robot: Path) -> None:
     (robot / "l.yaml").write_text(HEAD + "  /here: conduit\n", "utf-8")
     stopped = Picking(QUIT)
     conversation(robot / "p.xml", robot / "l.yaml", stopped).run()
-    assert stopped.lists == [("/a", "/arm", "/grid", "/joints", "/plain", "/text")]  # the name of /battery says more
+    assert stopped.lists == [("/a", "/arm", "/battery", "/grid", "/joints", "/plain", "/text")]
     assert "never" not in (robot / "l.yaml").read_text("utf-8")
     conversation(robot / "p.xml", robot / "l.yaml", Picking()).run()
     text = (robot / "l.yaml").read_text("utf-8")
-    assert text.count('never: [Video], note: "answered by Ada on 2026-11-23 in a list of 6"') == 6
+    assert text.count('never: [Video], note: "answered by Ada on 2026-11-23 in a list of 7"') == 7
 
 
 def test_a_picked_channel_that_would_close_a_finding_is_asked_by_itself(robot: Path) -> None:
@@ -255,7 +255,7 @@ def test_a_picked_channel_that_would_close_a_finding_is_asked_by_itself(robot: P
     before = found(robot / "p.xml", robot / "l.yaml")
     person = Picking()
     conversation(robot / "p.xml", robot / "l.yaml", person).run()
-    assert person.lists == [("/arm", "/grid", "/plain", "/text")]
+    assert person.lists == [("/arm", "/battery", "/grid", "/plain", "/text")]
     told = "it could close a known finding, and is asked by itself"
     assert person.remarks == [f"topic /a: {told}", f"topic /joints: {told}"]
     assert found(robot / "p.xml", robot / "l.yaml") == before
@@ -360,7 +360,7 @@ def test_what_only_code_says_of_a_type_makes_no_list(cli: Cli, tmp_path: Path, m
             "suggest", "p.xml", "--into", "l.yaml", "--ask", "--source", "test_box.py", cwd=tmp_path
         ).stdout  # fmt: skip
     assert "type std_msgs/msg/Bool of /front is not made for Video" in shown
-    assert LISTED not in shown
+    assert HEADING not in shown
 
 
 BEEPER = """package: 1
@@ -396,7 +396,7 @@ def test_where_a_label_states_that_something_else_goes_in_no_package_knows_the_t
             "suggest", "p.xml", "--into", "l.yaml", "--ask", "--packages", "beeper.yaml", cwd=tmp_path
         ).stdout  # fmt: skip
     assert "topic /beep" in shown
-    assert (LISTED in shown) is not stated
+    assert (HEADING in shown) is not stated
 
 
 def test_a_process_that_is_killed_in_a_number_keeps_nothing_of_the_list(robot: Path) -> None:
@@ -407,9 +407,9 @@ def test_a_process_that_is_killed_in_a_number_keeps_nothing_of_the_list(robot: P
         assert process.stdout is not None
         process.stdin.write(b"ss3")
         shown = b""
-        while LISTED.encode() not in shown and (more := process.stdout.read(1)):
+        while HEADING.encode() not in shown and (more := process.stdout.read(1)):
             shown += more
         time.sleep(0.5)
         process.kill()
-    assert LISTED.encode() in shown
+    assert HEADING.encode() in shown
     assert (robot / "l.yaml").read_text("utf-8") == before

@@ -33,7 +33,9 @@ def main() -> None:
 def _shown(count: Count) -> str:
     of = f"{count.taking_away} take data away, {count.typed} typed lines"
     lists = f"; lists of {', '.join(map(str, count.lists))}" if count.lists else ""
-    return f"{count.decisions} decisions ({of}), {count.keys} keys{lists}; {count.rows} rows shown"
+    return (
+        f"{count.decisions} decisions ({of}), {count.keys} keys{lists}; {count.rows} rows shown, {count.judged} judged"
+    )
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
+from rosprivacy.analysis.suggesting.question_rows import BRINGS_IN
 from rosprivacy.ingest.policies.names import covered
 from rosprivacy.labelling.asking import asked_now, with_answer
 from rosprivacy.labelling.closing_lists import closing
@@ -33,7 +34,6 @@ SECTION_KINDS = {
     "channels": ("topic", "service", "action"),
 }  # fmt: skip
 ENDS = ("source", "leak", "derivation")
-FIRST = ("source:", "absent:")  # what a person types before anything is asked, if nothing asks for it
 
 
 class Count(NamedTuple):
@@ -53,6 +53,8 @@ class Count(NamedTuple):
         How many rows each list had of which nothing was said to go through.
     rows
         How many rows were shown, of all questions.
+    judged
+        Of how many rows something was said, each time; a typed line is one.
     same
         Whether verdict and findings are those of the truth, and nothing is open that is not open there.
     """
@@ -64,12 +66,20 @@ class Count(NamedTuple):
     same: bool
     lists: tuple[int, ...] = ()
     rows: int = 0
+    judged: int = 0
 
 
 def by_hand(truth: Truth) -> Count:
     """Count the lines of the truth."""
     lines = entries(truth.text)
-    return Count(len(lines), sum(map(_takes_away, lines)), len(lines), sum(line.keys for line in lines), same=True)
+    return Count(
+        len(lines),
+        sum(map(_takes_away, lines)),
+        len(lines),
+        sum(line.keys for line in lines),
+        same=True,
+        judged=len(lines),
+    )
 
 
 def asked(truth: Truth, file: Path) -> tuple[Count, ScriptedPerson]:
@@ -87,15 +97,15 @@ class _Session:
         self.goal = answer_robot((truth.policy,), (str(true), *truth.more), self.settings)
         self.left = entries(truth.text)
         self.typed: list[Entry] = []
-        self.taking_away = 0
+        self.taking_away = self.judged = 0
         self.person = ScriptedPerson(Knowledge(self.goal), self.type_of)
         self.file.write_text("labels: 1\n", "utf-8")
+        self.first = self._now()
 
     def run(self) -> tuple[Count, ScriptedPerson]:
         conversation = Conversation(self._now, self._keep, self.person, self._closing)
-        proposed = {row.element.name for one in self._now() for row in one.rows}
         for line in [*self.left]:
-            if any(word in "".join(line.lines) for word in FIRST) and line.name not in proposed:
+            if self._unasked(line):
                 self._type(line)
         conversation.run()
         while not self._reached() and self.left:
@@ -115,13 +125,30 @@ class _Session:
             self._reached(),
             tuple(conversation.lists),
             self.person.rows,
+            self.judged + typed,
         ), self.person
 
-    def type_of(self, elements: Iterable[Identity]) -> None:
-        """Type what the truth says of elements."""
-        for _, kind, name in elements:
-            for line in [one for one in self.left if _speaks_of(one, kind, name)]:
-                self._type(line)
+    def _unasked(self, line: Entry) -> bool:
+        """Whether no question will offer what a line says: what brings in, what is not there, what is outside ROS."""
+        if line.section == "elements" or "absent:" in "".join(line.lines):
+            return True
+        asked = [row for one in self.first if one.about == BRINGS_IN for row in one.rows]
+        offered = {(row.element.identity, kind) for row in asked for kind in row.kinds}
+        return any(
+            (identity, kind) not in offered
+            for identity, said in self.person.knowledge.of.items()
+            if _speaks_of(line, *identity[1:])
+            for one in said
+            if one.role == "source"
+            for kind in one.categories
+        )
+
+    def type_of(self, elements: Iterable[Identity]) -> bool:
+        """Type what the truth says of elements; return whether it says something that was not typed before."""
+        lines = [one for _, kind, name in elements for one in self.left if _speaks_of(one, kind, name)]
+        for line in lines:
+            self._type(line)
+        return bool(lines)
 
     def _missing(self, line: Entry) -> bool:
         """Whether what a line says is not said yet: of what is open, and of what brings in, lets out or makes data."""
@@ -170,6 +197,7 @@ class _Session:
     def _keep(self, question: Question, key: str) -> tuple[str, ...]:
         written = with_answer(str(self.file), question, key, WHO, DAY, self.settings)
         self.file.write_text(written.text, "utf-8")
+        self.judged += len(question.rows)
         reply = question.rows[0].reply(key)
         self.taking_away += bool(reply and reply.takes_away)
         return written.remarks

@@ -11,13 +11,12 @@ from rosprivacy.analysis.suggesting.question_rows import (
     BRINGS_IN,
     GOES_THROUGH,
     LETS_OUT,
+    LISTED,
     MAKES,
-    NOTHING,
-    NOTHING_THROUGH,
     YES,
     Question,
 )
-from rosprivacy.labelling.conversation import EXACTLY, FEWEST, NO, OPEN, SKIP
+from rosprivacy.labelling.conversation import EACH_KIND, EXACTLY, FEWEST, NO, OPEN, SKIP
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -52,7 +51,8 @@ class Knowledge:
         role = ENDS.get(question.about)
         if role and not any(one.role == role and self._near(one, row.kinds) for one in said):
             return NO
-        return SKIP
+        by_kind = [self.key(question, one) for one in row.each]
+        return EACH_KIND if by_kind and SKIP not in by_kind else SKIP
 
     def _near(self, one: Statement, kinds: Iterable[str]) -> bool:
         return any(self.hierarchy.overlap(kind, other) is not None for kind in kinds for other in one.categories)
@@ -98,14 +98,14 @@ class ScriptedPerson:
     Attributes
     ----------
     typed
-        Called with the elements of which the truth says something that no answer says.
+        Called with elements of which the truth may say something that no answer says; returns whether it does.
     keys
         All that were pressed.
     rows
         How many rows of questions were shown.
     """
 
-    def __init__(self, knowledge: Knowledge, typed: Callable[[Iterable[Identity]], None]) -> None:
+    def __init__(self, knowledge: Knowledge, typed: Callable[[Iterable[Identity]], bool]) -> None:
         self.knowledge, self.typed = knowledge, typed
         self.keys: list[str] = []
         self.remarks: list[str] = []
@@ -122,7 +122,7 @@ class ScriptedPerson:
         if not key:
             self._next = self._answer(question)
             key = next(self._next)
-        self.keys += [*key, ENTER] if question.about == NOTHING_THROUGH and key.isdigit() else [key]
+        self.keys += [*key, ENTER] if question.about == LISTED and key.isdigit() else [key]
         return key
 
     def told(self, remark: str) -> None:
@@ -130,8 +130,8 @@ class ScriptedPerson:
         self.remarks.append(remark)
 
     def _answer(self, question: Question) -> Iterator[str]:
-        if question.about == NOTHING_THROUGH:
-            out = [at for at, row in enumerate(question.rows) if self.knowledge.key(question, row) != NOTHING]
+        if question.about == LISTED:
+            out = [at for at, row in enumerate(question.rows) if not row.reply(self.knowledge.key(question, row))]
             left = len(question.rows) - len(out)
             if left >= FEWEST:
                 yield from (ascii_uppercase[at] for at in out)
@@ -140,16 +140,24 @@ class ScriptedPerson:
         parts: dict[tuple[str, int], list[int]] = defaultdict(list)
         for at, row in enumerate(question.rows):
             key = self.knowledge.key(question, row)
-            reply = row.reply(key)
-            alone = reply and reply.takes_away and not (question.about == GOES_THROUGH and key == NOTHING)
+            alone = _takes_away(row, key) and question.about != GOES_THROUGH
             parts[key, at if alone else -1].append(at)
         if {key for key, _ in parts} == {YES, NO}:
             yield from (ascii_uppercase[at] for at in parts[YES, -1])
             yield EXACTLY
             return
-        (key, _), rows = min(parts.items(), key=lambda part: len(part[1]))
-        if key == SKIP:
-            self.typed([question.rows[at].element.identity for at in rows])
-        if len(parts) > 1 or (key == NOTHING and len(rows) > 1):
+        unsaid = parts.get((SKIP, -1), [])
+        by_hand = [at for at in unsaid if self.typed([question.rows[at].element.identity])]
+        if by_hand:
+            key, rows = SKIP, by_hand
+        else:
+            said = {part: rows for part, rows in parts.items() if part[0] != SKIP}
+            (key, _), rows = min((said or parts).items(), key=lambda part: len(part[1]))
+        if len(rows) < len(question.rows) or (len(rows) > 1 and _takes_away(question.rows[rows[0]], key)):
             yield from (ascii_uppercase[at] for at in rows)
         yield key
+
+
+def _takes_away(row: Row, key: str) -> bool:
+    reply = row.reply(key)
+    return bool(reply and reply.takes_away)

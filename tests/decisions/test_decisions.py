@@ -43,6 +43,6 @@ def test_the_figures_of_the_page(corpus: Path, tmp_path: Path) -> None:
         assert all(remark.endswith(BY_ITSELF) for remark in person.remarks)
         row = [
             truth.name, f"{hand.decisions} ({hand.taking_away})", f"{count.decisions} ({count.taking_away})",
-            f"{count.typed}", f"{hand.keys}", f"{count.keys}", f"{count.rows}",
+            f"{count.typed}", f"{hand.keys}", f"{count.keys}", f"{count.rows}", f"{count.judged}",
         ]  # fmt: skip
         assert re.search(re.escape(f"| {' | '.join(row)} |"), page), row

@@ -10,7 +10,7 @@ import typer
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.files_read import one_run
-from rosprivacy.analysis.suggesting.question_rows import NOTHING_THROUGH
+from rosprivacy.analysis.suggesting.question_rows import LISTED
 from rosprivacy.analysis.text import counted
 from rosprivacy.cli.output import emit
 from rosprivacy.clock import today
@@ -21,10 +21,10 @@ from rosprivacy.labelling.limits_on_the_way import brings, limits_on_the_way
 from rosprivacy.labelling.named_answers import AND, BEGINS, keys_of, lines_of, takes_away
 from rosprivacy.labelling.suggested_lines import who_says
 from rosprivacy.report.editing import editing
-from rosprivacy.report.suggest.question_lines import keys_line, question_lines
+from rosprivacy.report.suggest.question_lines import help_lines, keys_line, question_lines
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
     from pathlib import Path
 
     from rosprivacy.analysis.suggesting.question_rows import Question
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from rosprivacy.settings import Settings
 
 DIGITS, MOST_DIGITS, ENTER = frozenset("0123456789"), 4, ("\r", "\n", "\r\n")
+HELP = "?"
 LONGEST_ANSWER = 100_000  # signs of a line
 ENDED = "\x03\x04"  # Ctrl-C and Ctrl-D, where the terminal gives them as keys
 OUT_OF_STEP = "the keys are out of step with the questions, and no more are read"
@@ -94,21 +95,24 @@ class _Terminal:
 
     def key(self, question: Question, picked: frozenset[int]) -> str:
         if question != self.last:
-            for line in question_lines(question):
-                typer.echo(line)
+            _say(question_lines(question))
         self.last = question
-        typer.echo(keys_line(question, picked, allowed(question, picked)))
-        typer.echo("> ", nl=False)
+        while True:
+            typer.echo(keys_line(question, picked, allowed(question, picked)))
+            typer.echo("> ", nl=False)
+            key = self._next(question, picked)
+            typer.echo(shown(key))
+            if key != HELP:
+                return key
+            _say(help_lines(question, allowed(question, picked)))
+
+    def _next(self, question: Question, picked: frozenset[int]) -> str:
         if self.next:
-            key = self.next.pop(0)
-        else:
-            key = _pressed()
-            if not at_terminal():
-                key = self._piped(key, question, picked)
-            elif question.about == NOTHING_THROUGH and key in DIGITS:
-                key = _number(key)
-        typer.echo(shown(key))
-        return key
+            return self.next.pop(0)
+        key = _pressed()
+        if not at_terminal():
+            return self._piped(key, question, picked)
+        return _number(key) if question.about == LISTED and key in DIGITS else key
 
     def told(self, remark: str) -> None:
         typer.echo(remark)
@@ -122,7 +126,7 @@ class _Terminal:
                 return self.next.pop(0)
             typer.echo(f"{shown(line)!r} is no answer here: {OUT_OF_STEP}")
             return ""
-        whole = question.about == NOTHING_THROUGH
+        whole = question.about == LISTED
         if key not in DIGITS or (key in (can := allowed(question, picked)) and not takes_away(question, key)):
             return key
         rows = tuple(row for at, row in enumerate(question.rows) if (at in picked) is not whole or not picked)
@@ -131,6 +135,11 @@ class _Terminal:
         problem = f"{BY_LINE}: {shown(said)}" if lines else f"is no answer here: {OUT_OF_STEP}"
         typer.echo(f"{key!r} {problem}")
         return ""
+
+
+def _say(lines: Iterable[str]) -> None:
+    for line in lines:
+        typer.echo(line)
 
 
 def at_terminal() -> bool:

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.suggesting.question_rows import NOTHING_THROUGH, YES, questions
+from rosprivacy.analysis.suggesting.next_questions import questions
+from rosprivacy.analysis.suggesting.question_rows import LISTED, NOTHING, YES
 from rosprivacy.analysis.suggesting.traffic import traffic
 from rosprivacy.ingest.suggestions.accepting import NewLabel, with_labels
 from rosprivacy.ingest.suggestions.refusals import refusal, with_refusals
@@ -63,11 +64,13 @@ def _labels(question: Question, key: str, note: str) -> Iterator[NewLabel]:
     for row in question.rows:
         reply = row.reply(key)
         if reply:
-            said = key == YES or row.alike  # of rows that a person has picked, the reasons may say the opposite
+            said = key == YES or (
+                key == NOTHING and row.alike
+            )  # of what a person has picked, they may say the opposite
             why = f": {'; '.join(row.reasons)}" if said and row.reasons else ""
             yield NewLabel(*reply.label, f"{note}{why}")
 
 
 def _in_list(question: Question) -> str:
     """Who reads the label later sees that it was not looked at by itself."""
-    return f" in a list of {len(question.rows)}" if question.about == NOTHING_THROUGH else ""
+    return f" in a list of {len(question.rows)}" if question.about == LISTED else ""

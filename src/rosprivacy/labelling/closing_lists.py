@@ -1,7 +1,7 @@
-"""Lists of channels that are alike, held against the analysis: none that a person can confirm closes a known finding.
+"""Lists of channels, held against the analysis: none that a person can confirm closes a known finding.
 
-In: a question about open channels, and the answer that it belongs to. Out: the question, of which the channels that
-would close a finding are asked by themselves. That is no estimate: the labels are put on, and the analysis runs again.
+In: channels of which one thing is said together, and the answer that they belong to. Out: those that would close a
+finding; they are asked by themselves. That is no estimate: the labels are put on, and the analysis runs again.
 """
 
 from __future__ import annotations
@@ -28,13 +28,13 @@ def without_closing(question: Question, result: Result) -> Question:
     Fewer labels close no more, so that rows can be taken out. One run of the analysis for each likeness; where it loses
     a finding, one for each row.
     """
-    parts: dict[Alike, list[Row]] = defaultdict(list)
+    parts: dict[tuple[Alike, tuple[str, ...]], list[Row]] = defaultdict(list)
     for row in question.rows:
-        parts[row.alike].append(row)
+        parts[row.alike, row.kinds].append(row)
     apart: list[Row] = []
-    for likeness, rows in parts.items():
-        if likeness and len(rows) > 1:
-            apart += closing(rows, result)
+    for (likeness, _), rows in parts.items():
+        if likeness and len(rows) > 1 and _closes([row.saying(NOTHING) for row in rows], result):
+            apart += _by_themselves(rows, result)
     if not apart:
         return question
     return question._replace(
@@ -42,27 +42,42 @@ def without_closing(question: Question, result: Result) -> Question:
     )
 
 
+def _by_themselves(rows: Sequence[Row], result: Result) -> Sequence[Row]:
+    """The channels of a list that would close a finding: those that do alone, or all if only several do."""
+    alone = [row for row in rows if _closes([row.saying(NOTHING)], result)]
+    left = [row.saying(NOTHING) for row in rows if row not in alone]
+    return alone if alone and not _closes(left, result) else rows
+
+
 def closing(rows: Sequence[Row], result: Result) -> Sequence[Row]:
-    """Return the channels of a list that would close a finding: those that do alone, or all if only several do."""
+    """Return the channels that a list of a person's cannot have: those that would close a finding with those before.
+
+    More labels close no less, so that what is left closes none.
+
+    Parameters
+    ----------
+    rows
+        With the one reply that is said of each.
+    """
     if not _closes(rows, result):
         return ()
-    alone = [row for row in rows if _closes([row], result)]
-    return alone if alone and not _closes([row for row in rows if row not in alone], result) else rows
+    left: list[Row] = []
+    for row in rows:
+        if not _closes([*left, row], result):
+            left.append(row)
+    return [row for row in rows if row not in left]
 
 
 def _closes(rows: Sequence[Row], result: Result) -> bool:
-    """Whether a finding is lost if nothing goes through channels; where nobody can tell, it is."""
+    """Whether a finding is lost by what is said of channels; where nobody can tell, it is."""
     if result.again is None:
         return True
-    sections: dict[str, dict[str, object]] = defaultdict(dict)
-    for row in rows:
-        reply = row.reply(NOTHING)
-        if reply is None:
-            return True
-        sections[reply.label.section][reply.label.name] = reply.label.said
-    text = json.dumps({"labels": 1, **sections})
+    sections: dict[str, dict[str, dict[str, list[str]]]] = defaultdict(lambda: defaultdict(lambda: defaultdict(list)))
+    for label in (reply.label for row in rows for reply in row.replies):
+        for role, kinds in label.said.items():
+            sections[label.section][label.name][role] += kinds
     try:
-        said = parse_labels(text, result.vocabulary, name="a list of channels")
+        said = parse_labels(json.dumps({"labels": 1, **sections}), result.vocabulary, name="a list of channels")
         after = result.again((*result.labels, said))
     except InputErrors:  # they go against what a label says
         return True

@@ -4,9 +4,10 @@ In: what is asked now, who answers, and what keeps an answer. Out: how it ended.
 the command line and the tests put theirs in. Every answer is kept before the next question.
 
 The keys: a letter from A on picks a row, or puts it back; all others speak of the picked rows, or of all if none is
-picked. ``x`` says yes to the picked rows and no to the others. What takes data away is said of one row alone; or of a
-list of channels, by the number of its rows: of those that are alike, or of those that the person has picked one by one
-before ``0``. There a letter takes a row out, and ``o`` takes out all; what is taken out is asked as other channels are.
+picked. ``x`` says yes to the picked rows and no to the others; ``k`` asks about each kind of data by itself. What takes
+data away is said of one row alone; or of a list of channels, by the number of its rows: of those that are alike, or of
+those that the person has picked one by one before ``0``, or before the digit of a kind. There a letter takes a row out,
+and ``o`` takes out all; what is taken out is asked as other channels are.
 """
 
 from __future__ import annotations
@@ -19,10 +20,14 @@ from typing import TYPE_CHECKING, Protocol
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.suggesting.question_rows import (
     BRINGS_IN,
+    ENDS,
+    GOES_ON,
     GOES_THROUGH,
+    LETS_OUT,
+    LISTED,
     MAKES,
+    MOST_ROWS,
     NOTHING,
-    NOTHING_THROUGH,
     YES,
     Question,
 )
@@ -34,11 +39,21 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.suggesting.alike_channels import Alike
     from rosprivacy.analysis.suggesting.question_rows import Row
 
-NO, OPEN, SKIP, QUIT, EXACTLY = "n", "o", "s", "q", "x"
+NO, OPEN, SKIP, QUIT, EXACTLY, EACH_KIND = "n", "o", "s", "q", "x", "k"
+STAGES = {
+    BRINGS_IN: 0,
+    LETS_OUT: 0,
+    MAKES: 0,
+    GOES_ON: 1,
+    ENDS: 1,
+    GOES_THROUGH: 2,
+    LISTED: 2,
+}  # a leak of one is known
 FEWEST = 2  # rows of a list: one row is asked by itself
 BY_ITSELF = "it could close a known finding, and is asked by itself"
 CHANGED = "this list is not as it was any more: nothing is kept, and it is asked anew"
-Said = tuple[str, tuple[str, str, str], tuple[str, ...]]  # what a row asks, in this conversation
+Identity = tuple[str, str, str]
+Said = tuple[str, Identity, tuple[str, ...]]  # what a row asks, in this conversation
 
 
 class Person(Protocol):
@@ -64,7 +79,7 @@ class Conversation:
     keep
         Keeps what is said of all rows of a question by a key, before it returns; returns remarks if it could not.
     closing
-        Which of some channels would close a finding if nothing went through any of them: no list has these.
+        Which of some channels, each with the one reply that is said of it, would close a finding: no list has these.
     lists
         How many rows each list had that was confirmed.
     """
@@ -78,65 +93,87 @@ class Conversation:
     lists: list[int] = field(default_factory=list)
     _alone: set[Said] = field(default_factory=set)
     _taken_out: set[Said] = field(default_factory=set)
+    _kind_by_kind: set[tuple[str, Identity]] = field(default_factory=set)
 
     def run(self) -> bool:
         """Ask; return whether nothing is left to ask, and False if the person has stopped before."""
         while pending := deque(self._left()):
-            kept = False
-            while pending:
-                question = pending.popleft()
-                if question.about == NOTHING_THROUGH:
-                    if not kept and not self._listed(question):
-                        return False
-                    break  # after an answer it may be another list
-                answer = self._answer(question)
-                if answer is None:
-                    return False
-                key, rows = answer
-                if key == NOTHING and len(rows) > 1:
-                    if not self._picked(question, rows):
-                        return False
-                    break
-                kept = kept or key not in (OPEN, SKIP)
-                rest = [row for row in question.rows if row not in rows]
-                if key == OPEN:
-                    self._alone.update(_said(question, row) for row in rows)
-                    rest = []
-                    pending.extendleft(Question(question.about, (row,)) for row in reversed(question.rows))
-                elif key == SKIP:
-                    self._later.update(_said(question, row) for row in rows)
-                elif key == EXACTLY:
-                    self._kept(Question(question.about, tuple(rest)), NO)
-                    self.answers -= 1  # both are one answer
-                    self._kept(Question(question.about, tuple(rows)), YES)
-                    break
-                elif self._kept(Question(question.about, tuple(rows)), key):
-                    break  # other elements may be reached now
-                if rest:
-                    pending.appendleft(Question(question.about, tuple(rest)))
+            if not self._round(pending):
+                return False
         return True
+
+    def _round(self, pending: deque[Question]) -> bool:
+        """Ask until there is more to know of what is left; return False if the person stops."""
+        answered: set[int] = set()
+        while pending:
+            question = pending.popleft()
+            stage = STAGES[question.about]
+            if any(one < stage for one in answered) or (answered and question.about == LISTED):
+                return True
+            if question.about == LISTED:
+                return self._listed(question)
+            answer = self._answer(question)
+            if answer is None:
+                return False
+            key, rows = answer
+            if len(rows) > 1 and _takes_away(rows, key):
+                return self._picked([row.saying(key) for row in rows])
+            if key == OPEN:
+                self._alone.update(_said(question, row) for row in rows)
+                pending.extendleft(Question(question.about, (row,)) for row in reversed(question.rows))
+                continue
+            if self._taken(question, rows, key):
+                return True
+            answered.add(stage)
+            if rest := tuple(row for row in question.rows if row not in rows):
+                pending.appendleft(Question(question.about, rest))
+        return True
+
+    def _taken(self, question: Question, rows: Sequence[Row], key: str) -> bool:
+        """Take an answer; return whether what is left to ask may have changed by it."""
+        if key == EACH_KIND:
+            self._kind_by_kind.update((question.about, row.element.identity) for row in rows)
+            return True
+        if key == SKIP:
+            self._later.update(_said(question, row) for row in rows)
+            return True  # the person may have written a label by hand
+        if key == EXACTLY:
+            self._kept(Question(question.about, tuple(row for row in question.rows if row not in rows)), NO)
+            self.answers -= 1  # both are one answer
+            self._kept(Question(question.about, tuple(rows)), YES)
+            return True
+        return self._kept(Question(question.about, tuple(rows)), key)
 
     def _left(self) -> Iterator[Question]:
         """What is asked now, without what the person wants to answer later; what was opened stands alone."""
-        for question in self.now():
+        for question in self._asked():
             rows = [row for row in question.rows if _said(question, row) not in self._later]
             listed = [row for row in rows if row.alike and _said(question, row) not in self._taken_out | self._alone]
             lists = [part for part in _by_likeness(listed) if len(part) >= FEWEST]
             in_lists = [row for part in lists for row in part]
-            yield from (Question(NOTHING_THROUGH, part) for part in lists)
-            together = tuple(row for row in rows if row not in in_lists and _said(question, row) not in self._alone)
-            if together:
-                yield Question(question.about, together)
+            yield from (Question(LISTED, tuple(row.saying(NOTHING) for row in part)) for part in lists)
+            together = [row for row in rows if row not in in_lists and _said(question, row) not in self._alone]
+            for at in range(0, len(together), MOST_ROWS):
+                yield Question(question.about, tuple(together[at : at + MOST_ROWS]))
             yield from (Question(question.about, (row,)) for row in rows if row not in (*together, *in_lists))
 
-    def _picked(self, question: Question, rows: Sequence[Row]) -> bool:
+    def _asked(self) -> Iterator[Question]:
+        """What is asked now; where the person wants it, each kind of data by itself."""
+        for question in self.now():
+            apart = [
+                row.each if (question.about, row.element.identity) in self._kind_by_kind and row.each else (row,)
+                for row in question.rows
+            ]
+            yield Question(question.about, tuple(one for rows in apart for one in rows))
+
+    def _picked(self, rows: Sequence[Row]) -> bool:
         """Ask about channels that the person has picked, as a list; return False if the person stops."""
         apart = self.closing(rows)
         for row in apart:
             self.person.told(f"{row.element.kind} {shown(row.element.name)}: {BY_ITSELF}")
-        self._alone.update(_said(question, row) for row in apart)
+        self._alone.update(map(_of_channel, apart))
         listed = tuple(row for row in rows if row not in apart)
-        return len(listed) < FEWEST or self._listed(Question(NOTHING_THROUGH, listed), by_hand=True)
+        return len(listed) < FEWEST or self._listed(Question(LISTED, listed), by_hand=True)
 
     def _listed(self, question: Question, *, by_hand: bool = False) -> bool:
         """Ask about a list; return False if the person stops.
@@ -161,7 +198,7 @@ class Conversation:
             elif key == SKIP:
                 self._later.update(map(_of_channel, rows))
             elif key == str(len(rows)) and len(rows) >= FEWEST:
-                self._confirmed(Question(NOTHING_THROUGH, rows), by_hand=by_hand)
+                self._confirmed(Question(LISTED, rows), by_hand=by_hand)
             else:
                 self.person.told(f"{key!r} is no answer here; {counted(len(rows), 'row')} left")
                 continue
@@ -170,16 +207,16 @@ class Conversation:
 
     def _confirmed(self, question: Question, *, by_hand: bool) -> None:
         """Keep what is said of a list, if it would still be asked: the file may have changed meanwhile."""
-        still = [row for one in self.now() if one.about == GOES_THROUGH for row in one.rows]
+        still = [row for one in self._asked() if one.about == GOES_THROUGH for row in one.rows]
         if by_hand:
             asked = {_of_channel(row) for row in still}
             same = all(_of_channel(row) in asked for row in question.rows) and not self.closing(question.rows)
         else:
-            same = all(row in still and row.alike for row in question.rows)
+            same = all(row in [one.saying(NOTHING) for one in still if one.alike] for row in question.rows)
         if not same:
             self.person.told(CHANGED)
             return
-        remarks = self.keep(question, NOTHING)
+        remarks = self.keep(question, _key_of(question))
         for remark in remarks:
             self.person.told(remark)
         if remarks:
@@ -218,20 +255,36 @@ class Conversation:
 
 
 def allowed(question: Question, picked: Collection[int] = ()) -> tuple[str, ...]:
-    """Return the keys that answer a question about the rows that are picked, or about all."""
+    """Return the keys that answer a question about the rows that are picked, or about all.
+
+    What takes data away of several channels asks about them as a list, if they are picked.
+    """
     rows = tuple(row for at, row in enumerate(question.rows) if at in picked or not picked)
     keys = Question(question.about, rows).keys()
+    if question.about == GOES_THROUGH and len(picked) >= FEWEST:
+        keys += tuple(one.key for one in rows[0].replies if _takes_away(rows, one.key))
     refuse = all(row.refused for row in question.rows)
     exactly = refuse and YES in keys and len(rows) < len(question.rows)
-    together = question.about == GOES_THROUGH and len(picked) >= FEWEST and all(row.reply(NOTHING) for row in rows)
-    more = ((NOTHING, together), (EXACTLY, exactly), (NO, refuse), (OPEN, len(rows) > 1), (SKIP, True))
+    by_kind = any(row.each for row in rows)
+    more = ((EXACTLY, exactly), (NO, refuse), (OPEN, len(rows) > 1), (EACH_KIND, by_kind), (SKIP, True))
     return (*keys, *(key for key, there in more if there))
 
 
+def _takes_away(rows: Sequence[Row], key: str) -> bool:
+    """Whether a key takes data away of each of some rows."""
+    replies = [row.reply(key) for row in rows]
+    return all(reply and reply.takes_away for reply in replies)
+
+
+def _key_of(question: Question) -> str:
+    """What is said of the rows of a list."""
+    return question.rows[0].replies[0].key
+
+
 def _by_likeness(rows: Iterable[Row]) -> tuple[tuple[Row, ...], ...]:
-    parts: dict[Alike, list[Row]] = {}
+    parts: dict[tuple[Alike, tuple[str, ...]], list[Row]] = {}
     for row in rows:
-        parts.setdefault(row.alike, []).append(row)
+        parts.setdefault((row.alike, row.kinds), []).append(row)
     return tuple(map(tuple, parts.values()))
 
 

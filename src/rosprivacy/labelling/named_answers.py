@@ -10,7 +10,7 @@ from __future__ import annotations
 from string import ascii_uppercase
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.suggesting.question_rows import NOTHING, NOTHING_THROUGH
+from rosprivacy.analysis.suggesting.question_rows import LISTED
 from rosprivacy.labelling.conversation import FEWEST
 
 if TYPE_CHECKING:
@@ -50,9 +50,9 @@ def lines_of(question: Question, key: str) -> tuple[str, ...]:
     key
         Of a list any digit.
     """
-    said = NOTHING if question.about == NOTHING_THROUGH else key
-    replies = [(row, row.reply(said)) for row in question.rows]
-    return tuple(line_of(row, reply) for row, reply in replies if reply and reply.takes_away)
+    whole = question.about == LISTED
+    replies = [(row, reply) for row in question.rows for reply in row.replies if whole or reply.key == key]
+    return tuple(line_of(row, reply) for row, reply in replies if reply.takes_away)
 
 
 def keys_of(line: str, question: Question, picked: Collection[int]) -> tuple[str, ...]:
@@ -68,12 +68,12 @@ def keys_of(line: str, question: Question, picked: Collection[int]) -> tuple[str
         (line_of(row, reply), at, reply.key)
         for at, row in enumerate(question.rows)
         for reply in row.replies
-        if reply.takes_away and (question.about != NOTHING_THROUGH or reply.key == NOTHING)
+        if reply.takes_away
     ]
     found = {at: key for said, at, key in offered if said in wanted}
     if len(found) != len(wanted) or len(set(wanted)) != len(wanted):
         return ()
-    if question.about == NOTHING_THROUGH:
+    if question.about == LISTED:
         out = set(range(len(question.rows))) - set(found)
         return (*_letters(out ^ set(picked)), str(len(found))) if len(found) >= FEWEST else ()
     if len(found) != 1:

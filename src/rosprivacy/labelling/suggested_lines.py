@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, LabelError
-from rosprivacy.analysis.suggesting.question_rows import one_line
+from rosprivacy.analysis.suggesting.next_questions import one_line
 from rosprivacy.clock import today
 from rosprivacy.ingest.labels.label_file import parse_labels
 from rosprivacy.ingest.labels.label_writer import NEW, facts_of

@@ -1,0 +1,321 @@
+"""``suggest --ask`` where several kinds of data get to an element: one question, lists of a kind at most, each kind."""
+
+from __future__ import annotations
+
+import io
+import sys
+from string import ascii_uppercase
+from typing import TYPE_CHECKING
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+import rosprivacy
+from rosprivacy.analysis.suggesting.question_rows import ENDS, GOES_ON, GOES_THROUGH, LISTED, Question
+from rosprivacy.labelling.asking import asked_now, with_answer
+from rosprivacy.labelling.closing_lists import closing
+from rosprivacy.labelling.conversation import EACH_KIND, FEWEST, QUIT, SKIP, Conversation
+from rosprivacy.labelling.suggesting import suggest_labels
+from rosprivacy.report.suggest.question_lines import question_lines
+from rosprivacy.settings import Settings
+from tests.helpers.command import cli
+from tests.helpers.little_robots import policy_of
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from rosprivacy.labelling.suggesting import Suggested
+    from tests.helpers.command import Cli, Done
+    from tests.helpers.little_robots import Nodes
+
+__all__ = ["cli"]
+
+CHANNELS = ("/a", "/b", "/c", "/d")
+NODES: Nodes = {
+    "one": (["/in"], []),
+    "two": (["/in", "/seen"], []),
+    "middle": (list(CHANNELS), ["/in"]),
+    "here": ([], [*CHANNELS, "/seen"]),
+}
+HEAD = "labels: 1\nauthor: Ada\nnodes:\n  /one: {source: [Video]}\n  /two: {source: [Voice]}\n"
+REVIEWED = HEAD + "  /middle: conduit\n  /here: conduit\n"
+
+
+@pytest.fixture
+def robot(tmp_path: Path) -> Path:
+    (tmp_path / "p.xml").write_text(policy_of(NODES), "utf-8")
+    (tmp_path / "l.yaml").write_text(REVIEWED, "utf-8")
+    return tmp_path
+
+
+def ask(cli: Cli, folder: Path, keys: str, patch: pytest.MonkeyPatch) -> Done:
+    with patch.context() as context:
+        context.setattr(sys, "stdin", io.StringIO(keys))
+        return cli("suggest", "p.xml", "--into", "l.yaml", "--ask", cwd=folder)
+
+
+class Scripted:
+    """Somebody who presses these keys, and then stops; what was asked and told is kept."""
+
+    def __init__(self, *keys: str) -> None:
+        self.keys = [*keys]
+        self.asked: list[Question] = []
+        self.remarks: list[str] = []
+
+    def key(self, question: Question, picked: frozenset[int]) -> str:
+        if not picked:
+            self.asked.append(question)
+        return self.keys.pop(0) if self.keys else QUIT
+
+    def told(self, remark: str) -> None:
+        self.remarks.append(remark)
+
+
+def conversation(folder: Path, person: object, file: str = "l.yaml") -> Conversation:
+    path = folder / file
+    last: list[Suggested] = []
+
+    def now() -> tuple[Question, ...]:
+        last[:] = [suggest_labels((str(folder / "p.xml"),), (str(path),), Settings())]
+        return asked_now(last[0])
+
+    def keep(question: Question, key: str) -> tuple[str, ...]:
+        written = with_answer(str(path), question, key, "Ada", "2026-11-23", Settings())
+        path.write_text(written.text, "utf-8")
+        return written.remarks
+
+    return Conversation(now, keep, person, lambda rows: closing(rows, last[0].result))  # type: ignore[arg-type]  # several kinds of persons
+
+
+def found(folder: Path, file: str = "l.yaml") -> set[str]:
+    analysis = rosprivacy.analyze(str(folder / "p.xml"), str(folder / file)).analysis
+    return {one.id for one in analysis.findings}
+
+
+def said(folder: Path, file: str) -> list[tuple[object, ...]]:
+    """All statements about channels, without who said so and why."""
+    bound = rosprivacy.analyze(str(folder / "p.xml"), str(folder / file)).bound
+    return sorted(
+        {
+            (vertex, one.role, one.categories)
+            for vertex, there in bound.elements.items()
+            for one in there
+            if one.role in ("sensitive", "only", "never") and not one.shipped
+        }
+    )
+
+
+def test_channels_that_different_data_reach_are_one_question_and_each_row_names_its_own(robot: Path) -> None:
+    person = Scripted()
+    conversation(robot, person).run()
+    (question,) = person.asked
+    assert {row.element.name: row.kinds for row in question.rows} == {
+        "/in": ("Video", "Voice"), "/seen": ("Voice",), **dict.fromkeys(CHANNELS, ("Video", "Voice")),
+    }  # fmt: skip
+
+
+def test_a_digit_says_the_same_kind_of_each_row_and_nothing_of_a_row_that_only_one_kind_reaches(robot: Path) -> None:
+    person = Scripted()
+    conversation(robot, person).run()
+    for row in person.asked[0].rows:
+        kinds = {one.key: one.label.said["only"] for one in row.replies if "only" in one.label.said}
+        assert kinds == ({"1": ["Video"], "2": ["Voice"]} if len(row.kinds) > 1 else {})
+
+
+class Listing:
+    """Somebody who picks channels, presses a key that takes data away, and answers the list; all else comes later."""
+
+    def __init__(self, names: Sequence[str], key: str, *last: str) -> None:
+        self.names, self.digit, self.last = names, key, [*last]
+        self.lists: list[Question] = []
+        self.remarks: list[str] = []
+
+    def key(self, question: Question, picked: frozenset[int]) -> str:
+        if question.about == LISTED:
+            self.lists.append(question)
+            return self.last.pop(0) if self.last else str(len(question.rows))
+        wanted = [
+            at
+            for at, row in enumerate(question.rows)
+            if row.element.name in self.names and row.reply(self.digit) and question.about == GOES_THROUGH
+        ]
+        if len(wanted) < FEWEST or self.lists:
+            return SKIP
+        left = [at for at in wanted if at not in picked]
+        return ascii_uppercase[left[0]] if left else self.digit
+
+    def told(self, remark: str) -> None:
+        self.remarks.append(remark)
+
+
+@pytest.mark.parametrize("wrong", ["", "2", "4", "y", "1", "33", QUIT])
+def test_a_list_of_one_kind_at_most_is_confirmed_by_its_number_alone(robot: Path, wrong: str) -> None:
+    conversation(robot, Listing(["/a", "/b", "/c"], "2", wrong, QUIT)).run()
+    assert (robot / "l.yaml").read_text("utf-8") == REVIEWED
+
+
+def test_each_label_of_a_list_of_one_kind_at_most_tells_it(robot: Path) -> None:
+    person = Listing(["/a", "/b", "/c"], "2")
+    conversation(robot, person).run()
+    assert sorted(row.element.name for row in person.lists[0].rows) == ["/a", "/b", "/c"]
+    assert "Is it so that of Video and Voice only Voice goes through each of these?" in question_text(person.lists[0])
+    text = (robot / "l.yaml").read_text("utf-8")
+    for name in ("/a", "/b", "/c"):
+        assert f'  {name}: {{only: [Voice], note: "answered by Ada on 2026-11-23 in a list of 3"}}' in text
+    assert "/d:" not in text
+
+
+def test_of_rows_that_nobody_picked_no_kind_is_said_together(robot: Path) -> None:
+    person = Scripted("1", QUIT)
+    conversation(robot, person).run()
+    assert person.remarks == ["'1' is no answer here"]
+    assert (robot / "l.yaml").read_text("utf-8") == REVIEWED
+
+
+@pytest.mark.parametrize("keys", ["AB1", "AB12\n", "AB1\n2\n", "1", "AB0"])
+def test_no_digit_of_a_file_of_keys_makes_such_a_list(
+    cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch, keys: str
+) -> None:
+    assert "no more" in ask(cli, robot, keys, monkeypatch).stdout
+    assert (robot / "l.yaml").read_text("utf-8") == REVIEWED
+
+
+def test_the_channel_by_which_alone_a_known_finding_is_left_is_asked_by_itself(robot: Path) -> None:
+    """Voice gets to the leak by both: the list has one of them, and the other is asked with the finding."""
+    (robot / "p.xml").write_text(policy_of(NODES | {"out": ([], ["/b", "/c"])}), "utf-8")
+    (robot / "l.yaml").write_text(f"{REVIEWED}  /out: {{leak: [Voice]}}\n", "utf-8")
+    before = found(robot)
+    person = Listing(["/a", "/b", "/c"], "1")
+    conversation(robot, person).run()
+    assert {row.element.name for row in person.lists[0].rows} == {"/a", "/b"}
+    assert person.remarks == ["topic /c: it could close a known finding, and is asked by itself"]
+    shown = question_text(person.lists[0])
+    assert "known findings, of which this list closes none:\n       Voice: /two -> /out [" in shown
+    assert found(robot) == before
+
+
+def question_text(question: Question) -> str:
+    return "\n".join(question_lines(question))
+
+
+def test_each_kind_is_asked_by_itself_where_a_person_wants_it(robot: Path) -> None:
+    """Of one row: one kind can go through, the other cannot; the others are asked as before."""
+    name = "/a"
+    first = Scripted()
+    conversation(robot, first).run()
+    at = [row.element.name for row in first.asked[0].rows].index(name)
+    person = Scripted(ascii_uppercase[at], EACH_KIND)
+    conversation(robot, person).run()
+    rows = {row.kinds: row for row in person.asked[1].rows if row.element.name == name}
+    assert list(rows) == [("Video",), ("Voice",)]
+    assert [[one.label.said for one in row.replies] for row in rows.values()] == [
+        [{"sensitive": ["Video"]}, {"never": ["Video"]}], [{"sensitive": ["Voice"]}, {"never": ["Voice"]}],
+    ]  # fmt: skip
+    assert {row.kinds for row in person.asked[1].rows if row.element.name not in (name, "/seen")} == {
+        ("Video", "Voice")
+    }
+
+
+def test_one_kind_may_be_let_out_and_the_other_passed_on(
+    cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (robot / "l.yaml").write_text(f"{HEAD}  /here: conduit\n", "utf-8")
+    shown = ask(cli, robot, "k A1 y q", monkeypatch).stdout
+    assert "y only passes on or drops (Video and Voice), 1 lets out (Video and Voice)" in shown
+    text = (robot / "l.yaml").read_text("utf-8")
+    assert "/middle: {conduit: [Voice], leak: [Video], " in text
+
+
+def test_a_question_mark_says_what_each_key_means_and_answers_nothing(
+    cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shown = ask(cli, robot, "?q", monkeypatch).stdout
+    for line in (
+        "  y  yes (such data as stand beside it)\n",
+        "  0  none of it (such data as stand beside it): pick one row; or several, which are then shown",
+        "  k  asks about each kind of data by itself\n",
+        "  A-Z  picks a row, or puts it back",
+    ):
+        assert line in shown
+    assert "0 answers in l.yaml" in shown
+
+
+def test_a_leak_among_nodes_is_known_before_channels_are_asked_about(robot: Path) -> None:
+    """Also of a node that data reach behind another open one: it is asked in the same question as that."""
+    nodes: Nodes = NODES | {"behind": (["/e"], ["/d"]), "end": ([], ["/e"])}
+    (robot / "p.xml").write_text(policy_of(nodes), "utf-8")
+    (robot / "l.yaml").write_text(HEAD, "utf-8")
+    person = Scripted("y", "B", "1", "2")
+    conversation(robot, person).run()
+    assert [one.about for one in person.asked] == [GOES_ON, ENDS, ENDS, GOES_THROUGH]
+    assert [row.element.name for row in person.asked[0].rows] == ["/middle", "/behind"]
+    (leak,) = {one.partition(" [")[0].partition("-> ")[2] for one in person.asked[-1].rows[0].closes}
+    assert leak == person.asked[1].rows[1].element.name
+
+
+def test_what_is_written_by_hand_meanwhile_is_read_after_later(robot: Path) -> None:
+    class Writing(Scripted):
+        def key(self, question: Question, picked: frozenset[int]) -> str:
+            if not self.asked:
+                (robot / "l.yaml").write_text(f"{REVIEWED}channels:\n  '/?': sensitive\n", "utf-8")
+            return super().key(question, picked)
+
+    person = Writing("A", SKIP)
+    conversation(robot, person).run()
+    names = [[row.element.name for row in one.rows] for one in person.asked]
+    assert len(names[0]) == len(CHANNELS) + 2
+    assert names[1:]
+    assert not {*CHANNELS} & {*names[1]}
+
+
+@given(
+    kinds=st.lists(st.sampled_from(["Video", "Voice", "Location"]), min_size=2, max_size=3, unique=True),
+    middle=st.lists(st.sampled_from(CHANNELS), min_size=2, unique=True),
+    second=st.lists(st.sampled_from(CHANNELS), unique=True),
+    ends=st.lists(st.lists(st.sampled_from(CHANNELS), min_size=1, unique=True), min_size=1, max_size=3),
+    picked=st.sets(st.sampled_from(CHANNELS), min_size=2),
+    key=st.sampled_from("0123"),
+    apart=st.booleans(),
+)
+@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_a_list_closes_no_known_finding_and_says_what_single_answers_say(
+    tmp_path: Path,
+    kinds: list[str],
+    middle: list[str],
+    second: list[str],
+    ends: list[list[str]],
+    picked: set[str],
+    key: str,
+    *,
+    apart: bool,
+) -> None:
+    """Whatever is picked, and also where each kind is asked by itself."""
+    nodes: Nodes = {f"source{at}": (["/in"], []) for at in range(len(kinds))}
+    nodes |= {"middle": (middle, ["/in"]), "second": (second, [middle[0]])}
+    nodes |= {f"end{at}": ([], channels) for at, channels in enumerate(ends)}
+    (tmp_path / "p.xml").write_text(policy_of(nodes), "utf-8")
+    text = "labels: 1\nnodes:\n  /middle: conduit\n  /second: conduit\n"
+    text += "".join(f"  /source{at}: {{source: [{kind}]}}\n" for at, kind in enumerate(kinds))
+    text += "".join(f"  /end{at}: {{leak: [{kinds[at % len(kinds)]}]}}\n" for at in range(len(ends)))
+    for file in ("l.yaml", "alone.yaml"):
+        (tmp_path / file).write_text(text, "utf-8")
+    before = found(tmp_path)
+    person = EachKind(sorted(picked), key) if apart else Listing(sorted(picked), key)
+    conversation(tmp_path, person).run()
+    assert found(tmp_path) == before
+    alone = tmp_path / "alone.yaml"
+    for row in [row for one in person.lists[:1] for row in one.rows]:
+        single = Question(GOES_THROUGH, (row,))
+        alone.write_text(with_answer(str(alone), single, key, "Ada", "2026-11-23", Settings()).text, "utf-8")
+    assert said(tmp_path, "l.yaml") == said(tmp_path, "alone.yaml")
+
+
+class EachKind(Listing):
+    """The same, of each kind by itself: of every row that is about one kind."""
+
+    def key(self, question: Question, picked: frozenset[int]) -> str:
+        if question.about == GOES_THROUGH and any(row.each for row in question.rows):
+            return EACH_KIND
+        return super().key(question, picked)
