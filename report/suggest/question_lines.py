@@ -113,7 +113,8 @@ def keys_line(question: Question, picked: Collection[int], keys: Collection[str]
         Those that answer the question as it is picked.
     """
     if question.about == LISTED:
-        return _list_line(len(question.rows), picked)
+        confirmed = _words(question.rows[0].replies[0], [])
+        return _list_line(len(question.rows), picked, confirmed)
     of = f"{' '.join(ascii_uppercase[at] for at in sorted(picked))}: " if picked else ""
     of = of or ("all: " if len(question.rows) > 1 else "")
     rows = [row for at, row in enumerate(question.rows) if at in picked or not picked]
@@ -127,15 +128,15 @@ def keys_line(question: Question, picked: Collection[int], keys: Collection[str]
     return f"  {of}{', '.join([*said, *more, *letters])}"
 
 
-def _list_line(rows: int, out: Collection[int]) -> str:
+def _list_line(rows: int, out: Collection[int], said: str) -> str:
     """How a list is confirmed.
 
-    >>> _list_line(3, {1}).partition(", o ")[0]
-    '  without B: 2 and Enter for none of it in all 2, A-Z take out or put back'
+    >>> _list_line(3, {1}, "Video at most").partition(", o ")[0]
+    '  without B: 2 and Enter for Video at most in all 2, A-Z take out or put back'
     """
     left = rows - len(out)
     without = f"without {' '.join(ascii_uppercase[at] for at in sorted(out))}: " if out else ""
-    confirm = f"{left} and Enter for none of it in all {left}, " if left > 1 else ""
+    confirm = f"{left} and Enter for {said} in all {left}, " if left > 1 else ""
     return f"  {without}{confirm}A-Z take out or put back, o not as a list, s later, q stop, ? help"
 
 

@@ -17,7 +17,7 @@ from rosprivacy.labelling.asking import asked_now, with_answer
 from rosprivacy.labelling.closing_lists import closing
 from rosprivacy.labelling.conversation import EACH_KIND, FEWEST, QUIT, SKIP, Conversation
 from rosprivacy.labelling.suggesting import suggest_labels
-from rosprivacy.report.suggest.question_lines import question_lines
+from rosprivacy.report.suggest.question_lines import keys_line, question_lines
 from rosprivacy.settings import Settings
 from tests.helpers.command import cli
 from tests.helpers.little_robots import policy_of
@@ -161,6 +161,7 @@ def test_each_label_of_a_list_of_one_kind_at_most_tells_it(robot: Path) -> None:
     conversation(robot, person).run()
     assert sorted(row.element.name for row in person.lists[0].rows) == ["/a", "/b", "/c"]
     assert "Is it so that of Video and Voice only Voice goes through each of these?" in question_text(person.lists[0])
+    assert keys_line(person.lists[0], (), ()).startswith("  3 and Enter for Voice at most in all 3, ")
     text = (robot / "l.yaml").read_text("utf-8")
     for name in ("/a", "/b", "/c"):
         assert f'  {name}: {{only: [Voice], note: "answered by Ada on 2026-11-23 in a list of 3"}}' in text
