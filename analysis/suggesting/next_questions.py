@@ -25,24 +25,26 @@ from rosprivacy.analysis.suggesting.evidence import (
 from rosprivacy.analysis.suggesting.question_rows import (
     AT_MOST_ONE,
     BRINGS_IN,
-    ENDS,
     GOES_ON,
     GOES_THROUGH,
     LETS_OUT,
     MAKES,
     MOST_ROWS,
     NOTHING,
+    OUT,
+    PASSES,
     YES,
     Question,
     Reply,
     Row,
 )
+from rosprivacy.analysis.suggesting.reached_kinds import narrowed, reached_kinds
 from rosprivacy.analysis.suggesting.unsaid import or_passes_on, said_of, spoken_of
 from rosprivacy.analysis.suggesting.written import WrittenLabel, written
 from rosprivacy.analysis.written_names import literal
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from rosprivacy.analysis.answer import Analysis, Finding, OpenQuestion
     from rosprivacy.analysis.hierarchy import Hierarchy
@@ -85,9 +87,7 @@ def questions(
     ('brings-in', [('/camera', ('FaceImage',), ['y']), ('/camera', ('Voice',), ['y'])])
     """
     asked = _Asked(proposals, analysis, bound, told, hierarchy, refused)
-    ends = asked.ends()
-    first = {row.element.identity for rows in ends.values() for row in rows}
-    groups = [*ends.items(), *asked.unreviewed(first)]
+    groups = [*asked.ends().items(), (GOES_ON, asked.nodes()), (GOES_THROUGH, asked.channels())]
     return tuple(Question(about, tuple(some)) for about, rows in groups for some in _parted(rows))
 
 
@@ -124,12 +124,20 @@ class _Asked:
         self.of: dict[Identity, list[Proposal]] = defaultdict(list)
         for one in proposals:
             self.of[one.label.element.identity].append(one)
+        self.open: dict[Identity, OpenQuestion] = {}
+        for asked in analysis.open:
+            old = self.open.get(asked.element.identity)
+            kinds = tuple(sorted({*asked.categories, *(old.categories if old else ())}))
+            self.open[asked.element.identity] = asked._replace(categories=kinds)
         self.reached = reached_kinds(analysis)
         self.known: dict[tuple[str, ...], tuple[str, ...]] = {}  # what is told of findings of such data
         self.writes = {analysis.graph.elements[vertex].identity for vertex, there in told.writes.items() if there}
 
     def ends(self) -> dict[str, list[Row]]:
-        """Return what may bring data in; what may let out, or make other data of, what gets to it."""
+        """Return what may bring data in; what may let out, or make other data of, what gets to it.
+
+        An open node that may let data out is asked what it does with them.
+        """
         return {
             BRINGS_IN: [_row(one) for one in self.proposals if one.label.role == SOURCE],
             LETS_OUT: [row for there in self.of.values() if (row := self._lets_out(there))],
@@ -141,47 +149,52 @@ class _Asked:
         return any(self.hierarchy.overlap(one.label.kind, kind) is not None for kind in there)
 
     def _lets_out(self, there: Sequence[Proposal]) -> Row | None:
-        """One element that may let out what gets to it: the kinds that are known to, and nobody has spoken of."""
-        leaks = [one for one in there if one.label.role == LEAK and not or_passes_on(one, there)]
-        if not leaks:
-            return None
-        element = leaks[0].label.element
-        reached = self.reached.get(element.identity, ())
-        asked = {kind for one in leaks for kind in narrowed(one.label.kind, reached, self.hierarchy)}
-        said = self.said.get(element.identity, ())
-        labels = [Label(element, LEAK, kind) for kind in sorted(asked)]
-        labels = [one for one in labels if not (spoken_of(one, said, self.hierarchy) or self.refused(one))]
+        leaks = _leaks(there)
+        asked_as_open = self._open_kinds(there)
+        labels = [one for one in self._unsaid(leaks) if one.kind not in asked_as_open]
         return _leak(labels, _reasons(leaks)) if labels else None
 
-    def unreviewed(self, first: Collection[Identity]) -> Iterator[tuple[str, list[Row]]]:
-        """Yield open elements, whatever data reach them: nodes, as many as one question has room for, and channels.
+    def _unsaid(self, leaks: Sequence[Proposal]) -> list[Label]:
+        """What one element may let out of what is known to get there, where nobody has spoken of it."""
+        if not leaks:
+            return []
+        element = leaks[0].label.element
+        reached, said = self.reached.get(element.identity, ()), self.said.get(element.identity, ())
+        asked = {kind for one in leaks for kind in narrowed(one.label.kind, reached, self.hierarchy)}
+        labels = [Label(element, LEAK, kind) for kind in sorted(asked)]
+        return [one for one in labels if not (spoken_of(one, said, self.hierarchy) or self.refused(one))]
 
-        Of nodes those come first that data reach first; those behind have the room that these leave. Of the elements of
-        ``first`` something else is asked before.
+    def _open_kinds(self, there: Sequence[Proposal]) -> tuple[str, ...]:
+        """The kinds of data for which a node is open, and of which it can be asked what it does with them."""
+        asked = self.open.get(there[0].label.element.identity)
+        if asked is None or not asked.element.is_node:
+            return ()
+        about = [one for one in there if one.label.role in (CONDUIT, SANITIZER)]
+        out = {one.kind for one in self._unsaid(_leaks(there))}
+        return tuple(
+            kind for kind in asked.categories if kind in out or any(self._speaks_of(one, kind) for one in about)
+        )
+
+    def nodes(self) -> list[Row]:
+        """Return open nodes, as many as one question has room for, or all that are asked first.
+
+        First are those that may let data out, and those that data reach first; those behind have the room that is left.
         """
-        by_element: dict[Identity, OpenQuestion] = {}
-        for one in self.analysis.open:
-            old = by_element.get(one.element.identity)
-            kinds = tuple(sorted({*one.categories, *(old.categories if old else ())}))
-            by_element[one.element.identity] = one._replace(categories=kinds)
-        asked = [(by_element[one], there) for one, there in self.of.items() if one in by_element and one not in first]
-        nodes: dict[tuple[bool, bool], list[Row]] = defaultdict(list)
-        near: dict[tuple[bool, bool], int] = defaultdict(int)
-        for one, there in asked:  # in review order
-            about = [each for each in there if each.label.role in (CONDUIT, SANITIZER)]
-            kinds = tuple(kind for kind in one.categories if any(self._speaks_of(each, kind) for each in about))
-            if one.element.is_node and kinds:
-                on = one.element.identity in self.writes
-                row = self._node(there[0].label.element, kinds, about, on=on)
-                likeness = on, row.reply(NOTHING) is not None
-                nodes[likeness].append(row)
-                near[likeness] += one.frontier
-        for likeness, rows in nodes.items():
-            on, _ = likeness
-            yield GOES_ON if on else ENDS, rows[: MOST_ROWS * max(1, ceil(near[likeness] / MOST_ROWS))]
+        rows, first = [], 0
+        for identity, there in self.of.items():  # in review order
+            if kinds := self._open_kinds(there):
+                row = self._node(there, kinds)
+                rows.append(row)
+                first += self.open[identity].frontier or _suspected(row)
+        rows.sort(key=lambda row: not _suspected(row))
+        return rows[: MOST_ROWS * max(1, ceil(first / MOST_ROWS))]
+
+    def channels(self) -> list[Row]:
+        """Return open channels."""
+        asked = [(self.open[one], there) for one, there in self.of.items() if one in self.open]
         channels = [(one, there) for one, there in asked if one.element.is_channel]
         numbered = sorted({kind for one, _ in channels for kind in one.categories})
-        yield GOES_THROUGH, [self._channel(one, there, numbered) for one, there in channels]
+        return [self._channel(one, there, numbered) for one, there in channels]
 
     def _speaks_of(self, one: Proposal, kind: str) -> bool:
         return not one.label.kind or self.hierarchy.overlap(one.label.kind, kind) is not None
@@ -200,7 +213,8 @@ class _Asked:
     def _through(
         self, element: Element, kinds: tuple[str, ...], about: Sequence[Proposal], numbered: Sequence[str]
     ) -> Row:
-        replies = [Reply(YES, _written(element, SENSITIVE, kinds))]
+        reasons, closed, likeness = _reasons(about), self._closed(kinds), alike(kinds, about)
+        replies = [Reply(YES, _written(element, SENSITIVE, kinds), reasons=reasons)]
         each: list[Row] = []
         if len(kinds) > 1:
             for key, kind in zip(AT_MOST_ONE, numbered, strict=False):
@@ -210,21 +224,31 @@ class _Asked:
                 self._through(element, (kind,), self._about(about, kind), ())._replace(alike=frozenset())
                 for kind in kinds
             ]
-        replies.append(Reply(NOTHING, _written(element, NEVER, kinds), takes_away=True))
-        reasons, closed, likeness = _reasons(about), self._closed(kinds), alike(kinds, about)
+        why = reasons if likeness else ()  # else they may say the opposite
+        replies.append(Reply(NOTHING, _written(element, NEVER, kinds), takes_away=True, reasons=why))
         return Row(element, kinds, tuple(replies), reasons, closes=closed, alike=likeness, each=tuple(each))
 
-    def _node(self, element: Element, kinds: tuple[str, ...], about: Sequence[Proposal], *, on: bool) -> Row:
-        passes, out = _written(element, CONDUIT, kinds), _written(element, LEAK, kinds)
-        ends = [one for one in about if one.label.role == SANITIZER]
-        replies = [Reply("1", out), Reply("2", passes)] if ends or not on else [Reply(YES, passes), Reply("1", out)]
+    def _node(self, there: Sequence[Proposal], kinds: tuple[str, ...]) -> Row:
+        element = there[0].label.element
+        about = [one for kind in kinds for one in self._about(there, kind) if one.label.role in (CONDUIT, SANITIZER)]
+        ends = list(dict.fromkeys(one for one in about if one.label.role == SANITIZER))
+        leaks = [one for one in _leaks(there) if any(self._speaks_of(one, kind) for kind in kinds)]
+        out = [one for one in self._unsaid(leaks) if one.kind in kinds]
+        why = _reasons(leaks) if out else ()
+        doubtful = bool(why or ends) or element.identity not in self.writes
+        passes = () if doubtful else _reasons(about)
+        replies = [
+            Reply(OUT, _written(element, LEAK, kinds), reasons=why),
+            Reply(PASSES, _written(element, CONDUIT, kinds), reasons=passes),
+        ]
         if len(ends) == 1:
-            replies.append(Reply(NOTHING, written(ends[0].label), takes_away=True))
+            replies.append(Reply(NOTHING, written(ends[0].label), takes_away=True, reasons=_reasons(ends)))
         refused = tuple(_written(element, CONDUIT, [kind]) for kind in kinds)
-        refused += tuple(written(one.label) for one in ends)
-        each = [self._node(element, (kind,), self._about(about, kind), on=on) for kind in kinds if len(kinds) > 1]
+        refused += tuple(map(written, (*(one.label for one in ends), *out)))
+        each = tuple(self._node(there, (kind,)) for kind in kinds if len(kinds) > 1)
         closed = self._closed(kinds) if ends else ()
-        return Row(element, kinds, tuple(replies), _reasons(about), refused, closed, each=tuple(each))
+        reasons = tuple(dict.fromkeys((*why, *_reasons(about))))
+        return Row(element, kinds, tuple(replies), reasons, refused, closed, doubtful=doubtful, each=each)
 
     def _about(self, said: Iterable[Proposal], kind: str) -> list[Proposal]:
         return [one for one in said if self._speaks_of(one, kind)]
@@ -242,14 +266,25 @@ class _Asked:
 
 def _row(one: Proposal) -> Row:
     label = written(one.label)
-    return Row(one.label.element, (one.label.kind,), (Reply(YES, label),), _reasons([one]), (label,))
+    why = _reasons([one])
+    return Row(one.label.element, (one.label.kind,), (Reply(YES, label, reasons=why),), why, (label,))
+
+
+def _suspected(row: Row) -> bool:
+    """Whether something suggests that an open node lets data out."""
+    return any(one.key == OUT and one.reasons for one in row.replies)
+
+
+def _leaks(there: Iterable[Proposal]) -> list[Proposal]:
+    """What suggests that one element lets data out; that it is an end of data does not."""
+    return [one for one in there if one.label.role == LEAK and not or_passes_on(one, there)]
 
 
 def _leak(labels: Sequence[Label], reasons: tuple[str, ...]) -> Row:
     """What may be let out; a no is of what is asked, and not of the broader kind that is suggested."""
     element, kinds = labels[0].element, tuple(one.kind for one in labels)
     each = [_leak([one], reasons) for one in labels if len(labels) > 1]
-    reply = Reply(YES, _written(element, LEAK, kinds))
+    reply = Reply(YES, _written(element, LEAK, kinds), reasons=reasons)
     return Row(element, kinds, (reply,), reasons, tuple(map(written, labels)), each=tuple(each))
 
 
@@ -259,29 +294,3 @@ def _written(element: Element, role: str, kinds: Sequence[str]) -> WrittenLabel:
 
 def _reasons(about: Iterable[Proposal]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(reason.reason for one in about for reason in one.evidence))
-
-
-def reached_kinds(analysis: Analysis) -> dict[Identity, tuple[str, ...]]:
-    """Return by element the kinds of data that get there, pseudonymised ones too.
-
-    >>> from rosprivacy.analysis.example import factory
-    >>> from rosprivacy.analysis.findings.findings import analyse
-    >>> [kinds for (_, _, name), kinds in reached_kinds(analyse(*factory())).items() if name == "/faces"]
-    [('FaceTemplate',)]
-    """
-    found: dict[Identity, set[str]] = defaultdict(set)
-    for one in analysis.carried:
-        found[one.element.identity].update((*one.categories, *one.pseudonymised))
-    return {identity: tuple(sorted(kinds)) for identity, kinds in found.items()}
-
-
-def narrowed(kind: str, reached: Iterable[str], hierarchy: Hierarchy) -> frozenset[str]:
-    """Return what of a kind gets somewhere: the narrower kinds that do, or the kind itself where broader ones do.
-
-    >>> from rosprivacy.analysis.example import factory
-    >>> hierarchy = factory()[2]
-    >>> sorted(narrowed("Biometric", ["FaceTemplate", "Voice"], hierarchy)), sorted(narrowed("Voice", [], hierarchy))
-    (['FaceTemplate'], [])
-    """
-    there = [one for one in reached if hierarchy.overlap(kind, one) is not None]
-    return frozenset(one if kind in hierarchy.ancestors[one] else kind for one in there)

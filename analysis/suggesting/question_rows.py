@@ -13,9 +13,10 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.suggesting.alike_channels import Alike
     from rosprivacy.analysis.suggesting.written import WrittenLabel
 
-BRINGS_IN, LETS_OUT, MAKES, GOES_ON, ENDS, GOES_THROUGH = "brings-in", "lets-out", "makes", "goes-on", "ends", "through"
+BRINGS_IN, LETS_OUT, MAKES, GOES_ON, GOES_THROUGH = "brings-in", "lets-out", "makes", "goes-on", "through"
 LISTED = "listed"
 YES, AT_MOST_ONE, NOTHING = "y", "123456789", "0"
+OUT, PASSES = "1", "2"  # of nodes
 MOST_ROWS = 26  # a letter for each, and no more than a person reads
 
 
@@ -30,11 +31,14 @@ class Reply(NamedTuple):
         What is then written.
     takes_away
         Whether it says that data do not go on: it is for one row alone.
+    reasons
+        Why just this is proposed: they stand in the note.
     """
 
     key: str
     label: WrittenLabel
     takes_away: bool = False
+    reasons: tuple[str, ...] = ()
 
 
 class Row(NamedTuple):
@@ -53,6 +57,9 @@ class Row(NamedTuple):
     alike
         Of an open channel: what it shares with others of which nothing of it can be said together; empty if it is for
         itself.
+    doubtful
+        Of an open node: something suggests that it lets data out or ends them, or no policy lets them go on. That it
+        only passes on is said of it where it is picked, or alone.
     each
         If it is about several kinds: a row for each of them.
     """
@@ -64,6 +71,7 @@ class Row(NamedTuple):
     refused: tuple[WrittenLabel, ...] = ()
     closes: tuple[str, ...] = ()
     alike: Alike = frozenset()
+    doubtful: bool = False
     each: tuple[Row, ...] = ()
 
     def reply(self, key: str) -> Reply | None:
@@ -81,9 +89,9 @@ class Question(NamedTuple):
     Attributes
     ----------
     about
-        ``BRINGS_IN``, ``LETS_OUT``, ``MAKES``: what a node does. ``GOES_ON``: open nodes that write something.
-        ``ENDS``: open nodes from which no policy lets data go on. ``GOES_THROUGH``: open channels. ``LISTED``: several
-        of these, of which one thing is said together that takes data away, and nothing else can be said.
+        ``BRINGS_IN``, ``LETS_OUT``, ``MAKES``: what a node does. ``GOES_ON``: open nodes, which let data out, or only
+        pass them on. ``GOES_THROUGH``: open channels. ``LISTED``: several of these, of which one thing is said together
+        that takes data away, and nothing else can be said.
     """
 
     about: str

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.suggesting.question_rows import (
     BRINGS_IN,
-    ENDS,
     GOES_ON,
     GOES_THROUGH,
     LETS_OUT,
@@ -26,10 +25,6 @@ ASKED = {
     LETS_OUT: ("Does it let such data out: keep, show or send them elsewhere?", "Which of these let such data out?"),
     MAKES: ("Does it make such data?", "Which of these make such data?"),
     GOES_ON: ("What does it do with {kinds}?", "What do these do with {kinds}?"),
-    ENDS: (
-        "{kinds} gets there, and no policy lets it go on. What happens to it?",
-        "{kinds} gets there, and no policy lets it go on. What happens to it in these?",
-    ),
     GOES_THROUGH: ("Can {kinds} go through?", "Can {kinds} go through these?"),
 }
 LISTS = {
@@ -48,6 +43,8 @@ KEYS = {  # a word, and what it means
 }
 PICK = "picks a row, or puts it back; other keys speak of the picked rows, or of all if none is picked"
 ONE_FIRST = ": pick a row of which this can be said"
+NEITHER = "neither", "none of these; it is remembered, and not asked again, and the node stays open"
+PICKED_FIRST = ": pick the rows of which this can be said"
 LISTED_FIRST = ": pick one row; or several, which are then shown and confirmed as a list"
 OUT = "takes a row out of the list, or puts it back"
 CLOSES_NONE, MAY_HANG = "of which this list closes none", "which may hang on this"
@@ -62,10 +59,10 @@ def question_lines(question: Question) -> Iterator[str]:
     for letter, row in zip(ascii_uppercase, rows, strict=False):
         at = f"{letter}  " if len(rows) > 1 else ""
         yield f"  {at}{row.element.kind} {shown(row.element.name)}{_of_row(question, row)}"
-        whole = question.about == LISTED
-        yield from (f"       {shown(reason)}" for reason in row.reasons[: None if whole else SHOWN])
-        if len(row.reasons) > SHOWN and not whole:
-            yield f"       and {len(row.reasons) - SHOWN} more reasons"
+        most = SHOWN if question.about != LISTED and not row.doubtful else len(row.reasons)
+        yield from (f"       {shown(reason)}" for reason in row.reasons[:most])
+        if len(row.reasons) > most:
+            yield f"       and {len(row.reasons) - most} more reasons"
     closes = dict.fromkeys(told for row in rows for told in row.closes)
     if closes and any(one.takes_away for row in rows for one in row.replies):
         yield f"  known findings, {CLOSES_NONE if question.about == LISTED else MAY_HANG}:"
@@ -98,10 +95,14 @@ def help_lines(question: Question, keys: Collection[str]) -> Iterator[str]:
         yield "  the number of rows that are left, and Enter: it is so of all of these"
     said = {each.key: each for row in question.rows for each in row.replies}
     for key, reply in sorted(said.items(), key=lambda one: (one[0].isdigit(), one[0])):
-        first = LISTED_FIRST if question.about == GOES_THROUGH else ONE_FIRST
+        first = LISTED_FIRST if question.about == GOES_THROUGH else ONE_FIRST if reply.takes_away else PICKED_FIRST
         if question.about != LISTED:
             yield f"  {key}  {_words(reply, question.rows)}{'' if key in keys else first}"
-    yield from (f"  {key}  {means}" for key, (_, means) in KEYS.items() if key in (*keys, "q", "?"))
+    yield from (f"  {key}  {means}" for key, (_, means) in _meanings(question).items() if key in (*keys, "q", "?"))
+
+
+def _meanings(question: Question) -> dict[str, tuple[str, str]]:
+    return KEYS | ({"n": NEITHER} if question.about == GOES_ON else {})
 
 
 def keys_line(question: Question, picked: Collection[int], keys: Collection[str]) -> str:
@@ -123,7 +124,7 @@ def keys_line(question: Question, picked: Collection[int], keys: Collection[str]
         for one in rows[0].replies
         if one.key in keys
     ]
-    more = [f"{key} {word}" for key, (word, _) in KEYS.items() if key in (*keys, "q", "?")]
+    more = [f"{key} {word}" for key, (word, _) in _meanings(question).items() if key in (*keys, "q", "?")]
     letters = ["A-Z pick some"] if len(question.rows) > 1 else []
     return f"  {of}{', '.join([*said, *more, *letters])}"
 

@@ -12,10 +12,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import rosprivacy
-from rosprivacy.analysis.suggesting.question_rows import ENDS, GOES_ON, GOES_THROUGH, LISTED, Question
+from rosprivacy.analysis.suggesting.question_rows import GOES_ON, GOES_THROUGH, LISTED, PASSES, Question
 from rosprivacy.labelling.asking import asked_now, with_answer
 from rosprivacy.labelling.closing_lists import closing
-from rosprivacy.labelling.conversation import EACH_KIND, FEWEST, QUIT, SKIP, Conversation
+from rosprivacy.labelling.conversation import EACH_KIND, FEWEST, QUIT, SKIP, Conversation, allowed
 from rosprivacy.labelling.suggesting import suggest_labels
 from rosprivacy.report.suggest.question_lines import keys_line, question_lines
 from rosprivacy.settings import Settings
@@ -223,8 +223,8 @@ def test_one_kind_may_be_let_out_and_the_other_passed_on(
     cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (robot / "l.yaml").write_text(f"{HEAD}  /here: conduit\n", "utf-8")
-    shown = ask(cli, robot, "k A1 y q", monkeypatch).stdout
-    assert "y only passes on or drops (Video and Voice), 1 lets out (Video and Voice)" in shown
+    shown = ask(cli, robot, "k A1 2 q", monkeypatch).stdout
+    assert "1 lets out (Video and Voice), 2 only passes on or drops (Video and Voice)" in shown
     text = (robot / "l.yaml").read_text("utf-8")
     assert "/middle: {conduit: [Voice], leak: [Video], " in text
 
@@ -248,12 +248,34 @@ def test_a_leak_among_nodes_is_known_before_channels_are_asked_about(robot: Path
     nodes: Nodes = NODES | {"behind": (["/e"], ["/d"]), "end": ([], ["/e"])}
     (robot / "p.xml").write_text(policy_of(nodes), "utf-8")
     (robot / "l.yaml").write_text(HEAD, "utf-8")
-    person = Scripted("y", "B", "1", "2")
+    first = Scripted()
+    conversation(robot, first).run()
+    names = [row.element.name for row in first.asked[0].rows]
+    assert sorted(names) == ["/behind", "/end", "/here", "/middle"]
+    person = Scripted(ascii_uppercase[names.index("/end")], "1", *"ABC", "2")
     conversation(robot, person).run()
-    assert [one.about for one in person.asked] == [GOES_ON, ENDS, ENDS, GOES_THROUGH]
-    assert [row.element.name for row in person.asked[0].rows] == ["/middle", "/behind"]
-    (leak,) = {one.partition(" [")[0].partition("-> ")[2] for one in person.asked[-1].rows[0].closes}
-    assert leak == person.asked[1].rows[1].element.name
+    assert [one.about for one in person.asked] == [GOES_ON, GOES_ON, GOES_THROUGH]
+    assert {one.partition(" [")[0].partition("-> ")[2] for one in person.asked[-1].rows[0].closes} == {"/end"}
+
+
+def test_what_may_be_a_leak_comes_first_and_is_called_a_conduit_only_if_it_is_picked(robot: Path) -> None:
+    """Something suggests it of the uploader, and nobody knows it of an end; the node between passes data on."""
+    nodes: Nodes = {"one": (["/in"], []), "middle": (["/a"], ["/in"]), "end": ([], ["/a"]), "uploader": ([], ["/a"])}
+    (robot / "p.xml").write_text(policy_of(nodes), "utf-8")
+    (robot / "l.yaml").write_text("labels: 1\nnodes:\n  /one: {source: [Video]}\n", "utf-8")
+    person = Scripted("2", "A", "1")
+    conversation(robot, person).run()
+    question = person.asked[0]
+    assert [(row.element.name, row.doubtful) for row in question.rows] == [
+        ("/uploader", True), ("/middle", False), ("/end", True),
+    ]  # fmt: skip
+    assert person.remarks == ["'2' is no answer here"]
+    assert {picked: PASSES in allowed(question, picked) for picked in ((), (1,), (0, 2), (0, 1, 2))} == {
+        (): False, (1,): True, (0, 2): True, (0, 1, 2): True,
+    }  # fmt: skip
+    assert PASSES in allowed(Question(GOES_ON, (question.rows[1],)))
+    text = (robot / "l.yaml").read_text("utf-8")
+    assert "/uploader: {leak: [Video], note: \"answered by Ada on 2026-11-23: 'uploader' in the name" in text
 
 
 def test_what_is_written_by_hand_meanwhile_is_read_after_later(robot: Path) -> None:

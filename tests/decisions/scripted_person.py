@@ -16,7 +16,7 @@ from rosprivacy.analysis.suggesting.question_rows import (
     YES,
     Question,
 )
-from rosprivacy.labelling.conversation import EACH_KIND, EXACTLY, FEWEST, NO, OPEN, SKIP
+from rosprivacy.labelling.conversation import EACH_KIND, EXACTLY, FEWEST, NO, OPEN, SKIP, allowed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -153,7 +153,7 @@ class ScriptedPerson:
         else:
             said = {part: rows for part, rows in parts.items() if part[0] != SKIP}
             (key, _), rows = min((said or parts).items(), key=lambda part: len(part[1]))
-        if len(rows) < len(question.rows) or (len(rows) > 1 and _takes_away(question.rows[rows[0]], key)):
+        if len(rows) < len(question.rows) or key not in allowed(question):
             yield from (ascii_uppercase[at] for at in rows)
         yield key
 

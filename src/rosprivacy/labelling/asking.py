@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.suggesting.next_questions import questions
-from rosprivacy.analysis.suggesting.question_rows import LISTED, NOTHING, YES
+from rosprivacy.analysis.suggesting.question_rows import LISTED
 from rosprivacy.analysis.suggesting.traffic import traffic
 from rosprivacy.ingest.suggestions.accepting import NewLabel, with_labels
 from rosprivacy.ingest.suggestions.refusals import refusal, with_refusals
@@ -60,14 +60,10 @@ def with_answer(file: str, question: Question, key: str, who: str, day: str, set
 
 
 def _labels(question: Question, key: str, note: str) -> Iterator[NewLabel]:
-    """The reasons are those of what was proposed: with another answer they are no reasons."""
     for row in question.rows:
         reply = row.reply(key)
         if reply:
-            said = key == YES or (
-                key == NOTHING and row.alike
-            )  # of what a person has picked, they may say the opposite
-            why = f": {'; '.join(row.reasons)}" if said and row.reasons else ""
+            why = f": {'; '.join(reply.reasons)}" if reply.reasons else ""
             yield NewLabel(*reply.label, f"{note}{why}")
 
 

@@ -20,7 +20,6 @@ from typing import TYPE_CHECKING, Protocol
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.suggesting.question_rows import (
     BRINGS_IN,
-    ENDS,
     GOES_ON,
     GOES_THROUGH,
     LETS_OUT,
@@ -28,6 +27,7 @@ from rosprivacy.analysis.suggesting.question_rows import (
     MAKES,
     MOST_ROWS,
     NOTHING,
+    PASSES,
     YES,
     Question,
 )
@@ -45,7 +45,6 @@ STAGES = {
     LETS_OUT: 0,
     MAKES: 0,
     GOES_ON: 1,
-    ENDS: 1,
     GOES_THROUGH: 2,
     LISTED: 2,
 }  # a leak of one is known
@@ -263,6 +262,8 @@ def allowed(question: Question, picked: Collection[int] = ()) -> tuple[str, ...]
     keys = Question(question.about, rows).keys()
     if question.about == GOES_THROUGH and len(picked) >= FEWEST:
         keys += tuple(one.key for one in rows[0].replies if _takes_away(rows, one.key))
+    if len(rows) > 1 and not picked and any(row.doubtful for row in rows):
+        keys = tuple(key for key in keys if key != PASSES)  # it may be a leak: look at each
     refuse = all(row.refused for row in question.rows)
     exactly = refuse and YES in keys and len(rows) < len(question.rows)
     by_kind = any(row.each for row in rows)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import LabelError
 from rosprivacy.analysis.suggesting.evidence import LEAK
-from rosprivacy.analysis.suggesting.next_questions import narrowed
+from rosprivacy.analysis.suggesting.reached_kinds import narrowed
 from rosprivacy.analysis.suggesting.written import written
 from rosprivacy.ingest.labels.label_file import OURS
 from rosprivacy.ingest.reading.bounded_file import read_utf8

@@ -17,10 +17,10 @@ from rosprivacy.analysis.suggesting.by_package_types import by_package_types
 from rosprivacy.analysis.suggesting.carried_kinds import Rules, carried_kinds
 from rosprivacy.analysis.suggesting.evidence import LEAK, SOURCE, TYPE
 from rosprivacy.analysis.suggesting.library_rules import NO_LIBRARIES
-from rosprivacy.analysis.suggesting.next_questions import reached_kinds
 from rosprivacy.analysis.suggesting.nodes import of_nodes
 from rosprivacy.analysis.suggesting.open_elements import of_channels, of_open
 from rosprivacy.analysis.suggesting.outdated_reasons import outdated_reasons
+from rosprivacy.analysis.suggesting.reached_kinds import reached_kinds
 from rosprivacy.analysis.suggesting.traffic import traffic
 from rosprivacy.analysis.suggesting.unprompted import unprompted
 from rosprivacy.analysis.suggesting.unsaid import unsaid
