@@ -64,6 +64,24 @@ def test_undo_and_redo_give_the_answers_that_were_there(session: Session) -> Non
     assert session.uncounted is not first
 
 
+def test_what_was_said_stays_whatever_becomes_of_the_list_that_it_was_said_with(session: Session) -> None:
+    kinds = ["Voice"]
+    session.label("/navigator", leak=kinds)
+    kinds[:] = ["Video"]
+    assert session.entries["nodes", "/navigator"] == {"leak": ["Voice"]}
+    session.undo()
+    assert session.label("/navigator", leak=kinds).opened, "no answer of before: another label was said then"
+
+
+def test_what_is_equal_and_not_the_same_has_an_answer_of_its_own(session: Session) -> None:
+    """To Python 1 is True; no label file may say so."""
+    disk = {"kind": "storage", "encrypted": True}
+    session.label("disk", kind="storage", non_ros=disk)
+    session.undo()
+    with pytest.raises(InputErrors, match="encrypted"):
+        session.label("disk", kind="storage", non_ros={**disk, "encrypted": 1})
+
+
 def test_a_label_replaces_what_the_file_says(session: Session) -> None:
     change = session.label("/robot_camera", conduit=True)
     assert change.closed == ("dc5715a35ba5591a",)

@@ -99,6 +99,20 @@ class Edit(NamedTuple):
         return Said(self.section, self.name, self.value)
 
 
+def copied(value: Any) -> Any:
+    """Return an entry that stays as it is, whatever becomes of the lists and maps that it was said with.
+
+    >>> kinds = ["Video"]
+    >>> entry = copied({"leak": kinds})
+    >>> kinds.append("Voice")
+    >>> entry
+    {'leak': ['Video']}
+    """
+    if isinstance(value, dict):
+        return {key: copied(one) for key, one in value.items()}
+    return [copied(one) for one in value] if isinstance(value, list) else value
+
+
 def section_of(kind: str, name: str, file: str) -> str:
     """Return the section of label files for a kind of element.
 

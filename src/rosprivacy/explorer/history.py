@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.answering import answer
+from rosprivacy.explorer.edits import copied
 from rosprivacy.explorer.effects import Change, compared
 from rosprivacy.explorer.remembering import Remembering, remembering
 from rosprivacy.explorer.watched_files import WatchedFiles, files_in
@@ -35,7 +36,7 @@ OF_QUESTION = ("ontologies", "type_limits", "decisions")  # files that the answe
 class _State(NamedTuple):
     """Where a session was: the edits that were made, and what followed from them."""
 
-    done: tuple[Edit, ...]
+    said: str  # the edits, as text: 1 is no True there, nor a list what it becomes later
     system: System
     uncounted: Result
     whole: Result | None
@@ -151,7 +152,7 @@ class History:
         """
         with self._lock:
             before = self.uncounted
-            edit = self._files.entry(edit, self._done)._replace(value=edit.value)
+            edit = self._files.entry(edit, self._done)._replace(value=copied(edit.value))
             self._go([*self._done, edit], [])
             return Change(edit, self.version, *compared(before, self.uncounted))
 
@@ -186,8 +187,8 @@ class History:
     def _go(self, done: list[Edit], undone: list[Edit]) -> None:
         """Be where these edits are made and those are taken back."""
         said = self._files.differences(self._done, done)
-        here, last = _State(tuple(self._done), self._system, self.uncounted, self._whole), self._last
-        if last is not None and last.done == tuple(done):  # as undo has it, and redo after it
+        here, last = _State(repr(self._done), self._system, self.uncounted, self._whole), self._last
+        if last is not None and last.said == repr(done):  # as undo has it, and redo after it
             _, self._system, self.uncounted, self._whole = last
         else:
             self._analyse(done)
