@@ -145,6 +145,18 @@ def test_robots_are_apart_once_their_own_files_say_different_things(small: Path)
     assert session.result.to("json") == fresh(small).to("json")
 
 
+def test_robots_are_alike_after_a_merge_where_what_was_said_of_one_was_taken_back(small: Path) -> None:
+    session = begun(small)
+    session.label("bot_1:/recorder", conduit=True)
+    session.undo()
+    session.label("one:/recorder", only_this_robot=True, leak="Video")
+    session.undo()
+    (small.parent / "shared.yaml").write_text(LABELS + "  /recorder: {leak: [Video]}\n")
+    session.merge()
+    assert session.stands_for("one") == ("one", "two")
+    assert session.result.to("json") == fresh(small).to("json")
+
+
 def test_what_somebody_else_wrote_is_not_written_over(small: Path) -> None:
     session = begun(small)
     session.label("bot_1:/recorder", conduit=True)

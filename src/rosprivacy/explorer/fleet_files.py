@@ -171,8 +171,7 @@ class FleetFiles:
                 saved.append(done)
         finally:
             if saved:
-                self.read.reader.relabel(self._with(edits)[0])  # what was written is known, and is compared
-                self.read = self.read.again()
+                self.read = self._compared_anew(edits)
         remarks = tuple(remark for one in saved for remark in one.remarks)
         names = ", ".join(one.file for one in saved)
         return Saved(names or "no label file", sum(one.lines for one in saved), "", remarks)
@@ -203,8 +202,13 @@ class FleetFiles:
                 kept = [edit for edit in kept if (edit.file, edit.section, edit.name) not in gone]
                 both += [edit._replace(file=file) for edit in found.both]
                 edited[file] = now
-        there = FleetFiles(self.read.again(), self._asked, edited, self._digests)
+        there = FleetFiles(self._compared_anew(edits), self._asked, edited, self._digests)
         return Merging(there, kept, tuple(both))
+
+    def _compared_anew(self, edits: Sequence[Edit]) -> FleetRead:
+        """The fleet with robots compared by what their files hold now; what was said or written here is known."""
+        self.read.reader.relabel(self._with(edits)[0])  # another answer, or what was taken back, may have been last
+        return self.read.again()
 
 
 def _of(file: str, edits: Sequence[Edit]) -> list[Edit]:
