@@ -6,7 +6,8 @@ ground ``code``. The rules, in full (docs/suggestions.md):
 
 1. What brings a kind in makes a source of a node that writes something. It is as sure as the rule says if a channel
    that the node writes is thought to carry that kind, or if it can have any form; ``may`` if nothing is known of its
-   channels, if the node reads such data, too, or if its name says that it simulates.
+   channels, if the node reads such data, too, or if its name says that it simulates. A window, or a server of pages,
+   agrees with nothing (``alone``): it shows data to somebody, who may do nothing there.
 2. If no channel that it writes is made for that kind by its type, the data stay in the node. What it writes of what
    they tell (a detection) comes into ROS there: the node is a source of that, as sure as the channel's type says. If it
    writes nothing of that sort, and a type only does not suggest the kind (a satellite position in a vector of three
@@ -50,6 +51,7 @@ if TYPE_CHECKING:
 ENTERED_BY = "OperatorInput"  # what says that somebody acts on a node
 ORDERED = "DeliveryOrder"  # what is entered at one place and told of at others
 SEEN = "PersonImage"  # pictures of any sort
+FOUND = "PersonDetection"  # what pictures are mostly taken for, where they are not written
 NETWORK = "network"  # where data go
 _VERBS = {PROGRAM: "starts", ADDRESS: "names"}  # what code does with a thing of such a name
 
@@ -66,7 +68,8 @@ class Spoken(NamedTuple):
         name = self.use.name
         how = next((verb for sign, verb in _VERBS.items() if name.startswith(sign)), "uses")
         what = f"{how} {name[2:] if how != 'uses' else name}"
-        return Evidence(label, CODE, sure, f"{what} ({self.use.place}): {self.rule.why}{then}", self.use.place)
+        reason = f"{what} ({self.use.place}): {self.rule.why}{then}"
+        return Evidence(label, CODE, sure, reason, self.use.place, alone=self.rule.alone)
 
 
 def library_evidence(
@@ -117,6 +120,7 @@ def library_evidence(
         )
         if written or let_out:
             yield from node.brought_in(brought, made)
+            yield from node.seen(brought)
             yield from node.entered(brought)
             yield from node.ordered(brought, [one for one in orders if one in near], orders)
             yield from node.made(made, brought)
@@ -177,6 +181,15 @@ class _Node:
                         yield one.evidence(self._label(SOURCE, kind), Confidence.MAY)
                 elif not self._is_made_of(kind, made):
                     yield one.evidence(self._label(SOURCE, kind), Confidence.MAY)
+
+    def seen(self, brought: Sequence[Spoken]) -> Iterator[Evidence]:
+        """Yield that the node may tell of persons in pictures that it takes and does not write."""
+        taken = [one for one in brought if any(self.rules.related(kind, SEEN) for kind in one.rule.kinds)][:1]
+        for one in taken if self.written else ():
+            if self._related(SEEN, self.out | self.into) or self._cannot_write(FOUND):
+                return
+            label = self._label(SOURCE, FOUND)
+            yield one.evidence(label, Confidence.MAY, "; it writes no pictures")._replace(alone=True)
 
     def entered(self, brought: Sequence[Spoken]) -> Iterator[Evidence]:
         """Yield what somebody enters, by the services that the node asks for."""

@@ -58,6 +58,8 @@ class Evidence(NamedTuple):
     family
         Of what says that a channel is made for other things than any kind: the family of its types, or the package that
         knows them. Of channels of one family it can be said in one list; empty if it is for each by itself.
+    alone
+        Whether it agrees with no other ground.
     """
 
     label: Label
@@ -66,6 +68,7 @@ class Evidence(NamedTuple):
     reason: str
     place: Place
     family: str = ""
+    alone: bool = False
 
 
 class Proposal(NamedTuple):

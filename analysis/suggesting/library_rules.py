@@ -57,6 +57,8 @@ class LibraryRule(NamedTuple):
         Whether it can have any form, a flag or a velocity, so that no message type speaks against it.
     by_itself
         Of what makes something: whether it reads ROS by itself, as a listener of transforms does.
+    alone
+        Of what brings something in: whether it agrees with nothing, as a window does that is called so.
     """
 
     kinds: tuple[str, ...]
@@ -67,6 +69,7 @@ class LibraryRule(NamedTuple):
     where: str = ""
     any_type: bool = False
     by_itself: bool = False
+    alone: bool = False
 
 
 class Names(NamedTuple):

@@ -177,6 +177,7 @@ class _Node:
     ) -> None:
         self.element, self.rules, self.written = element, rules, written
         self.out, self.brought, self.into, self.reads_unknown = out, brought, into, reads_unknown
+        self.named = of_node(element.name, rules.names.brings_in, rules.names.silent)
 
     def outputs(self) -> Iterator[Evidence]:
         """Yield for each kind that is written whether the node brings it in or makes it of what it reads."""
@@ -188,8 +189,19 @@ class _Node:
             for one in made_of:
                 yield self._derived(one, kind, surest(clues))
             if not made_of:
-                for clue in map(_doubtful, self.brought[kind]) if self._in_doubt() else self.brought[kind]:
-                    yield Evidence(self._label(SOURCE, kind), clue.ground, clue.confidence, clue.reason, clue.place)
+                yield from self._written(kind)
+
+    def _written(self, kind: str) -> Iterator[Evidence]:
+        """Yield what its channels say of a source; only its own name, or its code, says that it brings the kind in."""
+        clues = [*map(_doubtful, self.brought[kind])] if self._in_doubt() else self.brought[kind]
+        names_it = self.named is not None and any(self.rules.related(kind, one) for one in self.named.rule.kinds)
+        typed = any(clue.ground == TYPE for clue in clues)
+        for clue in clues:
+            weaker = clue.ground == TYPE and clue.confidence is Confidence.LIKELY and not names_it
+            sure = Confidence.MAY if weaker else clue.confidence
+            alone = clue.ground == NAMED and typed and not names_it
+            label = self._label(SOURCE, kind)
+            yield Evidence(label, clue.ground, sure, clue.reason, clue.place, alone=alone)
 
     def _made_again(self, kind: str, clues: Sequence[Clue], made_of: Sequence[str]) -> Iterator[Evidence]:
         """Yield what is made of what sensors say and of the same kind: where the robot is, by a scan and its wheels."""
@@ -215,8 +227,7 @@ class _Node:
 
         What it writes has to be able to carry them.
         """
-        names = self.rules.names
-        spoken = of_node(self.element.name, names.brings_in, names.silent)
+        spoken = self.named
         for kind in spoken.rule.kinds if spoken else ():
             stays = self._stays(kind) and not self._made_of(kind)
             able = spoken and (spoken.rule.any_type or not (self._cannot_write(kind) or stays))

@@ -96,9 +96,9 @@ def _confidence(label: Label, reasons: Sequence[Evidence], found: Collection[str
         sure = any(surer(one, Confidence.MAY) for one in said) and not closes_finding(label, found)
         return Confidence.LIKELY if sure else Confidence.MAY
     surest = reasons[0].confidence
-    several = len(reasons) > 1 and surest is Confidence.MAY and label.role not in (LEAK, DERIVATION)
-    if several and len({one.ground for one in reasons} & INDEPENDENT) > 1:
-        return Confidence.LIKELY
+    if surest is Confidence.MAY and len(reasons) > 1 and label.role not in (LEAK, DERIVATION):
+        agreeing = {one.ground for one in reasons if not one.alone} & INDEPENDENT
+        return Confidence.LIKELY if len(agreeing) > 1 else surest
     return surest
 
 

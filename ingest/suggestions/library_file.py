@@ -42,7 +42,7 @@ NAMED = {PYTHON: (PYTHON,), CPP: (CPP,), PROGRAMS: (PYTHON, CPP), ADDRESSES: (PY
 BEFORE = {PROGRAMS: PROGRAM, ADDRESSES: ADDRESS}  # signs before names of these keys
 ALL = (*NAMED, "confidence", "why", "source")
 KEYS = {
-    BRINGS_IN: (*ALL, "kinds", "any_type"),
+    BRINGS_IN: (*ALL, "kinds", "any_type", "alone"),
     LETS_OUT: (*ALL, "kinds", "where"),
     MAKES: (*ALL, "kinds", "to", "any_type", "by_itself"),
     SILENT: (*NAMED, "why"),
@@ -157,6 +157,7 @@ class _Reader(RuleReader):
             self._one_of(said, "where", WHERE),
             self.is_true(said, "any_type"),
             self.is_true(said, "by_itself"),
+            self.is_true(said, "alone"),
         )
 
     def _names(self, said: dict[str, Value], section: str) -> Iterator[Key]:

@@ -24,7 +24,8 @@ if TYPE_CHECKING:
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 NAMES = "rosprivacy:names"  # the shipped file
-WITH_KINDS, WITHOUT_KINDS = ("carries", "brings_in", "unprompted"), ("nothing", "lets_out")
+UNPROMPTED = "unprompted"  # the section in which a rule may have no words
+WITH_KINDS, WITHOUT_KINDS = ("carries", "brings_in", UNPROMPTED), ("nothing", "lets_out")
 LISTS = (
     "silent",
     "neutral",
@@ -178,7 +179,8 @@ class _Reader(RuleReader):
 
     def _rule(self, section: str, item: Value) -> None:
         keys = KEYS if section in WITH_KINDS else tuple(key for key in KEYS if key not in OF_KINDS)
-        said = self.rule(item, keys, ("words", "why", *(("kinds",) if section in WITH_KINDS else ())))
+        words_too = ("words",) if section != UNPROMPTED else ()
+        said = self.rule(item, keys, (*words_too, "why", *(("kinds",) if section in WITH_KINDS else ())))
         rule = NameRule(
             tuple(self.kinds(said, "kinds")),
             self._confidence(said),
@@ -188,6 +190,8 @@ class _Reader(RuleReader):
             self.is_true(said, "any_type"),
         )
         known = self.sections[section]
+        if section == UNPROMPTED and "words" not in said:
+            known[()] = rule
         for word in self.items(said, "words"):
             phrase = self._phrase(word)
             if phrase in known:

@@ -37,7 +37,7 @@ IMAGE, IDS, STRING = "sensor_msgs/msg/Image", "hri_msgs/msg/IdsList", "std_msgs/
 POSE, TWIST, CLOUD = "geometry_msgs/msg/PoseStamped", "geometry_msgs/msg/Twist", "sensor_msgs/msg/PointCloud2"
 DAY = "1767225600"
 ROBOT: Nodes = {
-    "driver": (["/a", "/b"], []),
+    "camera": (["/a", "/b"], []),
     "finder": (["/c"], ["/a"]),
     "mover": (["/d"], ["/c"]),
     "customer_bridge": ([], ["/c", "/d"]),
@@ -72,8 +72,8 @@ def rows(cli: Cli, folder: Path, *more: str) -> list[tuple[str, str, str, str]]:
 
 def test_types_tell_sources_derivations_and_what_drops_data(cli: Cli, robot: Path) -> None:
     found = rows(cli, robot)
-    assert ("/driver", "source", "Video", "likely") in found
-    assert ("/driver", "source", "PersonPointCloud", "may") in found
+    assert ("/camera", "source", "Video", "likely") in found
+    assert ("/camera", "source", "PersonPointCloud", "may") in found
     assert ("/finder", "derivation", "Video PersonIdentifier", "likely") in found
     assert ("/finder", "sanitizer", "Video", "may") in found
     assert ("/mover", "sanitizer", "PersonIdentifier", "may") in found
@@ -88,24 +88,31 @@ def test_a_node_that_reads_what_it_writes_brings_nothing_in(cli: Cli, tmp_path: 
 
 
 @pytest.mark.parametrize(
-    ("name", "type_", "expected"),
+    ("name", "type_", "expected", "node"),
     [
-        ("person_pose", POSE, ("PersonTrack", "may")),  # both say may; but programs work it out
-        ("pose", POSE, ("RobotPosition", "may")),  # programs work it out: who writes it is seldom where it comes from
-        ("x", POSE, ("RobotPosition", "may")),
-        ("person", "", ("PersonTrack", "may")),  # a name alone
-        ("depth/image", IMAGE, ("DepthImage", "likely")),
-        ("depth/image", IMAGE, ("Video", "may")),  # the name says that it is none
-        ("image", IMAGE, ("Video", "likely")),
-        ("speech", STRING, ("SpeechTranscript", "may")),  # a type that can carry anything agrees with nothing
+        ("person_pose", POSE, ("PersonTrack", "may"), "n"),  # both say may; but programs work it out
+        (
+            "pose",
+            POSE,
+            ("RobotPosition", "may"),
+            "n",
+        ),  # programs work it out: who writes it is seldom where it comes from
+        ("x", POSE, ("RobotPosition", "may"), "n"),
+        ("person", "", ("PersonTrack", "may"), "n"),  # a name alone
+        ("depth/image", IMAGE, ("DepthImage", "may"), "n"),  # both speak of the channel, and not of who writes it
+        ("image", IMAGE, ("Video", "may"), "n"),
+        ("speech", STRING, ("SpeechTranscript", "may"), "n"),  # a type that can carry anything agrees with nothing
+        ("image", IMAGE, ("Video", "likely"), "camera"),
+        ("x", IMAGE, ("Video", "likely"), "camera"),
+        ("image", IMAGE, ("Video", "may"), "gps"),  # it speaks of something else
     ],
 )
-def test_a_name_and_a_type_that_agree_are_surer(
-    cli: Cli, tmp_path: Path, name: str, type_: str, expected: tuple[str, str]
+def test_a_type_makes_a_likely_source_only_of_a_node_whose_own_name_agrees(
+    cli: Cli, tmp_path: Path, name: str, type_: str, expected: tuple[str, str], node: str
 ) -> None:
-    (tmp_path / "p.xml").write_text(policy_of({"n": ([f"/{name}"], [])}), "utf-8")
+    (tmp_path / "p.xml").write_text(policy_of({node: ([f"/{name}"], [])}), "utf-8")
     (tmp_path / "l.yaml").write_text(typed(**{name: type_}) if type_ else "labels: 1\n", "utf-8")
-    assert ("/n", "source", *expected) in rows(cli, tmp_path)
+    assert (f"/{node}", "source", *expected) in rows(cli, tmp_path)
 
 
 @pytest.mark.parametrize(
@@ -121,10 +128,10 @@ def test_a_name_and_a_type_that_agree_are_surer(
 def test_who_reads_what_nobody_knows_is_no_likely_source(
     cli: Cli, tmp_path: Path, read: str, type_: str, sure: str
 ) -> None:
-    (tmp_path / "p.xml").write_text(policy_of({"n": (["/image"], [f"/{read}"])}), "utf-8")
+    (tmp_path / "p.xml").write_text(policy_of({"camera": (["/image"], [f"/{read}"])}), "utf-8")
     types = {"image": IMAGE} | ({read: type_} if type_ else {})
     (tmp_path / "l.yaml").write_text(typed(**types), "utf-8")
-    assert ("/n", "source", "Video", sure) in rows(cli, tmp_path)
+    assert ("/camera", "source", "Video", sure) in rows(cli, tmp_path)
 
 
 def test_who_asks_for_a_place_is_no_source_of_it(cli: Cli, tmp_path: Path) -> None:
@@ -133,7 +140,8 @@ def test_who_asks_for_a_place_is_no_source_of_it(cli: Cli, tmp_path: Path) -> No
     (tmp_path / "p.xml").write_text(f'<policy version="0.2.0"><enclaves>{enclave}</enclaves></policy>', "utf-8")
     labels = "labels: 1\nactions: {/navigate_to_pose: {types: [nav2_msgs/action/NavigateToPose]}}\n"
     (tmp_path / "l.yaml").write_text(labels, "utf-8")
-    assert [row for row in rows(cli, tmp_path) if row[1] == "source"] == []
+    sources = [row for row in rows(cli, tmp_path) if row[1] == "source"]
+    assert sources == [("/n", "source", "OperatorInput", "may")]  # somebody may have told it where to go
 
 
 @pytest.mark.parametrize(
@@ -145,13 +153,13 @@ def test_who_asks_for_a_place_is_no_source_of_it(cli: Cli, tmp_path: Path) -> No
         ("person_detector", "image", IMAGE, ["Video may"]),  # of what others film
         ("camera", "image_ground_truth", IMAGE, ["Video may"]),  # only who simulates knows it
         ("mic_listener", "voice_text", STRING, ["SpeechTranscript may"]),  # the sound stays in it
-        ("n", "cmd_audio", "a/msg/Notes", []),  # it is to play
+        ("n", "cmd_audio", "a/msg/Notes", ["OperatorInput may"]),  # it is to play: no Voice
         ("n", "debug_image", IMAGE, ["Video may"]),
         ("n", "map", "nav_msgs/msg/OccupancyGrid", ["HomeMap may"]),  # worked out of other data
         ("n", "odom", "nav_msgs/msg/Odometry", ["RobotPosition may"]),
         ("n", "goal_pose", POSE, []),  # where it shall go
         ("n", "pose", POSE, ["RobotPosition may"]),
-        ("n", "goal_markers", "visualization_msgs/msg/MarkerArray", []),
+        ("n", "goal_markers", "visualization_msgs/msg/MarkerArray", ["OperatorInput may"]),  # no PersonTrack
         ("n", "people_markers", "visualization_msgs/msg/MarkerArray", ["PersonTrack may"]),
         ("n", "imu", "sensor_msgs/msg/Imu", []),  # of the machine
         ("keyboard_teleop", "cmd_vel", TWIST, ["OperatorInput may"]),  # what an operator does can have any type
@@ -216,17 +224,17 @@ def test_a_type_that_carries_nothing_outweighs_a_name(cli: Cli, tmp_path: Path, 
 
 
 def test_open_elements_come_first_with_their_neighbours(cli: Cli, robot: Path) -> None:
-    (robot / "l.yaml").write_text(typed(b=CLOUD) + "nodes:\n  /driver: {source: [Video]}\n", "utf-8")
+    (robot / "l.yaml").write_text(typed(b=CLOUD) + "nodes:\n  /camera: {source: [Video]}\n", "utf-8")
     text = cli("suggest", "p.xml", "-l", "l.yaml", cwd=robot).stdout
     first = text.index("Open elements, in review order:")
     assert first < text.index("/finder") < text.index("/mover")
     assert text.index("node    /finder") < text.index("topic   /b")
-    assert "neighbour of /driver, which Video reaches" in text
+    assert "neighbour of /camera, which Video reaches" in text
     assert "it gets Video, which can go on to /c" in text
     said = rows(cli, robot)
     assert ("/finder", "conduit", "Video", "may") in said
     assert ("/a", "sensitive", "Video", "may") in said
-    assert not [row for row in said if row[0] == "/driver" and row[2] == "Video"]  # a person has spoken of it
+    assert not [row for row in said if row[0] == "/camera" and row[2] == "Video"]  # a person has spoken of it
 
 
 def test_where_data_end_it_is_asked_what_a_conduit_there_means(cli: Cli, tmp_path: Path) -> None:
@@ -260,34 +268,34 @@ def test_of_a_leak_and_a_conduit_neither_is_accepted_before_a_person_says_which(
 
 
 def test_of_what_a_camera_could_be_a_person_says_which(cli: Cli, robot: Path) -> None:
-    lines = [suggestion("nodes", "/driver", {"source": [kind]}) for kind in ("DepthImage", "ThermalImage")]
+    lines = [suggestion("nodes", "/camera", {"source": [kind]}) for kind in ("DepthImage", "ThermalImage")]
     (robot / "l.yaml").write_text("labels: 1\nauthor: Ada\n" + "".join(lines), "utf-8")
-    refused = cli("labels", "--accept", "/driver", "-l", "l.yaml", cwd=robot)
+    refused = cli("labels", "--accept", "/camera", "-l", "l.yaml", cwd=robot)
     assert (refused.returncode, refused.stderr) == (
         2,
         (
-            "l.yaml: of /driver alternatives are suggested: source DepthImage (line 3), source ThermalImage (line 4); "
-            "say which, such as --accept /driver=DepthImage, or remove the lines that are wrong\n"
+            "l.yaml: of /camera alternatives are suggested: source DepthImage (line 3), source ThermalImage (line 4); "
+            "say which, such as --accept /camera=DepthImage, or remove the lines that are wrong\n"
         ),
     )
-    unknown = cli("labels", "--accept", "/driver=Voice", "-l", "l.yaml", cwd=robot)
-    assert (unknown.returncode, unknown.stderr.partition(";")[0]) == (2, "l.yaml: 'Voice' is not suggested of /driver")
-    assert cli("labels", "--accept", "/driver=ThermalImage", "-l", "l.yaml", cwd=robot).returncode == 0
+    unknown = cli("labels", "--accept", "/camera=Voice", "-l", "l.yaml", cwd=robot)
+    assert (unknown.returncode, unknown.stderr.partition(";")[0]) == (2, "l.yaml: 'Voice' is not suggested of /camera")
+    assert cli("labels", "--accept", "/camera=ThermalImage", "-l", "l.yaml", cwd=robot).returncode == 0
     text = (robot / "l.yaml").read_text("utf-8")
     assert "source: [ThermalImage]" in text
     assert text.endswith(lines[0])
-    assert cli("labels", "--accept", "/driver=*", "-l", "l.yaml", cwd=robot).returncode == 0
+    assert cli("labels", "--accept", "/camera=*", "-l", "l.yaml", cwd=robot).returncode == 0
     assert "source: [ThermalImage, DepthImage]" in (robot / "l.yaml").read_text("utf-8")
 
 
 def test_of_an_open_node_that_lets_data_out_no_conduit_is_suggested(cli: Cli, robot: Path) -> None:
     """A conduit of a narrower kind would outrank the leak (rule S7)."""
-    (robot / "l.yaml").write_text("labels: 1\nnodes:\n  /driver: {source: [Video]}\n", "utf-8")
+    (robot / "l.yaml").write_text("labels: 1\nnodes:\n  /camera: {source: [Video]}\n", "utf-8")
     assert [row[1:] for row in rows(cli, robot) if row[0] == "/customer_bridge"] == [("leak", "PersonalData", "may")]
 
 
 def test_of_a_node_that_lets_another_kind_out_a_leak_is_suggested(cli: Cli, robot: Path) -> None:
-    said = "labels: 1\nnodes:\n  /driver: {source: [Video]}\n  /mover: {leak: [Voice]}\n"
+    said = "labels: 1\nnodes:\n  /camera: {source: [Video]}\n  /mover: {leak: [Voice]}\n"
     (robot / "l.yaml").write_text(said + "  /customer_bridge: {leak: [Voice]}\n", "utf-8")
     found = rows(cli, robot)
     assert [row[1:] for row in found if row[0] == "/mover"] == [("leak", "Video", "may")]
@@ -297,12 +305,12 @@ def test_of_a_node_that_lets_another_kind_out_a_leak_is_suggested(cli: Cli, robo
 
 
 def test_what_a_channel_is_not_made_for_is_a_never_and_never_sure(cli: Cli, robot: Path) -> None:
-    (robot / "l.yaml").write_text("labels: 1\nnodes:\n  /driver: {source: [Video]}\n", "utf-8")
+    (robot / "l.yaml").write_text("labels: 1\nnodes:\n  /camera: {source: [Video]}\n", "utf-8")
     (robot / "types.yaml").write_text(f"types: 1\ntopics:\n  /c: [{{type: {IDS}}}]\n", "utf-8")
     found = rows(cli, robot, "--types", "types.yaml")
     assert ("/c", "never", "Video", "may") in found
     assert ("/c", "sensitive", "Video", "may") not in found  # one answer to a question
-    (robot / "l.yaml").write_text("labels: 1\nnodes:\n  /driver: {source: [Video]}\ntopics: {/c: mundane}\n", "utf-8")
+    (robot / "l.yaml").write_text("labels: 1\nnodes:\n  /camera: {source: [Video]}\ntopics: {/c: mundane}\n", "utf-8")
     assert not [row for row in rows(cli, robot, "--types", "types.yaml") if row[0] == "/c"]
 
 
@@ -318,7 +326,7 @@ def test_users_rules_and_kinds_take_part(cli: Cli, robot: Path) -> None:
         "name_rules: 1\ncarries:\n  - {words: [a], kinds: [Crate], confidence: likely, why: ours}\n", "utf-8"
     )
     found = rows(cli, robot, "--rules", "own.yaml", "--ontology", "own.ttl")
-    assert ("/driver", "source", "Crate", "likely") in found
+    assert ("/camera", "source", "Crate", "likely") in found
     wrong = cli("suggest", "p.xml", "--rules", "own.yaml", cwd=robot)
     assert (wrong.returncode, wrong.stderr.partition(";")[0]) == (2, "own.yaml:3: unknown category 'Crate'")
 
@@ -400,7 +408,7 @@ def test_a_limit_whose_type_is_another_one_now_is_told(cli: Cli, robot: Path, no
     """Somebody accepted it from a list, since nothing of it can be in identifiers."""
     note = "answered by Ada on 2026-01-01 in a list of 2: type hri_msgs/msg/IdsList of /c is not made for Video"
     (robot / "l.yaml").write_text(
-        "labels: 1\nnodes:\n  /driver: {source: [Video]}\ntopics:\n"
+        "labels: 1\nnodes:\n  /camera: {source: [Video]}\ntopics:\n"
         f'  /c: {{types: [{now}], never: [Video], note: "{note}"}}\n',
         "utf-8",
     )
@@ -417,12 +425,12 @@ def test_code_tells_types_with_its_line(cli: Cli, robot: Path) -> None:
     (robot / "l.yaml").write_text("labels: 1\n", "utf-8")
     (robot / "driver.py").write_text(
         "from rclpy.node import Node\nfrom sensor_msgs.msg import Image\n\n\nclass Driver(Node):\n"
-        "    def __init__(self):\n        super().__init__('driver')\n"
+        "    def __init__(self):\n        super().__init__('camera')\n"
         "        self.out = self.create_publisher(Image, '/a', 1)\n",
         "utf-8",
     )
-    assert not [row for row in rows(cli, robot) if row[:3] == ("/driver", "source", "Video")]
-    assert ("/driver", "source", "Video", "likely") in rows(cli, robot, "--source", "driver.py")
+    assert ("/camera", "source", "Video", "may") in rows(cli, robot)  # by its name
+    assert ("/camera", "source", "Video", "likely") in rows(cli, robot, "--source", "driver.py")
     text = cli("suggest", "p.xml", "--source", "driver.py", cwd=robot).stdout
     assert "type sensor_msgs/msg/Image of /a (driver.py:8): a picture of" in text
     answer = cli("analyze", "p.xml", "-l", "l.yaml", cwd=robot).stdout
@@ -592,23 +600,23 @@ def test_suggestions_are_comments_that_change_no_answer(cli: Cli, robot: Path) -
 def test_one_element_is_accepted_with_who_when_and_why(cli: Cli, robot: Path) -> None:
     cli("suggest", "p.xml", "-l", "l.yaml", "--into", "l.yaml", cwd=robot)
     text = (robot / "l.yaml").read_text("utf-8")
-    done = cli("labels", "--accept", "/driver", "--by", "Ada", "-l", "l.yaml", cwd=robot, SOURCE_DATE_EPOCH=DAY)
+    done = cli("labels", "--accept", "/camera", "--by", "Ada", "-l", "l.yaml", cwd=robot, SOURCE_DATE_EPOCH=DAY)
     assert (done.returncode, done.stderr) == (0, "l.yaml: 1 suggestion accepted\n")
     new = (robot / "l.yaml").read_text("utf-8")
     labels = text.partition("# suggest")[0]
-    (line,) = [line for line in new.removeprefix(labels).splitlines() if line.startswith("  /driver:")]
-    assert line.startswith("  /driver: {")
+    (line,) = [line for line in new.removeprefix(labels).splitlines() if line.startswith("  /camera:")]
+    assert line.startswith("  /camera: {")
     assert "source: [Video]" in line
     assert "accepted by Ada on 2026-01-01 (likely): type sensor_msgs/msg/Image of /a" in line
     assert [one for one in new.splitlines() if one.startswith("# suggest")] == [
         one
         for one in text.splitlines()
-        if one.startswith("# suggest") and '{"/driver": {"source": ["Video"]' not in one
+        if one.startswith("# suggest") and '{"/camera": {"source": ["Video"]' not in one
     ]
     assert new.startswith(labels)
     roles = rosprivacy.analyze(str(robot / "p.xml"), str(robot / "l.yaml")).document()["roles"]
     assert [(one["element"]["name"], *one["roles"], one["category"]) for one in roles] == [
-        ("/driver", "source", "Video")
+        ("/camera", "source", "Video")
     ]
 
 
@@ -646,7 +654,7 @@ def test_a_comment_that_is_older_than_a_finding_does_not_close_it(cli: Cli, robo
     told = cli("labels", "--accept", "/finder", "p.xml", "-l", "l.yaml", cwd=robot)
     assert re.match(
         r"l.yaml:9: /finder would take data away of which a finding is known "
-        r"\(Video: /driver -> /customer_bridge \[[0-9a-f]{16}\]\); write it by hand if it is so\n",
+        r"\(Video: /camera -> /customer_bridge \[[0-9a-f]{16}\]\); write it by hand if it is so\n",
         told.stderr,
     )
     assert (robot / "l.yaml").read_text("utf-8") == LEAKS + old
@@ -873,7 +881,7 @@ def test_a_hostile_name_gets_into_neither_the_file_nor_the_terminal(cli: Cli, tm
 LEAKS = """labels: 1
 author: Ada
 nodes:
-  /driver: {source: [Video]}
+  /camera: {source: [Video]}
   /customer*: {leak: [Video]}
 topics:
   /a: sensitive
@@ -931,7 +939,7 @@ def test_the_file_that_is_written_into_is_read_without_being_named(cli: Cli, rob
     cli("suggest", "p.xml", "-l", "l.yaml", "--into", "l.yaml", cwd=robot)
     assert (robot / "l.yaml").read_text("utf-8") == alone
     assert '"/finder"' in alone
-    assert '{"/driver": {"source": ["Video"]}}' not in alone
+    assert '{"/camera": {"source": ["Video"]}}' not in alone
 
 
 def test_the_last_line_says_what_can_be_accepted(cli: Cli, robot: Path) -> None:
@@ -1004,7 +1012,7 @@ def test_accepting_every_suggestion_hides_no_planted_leak(tmp_path: Path) -> Non
     (tmp_path / "p.xml").write_text(policy_of(ROBOT), "utf-8")
     (tmp_path / "l.yaml").write_text(
         typed(a=IMAGE, b=CLOUD, c=IDS, d=TWIST)
-        + "nodes:\n  /driver: {source: [Video]}\n  /customer_bridge: {leak: [Video]}\n",
+        + "nodes:\n  /camera: {source: [Video]}\n  /customer_bridge: {leak: [Video]}\n",
         "utf-8",
     )
     policy = str(tmp_path / "p.xml")
@@ -1023,7 +1031,7 @@ def test_a_hostile_model_hides_no_planted_leak(tmp_path: Path, roles: Sequence[s
     """Whatever it says of everything, with a quote, and whatever of that a person accepts."""
     (tmp_path / "p.xml").write_text(policy_of(ROBOT), "utf-8")
     file = tmp_path / "l.yaml"
-    file.write_text("labels: 1\nnodes:\n  /driver: {source: [Video]}\n  /customer_bridge: {leak: [Video]}\n", "utf-8")
+    file.write_text("labels: 1\nnodes:\n  /camera: {source: [Video]}\n  /customer_bridge: {leak: [Video]}\n", "utf-8")
     accept_everything(str(tmp_path / "p.xml"), file, roles)
     assert ("language model" in file.read_text("utf-8")) == (roles != HIDES)
     assert rosprivacy.analyze(str(tmp_path / "p.xml"), str(file), type_limits=None).analysis.verdict == "leak"

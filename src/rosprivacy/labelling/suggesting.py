@@ -22,7 +22,7 @@ from rosprivacy.analysis.suggesting.open_elements import of_channels, of_open
 from rosprivacy.analysis.suggesting.outdated_reasons import outdated_reasons
 from rosprivacy.analysis.suggesting.reached_kinds import reached_kinds
 from rosprivacy.analysis.suggesting.traffic import traffic
-from rosprivacy.analysis.suggesting.unprompted import unprompted
+from rosprivacy.analysis.suggesting.unprompted import of_the_rest, unprompted
 from rosprivacy.analysis.suggesting.unsaid import unsaid
 from rosprivacy.analysis.suggesting.weighing import closes_finding, proposals
 from rosprivacy.analysis.text import counted
@@ -316,11 +316,16 @@ def lasting_evidence(
 ) -> Iterator[Evidence]:
     """Yield what is found whatever a person has said: of what is bound to the graph, only types are looked at."""
     clues = carried_kinds(graph, bound, rules)
-    yield from of_nodes(graph, bound, told, clues, rules)
-    yield from unprompted(graph, told, rules.names)
+    found = [
+        *of_nodes(graph, bound, told, clues, rules),
+        *unprompted(graph, told, rules.names),
+        *package_evidence(graph, bound.types, packages),
+        *library_evidence(graph, bound, told, clues, uses, rules, libraries),
+    ]
+    yield from found
+    sources = {one.label.element for one in found if one.label.role == SOURCE}
+    yield from of_the_rest(graph, bound, told, rules, sources)
     yield from of_channels(graph, clues)
-    yield from package_evidence(graph, bound.types, packages)
-    yield from library_evidence(graph, bound, told, clues, uses, rules, libraries)
 
 
 def in_review_order(asked: Sequence[Proposal], places: Mapping[Identity, int]) -> tuple[Proposal, ...]:

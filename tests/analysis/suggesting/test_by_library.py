@@ -52,7 +52,7 @@ CAMERA, MICROPHONE, POSE = "cv2.VideoCapture(0)", "sounddevice.InputStream()", "
         # 1. What it brings in, it is a source of: as the rule says, or may.
         ("Image", "", [CAMERA], {"source Video likely"}),
         ("Image", "Image", [CAMERA], {"source Video may"}),
-        ("Unknown", "", [CAMERA], {"source Video may"}),
+        ("Unknown", "", [CAMERA], {"source Video may", "source PersonDetection may"}),
         ("", "Bool", [CAMERA], set()),
         ("Twist", "", ["readchar.readkey()"], {"source OperatorInput likely"}),
         ("Twist", "", ["input('?')"], {"source OperatorInput may"}),  # often a question when it starts
@@ -60,6 +60,7 @@ CAMERA, MICROPHONE, POSE = "cv2.VideoCapture(0)", "sounddevice.InputStream()", "
         ("Found", "", [CAMERA], {"source PersonDetection may", "source HouseholdObject may"}),
         ("Skeleton2D", "", [CAMERA], {"source BodyPose likely"}),  # as its type says
         ("Twist", "", [CAMERA], set()),
+        ("String", "", [CAMERA], {"source Video may", "source PersonDetection may"}),  # it may tell of persons there
         ("Vector3", "", ["pynmea2.parse(x)"], {"source GnssPosition may"}),  # three numbers, of any sort
         # 3. What makes one kind of another.
         ("Skeleton2D", "Image", [POSE], {"derivation Video BodyPose may"}),  # of pictures it finds what it was taught
@@ -87,6 +88,8 @@ CAMERA, MICROPHONE, POSE = "cv2.VideoCapture(0)", "sounddevice.InputStream()", "
          {"source Video likely", "source OperatorInput may", "leak PersonalData likely"}),
         ("", "Image", ["websocket.create_connection('x')"], {"leak PersonalData may"}),  # it may only listen
         ("", "Image", ["websocket.create_connection('x').send(y)"], {"leak PersonalData may"}),  # who knows what
+        ("", "Image", ["websockets.serve(x, 'y', 1)"],
+         {"source OperatorInput may", "leak PersonalData may"}),  # it may only get something
         ("", "Image", ["csv.writer(x)"], {"leak PersonalData may"}),  # who knows which numbers
         ("", "Image", ["sounddevice.play(x)"], {"leak PersonalData may"}),  # an alarm, or what somebody said
         ("", "Image", ["pyttsx3.init()"], {"leak PersonalData likely"}),
@@ -100,6 +103,23 @@ CAMERA, MICROPHONE, POSE = "cv2.VideoCapture(0)", "sounddevice.InputStream()", "
 )  # fmt: skip
 def test_the_rules(writes: str, reads: str, calls: list[str], told: set[str]) -> None:
     assert said(writes, reads, *calls) == told
+
+
+@pytest.mark.parametrize(
+    ("node", "call", "sure"),
+    [
+        ("gui", "tkinter.Tk()", "may"),  # a window, and a node that is called so, say one thing
+        ("web", "flask.Flask('x')", "may"),
+        ("teleop", "input('?')", "likely"),
+    ],
+)
+def test_a_window_or_a_page_agrees_with_no_name(node: str, call: str, sure: str) -> None:
+    """1. Somebody who looks at it may do nothing there."""
+    said("Twist", "", call)
+    Path("n.py").write_text(Path("n.py").read_text("utf-8").replace("'n'", f"'{node}'"), "utf-8")
+    Path("p.xml").write_text(policy(f"/{node}>/w", "/m</w"), "utf-8")
+    found = suggest_labels(("p.xml",), (), Settings(), sources=("n.py",)).proposals
+    assert [str(one.confidence) for one in found if one.label.role == "source"] == [sure]
 
 
 def test_what_reads_ros_by_itself_makes_no_source() -> None:
@@ -181,7 +201,7 @@ def entered(service: str, call: str, server: str = "m") -> set[str]:
         ("order_srv", "input('?')", {"OperatorInput", "DeliveryOrder"}),
         ("llm/chat", "tkinter.Entry()", {"OperatorInput", "ConversationWithModel"}),
         ("save_map", "input('?')", {"OperatorInput"}),  # nobody enters a map
-        ("order_srv", "os.getcwd()", set()),  # nobody acts on it
+        ("order_srv", "os.getcwd()", {"OperatorInput"}),  # its code does not say that anybody acts on it
     ],
 )
 def test_what_somebody_enters_goes_into_a_request(service: str, call: str, kinds: set[str]) -> None:
@@ -213,7 +233,7 @@ def test_an_order_is_entered_at_one_place_and_told_of_at_others(
 
 
 @pytest.mark.parametrize(
-    ("call", "kinds"), [("input('?')", {"OperatorInput", "DeliveryOrder"}), ("os.getcwd()", set())]
+    ("call", "kinds"), [("input('?')", {"OperatorInput", "DeliveryOrder"}), ("os.getcwd()", {"OperatorInput"})]
 )
 def test_who_asks_for_a_service_where_a_name_speaks_of_orders_may_order(call: str, kinds: set[str]) -> None:
     """6. ``/butler`` is asked to bring what was ordered; the name of the service need not say so."""
