@@ -278,6 +278,19 @@ def test_what_may_be_a_leak_comes_first_and_is_called_a_conduit_only_if_it_is_pi
     assert "/uploader: {leak: [Video], note: \"answered by Ada on 2026-11-23: 'uploader' in the name" in text
 
 
+def test_what_comes_later_is_not_asked_again_when_fewer_kinds_get_there(robot: Path) -> None:
+    class Later(Scripted):
+        def key(self, question: Question, picked: frozenset[int]) -> str:
+            key = super().key(question, picked)
+            if key == SKIP:
+                (robot / "l.yaml").write_text(REVIEWED.replace("  /two: {source: [Voice]}\n", ""), "utf-8")
+            return key
+
+    person = Later(SKIP)
+    assert conversation(robot, person).run()
+    assert len(person.asked) == 1
+
+
 def test_what_is_written_by_hand_meanwhile_is_read_after_later(robot: Path) -> None:
     class Writing(Scripted):
         def key(self, question: Question, picked: frozenset[int]) -> str:

@@ -12,7 +12,7 @@ and ``o`` takes out all; what is taken out is asked as other channels are.
 
 from __future__ import annotations
 
-from collections import deque
+from collections import defaultdict, deque
 from dataclasses import dataclass, field
 from string import ascii_uppercase
 from typing import TYPE_CHECKING, Protocol
@@ -88,7 +88,7 @@ class Conversation:
     person: Person
     closing: Callable[[Sequence[Row]], Sequence[Row]] = lambda rows: rows
     answers: int = 0
-    _later: set[Said] = field(default_factory=set)
+    _later: dict[tuple[str, Identity], set[str]] = field(default_factory=lambda: defaultdict(set))
     lists: list[int] = field(default_factory=list)
     _alone: set[Said] = field(default_factory=set)
     _taken_out: set[Said] = field(default_factory=set)
@@ -134,7 +134,7 @@ class Conversation:
             self._kind_by_kind.update((question.about, row.element.identity) for row in rows)
             return True
         if key == SKIP:
-            self._later.update(_said(question, row) for row in rows)
+            self._postponed(question.about, rows)
             return True  # the person may have written a label by hand
         if key == EXACTLY:
             self._kept(Question(question.about, tuple(row for row in question.rows if row not in rows)), NO)
@@ -143,10 +143,18 @@ class Conversation:
             return True
         return self._kept(Question(question.about, tuple(rows)), key)
 
+    def _postponed(self, about: str, rows: Iterable[Row]) -> None:
+        for row in rows:
+            self._later[about, row.element.identity].update(row.kinds)
+
+    def _is_later(self, question: Question, row: Row) -> bool:
+        """Whether the person wants to answer later; also if by now fewer kinds of data get there."""
+        return self._later[question.about, row.element.identity].issuperset(row.kinds)
+
     def _left(self) -> Iterator[Question]:
         """What is asked now, without what the person wants to answer later; what was opened stands alone."""
         for question in self._asked():
-            rows = [row for row in question.rows if _said(question, row) not in self._later]
+            rows = [row for row in question.rows if not self._is_later(question, row)]
             listed = [row for row in rows if row.alike and _said(question, row) not in self._taken_out | self._alone]
             lists = [part for part in _by_likeness(listed) if len(part) >= FEWEST]
             in_lists = [row for part in lists for row in part]
@@ -195,7 +203,7 @@ class Conversation:
             if key == OPEN:
                 out = set(range(len(question.rows)))
             elif key == SKIP:
-                self._later.update(map(_of_channel, rows))
+                self._postponed(GOES_THROUGH, rows)
             elif key == str(len(rows)) and len(rows) >= FEWEST:
                 self._confirmed(Question(LISTED, rows), by_hand=by_hand)
             else:
@@ -215,11 +223,11 @@ class Conversation:
         if not same:
             self.person.told(CHANGED)
             return
-        remarks = self.keep(question, _key_of(question))
+        remarks = self.keep(question, question.rows[0].replies[0].key)
         for remark in remarks:
             self.person.told(remark)
         if remarks:
-            self._later.update(map(_of_channel, question.rows))
+            self._postponed(GOES_THROUGH, question.rows)
         self.answers += 1
         self.lists.append(len(question.rows))
 
@@ -245,7 +253,7 @@ class Conversation:
         for remark in remarks:
             self.person.told(remark)
         if remarks:
-            self._later.update(_said(question, row) for row in question.rows)
+            self._postponed(question.about, question.rows)
         self.answers += 1
         if key == NO:
             return False
@@ -275,11 +283,6 @@ def _takes_away(rows: Sequence[Row], key: str) -> bool:
     """Whether a key takes data away of each of some rows."""
     replies = [row.reply(key) for row in rows]
     return all(reply and reply.takes_away for reply in replies)
-
-
-def _key_of(question: Question) -> str:
-    """What is said of the rows of a list."""
-    return question.rows[0].replies[0].key
 
 
 def _by_likeness(rows: Iterable[Row]) -> tuple[tuple[Row, ...], ...]:
