@@ -64,6 +64,8 @@ class Decision:
         Name or glob: of the robot of the leak, or of the source where the leak is on none.
     from_robot
         Name or glob: of the robot of the source.
+    robots, from_robots
+        The same as lists of full names, one of which it is: these robots and no others, whoever joins later.
     kind
         Of findings.
     pseudonymised
@@ -84,6 +86,8 @@ class Decision:
     leak: str = ""
     robot: str = ""
     from_robot: str = ""
+    robots: tuple[str, ...] = ()
+    from_robots: tuple[str, ...] = ()
     kind: str = ""
     pseudonymised: bool | None = None
     reason: str = ""
@@ -99,18 +103,25 @@ class Decision:
 
         One that names a robot says nothing of what comes from another robot, unless it names that too.
         """
-        alone = not case.robots[1] and _covers(self.robot, case.source.robot)
+        alone = not case.robots[1] and self._is_on(case.source.robot)
+        names_robots, names_sources = self.robot or self.robots, self.from_robot or self.from_robots
         return (
             self._names(case, hierarchy)
-            and (alone or _covers(self.robot, case.leak.robot))
-            and _covers(self.from_robot, case.source.robot)
-            and not (self.robot and case.across and not self.from_robot)
+            and (alone or self._is_on(case.leak.robot))
+            and self._is_from(case.source.robot)
+            and not (names_robots and case.across and not names_sources)
             and (self.made_about is None or self.made_about.knew(case.robots))
         )
 
+    def _is_on(self, robot: str) -> bool:
+        return _covers(self.robot, robot) and (not self.robots or robot in self.robots)
+
+    def _is_from(self, robot: str) -> bool:
+        return _covers(self.from_robot, robot) and (not self.from_robots or robot in self.from_robots)
+
     def was_about(self, case: Case, hierarchy: Hierarchy) -> bool:
         """Whether it was about a case when one of two robots was enough, and is no longer."""
-        either = any(_covers(self.robot, element.robot) for element in (case.source, case.leak))
+        either = bool(self.robot) and any(_covers(self.robot, end.robot) for end in (case.source, case.leak))
         return self._names(case, hierarchy) and either and not self.from_robot and not self.about(case, hierarchy)
 
     def _names(self, case: Case, hierarchy: Hierarchy) -> bool:
@@ -127,10 +138,12 @@ class Decision:
     def rank(self, case: Case, hierarchy: Hierarchy) -> tuple[int, ...]:
         """How closely it speaks of a case; the higher counts."""
         names = [name for name in (self.source, self.leak, self.robot, self.from_robot) if name]
-        exact = sum(not is_glob(name) for name in names)
+        listed = [names for names in (self.robots, self.from_robots) if names]
+        exact = sum(not is_glob(name) for name in names) + len(listed)
         spelt = sum(sum(char not in "*?[]" for char in name) for name in names if is_glob(name))
         distance = hierarchy.distance(case.category, self.category) if self.category else FARTHEST
-        return (bool(self.id), exact, spelt, -(distance or 0), self.pseudonymised is not None, bool(self.kind))
+        form, kind = self.pseudonymised is not None, bool(self.kind)
+        return (bool(self.id), exact, spelt, -(distance or 0), form, kind, -sum(map(len, listed)))
 
 
 def _covers(written: str, name: str) -> bool:
@@ -190,8 +203,9 @@ class Decisions:
     def told_apart(self, robot: str) -> tuple[bool, ...]:
         """Return which entries that name robots mean this one: robots are alike only if all do so alike."""
         names = (name for entry in self.entries for name in (entry.robot, entry.from_robot) if name)
-        there = (entry.made_about.robots for entry in self.entries if entry.made_about)
-        return (*(_covers(name, robot) for name in names), *(robot in robots for robots in there if robots))
+        lists = [robots for entry in self.entries for robots in (entry.robots, entry.from_robots)]
+        lists += [tuple(entry.made_about.robots) for entry in self.entries if entry.made_about]
+        return (*(_covers(name, robot) for name in names), *(robot in robots for robots in lists if robots))
 
     def accepts(self, case: Case) -> bool:
         """Whether a valid decision accepts a case (rule S10)."""
@@ -286,10 +300,16 @@ def decided(
         State.ORPHANED if everything and not some else decisions.state(entry)
         for entry, some in zip(decisions.entries, about, strict=True)
     )
-    changed = {entry: changes(entry.made_about, (now or {}).get(entry.id)) for entry in decisions.entries}
+    changed = {entry: _changed(entry, some, now or {}) for entry, some in zip(decisions.entries, about, strict=True)}
     result = Decided(decisions, on, about, states, (), {entry: found for entry, found in changed.items() if found})
     said = tuple(_diagnostics(result, {finding.id: finding for finding, _ in cases}, law, _former(result, cases)))
     return replace(result, diagnostics=said)
+
+
+def _changed(entry: Decision, findings: Iterable[str], now: Mapping[str, About]) -> tuple[Change, ...]:
+    """What is not as it was; of an entry that lists robots, on one of these."""
+    there = findings if entry.robots else (entry.id,)
+    return next((found for one in there if (found := changes(entry.made_about, now.get(one)))), ())
 
 
 def _former(joined: Decided, cases: Iterable[tuple[Finding, Case]]) -> list[int]:

@@ -96,7 +96,7 @@ def as_written(about: About) -> Mapping[str, object]:
     {'view': 'declared', 'disjoint_paths': 2, 'robots': ['amr-1', 'amr-2']}
     """
     said = {
-        "view": about.view,
+        "view": str(about.view),
         "path": list(about.path),
         "disjoint_paths": about.disjoint_paths,
         "robots": sorted(about.robots),

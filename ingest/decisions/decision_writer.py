@@ -15,7 +15,7 @@ from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
 from rosprivacy.analysis.errors import DecisionError, InputError, shown
 from rosprivacy.analysis.model import Place
-from rosprivacy.ingest.decisions.decisions_file import TARGET, parse_decisions
+from rosprivacy.ingest.decisions.decisions_file import LISTS, TARGET, parse_decisions
 from rosprivacy.ingest.reading.bounded_file import read_regular
 from rosprivacy.ingest.reading.kept_yaml import FAILURES, changed, keeps_comments
 from rosprivacy.ingest.reading.yaml_values import MAX_BYTES
@@ -105,7 +105,10 @@ def _written(text: str, entry: Mapping[str, Any], remark: str) -> tuple[str, int
     """The new text, and the number of the entry in it."""
     places: list[int] = []
 
-    entry = {key: _on_one_line(value) if key == "made_about" else value for key, value in entry.items()}
+    entry = {
+        key: _on_one_line(value) if key == "made_about" else _in_brackets(value) if key in LISTS else value
+        for key, value in entry.items()
+    }
 
     def change(top: Any) -> None:
         entries = _entries(top)
@@ -126,8 +129,13 @@ def _on_one_line(about: Mapping[str, Any]) -> CommentedMap:
     made = CommentedMap(about)
     for key, value in made.items():
         if isinstance(value, list):
-            made[key] = CommentedSeq(value)
-            made[key].fa.set_flow_style()
+            made[key] = _in_brackets(value)
+    return made
+
+
+def _in_brackets(names: Iterable[str]) -> CommentedSeq:
+    made = CommentedSeq(names)
+    made.fa.set_flow_style()
     return made
 
 
@@ -151,4 +159,9 @@ def _entries(top: Any) -> Any:
 
 
 def _same_target(there: Mapping[str, Any], entry: Mapping[str, Any]) -> bool:
-    return {k: str(there[k]) for k in TARGET if k in there} == {k: str(entry[k]) for k in TARGET if k in entry}
+    return _target(there) == _target(entry)
+
+
+def _target(entry: Mapping[str, Any]) -> dict[str, object]:
+    said = {key: entry[key] for key in TARGET if key in entry}
+    return {key: set(value) if isinstance(value, list) else str(value) for key, value in said.items()}

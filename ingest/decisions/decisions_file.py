@@ -30,7 +30,9 @@ if TYPE_CHECKING:
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 TOP = ("decisions", "findings", "note")
-TARGET = ("id", "category", "source", "leak", "robot", "from_robot", "kind", "pseudonymised")
+NAMES = ("id", "category", "source", "leak", "robot", "from_robot", "kind")
+LISTS = ("robots", "from_robots")  # of robots, by their full names
+TARGET = (*NAMES, *LISTS, "pseudonymised")
 TEXTS = ("reason", "owner", "ticket")
 KEYS = (*TARGET, "decision", *TEXTS, "legal_basis", "date", "expires", "note", "history", "made_about")
 REMEMBERED = ("view", "path", "disjoint_paths", "robots")
@@ -100,7 +102,7 @@ class _Reader(FileReader):
 
     vocabulary: Vocabulary
     error: type[InputError] = field(default=DecisionError, kw_only=True)
-    ids: dict[tuple[str, str], int] = field(default_factory=dict)
+    ids: dict[tuple[object, ...], int] = field(default_factory=dict)
 
     def document(self, top: Value) -> Iterator[Decision]:
         if top.kind != "map":
@@ -117,7 +119,8 @@ class _Reader(FileReader):
     def _decision(self, item: Value) -> Decision:
         before = len(self.problems)
         said = {key: value for key, _, value in self.entries_of(item, KEYS)}
-        texts: dict[str, Any] = {key: self._text(said[key], key) for key in (*TARGET[:-1], *TEXTS) if key in said}
+        texts: dict[str, Any] = {key: self._text(said[key], key) for key in (*NAMES, *TEXTS) if key in said}
+        texts |= {key: tuple(self._names(said[key], key)) for key in LISTS if key in said}
         choice = self._choice(item, said.get("decision"))
         self._target(item, said, texts)
         for key in ("date", "expires"):
@@ -182,9 +185,13 @@ class _Reader(FileReader):
             if not is_id(texts["id"]):
                 self.problem(line, f"id {shown(texts['id'])!r}", "copy the 16 digits and letters of a finding")
             form = said["pseudonymised"].text if "pseudonymised" in said else ""
-            first = self.ids.setdefault((texts["id"], form), line)
+            robots = (frozenset(texts.get(key, ())) for key in LISTS)
+            first = self.ids.setdefault((texts["id"], form, *robots), line)
             if first != line:
                 self.problem(line, f"{texts['id']} again, first in line {first}", "keep one")
+        for one, several in (("robot", "robots"), ("from_robot", "from_robots")):
+            if one in said and several in said:
+                self.problem(said[several].line, f"{one} and {several}", "keep one of the two")
         if texts.get("category"):
             texts["category"] = self._category(texts["category"], said["category"].line)
 

@@ -153,6 +153,8 @@ class Target(TypedDict, total=False):
     leak: str
     robot: str
     from_robot: str
+    robots: list[str]
+    from_robots: list[str]
     kind: str
     pseudonymised: bool
 

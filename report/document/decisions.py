@@ -55,6 +55,10 @@ def _target(entry: Decision) -> Target:
     """What an entry says that it is about."""
     keys = ("id", "category", "source", "leak", "robot", "from_robot", "kind")
     said = cast("Target", {key: getattr(entry, key) for key in keys if getattr(entry, key)})
+    if entry.robots:
+        said["robots"] = list(entry.robots)
+    if entry.from_robots:
+        said["from_robots"] = list(entry.from_robots)
     if entry.pseudonymised is not None:
         said["pseudonymised"] = entry.pseudonymised
     return said

@@ -187,13 +187,18 @@ def _waits(finding: Mapping[str, Any], index: Index) -> bool:
 
 
 def _only(finding: Mapping[str, Any], index: Index) -> str:
-    """Return the robot that a decision names, where the finding stands for several."""
-    said = finding.get("decision")
-    if not said or len(index.patterns.get(finding["id"], {}).get("robots", ())) <= 1:
+    """Return the robots that a decision names, where the finding stands for more."""
+    said, pattern = finding.get("decision"), index.patterns.get(finding["id"], {})
+    robots = pattern.get("robots", ())
+    if not said or len(robots) <= 1:
         return ""
     place = said["file"], said["line"]
     decisions = index.document.get("decisions", ())
-    return next((d["target"].get("robot", "") for d in decisions if (d["file"], d["line"]) == place), "")
+    target: Mapping[str, Any] = next((d["target"] for d in decisions if (d["file"], d["line"]) == place), {})
+    listed = target.get("from_robots") or target.get("robots", ())
+    if listed and (pattern["across"] or not set(robots) <= set(listed)):
+        return _some([fit(one) for one in listed], index)
+    return fit(target.get("robot", ""))
 
 
 def _facts(findings: Sequence[Mapping[str, Any]], index: Index) -> Iterator[tuple[str, str]]:
@@ -242,7 +247,7 @@ def _state(finding: Mapping[str, Any], index: Index) -> str:
         return words("state.open")
     decided = words.known(f"d.{said['choice']}", printable(said["choice"]))
     if only := _only(finding, index):
-        decided = words("b.only", decided=decided, robot=fit(only))
+        decided = words("b.only", decided=decided, robot=only)
     if said.get("changed"):
         decided = words("b.changed", decided=decided)
     state = words.known(f"d.state.{said['state']}", printable(said["state"]))

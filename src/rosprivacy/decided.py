@@ -33,7 +33,12 @@ def decisions_of(settings: Settings, vocabulary: Vocabulary) -> Decisions | None
         return None
     from rosprivacy.ingest.decisions.decisions_file import read_decisions  # noqa: PLC0415 - only where there are some
 
-    found = read_decisions(settings.decisions, vocabulary, settings.today or today(os.environ), settings.bounds)
+    return judged(read_decisions(settings.decisions, vocabulary, "", settings.bounds), settings)
+
+
+def judged(decisions: Decisions, settings: Settings) -> Decisions:
+    """Return decisions on the day that a user names, else on that of now (rule S14)."""
+    found = replace(decisions, today=settings.today or today(os.environ))
     return found if settings.today else not_revived(found, judged_on(os.environ))
 
 

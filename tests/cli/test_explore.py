@@ -127,11 +127,10 @@ def test_what_it_does_not_take_is_refused(cli: Cli, option: tuple[str, ...]) -> 
     assert cli("explore", str(BARE), *option).returncode == 2
 
 
-@pytest.mark.parametrize("system", [("--fleet", "f.yaml"), ("--from-database",)])
-def test_decisions_are_about_one_robot(cli: Cli, system: tuple[str, ...]) -> None:
-    done = cli("explore", *system, "--decisions", "d.yaml")
+def test_nothing_is_decided_about_a_database(cli: Cli) -> None:
+    done = cli("explore", "--from-database", "--decisions", "d.yaml")
     assert done.returncode == 2
-    assert "--decisions: is for one robot" in done.stderr
+    assert "--decisions: is for policies and fleets" in done.stderr
 
 
 def test_a_review_of_a_database_has_no_file_for_answers(cli: Cli) -> None:

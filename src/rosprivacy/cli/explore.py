@@ -69,9 +69,9 @@ def explore(
     if review and inputs.from_database:
         hint = "leave --review away, or review the policies and label files of a robot, or a fleet"
         raise InputError("--review", 0, "has no file for answers in a database", hint)
-    if inputs.decisions and (inputs.fleet or inputs.from_database):
+    if inputs.decisions and inputs.from_database:
         hint = "leave it away, and use 'rosprivacy decide'"
-        raise InputError("--decisions", 0, "is for one robot, and not for a fleet or a database", hint)
+        raise InputError("--decisions", 0, "is for policies and fleets, and not for a database", hint)
     read_only = read_only or inputs.from_database
     settings = inputs.settings
     journal = None if read_only else journal_folder()

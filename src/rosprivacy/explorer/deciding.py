@@ -1,28 +1,39 @@
 """What a person decides about a finding of a session, into the decisions file that the session was begun with.
 
-In: a finding as it is found now, and an entry. Out: the file with it. What others wrote meanwhile stays: the file is
-read anew each time, and one writer works at a time.
+In: a finding as it is found now, of a fleet with robots, and an entry. Out: the file with it. What others wrote
+meanwhile stays: the file is read anew each time, and one writer works at a time. Nothing is written unless the file
+then says of these robots what was decided, and the answer can be made of it.
 """
 
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from datetime import date
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypedDict
 
+from rosprivacy.analysis.decisions import State
 from rosprivacy.analysis.errors import DecisionError, InputErrors, shown
 from rosprivacy.analysis.files_read import one_run
+from rosprivacy.analysis.fleet.likeness import NO_ROBOTS
 from rosprivacy.analysis.remembered import as_written
-from rosprivacy.clock import today
+from rosprivacy.clock import judged_on, today
 from rosprivacy.decided import about_today
+from rosprivacy.explorer.decision_scope import cases, scope_of, scopes, target
 from rosprivacy.ingest.decisions.decision_writer import text_in, with_decision
-from rosprivacy.ingest.decisions.decisions_file import is_date
+from rosprivacy.ingest.decisions.decisions_file import is_date, parse_decisions
 from rosprivacy.report.atomic import write_texts
 from rosprivacy.report.editing import editing
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Mapping
+
     from rosprivacy.analysis.answer import Finding
+    from rosprivacy.analysis.decisions import Decisions
+    from rosprivacy.analysis.fleet.likeness import Likeness
+    from rosprivacy.analysis.remembered import About
+    from rosprivacy.explorer.decision_scope import Scope
     from rosprivacy.result import Result
 
 LEAST = {"accept": ("reason", "owner")}  # what a person signs
@@ -59,8 +70,22 @@ class How(TypedDict, total=False):
     legal_basis: tuple[str, ...]
 
 
-def record(file: str | None, result: Result, finding: str, said: Ruling) -> None:
+class Robots(NamedTuple):
+    """The robots of a fleet that a decision names; None for all that are alike, as of ``Session.decide``."""
+
+    robots: Collection[str] | None = None
+    to_robots: Collection[str] | None = None
+
+
+def record(
+    file: str | None, result: Result, finding: str, said: Ruling, robots: Robots, judge: Callable[[Decisions], None]
+) -> None:
     """Write a decision about a finding into the decisions file, which is made if it is not there.
+
+    Parameters
+    ----------
+    judge
+        Makes the answer under what the file will say, before it is written.
 
     Raises
     ------
@@ -75,15 +100,36 @@ def record(file: str | None, result: Result, finding: str, said: Ruling) -> None
     if found is None:
         raise _refused(file, f"{shown(finding)!r} is no finding", "take the id of one that is found now")
     _check(file, said)
-    entry = {
-        **({"id": found.id, "pseudonymised": True} if found.pseudonymised else {"id": found.id}),
-        **_entry(said),
-        "made_about": as_written(about_today(result.analysis, None)[found.id]),
-    }
+    likeness = result.fleet.likeness if result.fleet else NO_ROBOTS
+    scope = scope_of(scopes(result.analysis.findings, likeness, found), file, *robots)
+    entry = {**target(scope, likeness), **_entry(said), "made_about": as_written(_about(result, scope.finding))}
     path = Path(file)
     with one_run(), editing(path):
         text = with_decision(file, text_in(path), entry, _remark(found), result.vocabulary)
+        decisions = parse_decisions(file, text, result.vocabulary, judged_on(os.environ))
+        _check_meaning(decisions, scope, likeness, entry)
+        judge(decisions)
         write_texts([(path, text)], edited=path)
+
+
+def _about(result: Result, finding: Finding) -> About:
+    """What is there now; of a fleet without the number of paths, which changes with the robots that are alike."""
+    about = about_today(result.analysis, None)[finding.id]
+    return replace(about, disjoint_paths=0) if result.fleet else about
+
+
+def _check_meaning(decisions: Decisions, scope: Scope, likeness: Likeness, entry: Mapping[str, Any]) -> None:
+    """See that the entry decides what it was made about: no other decides it, too, and it is not over."""
+    of = entry["id"], set(entry.get("robots", ())), set(entry.get("from_robots", ()))
+    for case in cases(scope, likeness, decisions.told_apart):
+        foremost = decisions.foremost(case)
+        other = next((one for one in foremost if (one.id, set(one.robots), set(one.from_robots)) != of), None)
+        if other or not foremost:
+            where = f"line {other.place.line} decides it, too" if other else "the entry would not be about it"
+            raise _refused(decisions.file, where, "change or remove that entry, and begin again")
+        if decisions.state(foremost[0]) is State.EXPIRED:
+            over = f"{foremost[0].expires} is over: it would decide nothing"
+            raise _refused(decisions.file, over, "name a day to come")
 
 
 def _check(file: str, said: Ruling) -> None:

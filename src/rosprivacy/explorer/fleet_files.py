@@ -205,6 +205,11 @@ class FleetFiles:
         there = FleetFiles(self._compared_anew(edits), self._asked, edited, self._digests)
         return Merging(there, kept, tuple(both))
 
+    def ask(self, asked: Asked, edits: Sequence[Edit]) -> None:
+        """Compare robots anew: those about which somebody decided are alike only to each other."""
+        self.read = replace(self.read, question=asked)
+        self.read = self._compared_anew(edits)
+
     def _compared_anew(self, edits: Sequence[Edit]) -> FleetRead:
         """The fleet with robots compared by what their files hold now; what was said or written here is known."""
         self.read.reader.relabel(self._with(edits)[0])  # another answer, or what was taken back, may have been last

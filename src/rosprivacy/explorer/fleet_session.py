@@ -14,7 +14,7 @@ from rosprivacy.explorer.edits import Edit, place_of, section_of
 from rosprivacy.explorer.fleet_files import FleetFiles
 from rosprivacy.explorer.fleet_scenarios import tried_on_robots
 from rosprivacy.explorer.label_targets import Entry, Target, Targets, outliers
-from rosprivacy.explorer.session import Session
+from rosprivacy.explorer.session import Session, with_decisions_there
 from rosprivacy.question import question_of
 from rosprivacy.reading.fleet_system import FleetSystem, read_once
 from rosprivacy.settings import Settings
@@ -55,8 +55,11 @@ class FleetSession(Session):
         >>> session.target("carrier_01").models, len(session.target("carrier_01").robots)
         (('carrier',), 24)
         """
-        asked = question_of(settings or Settings())
+        settings = settings or Settings()
+        asked = question_of(with_decisions_there(settings))
+        asked = asked._replace(every=settings.decisions is not None)  # what can be decided about is more than is shown
         session = cls(FleetFiles(read_once(file, asked), asked), asked)
+        session.decisions_file = settings.decisions
         if journal is not None:
             session._remember(journal, file, (file,), resume=resume)
         return session
@@ -187,6 +190,12 @@ class FleetSession(Session):
         robot, _, rest = name.partition(":")
         file = self.target(robot, only_this_robot=only_this_robot).file
         return self._files.entry(Edit(section_of(kind, rest, file), rest, None, file), self._done)
+
+    def _ask(self, asked: Asked) -> None:
+        """Robots about which a decision is made are alike only to each other, from now on."""
+        if asked is not self._asked:
+            super()._ask(asked)
+            self._files.ask(asked, self._done)
 
     # --- what if ------------------------------------------------------------------------------------------------
 

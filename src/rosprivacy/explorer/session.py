@@ -12,8 +12,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputErrors, LabelError, shown
-from rosprivacy.decided import decisions_of
-from rosprivacy.explorer.deciding import Ruling, record
+from rosprivacy.decided import judged
+from rosprivacy.explorer.deciding import Robots, Ruling, record
+from rosprivacy.explorer.decision_scope import Scope, scopes
 from rosprivacy.explorer.edits import Edit, entry_of, section_of
 from rosprivacy.explorer.label_targets import Entry
 from rosprivacy.explorer.one_file import opened
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
     from typing import Any, Unpack
 
+    from rosprivacy.analysis.answer import Finding
+    from rosprivacy.analysis.decisions import Decisions
     from rosprivacy.analysis.model import Element
     from rosprivacy.explorer.deciding import How
     from rosprivacy.explorer.edits import Label
@@ -91,13 +94,10 @@ class Session(Trying):
             With every problem of the input.
         """
         settings = settings or Settings()
-        decisions = settings.decisions
-        if decisions is not None and text_in(Path(decisions)) is None:
-            settings = replace(settings, decisions=None)
-        asked = question_of(settings)
+        asked = question_of(with_decisions_there(settings))
         files = opened(policies, labels, asked)
         session = cls(files, files.read, asked)
-        session.decisions_file = decisions
+        session.decisions_file = settings.decisions
         if journal is not None:
             session._remember(journal, files.own.file, tuple(policies), resume=resume)
         return session
@@ -258,7 +258,15 @@ class Session(Trying):
 
     # --- decisions ----------------------------------------------------------------------------------------------
 
-    def decide(self, finding: str, choice: str, **how: Unpack[How]) -> None:
+    def decide(
+        self,
+        finding: str,
+        choice: str,
+        *,
+        robots: Collection[str] | None = None,
+        to_robots: Collection[str] | None = None,
+        **how: Unpack[How],
+    ) -> None:
         """Write a decision about a finding into the decisions file, at once; what it changes is seen at once.
 
         Parameters
@@ -267,20 +275,49 @@ class Session(Trying):
             Its id.
         choice
             ``accept``, ``mitigate``, ``delegate`` or ``avoid``.
+        robots
+            Of a fleet: the robots that it is about, by id; they have to be alike. By default all that are alike to that
+            of the finding. Where data gets from one robot to another, those where it begins.
+        to_robots
+            Of such data: the robots that it gets to; by default all that are alike to that of the finding.
         **how
             ``reason``, ``owner``, ``expires``, ``ticket``, ``legal_basis``; an acceptance needs the first two.
 
         Raises
         ------
         InputErrors
-            If there is no decisions file or no such finding, or the decision is none; nothing is written then.
+            If there is no decisions file or no such finding on these robots, if the decision is none, or if another
+            entry of the file decides it, too; nothing is written then.
         InputError
             If the file cannot be written; then it is as it was.
         """
         with self._lock:
-            record(self.decisions_file, self.result, finding, Ruling(choice, **how))
-            settings = replace(self._asked.settings, decisions=self.decisions_file)
-            decisions = decisions_of(settings, self._asked.vocabulary)
-            self._asked = self._asked._replace(settings=settings, decisions=decisions)
-            self._analyse(self._done)
+            before = self._asked, self._system, self.uncounted, self._whole
+            try:
+                said = Ruling(choice, **how)
+                record(self.decisions_file, self.result, finding, said, Robots(robots, to_robots), self._judge)
+            except BaseException:
+                self._ask(before[0])
+                _, self._system, self.uncounted, self._whole = before
+                raise
             self.version += 1
+
+    def scopes(self, finding: Finding) -> tuple[Scope, ...]:
+        """Return what can be decided about at once, of a fleet: the robots of a finding, and others that have it."""
+        fleet = self.uncounted.fleet
+        return scopes(self.uncounted.analysis.findings, fleet.likeness, finding) if fleet else (Scope(finding),)
+
+    def _judge(self, decisions: Decisions) -> None:
+        """Have the answer under what people decided."""
+        settings = replace(self._asked.settings, decisions=self.decisions_file)
+        self._ask(self._asked._replace(settings=settings, decisions=judged(decisions, settings)))
+        self._analyse(self._done)
+
+    def _ask(self, asked: Asked) -> None:
+        self._asked = asked
+
+
+def with_decisions_there(settings: Settings) -> Settings:
+    """Return settings without a decisions file that is not there yet."""
+    there = settings.decisions is None or text_in(Path(settings.decisions)) is not None
+    return settings if there else replace(settings, decisions=None)

@@ -146,6 +146,7 @@ def test_a_robot_that_joins_an_accepted_pattern_is_not_accepted(cli: Cli) -> Non
     assert entry["changed"] == [{"what": "robots", "before": "5", "now": "6, +eye_6"}]
     (message,) = (said["message"] for said in after["diagnostics"] if "changed since" in said["message"])
     assert "robots: 5 then, 6, +eye_6 now; decide anew" in message
+    assert not any("names no from_robot" in said["message"] for said in after["diagnostics"])
 
 
 def test_it_is_accepted_when_it_is_decided_anew_and_the_file_keeps_what_was(cli: Cli) -> None:
@@ -181,3 +182,91 @@ def test_what_a_new_robot_gets_from_another_is_not_accepted_either(cli: Cli) -> 
     write("five.yaml", FIVE.replace("robots: 5", "robots: 6") + CROSS)
     (after,) = (p for p in told(cli)["fleet"]["patterns"] if p["id"] == plain[True]["id"])
     assert (after["findings"], after["accepted"]) == (30, 20)
+
+
+def by_id(cli: Cli, *, across: bool = False) -> str:
+    decide("category: Voice")
+    return next(str(p["id"]) for p in told(cli)["fleet"]["patterns"] if p["across"] == across)
+
+
+def test_a_list_of_robots_is_about_these_and_none_that_joins(cli: Cli) -> None:
+    decide(f"id: {by_id(cli)}, robots: [eye_2, eye_4]")
+    document = told(cli)
+    (found,) = document["fleet"]["patterns"]
+    assert (document["verdict"], found["findings"], found["accepted"]) == ("leak", 5, 2)
+    assert document["decisions"][0]["target"] == {"id": found["id"], "robots": ["eye_2", "eye_4"]}
+    decide(f"id: {found['id']}, robots: [{', '.join(f'eye_{n}' for n in range(1, 6))}]")
+    assert told(cli)["verdict"] == "undetermined"
+    write("five.yaml", FIVE.replace("robots: 5", "robots: 6"))
+    document = told(cli)
+    assert (document["verdict"], document["fleet"]["patterns"][0]["accepted"]) == ("leak", 5)
+
+
+def test_robots_of_one_list_stay_alike(cli: Cli) -> None:
+    decide(f"id: {by_id(cli)}, robots: [eye_1, eye_2, eye_3, eye_4, eye_5]")
+    (group,) = told(cli)["fleet"]["alike"]
+    assert len(group["robots"]) == 5
+
+
+def test_what_goes_from_robot_to_robot_is_on_the_lists_of_both_ends(cli: Cli) -> None:
+    write("five.yaml", FIVE + CROSS)
+    pattern = by_id(cli, across=True)
+
+    def accepted(target: str) -> int:
+        decide(f"id: {pattern}, {target}")
+        return int(next(p["accepted"] for p in told(cli)["fleet"]["patterns"] if p["id"] == pattern))
+
+    assert accepted("robots: [eye_2, eye_3], from_robots: [eye_1]") == 2
+    assert accepted("robots: [eye_1, eye_2], from_robots: [eye_1, eye_2]") == 2
+    assert accepted("robots: [eye_2]") == 0  # nothing is said of what comes from another robot
+    assert accepted("from_robots: [eye_1]") == 4
+
+
+def test_of_two_lists_the_shorter_one_counts_and_a_list_before_none(cli: Cli) -> None:
+    pattern = by_id(cli)
+    entries = (
+        f"- {{id: {pattern}, {ACCEPT}}}",
+        f"- {{id: {pattern}, robots: [eye_1, eye_2], decision: avoid}}",
+        f"- {{id: {pattern}, robots: [eye_2], {ACCEPT}}}",
+    )
+    for order in (entries, entries[::-1]):
+        write("d.yaml", "decisions: 1\nfindings:\n" + "".join(f"  {entry}\n" for entry in order))
+        document = told(cli)
+        assert document["fleet"]["patterns"][0]["accepted"] == 4  # all but eye_1
+    write("d.yaml", "decisions: 1\nfindings:\n" + "".join(f"  {entry}\n" for entry in entries[1:2]))
+    assert told(cli)["fleet"]["patterns"][0]["accepted"] == 0
+
+
+@pytest.mark.parametrize(
+    ("entries", "problem"),
+    [
+        ("{id: P, robots: []}", "robots of a decision names nothing"),
+        ("{id: P, robots: eye_1}", "robots takes a list"),
+        ("{id: P, robots: [eye_1], robot: eye_1}", "robot and robots"),
+        ("{id: P, from_robots: [a], from_robot: a}", "from_robot and from_robots"),
+        ("{robots: [eye_1]}", "a decision about everything"),
+        ("{id: P, robots: [a, b]}\n  - {id: P, robots: [b, a]}", "again, first in line"),
+    ],
+)
+def test_what_a_list_cannot_say_is_an_error(cli: Cli, entries: str, problem: str) -> None:
+    text = entries.replace("P", "0123456789abcdef").replace("}", ", decision: avoid}")
+    write("d.yaml", f"decisions: 1\nfindings:\n  - {text}\n")
+    done = cli("analyze", "--fleet", "five.yaml", "--decisions", "d.yaml")
+    assert done.returncode == 2
+    assert problem in done.stderr
+
+
+def test_two_lists_that_differ_about_a_robot_contradict_each_other(cli: Cli) -> None:
+    pattern = by_id(cli)
+    first, second = (f"{{id: {pattern}, robots: [eye_1, eye_{n}]" for n in (2, 3))
+    write("d.yaml", f"decisions: 1\nfindings:\n  - {first}, {ACCEPT}}}\n  - {second}, decision: avoid}}\n")
+    done = cli("analyze", "--fleet", "five.yaml", "--decisions", "d.yaml")
+    assert done.returncode == 2
+    assert "contradicts line 3" in done.stderr
+
+
+def test_what_has_changed_is_told_of_the_robots_of_the_list(cli: Cli) -> None:
+    pattern = by_id(cli)
+    for path, changed in (("/camera, /image, /uplink", False), ("/camera, /uplink", True)):
+        decide(f"id: {pattern}, robots: [eye_2], made_about: {{path: [{path}]}}")
+        assert ("changed" in told(cli)["decisions"][0]) == changed

@@ -21,6 +21,7 @@ from rosprivacy.analysis.errors import RosPrivacyError, shown
 from rosprivacy.explorer.saving import Conflict
 from rosprivacy.explorer.web import forms
 from rosprivacy.explorer.web.beside import beside
+from rosprivacy.explorer.web.decided_robots import chosen_in, scope_told
 from rosprivacy.explorer.web.decision_form import decision_in
 from rosprivacy.explorer.web.guard import Guard
 from rosprivacy.explorer.web.page import page_of
@@ -316,10 +317,13 @@ class Site:
     def _decide(self, form: Form) -> Told:
         """Write a decision about a finding into the file that the command named."""
         said = decision_in(form, self.standing.findings)
-        self.session.decide(said.finding, said.choice, **said.how)
+        about = chosen_in(form, self.session, self.standing.findings[said.finding])
+        told = scope_told(self.session, about, self._words)  # before it is decided, as it was chosen
+        robots, to_robots = about.robots or None, about.to_robots or None
+        self.session.decide(about.finding.id, said.choice, robots=robots, to_robots=to_robots, **said.how)
         self._by = said.how["owner"] or self._by
-        file, what = shown(str(self.session.decisions_file)), self._words(f"d.{said.choice}")
-        told = self._words("x.decided.to", file=file, what=what)
+        what = self._words.row(filter(None, (self._words(f"d.{said.choice}"), told)))
+        told = self._words("x.decided.to", file=shown(str(self.session.decisions_file)), what=what)
         return Told(200, Message(DONE, told))
 
 

@@ -11,6 +11,7 @@ from rosprivacy.analysis.decisions import Choice
 from rosprivacy.analysis.model import ARTICLE_10
 from rosprivacy.explorer.element_ids import element_id
 from rosprivacy.explorer.web.closes_pane import Closes, closes_pane
+from rosprivacy.explorer.web.decided_robots import Choices, choices
 from rosprivacy.explorer.web.trials.trial_offers import flow_id, line_id, lines_of
 from rosprivacy.report.page.finding_entries import finding_entries
 from rosprivacy.report.page.index import Index
@@ -65,7 +66,11 @@ class FindingPane(NamedTuple):
     can_try
         Whether something can be tried: not within a trial.
     can_close
-        Whether it can be asked what closes it, and decided: of one robot.
+        Whether it can be asked what closes it: of one robot.
+    can_decide
+        Whether it can be decided: not within a trial, and not of a database.
+    robots
+        Of a fleet: those about which it can be decided.
     element
         Where its place of exit is in hand.
     """
@@ -81,6 +86,8 @@ class FindingPane(NamedTuple):
     element: str
     can_try: bool
     can_close: bool
+    can_decide: bool
+    robots: Choices
 
 
 def finding_pane(standing: Standing, finding: Finding, view: View, words: Words) -> FindingPane:
@@ -104,6 +111,8 @@ def finding_pane(standing: Standing, finding: Finding, view: View, words: Words)
         element=view.to(element_id(finding.leak.identity)).address,
         can_try=can_try,
         can_close=can_close,
+        can_decide=can_try,
+        robots=choices(session, finding, words) if can_try else Choices(),
     )
 
 
