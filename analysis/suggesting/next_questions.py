@@ -217,7 +217,7 @@ class _Asked:
         replies = [Reply(YES, _written(element, SENSITIVE, kinds), reasons=reasons)]
         each: list[Row] = []
         if len(kinds) > 1:
-            for key, kind in zip(AT_MOST_ONE, numbered, strict=False):
+            for key, kind in zip(AT_MOST_ONE, () if self._carries(element) else numbered, strict=False):
                 if kind in kinds:
                     replies.append(Reply(key, _written(element, ONLY, [kind]), takes_away=True))
             each = [
@@ -227,6 +227,10 @@ class _Asked:
         why = reasons if likeness else ()  # else they may say the opposite
         replies.append(Reply(NOTHING, _written(element, NEVER, kinds), takes_away=True, reasons=why))
         return Row(element, kinds, tuple(replies), reasons, closes=closed, alike=likeness, each=tuple(each))
+
+    def _carries(self, element: Element) -> bool:
+        """Whether a person says what goes through a channel: that one kind at most does would take that away (S7)."""
+        return any(one.role == SENSITIVE for one in self.said.get(element.identity, ()))
 
     def _node(self, there: Sequence[Proposal], kinds: tuple[str, ...]) -> Row:
         element = there[0].label.element

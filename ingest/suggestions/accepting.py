@@ -232,11 +232,18 @@ def _against(before: Iterable[Entry], comment: NewLabel, vocabulary: Vocabulary)
 
 
 def _section_of(top: Any, comment: NewLabel) -> Any:
-    """The section that has an entry of that name for elements of that kind; None if none has."""
+    """The section that has an entry of that name to which the label can be joined; None if none has.
+
+    An entry of channels speaks of a topic, a service and an action of that name. What takes data away of one of them is
+    not joined to it; what such data can go through is, where it says so of other data: two lines may not (S7).
+    """
+    (role,) = comment.said
     for name, kinds in SECTIONS.items():
         section = top.get(name)
         if set(SECTIONS[comment.section]) <= set(kinds) and section and comment.name in section:
-            return section
+            says = section[comment.name] is not None and role in section[comment.name]
+            if name == comment.section or (says and role not in LIMITING):
+                return section
     return None
 
 

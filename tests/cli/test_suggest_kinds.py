@@ -278,6 +278,64 @@ def test_what_may_be_a_leak_comes_first_and_is_called_a_conduit_only_if_it_is_pi
     assert "/uploader: {leak: [Video], note: \"answered by Ada on 2026-11-23: 'uploader' in the name" in text
 
 
+def test_a_leak_that_became_known_in_the_same_question_is_told_before_a_node_ends_such_data(robot: Path) -> None:
+    nodes: Nodes = {"one": (["/image"], []), "counter": (["/joints"], ["/image"]), "end": ([], ["/joints"])}
+    (robot / "p.xml").write_text(policy_of(nodes), "utf-8")
+    types = "topics:\n  /image: {types: [sensor_msgs/msg/CompressedImage]}\n"
+    types += "  /joints: {types: [sensor_msgs/msg/JointState]}\n"
+    (robot / "l.yaml").write_text(f"labels: 1\nnodes:\n  /one: {{source: [Video]}}\n{types}", "utf-8")
+
+    class AboutNodes(Scripted):
+        def key(self, question: Question, picked: frozenset[int]) -> str:
+            return super().key(question, picked) if question.about == GOES_ON else SKIP
+
+    person = AboutNodes("B", "1")
+    conversation(robot, person).run()
+    first, last = person.asked[0], person.asked[-1]
+    assert [(row.element.name, row.closes) for row in first.rows] == [("/counter", ()), ("/end", ())]
+    ((name, closes),) = [(row.element.name, row.closes) for row in last.rows]
+    assert name == "/counter"
+    assert [told.partition(" [")[0] for told in closes] == ["Video: /one -> /end"]
+
+
+def test_one_kind_at_most_is_not_said_of_a_channel_that_a_person_says_carries_another(robot: Path) -> None:
+    """Both at once would be no label file (S7)."""
+    (robot / "l.yaml").write_text(f"{REVIEWED}topics:\n  /a: {{sensitive: [Location]}}\n", "utf-8")
+    person = Scripted()
+    conversation(robot, person).run()
+    keys = {row.element.name: [one.key for one in row.replies] for row in person.asked[0].rows}
+    assert (keys["/a"], keys["/b"]) == (["y", "0"], ["y", "1", "2", "0"])
+
+
+def test_what_takes_data_away_of_a_topic_takes_none_of_a_service_of_its_name(robot: Path) -> None:
+    """Where a line of channels speaks of both, the topic gets a line of its own."""
+    (robot / "l.yaml").write_text(f"{REVIEWED}channels:\n  /a: {{sensitive: [Location]}}\n", "utf-8")
+    first = Scripted()
+    conversation(robot, first).run()
+    at = [row.element.name for row in first.asked[0].rows].index("/a")
+    conversation(robot, Scripted(ascii_uppercase[at], "0")).run()
+    text = (robot / "l.yaml").read_text("utf-8")
+    assert "channels:\n  /a: {sensitive: [Location]}\ntopics:\n  /a: {never: [Video, Voice], note: " in text
+
+
+def test_one_by_one_speaks_of_the_rows_that_are_picked(robot: Path) -> None:
+    person = Scripted("A", "B", OPEN)
+    conversation(robot, person).run()
+    rest = len(person.asked[0].rows) - 2
+    person = Scripted("A", "B", OPEN, "y", "y")
+    conversation(robot, person).run()
+    assert [len(one.rows) for one in person.asked] == [rest + 2, 1, 1, rest]
+
+
+@pytest.mark.parametrize("keys", ["AB", "BC", "\x1b[A"])
+def test_signs_that_come_at_once_pick_no_row(robot: Path, keys: str) -> None:
+    """Who types A and B fast and then 0 wants a list, and does not say it of A alone."""
+    person = Scripted(keys, "0")
+    conversation(robot, person).run()
+    assert person.remarks == [f"{keys!r} is no answer here", "'0' is no answer here"]
+    assert (robot / "l.yaml").read_text("utf-8") == REVIEWED
+
+
 def test_what_comes_later_is_not_asked_again_when_fewer_kinds_get_there(robot: Path) -> None:
     class Later(Scripted):
         def key(self, question: Question, picked: frozenset[int]) -> str:

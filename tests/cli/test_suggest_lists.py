@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import io
+import os
+import pty
 import subprocess
 import sys
 import time
@@ -412,4 +414,30 @@ def test_a_process_that_is_killed_in_a_number_keeps_nothing_of_the_list(robot: P
         time.sleep(0.5)
         process.kill()
     assert HEADING.encode() in shown
+    assert (robot / "l.yaml").read_text("utf-8") == before
+
+
+def test_two_digits_that_come_at_once_confirm_no_list_without_enter(robot: Path) -> None:
+    names = [f"/arm{at}" for at in range(10)]
+    nodes: Nodes = {"eye": (["/a"], []), "middle": (names, ["/a"]), "here": ([], names)}
+    (robot / "p.xml").write_text(policy_of(nodes), "utf-8")
+    (robot / "l.yaml").write_text(labels_of({name[1:]: JOINTS for name in names}, "  /here: conduit\n"), "utf-8")
+    before = (robot / "l.yaml").read_text("utf-8")
+    ours, theirs = pty.openpty()
+    command = [sys.executable, "-m", "rosprivacy", "suggest", "p.xml", "--into", "l.yaml", "--ask"]
+    with subprocess.Popen(command, cwd=robot, stdin=theirs, stdout=subprocess.PIPE, bufsize=0) as process:
+        assert process.stdout is not None
+        shown = b""
+        while not shown.endswith(b"> ") and (more := process.stdout.read(1)):
+            shown += more
+        for keys in (b"10", b"q"):
+            time.sleep(0.5)  # what is typed before the terminal waits for a key is no answer
+            os.write(ours, keys)
+        while b"rows left" not in shown and (more := process.stdout.read(1)):
+            shown += more
+        os.close(ours)
+        shown += process.stdout.read()
+    os.close(theirs)
+    assert b"10 and Enter for none of it in all 10" in shown
+    assert b"'10q' is no answer here; 10 rows left" in shown
     assert (robot / "l.yaml").read_text("utf-8") == before

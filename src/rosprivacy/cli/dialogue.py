@@ -112,7 +112,7 @@ class _Terminal:
         key = _pressed()
         if not at_terminal():
             return self._piped(key, question, picked)
-        return _number(key) if question.about == LISTED and key in DIGITS else key
+        return _number(key) if question.about == LISTED and key and DIGITS.issuperset(key) else key
 
     def told(self, remark: str) -> None:
         typer.echo(remark)
@@ -148,7 +148,10 @@ def at_terminal() -> bool:
 
 
 def _number(first: str) -> str:
-    """A number that Enter ends; nothing if the input ends before, and with the key that is none if there is one."""
+    """A number that Enter ends; nothing if the input ends before, and with the key that is none if there is one.
+
+    Several signs may come at once.
+    """
     number = first
     while key := _read():
         if key in ENTER:

@@ -107,7 +107,7 @@ class Conversation:
         while pending:
             question = pending.popleft()
             stage = STAGES[question.about]
-            if any(one < stage for one in answered) or (answered and question.about == LISTED):
+            if any(one < stage for one in answered) or (answered and _tells_findings(question)):
                 return True
             if question.about == LISTED:
                 return self._listed(question)
@@ -119,13 +119,14 @@ class Conversation:
                 return self._picked([row.saying(key) for row in rows])
             if key == OPEN:
                 self._alone.update(_said(question, row) for row in rows)
-                pending.extendleft(Question(question.about, (row,)) for row in reversed(question.rows))
-                continue
-            if self._taken(question, rows, key):
+            elif self._taken(question, rows, key):
                 return True
-            answered.add(stage)
+            else:
+                answered.add(stage)
             if rest := tuple(row for row in question.rows if row not in rows):
                 pending.appendleft(Question(question.about, rest))
+            if key == OPEN:
+                pending.extendleft(Question(question.about, (row,)) for row in reversed(rows))
         return True
 
     def _taken(self, question: Question, rows: Sequence[Row], key: str) -> bool:
@@ -194,7 +195,7 @@ class Conversation:
         while True:
             key = self.person.key(question, frozenset(out))
             rows = tuple(row for at, row in enumerate(question.rows) if at not in out)
-            at = ascii_uppercase.find(key)
+            at = _letter(key)
             if key in ("", QUIT):
                 return False
             if 0 <= at < len(question.rows):
@@ -239,7 +240,7 @@ class Conversation:
             rows = [row for at, row in enumerate(question.rows) if at in picked or not picked]
             if key in ("", QUIT):
                 return None
-            at = ascii_uppercase.find(key)
+            at = _letter(key)
             if 0 <= at < len(question.rows) and len(question.rows) > 1:
                 picked ^= {at}
             elif key in allowed(question, picked):
@@ -277,6 +278,20 @@ def allowed(question: Question, picked: Collection[int] = ()) -> tuple[str, ...]
     by_kind = any(row.each for row in rows)
     more = ((EXACTLY, exactly), (NO, refuse), (OPEN, len(rows) > 1), (EACH_KIND, by_kind), (SKIP, True))
     return (*keys, *(key for key, there in more if there))
+
+
+def _tells_findings(question: Question) -> bool:
+    """Whether a question has to tell findings that an answer before it may have made known: a leak among nodes is one.
+
+    No answer about a channel makes a finding known.
+    """
+    takes_away = any(reply.takes_away for row in question.rows for reply in row.replies)
+    return takes_away and question.about != GOES_THROUGH
+
+
+def _letter(key: str) -> int:
+    """Which row a key means; -1 if none. Several signs that come at once are no letter."""
+    return ascii_uppercase.find(key) if len(key) == 1 else -1
 
 
 def _takes_away(rows: Sequence[Row], key: str) -> bool:
