@@ -130,6 +130,9 @@ class _Asked:
             kinds = tuple(sorted({*asked.categories, *(old.categories if old else ())}))
             self.open[asked.element.identity] = asked._replace(categories=kinds)
         self.reached = reached_kinds(analysis)
+        self.derived = {
+            (one.to, one.categories) for there in bound.elements.values() for one in there if one.role == DERIVATION
+        }
         self.known: dict[tuple[str, ...], tuple[str, ...]] = {}  # what is told of findings of such data
         self.writes = {analysis.graph.elements[vertex].identity for vertex, there in told.writes.items() if there}
 
@@ -258,14 +261,26 @@ class _Asked:
         return [one for one in said if self._speaks_of(one, kind)]
 
     def _closed(self, kinds: tuple[str, ...]) -> tuple[str, ...]:
-        """Findings of such data."""
+        """Findings of such data, and of what is made of them."""
         if kinds not in self.known:
+            made = self._made_of(kinds)
             self.known[kinds] = tuple(
                 one_line(one)
                 for one in self.analysis.findings
-                if not one.accepted and any(self.hierarchy.overlap(one.category, kind) is not None for kind in kinds)
+                if not one.accepted and self._overlaps(one.category, made)
             )
         return self.known[kinds]
+
+    def _made_of(self, kinds: Iterable[str]) -> set[str]:
+        """Kinds of data, and all that nodes make of them."""
+        made, size = set(kinds), 0
+        while size < len(made):
+            size = len(made)
+            made |= {to for to, of in self.derived for kind in of if to not in made and self._overlaps(kind, made)}
+        return made
+
+    def _overlaps(self, kind: str, kinds: Iterable[str]) -> bool:
+        return any(self.hierarchy.overlap(kind, one) is not None for one in kinds)
 
 
 def _row(one: Proposal) -> Row:

@@ -298,6 +298,19 @@ def test_a_leak_that_became_known_in_the_same_question_is_told_before_a_node_end
     assert [told.partition(" [")[0] for told in closes] == ["Video: /one -> /end"]
 
 
+def test_a_finding_of_what_is_made_of_the_data_is_told_before_these_are_taken_away(robot: Path) -> None:
+    nodes: Nodes = {"one": (["/in"], []), "worker": (["/made"], ["/in"]), "end": ([], ["/made"])}
+    (robot / "p.xml").write_text(policy_of(nodes), "utf-8")
+    made = "derives: [{from: Video, to: FaceTemplate}], sanitizer: {Video: drop}"
+    text = f"labels: 1\nnodes:\n  /one: {{source: [Video]}}\n  /worker: {{{made}}}\n  /end: {{leak: [FaceTemplate]}}\n"
+    (robot / "l.yaml").write_text(f"{text}topics:\n  /made: sensitive\n", "utf-8")
+    person = Scripted()
+    conversation(robot, person).run()
+    (row,) = person.asked[0].rows
+    assert (row.element.name, row.kinds) == ("/in", ("Video",))
+    assert [told.partition(" [")[0] for told in row.closes] == ["FaceTemplate: /one -> /end"]
+
+
 def test_one_kind_at_most_is_not_said_of_a_channel_that_a_person_says_carries_another(robot: Path) -> None:
     """Both at once would be no label file (S7)."""
     (robot / "l.yaml").write_text(f"{REVIEWED}topics:\n  /a: {{sensitive: [Location]}}\n", "utf-8")
