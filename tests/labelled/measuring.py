@@ -93,6 +93,9 @@ class Measured(NamedTuple):
         By confidence: what no reader says.
     missed
         What both readers say and nothing suggests.
+    asked_about
+        Of the sources that both readers name: how many are of nodes of which any source is suggested, so that a person
+        looks at the node, whatever kind is suggested.
     unseen
         Of what is not suggested: how much is of nodes of which nothing is suggested, so that no name, type or library
         speaks about them.
@@ -102,6 +105,7 @@ class Measured(NamedTuple):
     recall: Mapping[str, Share]
     wrong: Mapping[str, Sequence[Pair]]
     missed: Sequence[Pair]
+    asked_about: Share
     unseen: Share
 
 
@@ -120,9 +124,12 @@ def measured(some: Iterable[System], look: Look, folder: Path) -> Measured:
         known = [pair for pair in truth.agreed if pair.role == role]
         recall[role] = Share(sum(met(pair, asked, overlaps) for pair in known), len(known))
     missed = sorted(pair for pair in truth.agreed if not met(pair, asked, overlaps))
+    sources = [pair[:2] for pair in truth.agreed if pair.role == SOURCE]
+    looked_at = {pair[:2] for pair in asked if pair.role == SOURCE}
+    asked_about = Share(sum(node in looked_at for node in sources), len(sources))
     told_of = {pair[:2] for pair in asked}
     unseen = Share(sum(pair[:2] not in told_of for pair in missed), len(missed))
-    return Measured(precision, recall, wrong, missed, unseen)
+    return Measured(precision, recall, wrong, missed, asked_about, unseen)
 
 
 def table(some: Sequence[System], folder: Path) -> str:
@@ -130,7 +137,8 @@ def table(some: Sequence[System], folder: Path) -> str:
     rows = []
     for look in LOOKS:
         found = measured(some, look, folder)
-        shares = [*(found.precision[name] for name in ("likely", "may")), *found.recall.values()]
+        shares = [*(found.precision[name] for name in ("likely", "may")), found.recall[SOURCE], found.asked_about]
+        shares += [found.recall[role] for role in (DERIVES, LEAK)]
         rows.append(f"| {look.name} | {' | '.join(f'{share.part} of {share.of}' for share in shares)} |\n")
     return "".join(rows)
 

@@ -92,6 +92,15 @@ def test_what_is_missed_is_agreed_and_not_suggested(tmp_path: Path) -> None:
     assert len(found.missed) == sum(share.of - share.part for share in found.recall.values()) == found.unseen.of > 0
 
 
+def test_a_source_is_asked_about_if_any_source_is_suggested_of_its_node(tmp_path: Path) -> None:
+    """So every source that is found is asked about, too."""
+    for one in systems()[0][:5]:
+        found = measured([one], LOOKS[0], tmp_path)
+        assert (
+            found.recall["source"].part <= found.asked_about.part <= found.asked_about.of == found.recall["source"].of
+        )
+
+
 def test_what_is_disputed_counts_neither_way() -> None:
     every = labelled(one for part in systems() for one in part)
     truth = judged(every, load().hierarchy.overlaps)
