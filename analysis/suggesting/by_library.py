@@ -57,7 +57,7 @@ _VERBS = {PROGRAM: "starts", ADDRESS: "names"}  # what code does with a thing of
 
 
 class Spoken(NamedTuple):
-    """A rule, and the first use that it speaks about."""
+    """A rule, and a use that it speaks about."""
 
     rule: LibraryRule
     use: NodeUse
@@ -128,12 +128,12 @@ def library_evidence(
 
 
 def _spoken(section: Mapping[str, Names], uses: Iterable[NodeUse], libraries: LibraryRules) -> tuple[Spoken, ...]:
-    """The rules of a section that speak about some uses, each with the first of these."""
-    found: dict[LibraryRule, Spoken] = {}
+    """The rules of a section that speak about some uses, each with the one of these that shows it best."""
+    found: dict[LibraryRule, list[NodeUse]] = {}
     for use in uses:
         if rule := libraries.spoken(section, use):
-            found.setdefault(rule, Spoken(rule, use))
-    return tuple(found.values())
+            found.setdefault(rule, []).append(use)
+    return tuple(Spoken(*rule.of_uses(some)) for rule, some in found.items())
 
 
 def _orders(elements: Iterable[Element], names: NameRules) -> tuple[Element, ...]:

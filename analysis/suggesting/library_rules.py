@@ -13,10 +13,12 @@ import re
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+from rosprivacy.analysis.model import Confidence
 
-    from rosprivacy.analysis.model import Confidence, Place
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from rosprivacy.analysis.model import Place
 
 PYTHON, CPP = "python", "c++"
 PROGRAM = "$ "  # before the name of a program that code starts
@@ -59,6 +61,9 @@ class LibraryRule(NamedTuple):
         Of what makes something: whether it reads ROS by itself, as a listener of transforms does.
     alone
         Of what brings something in: whether it agrees with nothing, as a window does that is called so.
+    writes
+        Of what lets data out: last parts of names by which it does, if it can also be asked only. Where nothing of it
+        is used that is called so, it may be.
     """
 
     kinds: tuple[str, ...]
@@ -70,6 +75,21 @@ class LibraryRule(NamedTuple):
     any_type: bool = False
     by_itself: bool = False
     alone: bool = False
+    writes: tuple[str, ...] = ()
+
+    def of_uses(self, uses: Sequence[NodeUse]) -> tuple[LibraryRule, NodeUse]:
+        """Return what the rule says of the uses that it speaks about, and the one that shows it best.
+
+        >>> from rosprivacy.analysis.model import Confidence, Place
+        >>> said = LibraryRule((), Confidence.LIKELY, "a database", Place("libraries.yaml", 1), writes=("commit",))
+        >>> uses = [NodeUse(f"sqlite3.connect.{name}", "python", Place("a.py", 1)) for name in ("cursor", "commit")]
+        >>> [(str(rule.confidence), use.name) for rule, use in (said.of_uses(uses), said.of_uses(uses[:1]))]
+        [('likely', 'sqlite3.connect.commit'), ('may', 'sqlite3.connect.cursor')]
+        """
+        if not self.writes:
+            return self, uses[0]
+        writing = next((use for use in uses if use.name.rpartition(".")[2] in self.writes), None)
+        return (self, writing) if writing else (self._replace(confidence=Confidence.MAY), uses[0])
 
 
 class Names(NamedTuple):

@@ -43,7 +43,7 @@ BEFORE = {PROGRAMS: PROGRAM, ADDRESSES: ADDRESS}  # signs before names of these 
 ALL = (*NAMED, "confidence", "why", "source")
 KEYS = {
     BRINGS_IN: (*ALL, "kinds", "any_type", "alone"),
-    LETS_OUT: (*ALL, "kinds", "where"),
+    LETS_OUT: (*ALL, "kinds", "where", "writes"),
     MAKES: (*ALL, "kinds", "to", "any_type", "by_itself"),
     SILENT: (*NAMED, "why"),
 }
@@ -158,6 +158,7 @@ class _Reader(RuleReader):
             self.is_true(said, "any_type"),
             self.is_true(said, "by_itself"),
             self.is_true(said, "alone"),
+            tuple(item.text for item in self._last_parts(said)),
         )
 
     def _names(self, said: dict[str, Value], section: str) -> Iterator[Key]:
@@ -176,6 +177,14 @@ class _Reader(RuleReader):
                     self.problem(item.line, what, f"say each name once in {section}")
                 known |= {one: item.line for one in ones if one not in known}
                 yield from ones
+
+    def _last_parts(self, said: dict[str, Value]) -> Iterator[Value]:
+        for item in self.items(said, "writes"):
+            if item.kind == "text" and item.text.isidentifier():
+                yield item
+            else:
+                what = f"{shown(item.text or item.kind)!r} is no last part of a name"
+                self.problem(item.line, what, "write one such as commit")
 
     def _one_of(self, said: dict[str, Value], key: str, known: tuple[str, ...]) -> str:
         if key not in said or not said[key].text or said[key].text in known:

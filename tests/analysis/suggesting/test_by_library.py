@@ -138,6 +138,19 @@ def test_of_a_broker_nobody_knows_what_it_gets(call: str) -> None:
     assert "leak PersonalData may" in said("", "Image", f"paho.mqtt.client.Client().{call}")
 
 
+@pytest.mark.parametrize(
+    ("calls", "sure"),
+    [
+        (["sqlite3.connect('a.db').execute('select 1').fetchone()"], "may"),  # it asks only
+        (["sqlite3.connect('a.db').execute('x')", "sqlite3.connect('a.db').commit()"], "likely"),
+        (["firebase_admin.db.reference('/a').get()"], "may"),
+        (["firebase_admin.db.reference('/a').set(x)"], "likely"),
+    ],
+)
+def test_who_only_asks_a_database_may_let_data_out(calls: list[str], sure: str) -> None:
+    assert f"leak PersonalData {sure}" in said("", "Image", *calls)
+
+
 @pytest.mark.parametrize(("name", "sure"), [("n", "likely"), ("fake_camera", "may"), ("video_file_publisher", "may")])
 def test_what_simulates_measures_nothing(name: str, sure: str) -> None:
     """1. A film that is played is taken by the same call as the pictures of a camera."""
@@ -243,7 +256,9 @@ def test_who_asks_for_a_service_where_a_name_speaks_of_orders_may_order(call: st
 
 def test_what_a_driver_sends_goes_to_its_device() -> None:
     for name, sure in (("arm_driver", "may"), ("arm", "likely")):
-        code = HEAD.format(library="supabase").replace("'n'", f"'{name}'") + LINE.format("supabase.create_client('x')")
+        code = HEAD.format(library="supabase").replace("'n'", f"'{name}'") + LINE.format(
+            "supabase.create_client('x').table('t').insert(y)"
+        )
         Path("n.py").write_text(code, "utf-8")
         Path("p.xml").write_text(policy(f"/{name}>/x</image", "/m>/image</x"), "utf-8")
         found = suggest_labels(("p.xml",), (), Settings(), sources=("n.py",)).proposals

@@ -120,6 +120,8 @@ def test_a_users_rules_stand_before_ours(tmp_path: Path) -> None:
          "f.yaml:3: where 'moon'; write network, display, file, loudspeaker, device or domain"),
         ("library_rules: 1\nlets_out:\n- {programs: [a], where: file, confidence: certain, why: x}\n",
          "f.yaml:3: confidence 'certain'; write likely or may"),
+        ("library_rules: 1\nlets_out:\n- {python: [a], where: file, confidence: may, why: x, writes: [a.b]}\n",
+         "f.yaml:3: 'a.b' is no last part of a name; write one such as commit"),
         ("library_rules: 1\nbrings_in:\n- {c++: [a], kinds: [Video], confidence: may, why: x, any_type: 1}\n",
          "f.yaml:3: any_type '1'; write true or leave it out"),
     ],
