@@ -8,7 +8,6 @@ A state is (vertex, bit): data of a category, in one of its forms, has arrived a
 from __future__ import annotations
 
 from collections import defaultdict
-from functools import cache
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.many_flows import number, one_by_one, parted
@@ -50,10 +49,13 @@ class Net(NamedTuple):
         by_source, meetings = spread.shape.kept(
             "flows by source", spread.told_apart, lambda: _by_source(graph.flows, spread.told_apart)
         )
-        taken, keeps, everything = cache(spread.taken), spread.flow_keeps, spread.all_bits
+        taken = {vertex: spread.taken(vertex) for vertex in spread.keeps}
+        keeps, everything = spread.flow_keeps, spread.all_bits
         for source, ways in by_source.items():
             if spread.leaves.get(source):
-                moves = [(index, target, taken(target) & keeps.get(index, everything)) for index, target in ways]
+                moves = [(index, target, taken.get(target, everything)) for index, target in ways]
+                if keeps:
+                    moves = [(index, target, bits & keeps.get(index, everything)) for index, target, bits in moves]
                 flows[source] = moves
                 if graph.elements[source].pattern:
                     shown = graph.elements[source].shown_as

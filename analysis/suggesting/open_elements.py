@@ -75,10 +75,13 @@ def of_open(
     """
     at: dict[tuple[str, str, str, str], list[int]] = {}
     legs: dict[tuple[str, str, str], set[str]] = {}
+    asked = tuple(questions)
+    identities = {question.element.identity for question in asked}
     for vertex, element in enumerate(graph.elements):
-        at.setdefault(element.shown_as, []).append(vertex)
-        legs.setdefault(element.identity, set()).add(element.leg)
-    for question in questions:
+        if element.identity in identities:
+            at.setdefault(element.shown_as, []).append(vertex)
+            legs.setdefault(element.identity, set()).add(element.leg)
+    for question in asked:
         vertices = at[question.element.shown_as]
         if question.element.is_node:
             statements = [one for vertex in vertices for one in bound.elements.get(vertex, ())]
