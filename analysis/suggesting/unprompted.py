@@ -90,9 +90,10 @@ def of_the_rest(
 
 
 def _is_told_nothing(vertex: int, graph: FlowGraph, told: Traffic, names: NameRules) -> bool:
-    asked = (graph.elements[one] for one in told.reads.get(vertex, ()))
-    simulates = has_word(graph.elements[vertex].name, names.simulated)
-    return not simulates and not any(one.leg in ("", "request") for one in asked)
+    for one in told.reads.get(vertex, ()):
+        if graph.elements[one].leg in ("", "request"):
+            return False
+    return not has_word(graph.elements[vertex].name, names.simulated)
 
 
 def _takes_anything(channel: int, graph: FlowGraph, bound: Bound, rules: Rules) -> bool:
