@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from random import Random
 from typing import TYPE_CHECKING
 
@@ -13,7 +12,6 @@ from rosprivacy.analysis.errors import RosPrivacyError
 from rosprivacy.explorer.fleet_session import FleetSession
 from rosprivacy.settings import Settings
 from tests.helpers.fleet_files import MODELS, policy, write
-from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
     from collections.abc import Collection
@@ -41,12 +39,6 @@ def small(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     write("wall.yaml", "labels: 1\n")
     write("fleet.yaml", "fleet: 1\n" + MODELS + "groups: [{robots: 5, model: eye}]\n" + ACROSS)
     return tmp_path / "fleet.yaml"
-
-
-@pytest.fixture
-def hospital(tmp_path: Path) -> Path:
-    shutil.copytree(ROOT / "examples" / "fleet", tmp_path / "fleet")
-    return tmp_path / "fleet" / "fleet.yaml"
 
 
 def begun(fleet: Path) -> FleetSession:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import shutil
 from typing import TYPE_CHECKING
 
 import pytest
@@ -16,7 +15,6 @@ from rosprivacy.analysis.model import Element
 from rosprivacy.explorer.scenarios import WhatIf, together
 from rosprivacy.reading.fleet_system import answer_fleet
 from rosprivacy.settings import Settings
-from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -35,12 +33,6 @@ WILD = """\
 <topics subscribe="ALLOW"><topic>/*</topic></topics></profile></profiles></enclave>
 </enclaves></policy>
 """
-
-
-@pytest.fixture
-def hospital(tmp_path: Path) -> Path:
-    shutil.copytree(ROOT / "examples" / "fleet", tmp_path / "fleet")
-    return tmp_path / "fleet" / "fleet.yaml"
 
 
 def begun(file: Path) -> FleetSession:

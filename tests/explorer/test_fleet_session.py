@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import shutil
 from pathlib import Path
 from random import Random
 from typing import TYPE_CHECKING, Any
@@ -16,7 +15,6 @@ from rosprivacy.explorer.fleet_session import FleetSession
 from rosprivacy.explorer.saving import Conflict, Saved
 from rosprivacy.reading.fleet_system import answer_fleet
 from rosprivacy.settings import Settings
-from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
     from rosprivacy.result import Result
@@ -27,12 +25,6 @@ POLICY = """<policy version="0.2.0"><enclaves><enclave path="/r"><profiles>
 </profiles></enclave></enclaves></policy>
 """
 LABELS = "labels: 1\nnodes:\n  /camera: {source: [Video]}  # seen\n"
-
-
-@pytest.fixture
-def hospital(tmp_path: Path) -> Path:
-    shutil.copytree(ROOT / "examples" / "fleet", tmp_path / "fleet")
-    return tmp_path / "fleet" / "fleet.yaml"
 
 
 @pytest.fixture

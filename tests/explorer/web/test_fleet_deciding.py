@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -13,7 +12,6 @@ from rosprivacy.explorer.web import decided_robots
 from tests.helpers.explorers import Explorer, version
 from tests.helpers.fleet_files import policy, write
 from tests.helpers.full_disk import full_disk
-from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -26,12 +24,6 @@ if TYPE_CHECKING:
     Explore = Callable[..., Explorer]
 
 SIGNED = {"choice": "accept", "reason": "within the building", "owner": "A. Lee", "expires": "2999-12-31"}
-
-
-@pytest.fixture
-def hospital(tmp_path: Path) -> Path:
-    shutil.copytree(ROOT / "examples" / "fleet", tmp_path / "fleet")
-    return tmp_path / "fleet" / "fleet.yaml"
 
 
 @pytest.fixture

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from typing import TYPE_CHECKING
 
 import pytest
@@ -11,7 +10,6 @@ import rosprivacy
 from tests.helpers import browser as chrome
 from tests.helpers.browser import DESKTOP, PHONE
 from tests.helpers.page_reader import Reader, served
-from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -19,12 +17,6 @@ if TYPE_CHECKING:
     from selenium.webdriver.chrome.webdriver import WebDriver
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.usefixtures("quiet")]
-
-
-@pytest.fixture
-def hospital(tmp_path: Path) -> Path:
-    shutil.copytree(ROOT / "examples" / "fleet", tmp_path / "fleet")
-    return tmp_path / "fleet" / "fleet.yaml"
 
 
 def accepted(hospital: Path, decisions: Path) -> int:
