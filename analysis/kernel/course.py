@@ -17,7 +17,7 @@ Found = TypeVar("Found")
 class Course:
     """What was found of one way that data goes; made with each ``Spread``, and shared by those that are alike.
 
-    Whoever asks names in ``under`` all that it rests on beside what ``Spread.goes_like`` compares. That is compared by
+    Whoever asks names in ``under`` all that it rests on beside what ``Spread.otherwise`` compares. That is compared by
     value, so what is kept cannot grow old.
 
     Examples

@@ -6,20 +6,21 @@ search that came to none of them goes as it went.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.kernel.search import search
+from rosprivacy.analysis.kernel.spread import differing
 from rosprivacy.analysis.many_flows import parted
 
 if TYPE_CHECKING:
-    from collections.abc import Hashable, Iterator, Mapping
+    from collections.abc import Hashable, Mapping
+    from collections.abc import Set as AbstractSet
 
     from rosprivacy.analysis.kernel.search import Search
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.kernel.states import Net
 
     Key = tuple[int, int, Hashable]
-    Said = TypeVar("Said")
 
 ROOM = 20_000  # vertices to which the searches that are kept came in all: some 20 MB
 
@@ -40,7 +41,7 @@ class Searches:
         self._made = dict(made or {})
         self._room = room - sum(len(one.seen) for one in self._made.values())
 
-    def past(self, changed: set[int]) -> Searches:
+    def past(self, changed: AbstractSet[int]) -> Searches:
         """Return those that came to none of some vertices, with room for more."""
         return Searches(ROOM, {key: one for key, one in self._made.items() if _untouched(key[0], one, changed)})
 
@@ -84,52 +85,43 @@ def searches(spread: Spread, room: int = 0) -> Searches:
     return spread.own.kept("searches", None, lambda: Searches(room))
 
 
-def searches_after(before: Spread, now: Spread) -> None:
+def searches_after(before: Spread, now: Spread, changed: AbstractSet[int]) -> None:
     """Let the searches of an answer hold for the next one, where they came to nothing that is otherwise there.
 
+    Parameters
+    ----------
+    changed
+        Of ``Spread.otherwise``.
+
+    Examples
+    --------
     >>> from rosprivacy.analysis.example import CAMERA, factory
     >>> from rosprivacy.analysis.kernel.spreading import spread
     >>> from rosprivacy.analysis.kernel.states import Net
     >>> first, same = spread(*factory()), factory()
     >>> made = searches(first, ROOM).of(Net.of(first), CAMERA, first.all_bits, {}, None)
     >>> now = spread(first.graph, *same[1:])
-    >>> searches_after(first, now)
+    >>> searches_after(first, now, now.otherwise(first))
     >>> searches(now).of(Net.of(now), CAMERA, now.all_bits, {}, None) is made
     True
     """
-    changed = _otherwise(before, now)
-    left = Searches(ROOM) if changed is None else searches(before).past(changed)
+    left = searches(before).past(_met_otherwise(before, now, changed))
     now.own.kept("searches", None, lambda: left)
 
 
-def _untouched(source: int, made: Search, changed: set[int]) -> bool:
+def _untouched(source: int, made: Search, changed: AbstractSet[int]) -> bool:
     return source not in changed and not any(vertex in made.seen for vertex in changed)
 
 
-def _otherwise(before: Spread, now: Spread) -> set[int] | None:
-    """The vertices where something else happens to data than before; None where that cannot be said of single ones.
+def _met_otherwise(before: Spread, now: Spread, changed: AbstractSet[int]) -> set[int]:
+    """The vertices where something else happens to data than before, or searches are stopped otherwise.
 
     Where a channel takes up other data, it is its writers from which data goes on otherwise.
     """
-    if before.graph is not now.graph or before.categories != now.categories:
-        return None
-    if (before.flow_emits, before.flow_keeps) != (now.flow_emits, now.flow_keeps):
-        return None
-    kept = set(_differing(before.keeps, now.keeps, now.all_bits))
-    changed = {
-        *kept,
-        *_differing(before.emits, now.emits, 0),
-        *_differing(before.flow_begins, now.flow_begins, 0),
-        *_differing(before.leaks, now.leaks, 0),
-        *_differing(before.derives, now.derives, ()),
-    }
-    channels = {vertex for vertex in kept if now.graph.elements[vertex].is_channel}
+    met = {*changed, *differing(before.leaks, now.leaks, 0)}
+    channels = {vertex for vertex in changed if now.graph.elements[vertex].is_channel}
     if channels:
         own, meetings = parted(now.graph.flows, now.told_apart)
-        changed.update(flow.source for _, flow in own if flow.target in channels)
-        changed.update(vertex for one in meetings if not channels.isdisjoint(one.read) for vertex in one.written)
-    return changed
-
-
-def _differing(before: Mapping[int, Said], now: Mapping[int, Said], nothing: Said) -> Iterator[int]:
-    return (v for v in before.keys() | now.keys() if before.get(v, nothing) != now.get(v, nothing))
+        met.update(flow.source for _, flow in own if flow.target in channels)
+        met.update(vertex for one in meetings if not channels.isdisjoint(one.read) for vertex in one.written)
+    return met

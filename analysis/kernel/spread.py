@@ -4,19 +4,21 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from rosprivacy.analysis.kernel.bits import CategoryBits, bits_of
 from rosprivacy.analysis.kernel.course import Course
 from rosprivacy.analysis.many_flows import find
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.kernel.overruled import Overruled
     from rosprivacy.analysis.kernel.roles import Facts
     from rosprivacy.analysis.model import FlowGraph, Statement
+
+    Said = TypeVar("Said")
 
 
 @lru_cache(maxsize=1)  # what is said of single elements is asked for again and again
@@ -136,21 +138,23 @@ class Spread:
             flow_keeps={now[index]: bits for index, bits in self.flow_keeps.items() if index in now},
         )
 
-    def goes_like(self, other: Spread) -> bool:
-        """Whether labels let data go the same ways as in another spread: then the fixpoint is the same, too."""
-        same = self.graph is other.graph and self.categories == other.categories
-        return same and self._ways() == other._ways()
+    def otherwise(self, other: Spread) -> set[int] | None:
+        """Return the vertices at which labels let data go on otherwise than in another spread.
 
-    def _ways(self) -> tuple[Mapping[int, object], ...]:
-        """All that the fixpoint and searches rest on, but for the graph; what says nothing is left out."""
-        return (
-            {vertex: bits for vertex, bits in self.emits.items() if bits},
-            {vertex: bits for vertex, bits in self.keeps.items() if bits != self.all_bits},
-            {vertex: pairs for vertex, pairs in self.derives.items() if pairs},
-            self.flow_emits,
-            self.flow_keeps,
-            self.flow_begins,
-        )
+        It is all that the fixpoint and searches rest on, but for where searches are stopped; where none is, the
+        fixpoint is the same, too. None where it cannot be said of single vertices: of another graph, of other
+        categories, and where flows emit or keep something else.
+        """
+        if self.graph is not other.graph or self.categories != other.categories:
+            return None
+        if (self.flow_emits, self.flow_keeps) != (other.flow_emits, other.flow_keeps):
+            return None
+        return {
+            *differing(self.emits, other.emits, 0),
+            *differing(self.keeps, other.keeps, self.all_bits),
+            *differing(self.derives, other.derives, ()),
+            *differing(self.flow_begins, other.flow_begins, 0),
+        }
 
     @property
     def told_apart(self) -> set[int]:
@@ -199,3 +203,12 @@ class Spread:
         """The categories of some bits, as they are and pseudonymised."""
         plain, pseudonymised = self.bits.planes(bits)
         return self.names(plain), self.names(pseudonymised)
+
+
+def differing(one: Mapping[int, Said], other: Mapping[int, Said], nothing: Said) -> Iterator[int]:
+    """Yield where two mappings say something else; what is absent says ``nothing``.
+
+    >>> list(differing({1: 3, 2: 0}, {1: 2}, 0))
+    [1]
+    """
+    return (at for at in one.keys() | other.keys() if one.get(at, nothing) != other.get(at, nothing))

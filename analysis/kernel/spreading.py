@@ -48,10 +48,12 @@ def spread(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, before: Spread 
     (('FaceTemplate',), ('Video',))
     """
     result = meaning(graph, bound, hierarchy, emitted(bound.elements.values()), before=before)
+    changed = None if before is None else result.otherwise(before)
     if before is not None and before.graph is graph:
         result.shape = before.shape
-        searches_after(before, result)
-    if before is not None and result.goes_like(before):
+    if before is not None and changed is not None:
+        searches_after(before, result, changed)
+    if before is not None and changed == set():
         result.course = before.course
         result.arrives, result.leaves, result.sent = before.arrives, before.leaves, before.sent
     else:
