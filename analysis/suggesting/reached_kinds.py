@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
+from functools import cache
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -22,10 +22,12 @@ def reached_kinds(analysis: Analysis) -> dict[Identity, tuple[str, ...]]:
     >>> [kinds for (_, _, name), kinds in reached_kinds(analyse(*factory())).items() if name == "/faces"]
     [('FaceTemplate',)]
     """
-    found: dict[Identity, set[str]] = defaultdict(set)
+    joined = cache(lambda *some: tuple(sorted({kind for kinds in some for kind in kinds})))
+    found: dict[Identity, tuple[str, ...]] = {}
     for one in analysis.carried:
-        found[one.element.identity].update((*one.categories, *one.pseudonymised))
-    return {identity: tuple(sorted(kinds)) for identity, kinds in found.items()}
+        at = one.element.identity
+        found[at] = joined(found.get(at, ()), one.categories, one.pseudonymised)
+    return found
 
 
 def narrowed(kind: str, reached: Iterable[str], hierarchy: Hierarchy) -> frozenset[str]:

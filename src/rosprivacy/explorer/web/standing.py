@@ -5,11 +5,12 @@ In: a ``Session``. Out: elements by id, questions, suggestions, why data gets to
 
 from __future__ import annotations
 
-from functools import cache, cached_property
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.findings.why_carried import WhyCarried
 from rosprivacy.analysis.kernel.vertices import by_identity
+from rosprivacy.analysis.suggesting.reached_kinds import reached_kinds
 from rosprivacy.explorer.element_ids import by_id, element_id
 from rosprivacy.explorer.questions import questions
 from rosprivacy.mitigation import REPORTED, run_mitigation
@@ -106,8 +107,11 @@ class Standing:
     @cached_property
     def carried(self) -> Mapping[str, tuple[str, ...]]:
         """Id of an element -> kinds of data that are there, in whichever form."""
-        kept = self.analysis.spread.course.kept
-        return kept("page: carried", self.analysis.carried, lambda: _carried(self.analysis))
+
+        def find() -> dict[str, tuple[str, ...]]:
+            return {element_id(at): kinds for at, kinds in reached_kinds(self.analysis).items()}
+
+        return self.analysis.spread.course.kept("page: carried", self.analysis.carried, find)
 
     @cached_property
     def roles(self) -> Mapping[str, Mapping[str, tuple[str, ...]]]:
@@ -156,12 +160,3 @@ class Standing:
     def entry(self, element: Element, *, only_this_robot: bool = False) -> Any:
         """Return what the label file, with the edits, says of an element; None for nothing."""
         return self.session.said_of(element, only_this_robot=only_this_robot)
-
-
-def _carried(analysis: Analysis) -> dict[str, tuple[str, ...]]:
-    joined = cache(lambda *some: tuple(sorted({kind for kinds in some for kind in kinds})))
-    found: dict[str, tuple[str, ...]] = {}
-    for one in analysis.carried:
-        at = element_id(one.element.identity)
-        found[at] = joined(found.get(at, ()), one.categories, one.pseudonymised)
-    return found
