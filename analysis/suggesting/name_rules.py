@@ -62,6 +62,8 @@ class NameRules(NamedTuple):
         Words that say nothing by themselves, such as ``raw``.
     becomes
         Category -> the categories that nodes make of it, each with its rule.
+    tells
+        Category -> what a node may tell of persons that takes such data and need not hand them on, each with its rule.
     computed
         Categories that programs work out of other data, so that who writes them is seldom where they come from.
     not_by_type
@@ -104,6 +106,7 @@ class NameRules(NamedTuple):
     understood: frozenset[str] = frozenset()
     driving: frozenset[str] = frozenset()
     unprompted: Mapping[Phrase, NameRule] = MappingProxyType({})
+    tells: Mapping[str, Mapping[str, NameRule]] = MappingProxyType({})
 
 
 class Spoken(NamedTuple):

@@ -3,8 +3,8 @@
 In: a graph, who writes and reads what, rules about names. Out: evidence that such a node is a source. A node that
 writes velocities has them from somewhere. If it reads no topic and serves nothing, they come from a person (keys, a
 joystick, a page), or the program makes them up: so it is ``may``, and no agreement makes it surer. The same is true of
-a node that asks for a service or an action, or writes what can be anything, and of which nothing else says what it
-brings in: to say nothing of it would be to say that nothing comes in there.
+a node that asks for a service or an action, or writes what can be anything or what somebody wants (a goal), and of
+which nothing else says what it brings in: to say nothing of it would be to say that nothing comes in there.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.model import interface_of
 from rosprivacy.analysis.suggesting.carried_kinds import ANYTHING
 from rosprivacy.analysis.suggesting.evidence import DATA_FLOW, SOURCE, Evidence, Label
-from rosprivacy.analysis.suggesting.name_rules import has_word, of_node
+from rosprivacy.analysis.suggesting.name_rules import ends_with, has_word, of_node
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
@@ -84,6 +84,8 @@ def of_the_rest(
         element = graph.elements[vertex]
         if rule and element not in known and _is_told_nothing(vertex, graph, told, rules.names):
             free = next((one for one in written if _takes_anything(one, graph, bound, rules)), None)
+            if free is None:
+                free = next((one for one in written if ends_with(graph.elements[one].name, rules.names.wanted)), None)
             if free is not None:
                 does = "asks for" if graph.elements[free].leg else "writes"
                 yield from _brought_in(element, rule, f"{does} {graph.elements[free].name}, and reads no topic")

@@ -16,7 +16,7 @@ from rosprivacy.ingest.suggestions.rule_reader import RuleReader, read_each
 from rosprivacy.ingest.suggestions.rule_text import read_rule_text
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
     from rosprivacy.analysis.bounds import Bounds
     from rosprivacy.analysis.suggesting.name_rules import Phrase
@@ -26,21 +26,11 @@ if TYPE_CHECKING:
 NAMES = "rosprivacy:names"  # the shipped file
 UNPROMPTED = "unprompted"  # the section in which a rule may have no words
 WITH_KINDS, WITHOUT_KINDS = ("carries", "brings_in", UNPROMPTED), ("nothing", "lets_out")
-LISTS = (
-    "silent",
-    "neutral",
-    "computed",
-    "not_by_type",
-    "entered",
-    "wanted",
-    "commanding",
-    "reworked",
-    "reworking",
-    "simulated",
-    "understood",
-    "driving",
-)
-PARTS = ("name_rules", "version", *WITH_KINDS, *WITHOUT_KINDS, "becomes", *LISTS)
+PAIRS = ("becomes", "tells")  # sections that say of one kind what comes of it
+PHRASES = ("silent", "wanted")  # lists of words that follow each other
+WORDS = ("neutral", "commanding", "reworked", "reworking", "simulated", "understood", "driving")
+KINDS = ("computed", "not_by_type", "entered")
+PARTS = ("name_rules", "version", *WITH_KINDS, *WITHOUT_KINDS, *PAIRS, *PHRASES, *WORDS, *KINDS)
 OF_KINDS = ("kinds", "instead_of", "any_type")  # for rules that name kinds
 KEYS = ("words", "confidence", "why", "source", *OF_KINDS)
 SURE = (Confidence.LIKELY, Confidence.MAY)  # a name proves nothing, so no rule about one is certain
@@ -53,24 +43,20 @@ class NameFile:
     Attributes
     ----------
     sections
-        By section the rules of each phrase; of ``becomes``, by category and what is made of it.
+        By section the rules of each phrase.
+    pairs
+        By section the rules of each two categories.
+    phrases, words, kinds
+        By the name of the list.
     """
 
     file: str
     sha256: str
-    silent: frozenset[Phrase]
-    neutral: frozenset[str]
-    computed: frozenset[str]
-    not_by_type: frozenset[str]
-    entered: frozenset[str]
-    wanted: frozenset[Phrase]
-    commanding: frozenset[str]
-    reworked: frozenset[str]
-    reworking: frozenset[str]
-    simulated: frozenset[str]
-    understood: frozenset[str]
-    driving: frozenset[str]
-    sections: dict[str, dict[Phrase, NameRule]]
+    sections: Mapping[str, Mapping[Phrase, NameRule]]
+    pairs: Mapping[str, Mapping[tuple[str, str], NameRule]]
+    phrases: Mapping[str, frozenset[Phrase]]
+    words: Mapping[str, frozenset[str]]
+    kinds: Mapping[str, frozenset[str]]
 
 
 def read_name_rules(
@@ -91,36 +77,52 @@ def read_name_rules(
     (('LaserScan',), True)
     """
     read = read_each((NAMES, *files), lambda file: _read(file, vocabulary, bounds))
-    joined = {
-        name: {phrase: rule for one in read for phrase, rule in one.sections[name].items()}
-        for name in (*WITH_KINDS, *WITHOUT_KINDS)
-    }
-    becomes: dict[str, dict[str, NameRule]] = {}
-    for one in read:
-        for (source, made), rule in one.sections["becomes"].items():
-            becomes.setdefault(source, {})[made] = rule
+
+    def section(name: str) -> dict[Phrase, NameRule]:
+        return {phrase: rule for one in read for phrase, rule in one.sections[name].items()}
+
+    def words_of(name: str) -> frozenset[str]:
+        return frozenset(word for one in read for word in one.words[name])
+
+    def kinds_of(name: str) -> frozenset[str]:
+        return frozenset(kind for one in read for kind in one.kinds[name])
+
     rules = NameRules(
-        **joined,
+        carries=section("carries"),
+        nothing=section("nothing"),
+        brings_in=section("brings_in"),
+        lets_out=section("lets_out"),
+        unprompted=section(UNPROMPTED),
+        becomes=_by_first(one.pairs["becomes"] for one in read),
+        tells=_by_first(one.pairs["tells"] for one in read),
         silent=_silent(read),
-        neutral=frozenset().union(*(one.neutral for one in read)),
-        becomes=becomes,
-        computed=frozenset().union(*(one.computed for one in read)),
-        not_by_type=frozenset().union(*(one.not_by_type for one in read)),
-        entered=frozenset().union(*(one.entered for one in read)),
-        wanted=frozenset().union(*(one.wanted for one in read)),
-        commanding=frozenset().union(*(one.commanding for one in read)),
-        reworked=frozenset().union(*(one.reworked for one in read)),
-        reworking=frozenset().union(*(one.reworking for one in read)),
-        simulated=frozenset().union(*(one.simulated for one in read)),
-        understood=frozenset().union(*(one.understood for one in read)),
-        driving=frozenset().union(*(one.driving for one in read)),
+        wanted=frozenset(phrase for one in read for phrase in one.phrases["wanted"]),
+        neutral=words_of("neutral"),
+        commanding=words_of("commanding"),
+        reworked=words_of("reworked"),
+        reworking=words_of("reworking"),
+        simulated=words_of("simulated"),
+        understood=words_of("understood"),
+        driving=words_of("driving"),
+        computed=kinds_of("computed"),
+        not_by_type=kinds_of("not_by_type"),
+        entered=kinds_of("entered"),
     )
     return rules, tuple((one.file, one.sha256) for one in read)
 
 
+def _by_first(files: Iterable[Mapping[tuple[str, str], NameRule]]) -> dict[str, dict[str, NameRule]]:
+    """The rules of pairs of all files, by the first kind and the second; the last file counts."""
+    joined: dict[str, dict[str, NameRule]] = {}
+    for pairs in files:
+        for (first, second), rule in pairs.items():
+            joined.setdefault(first, {})[second] = rule
+    return joined
+
+
 def _silent(read: list[NameFile]) -> frozenset[Phrase]:
     """The phrases of all files, but for those of which a user's file says what they carry."""
-    every = frozenset(phrase for one in read for phrase in one.silent)
+    every = frozenset(phrase for one in read for phrase in one.phrases["silent"])
     return every - {phrase for one in read[1:] for phrase in one.sections["carries"]}
 
 
@@ -138,8 +140,9 @@ class _Reader(RuleReader):
     """One file."""
 
     sections: dict[str, dict[Phrase, NameRule]] = field(
-        default_factory=lambda: {name: {} for name in (*WITH_KINDS, *WITHOUT_KINDS, "becomes")}
+        default_factory=lambda: {name: {} for name in (*WITH_KINDS, *WITHOUT_KINDS)}
     )
+    pairs: dict[str, dict[tuple[str, str], NameRule]] = field(default_factory=lambda: {name: {} for name in PAIRS})
 
     def document(self, top: Value, digest: str) -> NameFile:
         said: dict[str, Value] = {}
@@ -151,24 +154,17 @@ class _Reader(RuleReader):
         for section in (*WITH_KINDS, *WITHOUT_KINDS):
             for item in self.items(said, section):
                 self._rule(section, item)
-        for item in self.items(said, "becomes"):
-            self._becomes(item)
+        for section in PAIRS:
+            for item in self.items(said, section):
+                self._pair(section, item)
         return NameFile(
             self.file,
             digest,
-            silent=self._phrases(said, "silent"),
-            neutral=self._words(said, "neutral"),
-            computed=frozenset(self.kinds(said, "computed")),
-            not_by_type=frozenset(self.kinds(said, "not_by_type")),
-            entered=frozenset(self.kinds(said, "entered")),
-            wanted=self._phrases(said, "wanted"),
-            commanding=self._words(said, "commanding"),
-            reworked=self._words(said, "reworked"),
-            reworking=self._words(said, "reworking"),
-            simulated=self._words(said, "simulated"),
-            understood=self._words(said, "understood"),
-            driving=self._words(said, "driving"),
-            sections=self.sections,
+            self.sections,
+            self.pairs,
+            phrases={name: self._phrases(said, name) for name in PHRASES},
+            words={name: self._words(said, name) for name in WORDS},
+            kinds={name: frozenset(self.kinds(said, name)) for name in KINDS},
         )
 
     def _phrases(self, said: dict[str, Value], key: str) -> frozenset[Phrase]:
@@ -200,13 +196,14 @@ class _Reader(RuleReader):
             elif phrase:
                 known[phrase] = rule
 
-    def _becomes(self, item: Value) -> None:
+    def _pair(self, section: str, item: Value) -> None:
         said = self.rule(item, ("from", "to", "confidence", "why", "source"), ("from", "to", "why"))
         confidence, why = self._confidence(said), said["why"].text if "why" in said else ""
-        source = self.kind(said["from"]) if "from" in said else ""
-        for made in self.kinds(said, "to"):
-            if source:
-                self.sections["becomes"][source, made] = NameRule((made,), confidence, why, Place(self.file, item.line))
+        first = self.kind(said["from"]) if "from" in said else ""
+        for second in self.kinds(said, "to"):
+            if first:
+                rule = NameRule((second,), confidence, why, Place(self.file, item.line))
+                self.pairs[section][first, second] = rule
 
     def _phrase(self, item: Value) -> Phrase:
         phrase = words(item.text) if item.kind == "text" else ()
