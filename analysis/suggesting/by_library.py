@@ -28,6 +28,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import Confidence
+from rosprivacy.analysis.suggesting.carried_kinds import ANYTHING
 from rosprivacy.analysis.suggesting.entered_data import entered, ordered, orders_of
 from rosprivacy.analysis.suggesting.evidence import LEAK, SOURCE
 from rosprivacy.analysis.suggesting.library_node import LibraryNode, Spoken
@@ -94,7 +95,7 @@ def library_evidence(
         )
         if written or let_out:
             yield from _brought_in(node, brought, made)
-            yield from _telling(node, brought)
+            yield from _telling(node, brought, made)
             yield from entered(node, brought)
             yield from ordered(node, brought, [one for one in orders if one in near], orders)
             yield from made_kinds(node, made, brought)
@@ -146,20 +147,24 @@ def _is_made_of(node: LibraryNode, kind: str, made: Iterable[Spoken]) -> bool:
     return any(not node.cannot_write(other) for one in of_it for other in one.rule.to)
 
 
-def _telling(node: LibraryNode, brought: Sequence[Spoken]) -> Iterator[Evidence]:
-    """Yield what the node may tell of persons by what it writes of data that it takes.
+def _telling(node: LibraryNode, brought: Sequence[Spoken], made: Sequence[Spoken]) -> Iterator[Evidence]:
+    """Yield what the node may tell of persons by what it writes of data that it takes or makes, and does not read.
 
-    Not where it reads such data, too, and where it writes them itself, only if it also writes what can be anything.
+    Where it writes the data themselves, only if it also writes what can be anything; of what it makes, only if it reads
+    nothing that it can be made of.
     """
     for first, tells in node.rules.names.tells.items() if node.written else ():
         taken = next((one for one in brought if node.related(first, one.rule.kinds)), None)
-        if taken is None or node.related(first, node.into):
+        makes = next((one for one in made if first in one.rule.to), None)
+        said = taken or makes
+        if said is None or node.related(first, node.into):
             continue
         if node.related(first, node.by_type) and not node.writes_anything():
             continue
         for kind, rule in tells.items():
-            said = taken.evidence(node.label(SOURCE, kind), Confidence.MAY, f"; {rule.why}")
-            yield said._replace(alone=True)
+            if taken or not (ANYTHING in node.into or node.related(kind, node.into)):
+                told = said.evidence(node.label(SOURCE, kind), Confidence.MAY, f"; {rule.why}")
+                yield told._replace(alone=True)
 
 
 def _let_out(node: LibraryNode, let_out: Sequence[Spoken], brought: Sequence[Spoken]) -> Iterator[Evidence]:

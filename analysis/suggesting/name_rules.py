@@ -84,6 +84,8 @@ class NameRules(NamedTuple):
         Words: a node with one of them in its name talks with its own device.
     unprompted
         Of topics: what a node brings in that writes one, and reads none.
+    broadened
+        Categories that are asked about wherever a narrower one is.
     understood
         Words: a topic with one of them carries what somebody wants, where its writer reads what somebody said.
     """
@@ -107,6 +109,7 @@ class NameRules(NamedTuple):
     driving: frozenset[str] = frozenset()
     unprompted: Mapping[Phrase, NameRule] = MappingProxyType({})
     tells: Mapping[str, Mapping[str, NameRule]] = MappingProxyType({})
+    broadened: frozenset[str] = frozenset()
 
 
 class Spoken(NamedTuple):

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.model import interface_of
 from rosprivacy.analysis.suggesting.carried_kinds import ANYTHING
 from rosprivacy.analysis.suggesting.evidence import DATA_FLOW, SOURCE, Evidence, Label
-from rosprivacy.analysis.suggesting.name_rules import ends_with, has_word, of_node
+from rosprivacy.analysis.suggesting.name_rules import ends_with, of_node
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
@@ -38,7 +38,7 @@ def unprompted(graph: FlowGraph, told: Traffic, names: NameRules) -> Iterator[Ev
     """
     for vertex, written in told.writes.items() if names.unprompted else ():
         element = graph.elements[vertex]
-        if not _is_told_nothing(vertex, graph, told, names):
+        if not _is_told_nothing(vertex, graph, told):
             continue
         topics = (graph.elements[one] for one in written if graph.elements[one].kind == "topic")
         for topic in topics:
@@ -82,7 +82,7 @@ def of_the_rest(
     rule = rules.names.unprompted.get(())
     for vertex, written in told.writes.items() if rule else ():
         element = graph.elements[vertex]
-        if rule and element not in known and _is_told_nothing(vertex, graph, told, rules.names):
+        if rule and element not in known and _is_told_nothing(vertex, graph, told):
             free = next((one for one in written if _takes_anything(one, graph, bound, rules)), None)
             if free is None:
                 free = next((one for one in written if ends_with(graph.elements[one].name, rules.names.wanted)), None)
@@ -91,11 +91,8 @@ def of_the_rest(
                 yield from _brought_in(element, rule, f"{does} {graph.elements[free].name}, and reads no topic")
 
 
-def _is_told_nothing(vertex: int, graph: FlowGraph, told: Traffic, names: NameRules) -> bool:
-    for one in told.reads.get(vertex, ()):
-        if graph.elements[one].leg in ("", "request"):
-            return False
-    return not has_word(graph.elements[vertex].name, names.simulated)
+def _is_told_nothing(vertex: int, graph: FlowGraph, told: Traffic) -> bool:
+    return all(graph.elements[one].leg not in ("", "request") for one in told.reads.get(vertex, ()))
 
 
 def _takes_anything(channel: int, graph: FlowGraph, bound: Bound, rules: Rules) -> bool:

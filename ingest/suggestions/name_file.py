@@ -29,7 +29,7 @@ WITH_KINDS, WITHOUT_KINDS = ("carries", "brings_in", UNPROMPTED), ("nothing", "l
 PAIRS = ("becomes", "tells")  # sections that say of one kind what comes of it
 PHRASES = ("silent", "wanted")  # lists of words that follow each other
 WORDS = ("neutral", "commanding", "reworked", "reworking", "simulated", "understood", "driving")
-KINDS = ("computed", "not_by_type", "entered")
+KINDS = ("computed", "not_by_type", "entered", "broadened")
 PARTS = ("name_rules", "version", *WITH_KINDS, *WITHOUT_KINDS, *PAIRS, *PHRASES, *WORDS, *KINDS)
 OF_KINDS = ("kinds", "instead_of", "any_type")  # for rules that name kinds
 KEYS = ("words", "confidence", "why", "source", *OF_KINDS)
@@ -107,6 +107,7 @@ def read_name_rules(
         computed=kinds_of("computed"),
         not_by_type=kinds_of("not_by_type"),
         entered=kinds_of("entered"),
+        broadened=kinds_of("broadened"),
     )
     return rules, tuple((one.file, one.sha256) for one in read)
 

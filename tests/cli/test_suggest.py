@@ -152,7 +152,7 @@ def test_who_asks_for_a_place_is_no_source_of_it(cli: Cli, tmp_path: Path) -> No
         ("camera", "image_annotated", IMAGE, ["Video may"]),  # made of another picture
         ("person_detector", "image", IMAGE, ["Video may"]),  # of what others film
         ("camera", "image_ground_truth", IMAGE, ["Video may"]),  # only who simulates knows it
-        ("mic_listener", "voice_text", STRING, ["SpeechTranscript may"]),  # the sound stays in it
+        ("mic_listener", "voice_text", STRING, ["CommunicationContent may", "SpeechTranscript may"]),  # no Voice
         ("n", "cmd_audio", "a/msg/Notes", ["OperatorInput may"]),  # it is to play: no Voice
         ("n", "debug_image", IMAGE, ["Video may"]),
         ("n", "map", "nav_msgs/msg/OccupancyGrid", ["HomeMap may"]),  # worked out of other data

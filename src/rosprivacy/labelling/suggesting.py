@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.findings.review_order import Behind
 from rosprivacy.analysis.model import Diagnostic, Severity
+from rosprivacy.analysis.suggesting.broader_sources import broader_sources
 from rosprivacy.analysis.suggesting.by_library import library_evidence
 from rosprivacy.analysis.suggesting.by_package import package_evidence
 from rosprivacy.analysis.suggesting.by_package_types import by_package_types
@@ -323,6 +324,7 @@ def lasting_evidence(
         *library_evidence(graph, bound, told, clues, uses, rules, libraries),
     ]
     yield from found
+    yield from broader_sources(found, rules)
     sources = {one.label.element for one in found if one.label.role == SOURCE}
     yield from of_the_rest(graph, bound, told, rules, sources)
     yield from of_channels(graph, clues)

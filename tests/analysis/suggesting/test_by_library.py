@@ -179,6 +179,11 @@ def test_pictures_that_are_written_beside_a_text_may_tell_of_persons_there() -> 
     assert not {"Location", "Behaviour"} & of_node("n", "image", CAMERA, writes="Image").keys()
 
 
+def test_where_a_model_is_asked_and_no_text_is_read_somebody_may_have_said_it() -> None:
+    assert of_node("n", "w", "openai.OpenAI()", writes="Twist")["CommunicationContent"] == "may"
+    assert "source CommunicationContent may" not in said("Twist", "String", "openai.OpenAI()")
+
+
 def test_what_reads_ros_by_itself_makes_no_source() -> None:
     """A listener of transforms reads /tf: a place that is made of them was not brought in."""
     looked_up = "tf2_ros.Buffer().lookup_transform('map', 'base', t)"
@@ -269,7 +274,7 @@ def entered(service: str, call: str, server: str = "m") -> set[str]:
     ("service", "call", "kinds"),
     [
         ("order_srv", "input('?')", {"OperatorInput", "DeliveryOrder"}),
-        ("llm/chat", "tkinter.Entry()", {"OperatorInput", "ConversationWithModel"}),
+        ("llm/chat", "tkinter.Entry()", {"OperatorInput", "ConversationWithModel", "CommunicationContent"}),
         ("save_map", "input('?')", {"OperatorInput"}),  # nobody enters a map
         ("order_srv", "os.getcwd()", {"OperatorInput"}),  # its code does not say that anybody acts on it
     ],

@@ -18,7 +18,7 @@ from tests.helpers.fleet_files import policy
         ("/n>/base/cmd_vel", True),
         ("/n>/cmd_vel</scan", False),  # it may make them of that
         ("/n>/chatter", False),
-        ("/fake_n>/cmd_vel", False),  # it simulates
+        ("/demo>/cmd_vel", True),  # somebody may act on a demonstration, too
     ],
 )
 def test_velocities_come_from_somewhere(
@@ -43,7 +43,7 @@ def test_velocities_come_from_somewhere(
         ("/n>/w", "", False),  # nobody knows what it is
         ("/n>/w</scan", "std_msgs/msg/String", False),  # it may be made of that
         ("/camera>/w", "std_msgs/msg/String", False),  # something else says what it brings in
-        ("/mock_n>/w", "std_msgs/msg/String", False),  # it simulates
+        ("/test_n>/w", "std_msgs/msg/String", True),  # somebody starts a test
     ],
 )
 def test_a_node_that_is_told_nothing_and_of_which_nothing_is_known_is_asked_about(

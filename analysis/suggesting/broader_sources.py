@@ -1,0 +1,33 @@
+"""Sources of a broader kind, where what is known names one narrower kind, and persons often another one.
+
+In: evidence, rules about names. Out: evidence of the broader kinds that ``NameRules.broadened`` lists. A node that is
+called after a transcript often writes a command; one that knows persons by a number often knows their names. So the
+broader kind is asked about, too: ``may``.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.model import Confidence
+from rosprivacy.analysis.suggesting.evidence import DATA_FLOW, SOURCE
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from rosprivacy.analysis.suggesting.carried_kinds import Rules
+    from rosprivacy.analysis.suggesting.evidence import Evidence, Label
+
+
+def broader_sources(said: Iterable[Evidence], rules: Rules) -> Iterator[Evidence]:
+    """Yield that a node may be a source of a broader kind, for each that is said to be one of a narrower kind."""
+    said = [one for one in said if one.label.role == SOURCE]
+    known = {one.label for one in said}
+    yielded: set[Label] = set()
+    for one in said:
+        for kind in sorted(rules.names.broadened & rules.hierarchy.ancestors[one.label.kind].keys()):
+            label = one.label._replace(kind=kind)
+            if label not in known and label not in yielded:
+                yielded.add(label)
+                reason = f"{one.reason}; it may also be of another sort of {kind}"
+                yield one._replace(label=label, ground=DATA_FLOW, confidence=Confidence.MAY, reason=reason)
