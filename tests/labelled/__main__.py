@@ -51,6 +51,7 @@ def main() -> None:
             print(f"\n{look.name}")
             for title, shares in (("precision", result.precision), ("recall", result.recall)):
                 print(f"  {title}: " + "; ".join(f"{name} {_shown(share)}" for name, share in shares.items()))
+            print(f"  sources by that kind or a narrower one: {_shown(result.by_that_kind)}")
             print(f"  sources of nodes of which any source is suggested: {_shown(result.asked_about)}")
             print(f"  missed of nodes of which nothing is suggested: {_shown(result.unseen)}")
             if "--wrong" in sys.argv:

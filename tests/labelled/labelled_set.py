@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 HERE = Path(__file__).parent
 # KINDS: what the protocol lets a reader say.
 READERS = ("reader_a", "reader_b")
-TUNED = (1, 2, 3, 4, 5, 6, 7, 8)  # batches that rules may be tuned on, whole; each was measured once before
+TUNED = (1, 2, 3, 4, 5, 6, 7, 8, 9)  # batches that rules may be tuned on, whole; each was measured once before
 HALVED = (1, 2)  # of these, those that were split by hash before
 SOURCE, DERIVES, LEAK = "source", "derives", "leak"
 KINDS = frozenset([

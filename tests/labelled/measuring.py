@@ -93,6 +93,9 @@ class Measured(NamedTuple):
         By confidence: what no reader says.
     missed
         What both readers say and nothing suggests.
+    by_that_kind
+        Of the sources that both readers name: how many are suggested by that kind, or by a narrower one. Recall also
+        counts those that are suggested by a broader one, as the protocol has it.
     asked_about
         Of the sources that both readers name: how many are of nodes of which any source is suggested, so that a person
         looks at the node, whatever kind is suggested.
@@ -105,6 +108,7 @@ class Measured(NamedTuple):
     recall: Mapping[str, Share]
     wrong: Mapping[str, Sequence[Pair]]
     missed: Sequence[Pair]
+    by_that_kind: Share
     asked_about: Share
     unseen: Share
 
@@ -112,7 +116,8 @@ class Measured(NamedTuple):
 def measured(some: Iterable[System], look: Look, folder: Path) -> Measured:
     """Hold what is suggested for some systems against the readers."""
     some = tuple(some)
-    overlaps = load().hierarchy.overlaps
+    hierarchy = load().hierarchy
+    overlaps = hierarchy.overlaps
     truth = judged(some, overlaps)
     asked = {pair: confidence for system in some for pair, confidence in suggested(system, look, folder).items()}
     precision, wrong = {}, {}
@@ -124,12 +129,14 @@ def measured(some: Iterable[System], look: Look, folder: Path) -> Measured:
         known = [pair for pair in truth.agreed if pair.role == role]
         recall[role] = Share(sum(met(pair, asked, overlaps) for pair in known), len(known))
     missed = sorted(pair for pair in truth.agreed if not met(pair, asked, overlaps))
-    sources = [pair[:2] for pair in truth.agreed if pair.role == SOURCE]
+    sources = [pair for pair in truth.agreed if pair.role == SOURCE]
+    within = {pair._replace(kind=kind) for pair in asked for kind in (pair.kind and hierarchy.ancestors[pair.kind])}
+    by_that_kind = Share(sum(pair in within for pair in sources), len(sources))
     looked_at = {pair[:2] for pair in asked if pair.role == SOURCE}
-    asked_about = Share(sum(node in looked_at for node in sources), len(sources))
+    asked_about = Share(sum(pair[:2] in looked_at for pair in sources), len(sources))
     told_of = {pair[:2] for pair in asked}
     unseen = Share(sum(pair[:2] not in told_of for pair in missed), len(missed))
-    return Measured(precision, recall, wrong, missed, asked_about, unseen)
+    return Measured(precision, recall, wrong, missed, by_that_kind, asked_about, unseen)
 
 
 def table(some: Sequence[System], folder: Path) -> str:
@@ -137,7 +144,8 @@ def table(some: Sequence[System], folder: Path) -> str:
     rows = []
     for look in LOOKS:
         found = measured(some, look, folder)
-        shares = [*(found.precision[name] for name in ("likely", "may")), found.recall[SOURCE], found.asked_about]
+        shares = [*(found.precision[name] for name in ("likely", "may")), found.recall[SOURCE]]
+        shares += [found.by_that_kind, found.asked_about]
         shares += [found.recall[role] for role in (DERIVES, LEAK)]
         rows.append(f"| {look.name} | {' | '.join(f'{share.part} of {share.of}' for share in shares)} |\n")
     return "".join(rows)

@@ -92,13 +92,13 @@ def test_what_is_missed_is_agreed_and_not_suggested(tmp_path: Path) -> None:
     assert len(found.missed) == sum(share.of - share.part for share in found.recall.values()) == found.unseen.of > 0
 
 
-def test_a_source_is_asked_about_if_any_source_is_suggested_of_its_node(tmp_path: Path) -> None:
-    """So every source that is found is asked about, too."""
+def test_a_source_that_is_found_is_asked_about_and_one_of_that_kind_is_found(tmp_path: Path) -> None:
+    """A broader kind finds it, any kind asks about it."""
     for one in systems()[0][:5]:
         found = measured([one], LOOKS[0], tmp_path)
-        assert (
-            found.recall["source"].part <= found.asked_about.part <= found.asked_about.of == found.recall["source"].of
-        )
+        shares = [found.by_that_kind, found.recall["source"], found.asked_about]
+        assert sorted(share.part for share in shares) == [share.part for share in shares]
+        assert {share.of for share in shares} == {found.asked_about.of}
 
 
 def test_what_is_disputed_counts_neither_way() -> None:
