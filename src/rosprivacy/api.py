@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.modes import Article9Level, View
     from rosprivacy.explorer.fleet_session import FleetSession
     from rosprivacy.explorer.session import Session
-    from rosprivacy.labelling.suggesting import Suggested
+    from rosprivacy.labelling.suggested_labels import Suggested
     from rosprivacy.result import Result
 
 Path: TypeAlias = str | PathLike[str]
@@ -284,17 +284,11 @@ def suggest(
     >>> one.label.element.name, one.label.role, one.label.kind, str(one.confidence)
     ('/camera', 'source', 'DepthImage', 'may')
     """
-    from rosprivacy.labelling.suggesting import suggest_labels  # noqa: PLC0415 - light start
+    from rosprivacy.labelling.knowledge import UserFiles  # noqa: PLC0415 - light start
+    from rosprivacy.labelling.suggesting import suggest_labels  # noqa: PLC0415
 
-    return suggest_labels(
-        _paths(policies),
-        _labels(labels),
-        settings or Settings(),
-        _paths(rules),
-        _paths(packages),
-        _paths(sources),
-        _paths(libraries),
-    )
+    files = UserFiles(_paths(rules), _paths(packages), _paths(sources), _paths(libraries))
+    return suggest_labels(_paths(policies), _labels(labels), settings or Settings(), files)
 
 
 def suggest_fleet(
@@ -331,11 +325,12 @@ def suggest_fleet(
     >>> sorted({one.label.element.robot for one in suggest_fleet("examples/fleet/fleet.yaml").proposals})
     ['carrier_01', 'carrier_lent', 'cleaner_1', 'guide_01']
     """
-    from rosprivacy.labelling.suggesting import suggested  # noqa: PLC0415 - light start
+    from rosprivacy.labelling.knowledge import UserFiles  # noqa: PLC0415 - light start
+    from rosprivacy.labelling.suggesting import suggested  # noqa: PLC0415
 
     settings = settings or Settings()
-    result = answer_fleet(fspath(file), settings)
-    return suggested(result, settings, _paths(rules), _paths(packages), _paths(sources), _paths(libraries))
+    files = UserFiles(_paths(rules), _paths(packages), _paths(sources), _paths(libraries))
+    return suggested(answer_fleet(fspath(file), settings), settings, files)
 
 
 @overload

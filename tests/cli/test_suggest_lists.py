@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from rosprivacy.analysis.suggesting.question_rows import Question
-    from rosprivacy.labelling.suggesting import Suggested
+    from rosprivacy.labelling.suggested_labels import Suggested
     from tests.helpers.command import Cli, Done
     from tests.helpers.little_robots import Nodes
 

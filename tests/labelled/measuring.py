@@ -22,7 +22,8 @@ from rosprivacy.ingest.suggestions.library_file import read_library_rules
 from rosprivacy.ingest.suggestions.name_file import read_name_rules
 from rosprivacy.ingest.types import TABLE
 from rosprivacy.ingest.types.type_table import read_table
-from rosprivacy.labelling.suggesting import evidence
+from rosprivacy.labelling.gathering import evidence
+from rosprivacy.labelling.knowledge import Known
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.reading.robot_system import answer_robot
 from rosprivacy.settings import Settings
@@ -164,7 +165,7 @@ def suggested(system: System, look: Look, folder: Path) -> Mapping[Pair, Confide
     packages = read_packages((), vocabulary, bounds) if look.packages else ()
     libraries = read_library_rules((), vocabulary, bounds)[0]
     uses = uses_of(system, result.analysis.graph.elements) if look.code else {}
-    made = proposals(evidence(result.analysis, result.bound, rules, packages, uses, libraries))
+    made = proposals(evidence(result.analysis, result.bound, Known(rules, tuple(packages), libraries, ()), uses))
     asked = unsaid(made, result.analysis.graph, result.bound, vocabulary.hierarchy)
     found: dict[Pair, Confidence] = {}
     for one in asked:

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.suggesting.question_rows import Question
     from rosprivacy.analysis.suggesting.written import WrittenLabel
-    from rosprivacy.labelling.suggesting import Suggested
+    from rosprivacy.labelling.suggested_labels import Suggested
     from rosprivacy.settings import Settings
 
 DIGITS, MOST_DIGITS, ENTER = frozenset("0123456789"), 4, ("\r", "\n", "\r\n")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, NamedTuple
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -27,17 +27,9 @@ from rosprivacy.cli.output import emit
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from rosprivacy.labelling.suggesting import Suggested
+    from rosprivacy.labelling.knowledge import UserFiles
+    from rosprivacy.labelling.suggested_labels import Suggested
     from rosprivacy.result import Result
-
-
-class Sources(NamedTuple):
-    """What users add: rules, packages, source code, rules about libraries."""
-
-    rules: tuple[str, ...]
-    packages: tuple[str, ...]
-    source: tuple[str, ...]
-    libraries: tuple[str, ...]
 
 
 @reads_system("all kinds, types and findings", without=("no_type_limits", "categories", "decisions"))
@@ -113,6 +105,7 @@ def suggest(
 
     Nothing is applied, in a database neither. 'rosprivacy labels --accept' makes labels of those that a person accepts.
     """
+    from rosprivacy.labelling.knowledge import UserFiles
     from rosprivacy.labelling.suggesting import suggested
 
     options = ModelOptions(
@@ -128,26 +121,17 @@ def suggest(
     if into:
         refuse("--into", "the label file of one robot (what you accept of a fleet's, write into its own)", stored)
     labels = _with_own(tuple(inputs.labels or ()), into)
+    files = UserFiles(rules or (), packages or (), source or (), libraries or ())
     if ask and into:
-        known = Sources(tuple(rules or ()), tuple(packages or ()), tuple(source or ()), tuple(libraries or ()))
-        _ask(into, inputs, known, by)
+        _ask(into, inputs, files, by)
         return
     if dry_run:
-        emit(_would_be_sent(inputs, labels, source or (), options), output)
+        emit(_would_be_sent(inputs, labels, files.sources, options), output)
         return
     with options.interview(output) as interview:
 
         def told() -> Suggested:
-            result = _result(inputs._replace(labels=list(labels)))
-            return suggested(
-                result,
-                inputs.settings,
-                rules=rules or (),
-                packages=packages or (),
-                sources=source or (),
-                libraries=libraries or (),
-                interview=interview,
-            )
+            return suggested(_result(inputs._replace(labels=list(labels))), inputs.settings, files, interview)
 
         if into:
             _write(into, told)
@@ -210,13 +194,13 @@ def _write(file: Path, told: Callable[[], Suggested]) -> None:
     typer.echo(f"{file}: {counted(written.added, 'suggestion')}, as comments", err=True)
 
 
-def _ask(file: Path, inputs: Inputs, known: Sources, by: str | None) -> None:
+def _ask(file: Path, inputs: Inputs, files: UserFiles, by: str | None) -> None:
     """Questions until nothing is left to ask; each answer is in the file before the next one is asked."""
     from rosprivacy.cli.dialogue import ask
     from rosprivacy.labelling.suggesting import suggest_labels
 
     def told() -> Suggested:
         labels = _with_own(tuple(inputs.labels or ()), file)
-        return suggest_labels(inputs.named, labels, inputs.settings, *known)
+        return suggest_labels(inputs.named, labels, inputs.settings, files)
 
     ask(file, told, by, inputs.settings)

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rosprivacy.analysis.suggesting.question_rows import Question
-    from rosprivacy.labelling.suggesting import Suggested
+    from rosprivacy.labelling.suggested_labels import Suggested
     from rosprivacy.settings import Settings
 
 

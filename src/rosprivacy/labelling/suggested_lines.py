@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from rosprivacy.ingest.labels.label_file import Labels
-    from rosprivacy.labelling.suggesting import Suggested
+    from rosprivacy.labelling.suggested_labels import Suggested
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.result import Result
     from rosprivacy.settings import Settings

@@ -1,164 +1,61 @@
 """Policies, label files and observed types -> proposals of labels, in the order in which a person reviews them.
 
-In: names of files. Out: ``Suggested``. Every provider of evidence is asked here; none of them labels anything.
+In: names of files. Out: ``Suggested``. What no person has said yet is asked, the surest reasons first.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import chain
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.findings.review_order import Behind
 from rosprivacy.analysis.model import Diagnostic, Severity
-from rosprivacy.analysis.suggesting.broader_sources import broader_sources
-from rosprivacy.analysis.suggesting.by_library import library_evidence
-from rosprivacy.analysis.suggesting.by_package import package_evidence
-from rosprivacy.analysis.suggesting.by_package_types import by_package_types
-from rosprivacy.analysis.suggesting.carried_kinds import Rules, carried_kinds
 from rosprivacy.analysis.suggesting.evidence import LEAK, SOURCE, TYPE
-from rosprivacy.analysis.suggesting.library_rules import NO_LIBRARIES
-from rosprivacy.analysis.suggesting.nodes import of_nodes
-from rosprivacy.analysis.suggesting.open_elements import of_channels, of_open
 from rosprivacy.analysis.suggesting.outdated_reasons import outdated_reasons
 from rosprivacy.analysis.suggesting.reached_kinds import reached_kinds
-from rosprivacy.analysis.suggesting.traffic import traffic
-from rosprivacy.analysis.suggesting.unprompted import of_the_rest, unprompted
 from rosprivacy.analysis.suggesting.unsaid import unsaid
 from rosprivacy.analysis.suggesting.weighing import closes_finding, proposals
-from rosprivacy.analysis.text import counted
-from rosprivacy.ingest.packages.package_folders import read_packages, replacements, rests_on
-from rosprivacy.ingest.suggestions.library_file import read_library_rules
-from rosprivacy.ingest.suggestions.name_file import read_name_rules
-from rosprivacy.ingest.types import TABLE
-from rosprivacy.ingest.types.type_table import read_table
+from rosprivacy.ingest.packages.package_folders import replacements
 from rosprivacy.labelling.basis import NO_CODE, Basis
+from rosprivacy.labelling.gathering import evidence
+from rosprivacy.labelling.knowledge import NO_FILES, what_is_known
 from rosprivacy.labelling.refused import refused_in
+from rosprivacy.labelling.suggested_labels import Suggested
 from rosprivacy.reading.robot_system import answer_robot
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.answer import Analysis, OpenQuestion
-    from rosprivacy.analysis.errors import InputError
     from rosprivacy.analysis.findings.review_order import Shown
-    from rosprivacy.analysis.model import Bound, FlowGraph, MessageType
-    from rosprivacy.analysis.suggesting.evidence import Evidence, Label, Proposal
-    from rosprivacy.analysis.suggesting.library_rules import LibraryRules, NodeUse
-    from rosprivacy.analysis.suggesting.ros_package import Package
-    from rosprivacy.analysis.suggesting.traffic import Traffic
+    from rosprivacy.analysis.model import Bound, MessageType
+    from rosprivacy.analysis.suggesting.evidence import Evidence, Proposal
+    from rosprivacy.analysis.suggesting.library_rules import LibraryRules
     from rosprivacy.ingest.annotations.code_units import Local
     from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.labelling.interview import Interview
+    from rosprivacy.labelling.knowledge import Known, UserFiles
     from rosprivacy.labelling.refused import Refused
-    from rosprivacy.ontology.vocabulary import Vocabulary
-    from rosprivacy.report.contract.suggested import ModelEntry, SuggestionsDocument
+    from rosprivacy.labelling.suggested_labels import Identity
     from rosprivacy.result import Result
     from rosprivacy.settings import Settings
 
-Identity = tuple[str, str, str]  # identity of an element
 NOTHING_BEHIND = Behind()  # of what is open by a type only
 NOT_OPEN = 2**31  # behind every open element
-
-
-class Known(NamedTuple):
-    """What suggestions are made by, whatever the system.
-
-    Attributes
-    ----------
-    files
-        (file, SHA-256) of what was read.
-    """
-
-    rules: Rules
-    packages: tuple[Package, ...]
-    libraries: LibraryRules
-    files: tuple[tuple[str, str], ...]
-
-
-@dataclass(frozen=True, slots=True, repr=False)
-class Suggested:
-    """What a person is asked.
-
-    Attributes
-    ----------
-    proposals
-        In review order: open elements, then sources and leaks, then the others.
-    open
-        Identities of the elements that are open.
-    by_hand
-        Labels that would take away data of which a finding is known: they are told, and not written into a label file.
-    result
-        The answer that they belong to.
-    rules
-        (file, SHA-256) of the rules.
-    model
-        What was asked of a language model, if one was asked.
-    unplaced
-        Uses of libraries in source code that a rule speaks about, and that belong to no node that is known here.
-    unread
-        What source code could not be read.
-    of_others
-        Folders with code of others that were left out.
-    notices
-        What a reader has to know of the packages, and of names in source code.
-    """
-
-    proposals: tuple[Proposal, ...]
-    open: frozenset[Identity]
-    by_hand: frozenset[Label]
-    result: Result
-    rules: tuple[tuple[str, str], ...]
-    model: ModelEntry | None = None
-    unplaced: tuple[NodeUse, ...] = ()
-    unread: tuple[InputError, ...] = ()
-    of_others: tuple[str, ...] = ()
-    notices: tuple[Diagnostic, ...] = ()
-
-    def __repr__(self) -> str:
-        """Tell how much is asked."""
-        return f"<Suggested: {counted(len(self.proposals), 'question')}>"
-
-    def document(self) -> SuggestionsDocument:
-        """Return the JSON document ``rosprivacy.suggestions/1``."""
-        from rosprivacy.report.suggest.suggestion_document import suggestions_document  # noqa: PLC0415 - light start
-
-        return suggestions_document(
-            self.proposals,
-            self.open,
-            self.by_hand,
-            self.result,
-            self.rules,
-            self.model,
-            self.unplaced,
-            self.unread,
-            self.of_others,
-            self.notices,
-        )
 
 
 def suggest_labels(
     policies: tuple[str, ...],
     labels: tuple[str | Labels, ...],
     settings: Settings,
-    rules: Sequence[str] = (),
-    packages: Sequence[str] = (),
-    sources: Sequence[str] = (),
-    libraries: Sequence[str] = (),
+    files: UserFiles = NO_FILES,
     interview: Interview | None = None,
 ) -> Suggested:
     """Read a robot's system and say what its elements could be labelled as.
 
     Parameters
     ----------
-    rules
-        A user's files of rules about names.
-    packages
-        A user's files of packages, folders of them, or ``ament``.
-    sources
-        Source code of nodes: files, folders or globs; its literal names and types are evidence, and what it uses.
-    libraries
-        A user's files of rules about libraries.
     interview
         Of a language model, which is asked too.
 
@@ -169,17 +66,11 @@ def suggest_labels(
     ModelError
         If the language model cannot be asked.
     """
-    return suggested(answer_robot(policies, labels, settings), settings, rules, packages, sources, libraries, interview)
+    return suggested(answer_robot(policies, labels, settings), settings, files, interview)
 
 
 def suggested(
-    result: Result,
-    settings: Settings,
-    rules: Sequence[str] = (),
-    packages: Sequence[str] = (),
-    sources: Sequence[str] = (),
-    libraries: Sequence[str] = (),
-    interview: Interview | None = None,
+    result: Result, settings: Settings, files: UserFiles = NO_FILES, interview: Interview | None = None
 ) -> Suggested:
     """Return what could be said of the elements of an answer, of a fleet's or a database's too.
 
@@ -192,28 +83,7 @@ def suggested(
     ModelError
         If the language model cannot be asked.
     """
-    known = what_is_known(result.vocabulary, settings, rules, packages, libraries)
-    return suggested_by(known, result, sources, interview)
-
-
-def what_is_known(
-    vocabulary: Vocabulary,
-    settings: Settings,
-    rules: Sequence[str] = (),
-    packages: Sequence[str] = (),
-    libraries: Sequence[str] = (),
-) -> Known:
-    """Read rules and packages, for many answers about one system; parameters as of ``suggest_labels``.
-
-    Raises
-    ------
-    InputErrors
-        With every problem of them.
-    """
-    found, files = _rules(vocabulary, settings, rules)
-    catalogue = tuple(read_packages(packages, vocabulary, settings.bounds))
-    about, read = read_library_rules(libraries, vocabulary, settings.bounds)
-    return Known(found, catalogue, about, (*files, *read, *rests_on(catalogue)))
+    return suggested_by(what_is_known(result.vocabulary, settings, files), result, files.sources, interview)
 
 
 def suggested_by(
@@ -229,7 +99,7 @@ def suggested_by(
     found = with_findings(result)
     basis = basis_of(result, sources)
     places = basis.places
-    said = evidence(result.analysis, basis.bound, known.rules, known.packages, basis.code.uses, known.libraries)
+    said = evidence(result.analysis, basis.bound, known, basis.code.uses)
     listed = _not_by_code_alone(said, result)
     asked = asked_by(chain(listed, interview.evidence(basis) if interview else ()), result, found, refused_in(result))
     by_hand = frozenset(one.label for one in asked if closes_finding(one.label, found))
@@ -284,52 +154,6 @@ def basis_of(result: Result, sources: Sequence[str] = ()) -> Basis:
     return Basis(result, _with_types(result.bound, code.types), places, code_comments(codes), code)
 
 
-def evidence(
-    analysis: Analysis,
-    bound: Bound,
-    rules: Rules,
-    packages: Sequence[Package],
-    uses: Mapping[int, Sequence[NodeUse]],
-    libraries: LibraryRules = NO_LIBRARIES,
-) -> Iterator[Evidence]:
-    """Yield what every provider finds; the order does not matter.
-
-    Parameters
-    ----------
-    uses
-        By vertex of a node: what its code uses of libraries.
-    """
-    graph = analysis.graph
-    told = traffic(graph, bound)
-    yield from lasting_evidence(graph, bound, told, rules, packages, uses, libraries)
-    yield from of_open(analysis.open, graph, bound, told, rules)
-    yield from by_package_types(analysis.open, graph, bound, packages, rules)
-
-
-def lasting_evidence(
-    graph: FlowGraph,
-    bound: Bound,
-    told: Traffic,
-    rules: Rules,
-    packages: Sequence[Package],
-    uses: Mapping[int, Sequence[NodeUse]],
-    libraries: LibraryRules,
-) -> Iterator[Evidence]:
-    """Yield what is found whatever a person has said: of what is bound to the graph, only types are looked at."""
-    clues = carried_kinds(graph, bound, rules)
-    found = [
-        *of_nodes(graph, bound, told, clues, rules),
-        *unprompted(graph, told, rules.names),
-        *package_evidence(graph, bound.types, packages),
-        *library_evidence(graph, bound, told, clues, uses, rules, libraries),
-    ]
-    yield from found
-    yield from broader_sources(found, rules)
-    sources = {one.label.element for one in found if one.label.role == SOURCE}
-    yield from of_the_rest(graph, bound, told, rules, sources)
-    yield from of_channels(graph, clues)
-
-
 def in_review_order(asked: Sequence[Proposal], places: Mapping[Identity, int]) -> tuple[Proposal, ...]:
     """Return proposals in the order in which a person reviews them (rule S11)."""
 
@@ -338,15 +162,6 @@ def in_review_order(asked: Sequence[Proposal], places: Mapping[Identity, int]) -
         return at, 0 if one.label.role in (SOURCE, LEAK) else 1
 
     return tuple(sorted(asked, key=place))  # stable: by element, role and kind within
-
-
-def _rules(
-    vocabulary: Vocabulary, settings: Settings, files: Sequence[str]
-) -> tuple[Rules, tuple[tuple[str, str], ...]]:
-    table = read_table(settings.type_limits or TABLE, vocabulary, settings.bounds)
-    names, read = read_name_rules(files, vocabulary, settings.bounds)
-    rules = Rules(table.suggestions, table.limits.of, names, vocabulary.hierarchy)
-    return rules, ((table.limits.file, table.limits.sha256), *read)
 
 
 def _named_alike(local: Iterable[Local], libraries: LibraryRules) -> Iterator[Diagnostic]:

@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING, NamedTuple
 from rosprivacy.analysis.suggesting.evidence import LEAK
 from rosprivacy.analysis.suggesting.open_elements import of_open
 from rosprivacy.analysis.suggesting.traffic import standard_in, traffic
+from rosprivacy.labelling.gathering import lasting_evidence
 from rosprivacy.labelling.refused import refused_in
-from rosprivacy.labelling.suggesting import asked_by, in_review_order, lasting_evidence, review_places, with_findings
+from rosprivacy.labelling.suggesting import asked_by, in_review_order, review_places, with_findings
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
@@ -24,8 +25,9 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import FlowGraph, MessageType
     from rosprivacy.analysis.suggesting.evidence import Evidence, Proposal
     from rosprivacy.analysis.suggesting.traffic import Traffic
+    from rosprivacy.labelling.knowledge import Known
     from rosprivacy.labelling.refused import Refused
-    from rosprivacy.labelling.suggesting import Identity, Known
+    from rosprivacy.labelling.suggested_labels import Identity
     from rosprivacy.result import Result
 
 
@@ -70,10 +72,10 @@ class Suggester:
         return Suggestions(self.known, self._last, result, order)
 
     def _found(self, result: Result) -> _Lasting:
-        graph, bound, known = result.analysis.graph, result.bound, self.known
+        graph, bound = result.analysis.graph, result.bound
         told = traffic(graph, bound)
         said: dict[Identity, list[Evidence]] = defaultdict(list)
-        for one in lasting_evidence(graph, bound, told, known.rules, known.packages, {}, known.libraries):
+        for one in lasting_evidence(graph, bound, told, self.known, {}):
             said[one.label.element.identity].append(one)
         return _Lasting(graph, bound.types, standard_in(bound), told, dict(said))
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from rosprivacy.labelling.knowledge import UserFiles
 from rosprivacy.labelling.suggesting import suggest_labels
 from rosprivacy.settings import Settings
 from tests.helpers.fleet_files import policy
@@ -20,7 +21,7 @@ def sources(node: str, labels: str = "labels: 1\n", rules: tuple[str, ...] = ())
     """What a node is suggested as a source of, with how sure."""
     Path("p.xml").write_text(policy(f"/{node}>/w", "/m</w"), "utf-8")
     Path("l.yaml").write_text(labels, "utf-8")
-    found = suggest_labels(("p.xml",), ("l.yaml",), Settings(), rules=rules).proposals
+    found = suggest_labels(("p.xml",), ("l.yaml",), Settings(), UserFiles(rules=rules)).proposals
     return {one.label.kind: str(one.confidence) for one in found if one.label.role == "source"}
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from rosprivacy.analysis.suggesting.evidence import CODE
+from rosprivacy.labelling.knowledge import UserFiles
 from rosprivacy.labelling.suggesting import suggest_labels
 from rosprivacy.settings import Settings
 from tests.helpers.fleet_files import policy
@@ -34,7 +35,7 @@ def said(writes: str, reads: str, *calls: str) -> set[str]:
     code += "".join(LINE.format(call) for call in calls)
     Path("n.py").write_text(code, "utf-8")
     Path("p.xml").write_text(policy(f"/n>{'/w' if writes else ''}<{'/r' if reads else ''}", "/m>/r</w"), "utf-8")
-    found = suggest_labels(("p.xml",), (), Settings(), sources=("n.py",)).proposals
+    found = suggest_labels(("p.xml",), (), Settings(), UserFiles(sources=("n.py",))).proposals
     return {
         " ".join(filter(None, [one.label.role, one.label.kind, one.label.to, str(reason.confidence)]))
         for one in found
@@ -127,7 +128,7 @@ def test_a_window_or_a_page_agrees_with_no_name(node: str, call: str, sure: str)
     said("Twist", "", call)
     Path("n.py").write_text(Path("n.py").read_text("utf-8").replace("'n'", f"'{node}'"), "utf-8")
     Path("p.xml").write_text(policy(f"/{node}>/w", "/m</w"), "utf-8")
-    found = suggest_labels(("p.xml",), (), Settings(), sources=("n.py",)).proposals
+    found = suggest_labels(("p.xml",), (), Settings(), UserFiles(sources=("n.py",))).proposals
     assert [str(one.confidence) for one in found if one.label.role == "source"] == [sure]
 
 
@@ -137,7 +138,7 @@ def of_node(name: str, topic: str, *calls: str, writes: str = "String") -> dict[
     code = Path("n.py").read_text("utf-8").replace("'n'", f"'{name}'").replace("'/w'", f"'/{topic}'")
     Path("n.py").write_text(code, "utf-8")
     Path("p.xml").write_text(policy(f"/{name}>/{topic}", f"/m</{topic}"), "utf-8")
-    found = suggest_labels(("p.xml",), (), Settings(), sources=("n.py",)).proposals
+    found = suggest_labels(("p.xml",), (), Settings(), UserFiles(sources=("n.py",))).proposals
     return {one.label.kind: str(one.confidence) for one in found if one.label.role == "source"}
 
 
@@ -173,7 +174,7 @@ def test_pictures_that_are_written_beside_a_text_may_tell_of_persons_there() -> 
     said("String", "", CAMERA)
     Path("n.py").write_text(Path("n.py").read_text("utf-8").replace("create_publisher", both), "utf-8")
     Path("p.xml").write_text(policy("/n>/w,/image", "/m</w,/image"), "utf-8")
-    found = suggest_labels(("p.xml",), (), Settings(), sources=("n.py",)).proposals
+    found = suggest_labels(("p.xml",), (), Settings(), UserFiles(sources=("n.py",))).proposals
     kinds = {one.label.kind for one in found if one.label.role == "source"}
     assert {"Video", "PersonDetection", "Location", "Behaviour"} <= kinds
     assert not {"Location", "Behaviour"} & of_node("n", "image", CAMERA, writes="Image").keys()
@@ -190,7 +191,7 @@ def test_what_reads_ros_by_itself_makes_no_source() -> None:
     said("Pose", "", looked_up)
     Path("n.py").write_text(Path("n.py").read_text("utf-8").replace("'/w'", "'/robot_pose'"), "utf-8")
     Path("p.xml").write_text(policy("/n>/robot_pose", "/m</robot_pose"), "utf-8")
-    found = suggest_labels(("p.xml",), (), Settings(), sources=("n.py",)).proposals
+    found = suggest_labels(("p.xml",), (), Settings(), UserFiles(sources=("n.py",))).proposals
     by_code = {one.label.role for one in found for reason in one.evidence if reason.ground == CODE}
     assert by_code == {"derivation"}
 
@@ -219,14 +220,14 @@ def test_what_simulates_measures_nothing(name: str, sure: str) -> None:
     said("Image", "", CAMERA)
     Path("n.py").write_text(Path("n.py").read_text("utf-8").replace("'n'", f"'{name}'"), "utf-8")
     Path("p.xml").write_text(policy(f"/{name}>/w", "/m</w"), "utf-8")
-    found = suggest_labels(("p.xml",), (), Settings(), sources=("n.py",)).proposals
+    found = suggest_labels(("p.xml",), (), Settings(), UserFiles(sources=("n.py",))).proposals
     assert [str(one.confidence) for one in found if one.label.role == "source" and one.label.kind == "Video"] == [sure]
 
 
 def test_a_use_in_a_namespace_of_the_policy_is_found_by_the_own_name_of_the_node() -> None:
     said("Image", "", CAMERA)
     Path("p.xml").write_text(policy("/robot1/n>/w", "/m</w"), "utf-8")
-    found = suggest_labels(("p.xml",), (), Settings(), sources=("n.py",))
+    found = suggest_labels(("p.xml",), (), Settings(), UserFiles(sources=("n.py",)))
     reasons = [r for one in found.proposals for r in one.evidence if one.label.element.name == "/robot1/n"]
     assert [(str(r.place), r.reason.partition(":")[0]) for r in reasons if r.ground == CODE] == [
         ("n.py:12", "uses cv2.VideoCapture (n.py")
@@ -238,7 +239,7 @@ def test_nothing_that_hides_a_leak_is_said_by_libraries() -> None:
     """Beside a source or a leak by code no conduit and no sanitizer is proposed for the same data."""
     said("Found", "Image", CAMERA, "requests.post('x')")
     Path("l.yaml").write_text("labels: 1\nnodes: {/m: {source: [Video]}}\n", "utf-8")
-    found = suggest_labels(("p.xml",), ("l.yaml",), Settings(), sources=("n.py",)).proposals
+    found = suggest_labels(("p.xml",), ("l.yaml",), Settings(), UserFiles(sources=("n.py",))).proposals
     roles = {one.label.role for one in found if one.label.element.name == "/n"}
     assert "leak" in roles
     assert not roles & {"conduit", "sanitizer"}
@@ -250,7 +251,7 @@ def test_a_detector_finds_what_it_was_taught(topic: str) -> None:
     code = HEAD.format(library="ultralytics") + LINE.format("ultralytics.YOLO('x')")
     Path("n.py").write_text(code, "utf-8")
     Path("p.xml").write_text(policy(f"/n>/{topic}</image", f"/m>/image</{topic}"), "utf-8")
-    found = suggest_labels(("p.xml",), (), Settings(), sources=("n.py",)).proposals
+    found = suggest_labels(("p.xml",), (), Settings(), UserFiles(sources=("n.py",))).proposals
     derived = {(one.label.to, str(one.confidence)) for one in found if one.label.role == "derivation"}
     assert {("PersonDetection", "may"), ("HouseholdObject", "may")} <= derived
     assert {sure for _, sure in derived} == {"may"}
@@ -266,7 +267,7 @@ def entered(service: str, call: str, server: str = "m") -> set[str]:
         enclave.format(node, role, service) + ends for node, role in (("n", "request"), (server, "reply"))
     )
     Path("p.xml").write_text(f'<policy version="0.2.0"><enclaves>{enclaves}</enclaves></policy>', "utf-8")
-    found = suggest_labels(("p.xml",), (), Settings(), sources=("n.py",)).proposals
+    found = suggest_labels(("p.xml",), (), Settings(), UserFiles(sources=("n.py",))).proposals
     return {one.label.kind for one in found if one.label.role == "source" and one.label.element.name == "/n"}
 
 
@@ -302,7 +303,7 @@ def test_an_order_is_entered_at_one_place_and_told_of_at_others(
     """6. By what the channels of a node are called."""
     Path("n.py").write_text(HEAD.format(library="os") + LINE.format(call if call != "pass" else "0"), "utf-8")
     Path("p.xml").write_text(policy(f"/n>{written}<{read}", f"/m>/order_status,/orders,/state<{written}"), "utf-8")
-    found = suggest_labels(("p.xml",), (), Settings(), sources=("n.py",)).proposals
+    found = suggest_labels(("p.xml",), (), Settings(), UserFiles(sources=("n.py",))).proposals
     of_n = [one for one in found if one.label.element.name == "/n" and one.label.role == "source"]
     assert [str(one.confidence) for one in of_n if one.label.kind == "DeliveryOrder"] == ["may"] * ordered
 
@@ -323,6 +324,6 @@ def test_what_a_driver_sends_goes_to_its_device() -> None:
         )
         Path("n.py").write_text(code, "utf-8")
         Path("p.xml").write_text(policy(f"/{name}>/x</image", "/m>/image</x"), "utf-8")
-        found = suggest_labels(("p.xml",), (), Settings(), sources=("n.py",)).proposals
+        found = suggest_labels(("p.xml",), (), Settings(), UserFiles(sources=("n.py",))).proposals
         said = {str(one.confidence) for one in found if one.label.role == "leak" and one.evidence[0].ground == CODE}
         assert said == {sure}, name

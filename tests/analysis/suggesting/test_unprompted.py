@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from rosprivacy.labelling.knowledge import UserFiles
 from rosprivacy.labelling.suggesting import suggest_labels
 from rosprivacy.settings import Settings
 from tests.helpers.fleet_files import policy
@@ -66,5 +67,5 @@ def test_a_rule_without_words_is_about_such_nodes(tmp_path: Path, monkeypatch: p
     Path("p.xml").write_text(policy("/n>/w", "/m</w"), "utf-8")
     Path("l.yaml").write_text("labels: 1\ntopics: {/w: {types: [std_msgs/msg/String]}}\n", "utf-8")
     Path("own.yaml").write_text("name_rules: 1\nunprompted: [{kinds: [StaffBadge], why: ours}]\n", "utf-8")
-    found = suggest_labels(("p.xml",), ("l.yaml",), Settings(), rules=("own.yaml",)).proposals
+    found = suggest_labels(("p.xml",), ("l.yaml",), Settings(), UserFiles(rules=("own.yaml",))).proposals
     assert [one.label.kind for one in found if one.label.role == "source"] == ["StaffBadge"]

@@ -12,7 +12,8 @@ from rosprivacy.explorer.element_ids import element_id
 from rosprivacy.explorer.questions import questions
 from rosprivacy.explorer.web.application import Site
 from rosprivacy.explorer.web.standing import Standing
-from rosprivacy.labelling.suggesting import suggested_by, what_is_known
+from rosprivacy.labelling.knowledge import what_is_known
+from rosprivacy.labelling.suggesting import suggested_by
 from rosprivacy.labelling.suggesting_on_demand import Suggester
 from rosprivacy.report.document.analysis import label_key
 from rosprivacy.report.words.words import Words

@@ -34,7 +34,7 @@ from rosprivacy.explorer.web.trials.kept_trials import Trials
 from rosprivacy.explorer.web.trials.trial_forms import TOGETHER, tried_in
 from rosprivacy.explorer.web.view import trial_in, view_of
 from rosprivacy.explorer.web.whose import ROBOT, WHOSE
-from rosprivacy.labelling.suggesting import what_is_known
+from rosprivacy.labelling.knowledge import what_is_known
 from rosprivacy.labelling.suggesting_on_demand import Suggester
 from rosprivacy.report.explorer.style_sheet import style_sheet
 
