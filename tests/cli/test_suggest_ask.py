@@ -8,14 +8,14 @@ import pty
 import subprocess
 import sys
 import time
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import pytest
 
 import rosprivacy
-from rosprivacy.analysis.suggesting.question_rows import GOES_THROUGH
+from rosprivacy.analysis.suggesting.question_rows import GOES_THROUGH, Question
 from rosprivacy.labelling.asking import asked_now
-from rosprivacy.labelling.conversation import Conversation
+from rosprivacy.labelling.conversation import FOUND_SINCE, Conversation
 from rosprivacy.labelling.suggesting import suggest_labels
 from rosprivacy.settings import Settings
 from tests.helpers.command import LINE, cli
@@ -24,7 +24,6 @@ from tests.helpers.little_robots import HOSTILE, policy_of
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from rosprivacy.analysis.suggesting.question_rows import Question
     from tests.helpers.command import Cli, Done
 
 __all__ = ["cli"]
@@ -227,6 +226,34 @@ def test_at_a_terminal_a_key_takes_away_of_one_row(robot: Path, keys: str, kept:
     Conversation(lambda: [question] if not answered else [], keep, Person()).run()
     assert (answered == ["/b 0"]) is kept
     assert bool(said) is not kept
+
+
+def test_what_takes_data_away_is_asked_anew_if_a_finding_became_known_since(robot: Path) -> None:
+    """Somebody writes a leak into the file while the question stands there; a single key closed the finding untold."""
+    said: list[str] = []
+    kept: list[str] = []
+
+    class Person:
+        keys: ClassVar[list[str]] = ["0", "q"]
+
+        def key(self, now: Question, picked: frozenset[int]) -> str:
+            del now, picked
+            (robot / "l.yaml").write_text(f"{SOURCE}  /customer_bridge: {{leak: [Video]}}\n", "utf-8")
+            return self.keys.pop(0)
+
+        def told(self, remark: str) -> None:
+            said.append(remark)
+
+    def keep(now: Question, key: str) -> tuple[str, ...]:
+        kept.append(f"{now.rows[0].element.name} {key}")
+        return ()
+
+    def now() -> list[Question]:
+        channels = [one for one in asked_of(robot) if one.about == GOES_THROUGH]
+        return [Question(GOES_THROUGH, tuple(row for one in channels for row in one.rows if row.element.name == "/b"))]
+
+    assert not Conversation(now, keep, Person()).run()
+    assert (kept, said) == ([], [FOUND_SINCE])
 
 
 def asked_of(robot: Path) -> tuple[Question, ...]:

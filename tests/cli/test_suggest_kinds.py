@@ -13,9 +13,10 @@ from hypothesis import strategies as st
 
 import rosprivacy
 from rosprivacy.analysis.suggesting.question_rows import GOES_ON, GOES_THROUGH, LISTED, PASSES, Question
+from rosprivacy.labelling.answer_keys import EACH_KIND, FEWEST, OPEN, QUIT, SKIP, allowed
 from rosprivacy.labelling.asking import asked_now, with_answer
 from rosprivacy.labelling.closing_lists import closing
-from rosprivacy.labelling.conversation import EACH_KIND, FEWEST, OPEN, QUIT, SKIP, Conversation, allowed
+from rosprivacy.labelling.conversation import Conversation
 from rosprivacy.labelling.suggesting import suggest_labels
 from rosprivacy.report.suggest.question_lines import keys_line, question_lines
 from rosprivacy.settings import Settings

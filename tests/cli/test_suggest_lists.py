@@ -17,9 +17,10 @@ from hypothesis import strategies as st
 
 import rosprivacy
 from rosprivacy.analysis.suggesting.question_rows import GOES_THROUGH, LISTED, NOTHING
+from rosprivacy.labelling.answer_keys import QUIT, SKIP, allowed
 from rosprivacy.labelling.asking import asked_now, with_answer
 from rosprivacy.labelling.closing_lists import closing
-from rosprivacy.labelling.conversation import QUIT, SKIP, Conversation, allowed
+from rosprivacy.labelling.conversation import Conversation
 from rosprivacy.labelling.suggesting import suggest_labels
 from rosprivacy.settings import Settings
 from tests.helpers.command import cli

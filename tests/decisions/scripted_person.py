@@ -16,7 +16,7 @@ from rosprivacy.analysis.suggesting.question_rows import (
     YES,
     Question,
 )
-from rosprivacy.labelling.conversation import EACH_KIND, EXACTLY, FEWEST, NO, OPEN, SKIP, allowed
+from rosprivacy.labelling.answer_keys import EACH_KIND, EXACTLY, FEWEST, NO, OPEN, SKIP, allowed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence

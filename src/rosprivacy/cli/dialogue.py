@@ -14,9 +14,10 @@ from rosprivacy.analysis.suggesting.question_rows import LISTED
 from rosprivacy.analysis.text import counted
 from rosprivacy.cli.output import emit
 from rosprivacy.clock import today
+from rosprivacy.labelling.answer_keys import allowed
 from rosprivacy.labelling.asking import asked_now, with_answer
 from rosprivacy.labelling.closing_lists import closing
-from rosprivacy.labelling.conversation import Conversation, allowed
+from rosprivacy.labelling.conversation import Conversation
 from rosprivacy.labelling.limits_on_the_way import brings, limits_on_the_way
 from rosprivacy.labelling.named_answers import AND, BEGINS, keys_of, lines_of, takes_away
 from rosprivacy.labelling.suggested_lines import who_says

@@ -12,8 +12,8 @@ from rosprivacy.analysis.suggesting.question_rows import LISTED
 from rosprivacy.analysis.suggesting.traffic import traffic
 from rosprivacy.ingest.suggestions.accepting import NewLabel, with_labels
 from rosprivacy.ingest.suggestions.refusals import refusal, with_refusals
+from rosprivacy.labelling.answer_keys import NO
 from rosprivacy.labelling.closing_lists import without_closing
-from rosprivacy.labelling.conversation import NO
 from rosprivacy.labelling.label_lines import Written
 from rosprivacy.labelling.refused import refused_in
 from rosprivacy.labelling.suggested_lines import check_room, text_of

@@ -3,18 +3,15 @@
 In: what is asked now, who answers, and what keeps an answer. Out: how it ended. It knows neither a terminal nor a file:
 the command line and the tests put theirs in. Every answer is kept before the next question.
 
-The keys: a letter from A on picks a row, or puts it back; all others speak of the picked rows, or of all if none is
-picked. ``x`` says yes to the picked rows and no to the others; ``k`` asks about each kind of data by itself. What takes
-data away is said of one row alone; or of a list of channels, by the number of its rows: of those that are alike, or of
-those that the person has picked one by one before ``0``, or before the digit of a kind. There a letter takes a row out,
-and ``o`` takes out all; what is taken out is asked as other channels are.
+What takes data away is said of one row alone; or of a list of channels, by the number of its rows: of those that are
+alike, or of those that the person has picked one by one before ``0``, or before the digit of a kind. There a letter
+takes a row out, and ``o`` takes out all; what is taken out is asked as other channels are.
 """
 
 from __future__ import annotations
 
 from collections import defaultdict, deque
 from dataclasses import dataclass, field
-from string import ascii_uppercase
 from typing import TYPE_CHECKING, Protocol
 
 from rosprivacy.analysis.errors import shown
@@ -27,19 +24,29 @@ from rosprivacy.analysis.suggesting.question_rows import (
     MAKES,
     MOST_ROWS,
     NOTHING,
-    PASSES,
     YES,
     Question,
 )
 from rosprivacy.analysis.text import counted
+from rosprivacy.labelling.answer_keys import (
+    EACH_KIND,
+    EXACTLY,
+    FEWEST,
+    NO,
+    OPEN,
+    QUIT,
+    SKIP,
+    allowed,
+    letter,
+    takes_away_of_each,
+)
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from rosprivacy.analysis.suggesting.alike_channels import Alike
     from rosprivacy.analysis.suggesting.question_rows import Row
 
-NO, OPEN, SKIP, QUIT, EXACTLY, EACH_KIND = "n", "o", "s", "q", "x", "k"
 STAGES = {
     BRINGS_IN: 0,
     LETS_OUT: 0,
@@ -48,9 +55,9 @@ STAGES = {
     GOES_THROUGH: 2,
     LISTED: 2,
 }  # a leak of one is known
-FEWEST = 2  # rows of a list: one row is asked by itself
 BY_ITSELF = "it could close a known finding, and is asked by itself"
 CHANGED = "this list is not as it was any more: nothing is kept, and it is asked anew"
+FOUND_SINCE = "a finding of such data has become known since: nothing is kept, and it is asked anew"
 Identity = tuple[str, str, str]
 Said = tuple[str, Identity, tuple[str, ...]]  # what a row asks, in this conversation
 
@@ -115,7 +122,7 @@ class Conversation:
             if answer is None:
                 return False
             key, rows = answer
-            if len(rows) > 1 and _takes_away(rows, key):
+            if len(rows) > 1 and takes_away_of_each(rows, key):
                 return self._picked([row.saying(key) for row in rows])
             if key == OPEN:
                 self._alone.update(_said(question, row) for row in rows)
@@ -129,6 +136,15 @@ class Conversation:
                 pending.extendleft(Question(question.about, (row,)) for row in reversed(rows))
         return True
 
+    def _would_close_untold(self, about: str, rows: Sequence[Row], key: str) -> bool:
+        """Whether a key takes data away of which a finding is known that was not told: the file may have changed."""
+        if not takes_away_of_each(rows, key):
+            return False
+        said = {(row.element.identity, kind) for row in rows for kind in row.kinds}
+        still = (row for one in self._asked() if one.about == about for row in one.rows)
+        near = (row for row in still if any((row.element.identity, kind) in said for kind in row.kinds))
+        return not {one for row in near for one in row.closes} <= {one for row in rows for one in row.closes}
+
     def _taken(self, question: Question, rows: Sequence[Row], key: str) -> bool:
         """Take an answer; return whether what is left to ask may have changed by it."""
         if key == EACH_KIND:
@@ -137,6 +153,9 @@ class Conversation:
         if key == SKIP:
             self._postponed(question.about, rows)
             return True  # the person may have written a label by hand
+        if self._would_close_untold(question.about, rows, key):
+            self.person.told(FOUND_SINCE)
+            return True
         if key == EXACTLY:
             self._kept(Question(question.about, tuple(row for row in question.rows if row not in rows)), NO)
             self.answers -= 1  # both are one answer
@@ -195,7 +214,7 @@ class Conversation:
         while True:
             key = self.person.key(question, frozenset(out))
             rows = tuple(row for at, row in enumerate(question.rows) if at not in out)
-            at = _letter(key)
+            at = letter(key)
             if key in ("", QUIT):
                 return False
             if 0 <= at < len(question.rows):
@@ -240,7 +259,7 @@ class Conversation:
             rows = [row for at, row in enumerate(question.rows) if at in picked or not picked]
             if key in ("", QUIT):
                 return None
-            at = _letter(key)
+            at = letter(key)
             if 0 <= at < len(question.rows) and len(question.rows) > 1:
                 picked ^= {at}
             elif key in allowed(question, picked):
@@ -262,24 +281,6 @@ class Conversation:
         return question.about in (BRINGS_IN, MAKES) or bool(reply and reply.takes_away)
 
 
-def allowed(question: Question, picked: Collection[int] = ()) -> tuple[str, ...]:
-    """Return the keys that answer a question about the rows that are picked, or about all.
-
-    What takes data away of several channels asks about them as a list, if they are picked.
-    """
-    rows = tuple(row for at, row in enumerate(question.rows) if at in picked or not picked)
-    keys = Question(question.about, rows).keys()
-    if question.about == GOES_THROUGH and len(picked) >= FEWEST:
-        keys += tuple(one.key for one in rows[0].replies if _takes_away(rows, one.key))
-    if len(rows) > 1 and not picked and any(row.doubtful for row in rows):
-        keys = tuple(key for key in keys if key != PASSES)  # it may be a leak: look at each
-    refuse = all(row.refused for row in question.rows)
-    exactly = refuse and YES in keys and len(rows) < len(question.rows)
-    by_kind = any(row.each for row in rows)
-    more = ((EXACTLY, exactly), (NO, refuse), (OPEN, len(rows) > 1), (EACH_KIND, by_kind), (SKIP, True))
-    return (*keys, *(key for key, there in more if there))
-
-
 def _tells_findings(question: Question) -> bool:
     """Whether a question has to tell findings that an answer before it may have made known: a leak among nodes is one.
 
@@ -287,17 +288,6 @@ def _tells_findings(question: Question) -> bool:
     """
     takes_away = any(reply.takes_away for row in question.rows for reply in row.replies)
     return takes_away and question.about != GOES_THROUGH
-
-
-def _letter(key: str) -> int:
-    """Which row a key means; -1 if none. Several signs that come at once are no letter."""
-    return ascii_uppercase.find(key) if len(key) == 1 else -1
-
-
-def _takes_away(rows: Sequence[Row], key: str) -> bool:
-    """Whether a key takes data away of each of some rows."""
-    replies = [row.reply(key) for row in rows]
-    return all(reply and reply.takes_away for reply in replies)
 
 
 def _by_likeness(rows: Iterable[Row]) -> tuple[tuple[Row, ...], ...]:

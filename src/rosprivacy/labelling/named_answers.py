@@ -11,7 +11,7 @@ from string import ascii_uppercase
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.suggesting.question_rows import LISTED
-from rosprivacy.labelling.conversation import FEWEST
+from rosprivacy.labelling.answer_keys import FEWEST
 
 if TYPE_CHECKING:
     from collections.abc import Collection
