@@ -84,10 +84,12 @@ def open_bits(spread: Spread, unknown: Collection[int]) -> dict[int, int]:
     >>> {NAMES[vertex]: carried.names(bits) for vertex, bits in sorted(open_bits(carried, {DISK}).items())}
     {'disk': ('FaceTemplate', 'Video'), '/filtered': ('Video',), '/video': ('Video',)}
     """
-    reached = {vertex: spread.present(vertex) for vertex in {*spread.arrives, *spread.leaves}}
-    covered = {vertex: bits for vertex, bits in spread.covered.items() if vertex not in unknown}
-    uncovered = {vertex: bits & ~covered.get(vertex, 0) for vertex, bits in reached.items()}
-    return {vertex: bits for vertex, bits in uncovered.items() if bits}
+    covered, present = spread.covered, spread.present
+    uncovered: dict[int, int] = {}
+    for vertex in {*spread.arrives, *spread.leaves}:
+        if bits := present(vertex) & ~(0 if vertex in unknown else covered.get(vertex, 0)):
+            uncovered[vertex] = bits
+    return uncovered
 
 
 def _first(net: Net, sources: Iterable[int], uncovered: Mapping[int, int]) -> dict[int, int]:

@@ -118,8 +118,13 @@ class _Following(NamedTuple):
         along: dict[int, list[tuple[int, int]]] = {}
         for source, moves in net.flows.items():
             here = sent.get(source, 0)
-            along[source] = [(to, bits) for i, to, takes in moves if (bits := (here | emits.get(i, 0)) & takes)]
-        single = {source: [target for target, _ in ways] for source, ways in along.items() if ways}
+            if emits:
+                ways = [(to, bits) for i, to, takes in moves if (bits := (here | emits.get(i, 0)) & takes)]
+            else:
+                ways = [(to, bits) for _, to, takes in moves if (bits := here & takes)]
+            if ways:
+                along[source] = ways
+        single = {source: [target for target, _ in ways] for source, ways in along.items()}
         single[START] = sorted(vertex for vertex in spread.facts if spread.begins(vertex))
         return cls(spread, along, single, tuple({id(m): m for met in net.meetings.values() for m in met}.values()))
 
@@ -231,20 +236,20 @@ def _found_through(following: _Following, asked: Mapping[int, int], reached: Ite
     merged = cache(spread.bits.merged)
 
     def comes(source: int, target: int, bits: int) -> None:
-        bits = merged(bits) & asked.get(target, 0)
-        if bits:
-            one = (-bits.bit_count(), order[source], source)
+        if own := merged(bits) & asked[target]:
+            one = (-own.bit_count(), order[source], source)
             if target not in best or one < best[target]:
                 best[target] = one
 
     for source, ways in following.along.items():
         for target, bits in ways:
-            comes(source, target, bits)
+            if target in asked:
+                comes(source, target, bits)
     for meeting in following.meetings:
         first: dict[int, int] = {}  # what is sent -> the first that sends it
         for source in sorted(set(meeting.written) & order.keys(), key=lambda one: -order[one]):
             first[following.sent(source)] = source
-        for target in meeting.read:
+        for target in asked.keys() & meeting.read:
             for bits, source in first.items():
                 comes(source, target, bits & following.taken(target))
     return {vertex: source for vertex, (_, _, source) in best.items()}

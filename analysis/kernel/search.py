@@ -37,6 +37,8 @@ class Search:
         Vertex -> all bits that arrived, all that left.
     begun
         Start -> all bits that it emits, also those that leave along single flows only.
+    making
+        Where something was made of what arrived.
     """
 
     arrived: dict[int, list[tuple[int, int, int]]] = field(default_factory=lambda: defaultdict(list))
@@ -44,18 +46,22 @@ class Search:
     seen: dict[int, int] = field(default_factory=dict)
     gone: dict[int, int] = field(default_factory=dict)
     begun: dict[int, int] = field(default_factory=dict)
+    making: set[int] = field(default_factory=set)
 
     def level(self, vertex: int, bits: int) -> int | None:
         """Flows from a start to the nearest arrival of one of some bits; 0 if they start there."""
         if self.begun.get(vertex, 0) & bits:
             return 0
-        arrived = self.arrived.get(vertex, ())
-        nearest = _first_level(arrived, bits)
-        for made, origin in self.left.get(vertex, ()):
+        arrived, nearest = self.arrived.get(vertex, ()), None
+        for level, new, _ in arrived:  # ``_first_level``, written out: each open element asks for it
+            if new & bits:
+                nearest = level
+                break
+        for made, origin in self.left[vertex] if vertex in self.making else ():
             if origin is not None and origin != START and made & bits:
-                level = _first_level(arrived, 1 << origin)
-                if level is not None and (nearest is None or level < nearest):
-                    nearest = level
+                before = _first_level(arrived, 1 << origin)
+                if before is not None and (nearest is None or before < nearest):
+                    nearest = before
         return nearest
 
     def arrives_first(self, vertex: int, bit: int) -> bool:
@@ -209,6 +215,7 @@ def _pass_on(
     _leave(reach, vertex, kept, None, leaving)
     for before, after in spread.derives.get(vertex, ()):
         if bits >> before & 1:
+            reach.making.add(vertex)
             made = 1 << after & allowed
             if made & stop:
                 reach.left[vertex].append((made, before))  # it gets here, and ends here

@@ -2,7 +2,7 @@
 
 In: evidence, rules about names. Out: evidence of the broader kinds that ``NameRules.broadened`` lists. A node that is
 called after a transcript often writes a command; one that knows persons by a number often knows their names. So the
-broader kind is asked about, too: ``may``.
+broader kind is asked about, too, as long as nobody has named the narrower one: ``may``.
 """
 
 from __future__ import annotations
@@ -30,4 +30,7 @@ def broader_sources(said: Iterable[Evidence], rules: Rules) -> Iterator[Evidence
             if label not in known and label not in yielded:
                 yielded.add(label)
                 reason = f"{one.reason}; it may also be of another sort of {kind}"
-                yield one._replace(label=label, ground=DATA_FLOW, confidence=Confidence.MAY, reason=reason)
+                beside = one.label.kind
+                yield one._replace(
+                    label=label, ground=DATA_FLOW, confidence=Confidence.MAY, reason=reason, beside=beside
+                )

@@ -52,7 +52,7 @@ def unsaid(proposals: Iterable[Proposal], graph: FlowGraph, bound: Bound, hierar
     by_element: dict[Identity, list[Proposal]] = defaultdict(list)
     for one in proposals:
         identity = one.label.element.identity
-        if identity not in said or not spoken_of(one.label, said[identity], hierarchy):
+        if identity not in said or not _is_spoken_of(one, said[identity], hierarchy):
             by_element[identity].append(one)
     kept = (one for together in by_element.values() for one in together if not _outdone(one, together, hierarchy))
     return tuple(kept)
@@ -93,6 +93,15 @@ def spoken_of(label: Label, said: Sequence[Statement], hierarchy: Hierarchy) -> 
         or one.role == "only"
         or any(near(label.kind, kind) is not None for kind in one.categories)
         for one in said
+    )
+
+
+def _is_spoken_of(one: Proposal, said: Sequence[Statement], hierarchy: Hierarchy) -> bool:
+    """Whether a person has spoken of what is proposed, or of all narrower kinds beside which alone it is proposed."""
+    if spoken_of(one.label, said, hierarchy):
+        return True
+    return all(
+        each.beside and spoken_of(one.label._replace(kind=each.beside), said, hierarchy) for each in one.evidence
     )
 
 

@@ -49,7 +49,7 @@ class Joined:
     def unjudged(self, bits: int) -> set[Key]:
         """Return the elements that nobody has judged for some kind of some bits."""
         kinds = set(self._spread.names(bits))
-        return {one.element.identity for one in self.analysis.open if kinds.intersection(one.categories)}
+        return {one.element.identity for one in self.analysis.open if not kinds.isdisjoint(one.categories)}
 
     def elements(self) -> tuple[set[Key], set[Key]]:
         """Return every element: those that count, and standard channels of ROS (rule S13)."""

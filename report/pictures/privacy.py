@@ -19,7 +19,7 @@ from rosprivacy.report.words.typography import plain
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Sequence
 
-    from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.analysis.answer import Analysis, OpenQuestion
     from rosprivacy.report.pictures.picture import Key
     from rosprivacy.report.words.words import Words
 
@@ -28,12 +28,25 @@ MOST = 4  # categories that are named on a box
 
 def ends_of(analysis: Analysis) -> dict[int, dict[str, int]]:
     """Return where findings end that are no disclosures: vertex -> their kind -> bits of the data."""
-    number = {element: vertex for vertex, element in enumerate(analysis.graph.elements)}
+    others = {finding.leak for finding in analysis.findings if finding.kind != DISCLOSURE}
+    number = {element: vertex for vertex, element in enumerate(analysis.graph.elements)} if others else {}
     ends: dict[int, dict[str, int]] = defaultdict(lambda: defaultdict(int))
     for finding in analysis.findings:
         if finding.kind != DISCLOSURE:
             ends[number[finding.leak]][finding.kind] |= analysis.spread.both(finding.category)
     return {vertex: dict(sorted(kinds.items())) for vertex, kinds in ends.items()}
+
+
+def _open_kinds(questions: Iterable[OpenQuestion], shown: frozenset[str]) -> dict[Key, frozenset[str]]:
+    """Which kinds are open at each element, of those that are shown; elements share few sets of kinds."""
+    kinds: dict[tuple[str, ...], frozenset[str]] = {}
+    found: dict[Key, frozenset[str]] = {}
+    for question in questions:
+        if (own := kinds.get(question.categories)) is None:
+            own = kinds[question.categories] = shown.intersection(question.categories)
+        key = question.element.identity
+        found[key] = found[key] | own if key in found else own
+    return found
 
 
 class Reached:
@@ -62,10 +75,7 @@ class Reached:
         self._ending = ends_of(analysis)
         self._types = analysis.types
         self._ends = {vertex: reduce(or_, kinds.values()) for vertex, kinds in self._ending.items()}
-        self._open: dict[Key, set[str]] = defaultdict(set)
-        shown = set(found.names(self._mask))
-        for question in analysis.open:
-            self._open[question.element.identity] |= shown.intersection(question.categories)
+        self._open = _open_kinds(analysis.open, frozenset(found.names(self._mask)))
 
     def sources(self) -> bool:
         """Whether any data was followed."""
@@ -180,7 +190,7 @@ class Reached:
             bits["ends"] |= self._ends.get(vertex, 0) & present
             bits["arrives"] |= self._found.arrives.get(vertex, 0) & self._mask
         made, cleaned = self._said(vertices, bits["present"])
-        open_for = self._open.get(key, set())
+        open_for = self._open.get(key, frozenset())
         roles = [
             (LEAK, bits["leaks"] | bits["ends"]),
             (SOURCE, bits["begins"]),

@@ -30,7 +30,7 @@ WIDTH = 120
 ROS = ("rclpy", "rclcpp", "ament_index_python", "launch", "launch_ros", "builtin_interfaces", "tf_transformations")
 PLAIN = (  # libraries that bring nothing in and let nothing out, by no rule that anybody could write
     "numpy", "math", "time", "datetime", "typing", "threading", "collections", "dataclasses", "enum", "functools",
-    "random", "copy", "re", "struct", "itertools", "abc", "traceback", "argparse", "contextlib", "uuid", "warnings",
+    "random", "copy", "re", "struct", "itertools", "abc", "traceback", "contextlib", "uuid", "warnings",
     "__future__", "string", "textwrap", "hashlib", "base64", "statistics", "heapq", "queue", "signal", "cmath", "array",
     "operator", "types", "importlib", "inspect", "setuptools", "pytest", "unittest", "glob", "shutil",
 )  # fmt: skip

@@ -101,4 +101,5 @@ def _question(asked: OpenQuestion, behind: Behind, proposed: Collection[tuple[st
 
 
 def _urgency(one: Question) -> tuple[int, int, int, int, object]:
-    return GROUPS.index(one.group), -one.leaks, -one.closes, one.steps, one.element.sort_key()
+    place = one.element.sort_key() if one.group == PROPOSED else ()  # others come in that order, by their steps
+    return GROUPS.index(one.group), -one.leaks, -one.closes, one.steps, place

@@ -96,4 +96,5 @@ def _kept(found: Spread) -> dict[Any, Search]:
 
 def _told(reach: Search) -> dict[str, Any]:
     """All of a search, in order."""
-    return {field.name: list(getattr(reach, field.name).items()) for field in fields(reach)}
+    parts = {field.name: getattr(reach, field.name) for field in fields(reach)}
+    return {name: sorted(part) if isinstance(part, set) else list(part.items()) for name, part in parts.items()}

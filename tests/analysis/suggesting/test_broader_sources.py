@@ -48,3 +48,11 @@ def test_of_two_narrower_kinds_the_broader_one_is_asked_about_once() -> None:
         "name_rules: 1\nbrings_in: [{words: [desk], kinds: [SpeechTranscript, VoiceCommand], why: ours}]\n", "utf-8"
     )
     assert sorted(sources("desk", rules=("own.yaml",))) == ["CommunicationContent", "SpeechTranscript", "VoiceCommand"]
+
+
+def test_who_has_named_the_narrower_kind_is_not_asked_about_the_broader_one() -> None:
+    """Other sources of the node are asked about all the same."""
+    labels = "labels: 1\nnodes: {/speech_recognition: {source: [SpeechTranscript]}}\n"
+    assert sources("speech_recognition", labels) == {}
+    other = "labels: 1\nnodes: {/speech_recognition: {source: [Video]}}\n"
+    assert sources("speech_recognition", other) == {"SpeechTranscript": "may", "CommunicationContent": "may"}
