@@ -20,7 +20,20 @@ if TYPE_CHECKING:
 
 
 def broader_sources(said: Iterable[Evidence], rules: Rules) -> Iterator[Evidence]:
-    """Yield that a node may be a source of a broader kind, for each that is said to be one of a narrower kind."""
+    """Yield that a node may be a source of a broader kind, for each that is said to be one of a narrower kind.
+
+    >>> from rosprivacy.analysis.example import CAMERA, factory
+    >>> from rosprivacy.analysis.model import Confidence, Place
+    >>> from rosprivacy.analysis.suggesting.carried_kinds import Rules
+    >>> from rosprivacy.analysis.suggesting.evidence import Evidence, Label
+    >>> from rosprivacy.analysis.suggesting.example_names import NAMES
+    >>> graph, _, hierarchy = factory()
+    >>> rules = Rules({}, {}, NAMES._replace(broadened=frozenset(["Biometric"])), hierarchy)
+    >>> label = Label(graph.elements[CAMERA], "source", "FaceTemplate")
+    >>> said = [Evidence(label, "name", Confidence.MAY, "a word", Place("names.yaml", 1))]
+    >>> [one.label.kind for one in broader_sources(said, rules)]
+    ['Biometric']
+    """
     said = [one for one in said if one.label.role == SOURCE]
     known = {one.label for one in said}
     yielded: set[Label] = set()

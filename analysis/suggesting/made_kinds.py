@@ -32,7 +32,28 @@ SEEN = "PersonImage"  # pictures of any sort
 
 
 def made_kinds(node: LibraryNode, made: Sequence[Spoken], brought: Sequence[Spoken]) -> Iterator[Evidence]:
-    """Yield which kinds a node makes of others that it reads, or that it brought in itself."""
+    """Yield which kinds a node makes of others that it reads, or that it brought in itself.
+
+    >>> from rosprivacy.analysis.example import CAMERA, VIDEO, factory
+    >>> from rosprivacy.analysis.model import Confidence, Place
+    >>> from rosprivacy.analysis.suggesting.carried_kinds import Rules
+    >>> from rosprivacy.analysis.suggesting.example_names import NAMES
+    >>> from rosprivacy.analysis.suggesting.library_node import LibraryNode, Spoken
+    >>> from rosprivacy.analysis.suggesting.library_rules import LibraryRule, NodeUse
+    >>> from rosprivacy.analysis.hierarchy import Hierarchy
+    >>> from rosprivacy.analysis.model import Category
+    >>> graph = factory()[0]
+    >>> kinds = ("PersonImage", "Voice", "SpeechTranscript")
+    >>> hierarchy = Hierarchy.of([Category(name, "", "", "", "") for name in kinds])
+    >>> at = Place("libraries.yaml", 3)
+    >>> node = LibraryNode.of(
+    ...     graph.elements[CAMERA], Rules({}, {}, NAMES, hierarchy), [(graph.elements[VIDEO], [])], [], [], reads=False
+    ... )
+    >>> rule = LibraryRule(("Voice",), Confidence.LIKELY, "it writes speech down", at, to=("SpeechTranscript",))
+    >>> made = [Spoken(rule, NodeUse("vosk", "python", at))]
+    >>> [(one.label.role, one.label.kind, str(one.confidence)) for one in made_kinds(node, made, [])]
+    [('source', 'SpeechTranscript', 'may')]
+    """
     for one in made:
         broader = shared_broader(one.rule.to, node.rules.hierarchy)
         for kind in (*broader, *one.rule.to):
