@@ -118,11 +118,7 @@ class _Following(NamedTuple):
         along: dict[int, list[tuple[int, int]]] = {}
         for source, moves in net.flows.items():
             here = sent.get(source, 0)
-            if emits:
-                ways = [(to, bits) for i, to, takes in moves if (bits := (here | emits.get(i, 0)) & takes)]
-            else:
-                ways = [(to, bits) for _, to, takes in moves if (bits := here & takes)]
-            if ways:
+            if ways := [(to, bits) for i, to, takes in moves if (bits := (here | emits.get(i, 0)) & takes)]:
                 along[source] = ways
         single = {source: [target for target, _ in ways] for source, ways in along.items()}
         single[START] = sorted(vertex for vertex in spread.facts if spread.begins(vertex))

@@ -52,11 +52,8 @@ class Search:
         """Flows from a start to the nearest arrival of one of some bits; 0 if they start there."""
         if self.begun.get(vertex, 0) & bits:
             return 0
-        arrived, nearest = self.arrived.get(vertex, ()), None
-        for level, new, _ in arrived:  # ``_first_level``, written out: each open element asks for it
-            if new & bits:
-                nearest = level
-                break
+        arrived = self.arrived.get(vertex, ())
+        nearest = _first_level(arrived, bits)
         for made, origin in self.left[vertex] if vertex in self.making else ():
             if origin is not None and origin != START and made & bits:
                 before = _first_level(arrived, 1 << origin)

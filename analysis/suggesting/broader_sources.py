@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from rosprivacy.analysis.suggesting.carried_kinds import Rules
-    from rosprivacy.analysis.suggesting.evidence import Evidence, Label
+    from rosprivacy.analysis.suggesting.evidence import Evidence
 
 
 def broader_sources(said: Iterable[Evidence], rules: Rules) -> Iterator[Evidence]:
@@ -36,12 +36,11 @@ def broader_sources(said: Iterable[Evidence], rules: Rules) -> Iterator[Evidence
     """
     said = [one for one in said if one.label.role == SOURCE]
     known = {one.label for one in said}
-    yielded: set[Label] = set()
     for one in said:
         for kind in sorted(rules.names.broadened & rules.hierarchy.ancestors[one.label.kind].keys()):
             label = one.label._replace(kind=kind)
-            if label not in known and label not in yielded:
-                yielded.add(label)
+            if label not in known:
+                known.add(label)
                 reason = f"{one.reason}; it may also be of another sort of {kind}"
                 beside = one.label.kind
                 yield one._replace(

@@ -30,12 +30,9 @@ ORDERED = "DeliveryOrder"  # what is entered at one place and told of at others
 def orders_of(elements: Iterable[Element], names: NameRules) -> tuple[Element, ...]:
     """Return the elements that are called after what is ordered.
 
-    >>> from rosprivacy.analysis.model import Confidence, Element, Place
-    >>> from rosprivacy.analysis.suggesting.example_names import NAMES
-    >>> from rosprivacy.analysis.suggesting.name_rules import NameRule
-    >>> rule = NameRule(("DeliveryOrder",), Confidence.MAY, "what is brought", Place("names.yaml", 1))
-    >>> names = NAMES._replace(carries={("orders",): rule})
-    >>> [one.name for one in orders_of([Element("topic", "/orders"), Element("topic", "/map")], names)]
+    >>> from rosprivacy.analysis.model import Element
+    >>> from rosprivacy.analysis.suggesting.example_till import TILL
+    >>> [one.name for one in orders_of([Element("topic", "/orders"), Element("topic", "/map")], TILL.rules.names)]
     ['/orders']
     """
     return tuple(
@@ -49,24 +46,8 @@ def orders_of(elements: Iterable[Element], names: NameRules) -> tuple[Element, .
 def entered(node: LibraryNode, brought: Sequence[Spoken]) -> Iterator[Evidence]:
     """Yield what somebody enters, by the services that the node asks for.
 
-    >>> from rosprivacy.analysis.example import CAMERA, factory
-    >>> from rosprivacy.analysis.model import Confidence, Element, Place
-    >>> from rosprivacy.analysis.suggesting.carried_kinds import Rules
-    >>> from rosprivacy.analysis.suggesting.example_names import NAMES
-    >>> from rosprivacy.analysis.suggesting.library_node import LibraryNode, Spoken
-    >>> from rosprivacy.analysis.suggesting.library_rules import LibraryRule, NodeUse
-    >>> from rosprivacy.analysis.suggesting.name_rules import NameRule
-    >>> graph, _, hierarchy = factory()
-    >>> at = Place("libraries.yaml", 3)
-    >>> rule = NameRule(("DeliveryOrder",), Confidence.MAY, "what is brought", at)
-    >>> names = NAMES._replace(carries={("order",): rule}, entered=frozenset(["DeliveryOrder"]))
-    >>> service = Element("service", "/order", leg="request")
-    >>> node = LibraryNode.of(
-    ...     graph.elements[CAMERA], Rules({}, {}, names, hierarchy), [(service, [])], [], [], reads=False
-    ... )
-    >>> keys = LibraryRule(("OperatorInput",), Confidence.MAY, "it reads keys", at)
-    >>> brought = [Spoken(keys, NodeUse("input", "python", at))]
-    >>> [one.label.kind for one in entered(node, brought)]
+    >>> from rosprivacy.analysis.suggesting.example_till import KEYS, TILL
+    >>> [one.label.kind for one in entered(TILL, [KEYS])]
     ['DeliveryOrder']
     """
     acted, names = _acted(brought), node.rules.names
@@ -92,24 +73,8 @@ def ordered(
 
     Examples
     --------
-    >>> from rosprivacy.analysis.example import CAMERA, factory
-    >>> from rosprivacy.analysis.model import Confidence, Element, Place
-    >>> from rosprivacy.analysis.suggesting.carried_kinds import Rules
-    >>> from rosprivacy.analysis.suggesting.example_names import NAMES
-    >>> from rosprivacy.analysis.suggesting.library_node import LibraryNode, Spoken
-    >>> from rosprivacy.analysis.suggesting.library_rules import LibraryRule, NodeUse
-    >>> from rosprivacy.analysis.suggesting.name_rules import NameRule
-    >>> graph, _, hierarchy = factory()
-    >>> at = Place("libraries.yaml", 3)
-    >>> rule = NameRule(("DeliveryOrder",), Confidence.MAY, "what is brought", at)
-    >>> names = NAMES._replace(carries={("order",): rule}, entered=frozenset(["DeliveryOrder"]))
-    >>> service = Element("service", "/order", leg="request")
-    >>> node = LibraryNode.of(
-    ...     graph.elements[CAMERA], Rules({}, {}, names, hierarchy), [(service, [])], [], [], reads=False
-    ... )
-    >>> keys = LibraryRule(("OperatorInput",), Confidence.MAY, "it reads keys", at)
-    >>> brought = [Spoken(keys, NodeUse("input", "python", at))]
-    >>> [one.reason for one in ordered(node, brought, [service], [])]
+    >>> from rosprivacy.analysis.suggesting.example_till import KEYS, ORDER, TILL
+    >>> [one.reason for one in ordered(TILL, [KEYS], [ORDER], [])]
     ['uses input (libraries.yaml:3): it reads keys; /order speaks of orders']
     """
     asks = any(element.leg == "request" for element, _ in node.written)

@@ -35,13 +35,12 @@ def made_kinds(node: LibraryNode, made: Sequence[Spoken], brought: Sequence[Spok
     """Yield which kinds a node makes of others that it reads, or that it brought in itself.
 
     >>> from rosprivacy.analysis.example import CAMERA, VIDEO, factory
-    >>> from rosprivacy.analysis.model import Confidence, Place
+    >>> from rosprivacy.analysis.hierarchy import Hierarchy
+    >>> from rosprivacy.analysis.model import Category, Confidence, Place
     >>> from rosprivacy.analysis.suggesting.carried_kinds import Rules
     >>> from rosprivacy.analysis.suggesting.example_names import NAMES
     >>> from rosprivacy.analysis.suggesting.library_node import LibraryNode, Spoken
     >>> from rosprivacy.analysis.suggesting.library_rules import LibraryRule, NodeUse
-    >>> from rosprivacy.analysis.hierarchy import Hierarchy
-    >>> from rosprivacy.analysis.model import Category
     >>> graph = factory()[0]
     >>> kinds = ("PersonImage", "Voice", "SpeechTranscript")
     >>> hierarchy = Hierarchy.of([Category(name, "", "", "", "") for name in kinds])

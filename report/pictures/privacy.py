@@ -28,12 +28,13 @@ MOST = 4  # categories that are named on a box
 
 def ends_of(analysis: Analysis) -> dict[int, dict[str, int]]:
     """Return where findings end that are no disclosures: vertex -> their kind -> bits of the data."""
-    others = {finding.leak for finding in analysis.findings if finding.kind != DISCLOSURE}
-    number = {element: vertex for vertex, element in enumerate(analysis.graph.elements)} if others else {}
+    others = [finding for finding in analysis.findings if finding.kind != DISCLOSURE]
+    if not others:
+        return {}
+    number = {element: vertex for vertex, element in enumerate(analysis.graph.elements)}
     ends: dict[int, dict[str, int]] = defaultdict(lambda: defaultdict(int))
-    for finding in analysis.findings:
-        if finding.kind != DISCLOSURE:
-            ends[number[finding.leak]][finding.kind] |= analysis.spread.both(finding.category)
+    for finding in others:
+        ends[number[finding.leak]][finding.kind] |= analysis.spread.both(finding.category)
     return {vertex: dict(sorted(kinds.items())) for vertex, kinds in ends.items()}
 
 
