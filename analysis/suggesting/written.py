@@ -15,6 +15,11 @@ from rosprivacy.analysis.written_names import literal
 if TYPE_CHECKING:
     from rosprivacy.analysis.suggesting.evidence import Label
 
+TYPED_AS = (  # in a conversation, where no question offers it; it takes nothing away
+    "a label is typed as '/camera node source Video', '/screen node leak Video' or "
+    "'/finder node derives Video FaceTemplate', and Enter"
+)
+
 
 class WrittenLabel(NamedTuple):
     """What stands in a label file: ``section: {name: said}``."""

@@ -14,6 +14,7 @@ from rosprivacy.analysis.suggesting.question_rows import (
     LISTED,
     MAKES,
 )
+from rosprivacy.analysis.suggesting.written import TYPED_AS
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
@@ -37,10 +38,12 @@ KEYS = {  # a word, and what it means
     "n": ("no", "no to all that stands there; it is remembered, and not asked again"),
     "o": ("one by one", "asks about each row by itself"),
     "k": ("kind by kind", "asks about each kind of data by itself"),
+    "/": ("another label", TYPED_AS),
     "s": ("later", "not in this conversation any more; what you have written into the file meanwhile is read"),
     "q": ("stop", "ends it; the same command goes on from there"),
     "?": ("help", "shows this"),
 }
+ALWAYS = ("/", "q", "?")
 PICK = "picks a row, or puts it back; other keys speak of the picked rows, or of all if none is picked"
 ONE_FIRST = ": pick a row of which this can be said"
 NEITHER = "neither", "none of these; it is remembered, and not asked again, and the node stays open"
@@ -98,7 +101,7 @@ def help_lines(question: Question, keys: Collection[str]) -> Iterator[str]:
         first = LISTED_FIRST if question.about == GOES_THROUGH else ONE_FIRST if reply.takes_away else PICKED_FIRST
         if question.about != LISTED:
             yield f"  {key}  {_words(reply, question.rows)}{'' if key in keys else first}"
-    yield from (f"  {key}  {means}" for key, (_, means) in _meanings(question).items() if key in (*keys, "q", "?"))
+    yield from (f"  {key}  {means}" for key, (_, means) in _meanings(question).items() if key in (*keys, *ALWAYS))
 
 
 def _meanings(question: Question) -> dict[str, tuple[str, str]]:
@@ -124,7 +127,7 @@ def keys_line(question: Question, picked: Collection[int], keys: Collection[str]
         for one in rows[0].replies
         if one.key in keys
     ]
-    more = [f"{key} {word}" for key, (word, _) in _meanings(question).items() if key in (*keys, "q", "?")]
+    more = [f"{key} {word}" for key, (word, _) in _meanings(question).items() if key in (*keys, *ALWAYS)]
     letters = ["A-Z pick some"] if len(question.rows) > 1 else []
     return f"  {of}{', '.join([*said, *more, *letters])}"
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import os
 import pty
 import subprocess
@@ -18,17 +17,17 @@ from rosprivacy.labelling.asking import asked_now
 from rosprivacy.labelling.conversation import FOUND_SINCE, Conversation
 from rosprivacy.labelling.suggesting import suggest_labels
 from rosprivacy.settings import Settings
+from tests.helpers.asked_by_keys import ask, robot_of, wait_for_keys
 from tests.helpers.command import LINE, cli
 from tests.helpers.little_robots import HOSTILE, policy_of
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from tests.helpers.command import Cli, Done
+    from tests.helpers.command import Cli
 
 __all__ = ["cli"]
 
-DAY = "1767225600"
 NODES = {
     "eye": (["/a"], []),
     "middle": (["/b", "/c"], ["/a"]),
@@ -41,15 +40,7 @@ SOURCE = "labels: 1\nauthor: Ada\nnodes:\n  /eye: {source: [Video]}\n"
 
 @pytest.fixture
 def robot(tmp_path: Path) -> Path:
-    (tmp_path / "p.xml").write_text(policy_of(NODES), "utf-8")
-    (tmp_path / "l.yaml").write_text(SOURCE, "utf-8")
-    return tmp_path
-
-
-def ask(cli: Cli, folder: Path, keys: str, patch: pytest.MonkeyPatch, *more: str) -> Done:
-    with patch.context() as context:
-        context.setattr(sys, "stdin", io.StringIO(keys))
-        return cli("suggest", "p.xml", "--into", "l.yaml", "--ask", *more, cwd=folder, SOURCE_DATE_EPOCH=DAY)
+    return robot_of(tmp_path, NODES, SOURCE)
 
 
 def test_from_a_source_to_the_answer_by_single_keys(cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -318,7 +309,7 @@ def test_at_a_terminal_a_key_needs_no_enter(robot: Path) -> None:
         for key in (b"1", b"q"):
             while not shown.endswith(b"> ") and (more := process.stdout.read(1)):
                 shown += more
-            time.sleep(0.5)  # what is typed before the terminal waits for a key is no answer
+            wait_for_keys(theirs)
             os.write(ours, key)
             shown += process.stdout.read(1)
         shown += process.stdout.read()
@@ -355,7 +346,7 @@ def test_keys_that_are_no_text_end_it(robot: Path, keys: bytes) -> None:
     assert (robot / "l.yaml").read_text("utf-8").startswith(SOURCE)
 
 
-@pytest.mark.parametrize("key", ["1", "n"])
+@pytest.mark.parametrize("key", ["1", "n", "/eye node source Voice"])
 def test_json_has_no_room_for_answers(cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch, key: str) -> None:
     text = '{"labels": 1, "author": "A", "nodes": {"/eye": {"source": ["Video"]}}}'
     (robot / "l.yaml").write_text(text, "utf-8")

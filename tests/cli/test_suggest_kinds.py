@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import io
-import sys
 from string import ascii_uppercase
 from typing import TYPE_CHECKING
 
@@ -20,6 +18,7 @@ from rosprivacy.labelling.conversation import Conversation
 from rosprivacy.labelling.suggesting import suggest_labels
 from rosprivacy.report.suggest.question_lines import keys_line, question_lines
 from rosprivacy.settings import Settings
+from tests.helpers.asked_by_keys import ask, robot_of
 from tests.helpers.command import cli
 from tests.helpers.little_robots import policy_of
 
@@ -28,7 +27,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from rosprivacy.labelling.suggested_labels import Suggested
-    from tests.helpers.command import Cli, Done
+    from tests.helpers.command import Cli
     from tests.helpers.little_robots import Nodes
 
 __all__ = ["cli"]
@@ -46,15 +45,7 @@ REVIEWED = HEAD + "  /middle: conduit\n  /here: conduit\n"
 
 @pytest.fixture
 def robot(tmp_path: Path) -> Path:
-    (tmp_path / "p.xml").write_text(policy_of(NODES), "utf-8")
-    (tmp_path / "l.yaml").write_text(REVIEWED, "utf-8")
-    return tmp_path
-
-
-def ask(cli: Cli, folder: Path, keys: str, patch: pytest.MonkeyPatch) -> Done:
-    with patch.context() as context:
-        context.setattr(sys, "stdin", io.StringIO(keys))
-        return cli("suggest", "p.xml", "--into", "l.yaml", "--ask", cwd=folder)
+    return robot_of(tmp_path, NODES, REVIEWED)
 
 
 class Scripted:

@@ -23,6 +23,7 @@ from rosprivacy.labelling.closing_lists import closing
 from rosprivacy.labelling.conversation import Conversation
 from rosprivacy.labelling.suggesting import suggest_labels
 from rosprivacy.settings import Settings
+from tests.helpers.asked_by_keys import ask, robot_of
 from tests.helpers.command import cli
 from tests.helpers.little_robots import policy_of
 from tests.helpers.planted_leaks import planted
@@ -34,12 +35,11 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.suggesting.question_rows import Question
     from rosprivacy.labelling.suggested_labels import Suggested
-    from tests.helpers.command import Cli, Done
+    from tests.helpers.command import Cli
     from tests.helpers.little_robots import Nodes
 
 __all__ = ["cli"]
 
-DAY = "1767225600"
 TEXT = "std_msgs/msg/String"
 JOINTS, BATTERY = "sensor_msgs/msg/JointState", "sensor_msgs/msg/BatteryState"  # one family of the table
 TYPES = {
@@ -64,15 +64,7 @@ def labels_of(types: dict[str, str], more: str = "") -> str:
 
 @pytest.fixture
 def robot(tmp_path: Path) -> Path:
-    (tmp_path / "p.xml").write_text(policy_of(NODES), "utf-8")
-    (tmp_path / "l.yaml").write_text(labels_of(TYPES), "utf-8")
-    return tmp_path
-
-
-def ask(cli: Cli, folder: Path, keys: str, patch: pytest.MonkeyPatch) -> Done:
-    with patch.context() as context:
-        context.setattr(sys, "stdin", io.StringIO(keys))
-        return cli("suggest", "p.xml", "--into", "l.yaml", "--ask", cwd=folder, SOURCE_DATE_EPOCH=DAY)
+    return robot_of(tmp_path, NODES, labels_of(TYPES))
 
 
 def list_shown(text: str) -> list[str]:
@@ -106,6 +98,18 @@ def test_a_list_is_confirmed_by_its_number_and_each_note_says_so(robot: Path) ->
     for name in ("arm", "battery", "joints"):
         assert f"  /{name}: {{never: [Video], " in text
     assert text.count("answered by Ada on 2026-11-23 in a list of 3: type sensor_msgs/msg/") == 3
+
+
+def test_a_label_that_is_typed_in_its_place_does_not_confirm_it(
+    cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The list comes again; what was taken out before stays out."""
+    shown = ask(cli, robot, f"{BEFORE}A/eye node leak Biometric\n", monkeypatch).stdout
+    text = (robot / "l.yaml").read_text("utf-8")
+    assert "  /eye: {leak: [Biometric], source: [Video], note: " in text
+    assert "never" not in text
+    assert shown.count(HEADING) == 2
+    assert sorted(list_shown(shown)) == ["/battery", "/joints"]
 
 
 @pytest.mark.parametrize("number", ["", "0", "1", "2", "4", "33", "3x", "03"])

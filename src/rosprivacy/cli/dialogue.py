@@ -11,16 +11,18 @@ import typer
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.files_read import one_run
 from rosprivacy.analysis.suggesting.question_rows import LISTED
+from rosprivacy.analysis.suggesting.written import TYPED_AS, WrittenLabel
 from rosprivacy.analysis.text import counted
 from rosprivacy.cli.output import emit
 from rosprivacy.clock import today
 from rosprivacy.labelling.answer_keys import allowed
-from rosprivacy.labelling.asking import asked_now, with_answer
+from rosprivacy.labelling.asking import asked_now, with_answer, with_label
 from rosprivacy.labelling.closing_lists import closing
 from rosprivacy.labelling.conversation import Conversation
 from rosprivacy.labelling.limits_on_the_way import brings, limits_on_the_way
 from rosprivacy.labelling.named_answers import AND, BEGINS, keys_of, lines_of, takes_away
 from rosprivacy.labelling.suggested_lines import who_says
+from rosprivacy.labelling.typed_labels import contradiction, typed_label
 from rosprivacy.report.editing import editing
 from rosprivacy.report.suggest.question_lines import help_lines, keys_line, question_lines
 
@@ -29,12 +31,13 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from rosprivacy.analysis.suggesting.question_rows import Question
-    from rosprivacy.analysis.suggesting.written import WrittenLabel
+    from rosprivacy.labelling.label_lines import Written
     from rosprivacy.labelling.suggested_labels import Suggested
     from rosprivacy.settings import Settings
 
 DIGITS, MOST_DIGITS, ENTER = frozenset("0123456789"), 4, ("\r", "\n", "\r\n")
 HELP = "?"
+UNREADABLE = (EOFError, KeyboardInterrupt, OSError, ValueError)  # ValueError: bytes that are no text, or a closed file
 LONGEST_ANSWER = 100_000  # signs of a line
 ENDED = "\x03\x04"  # Ctrl-C and Ctrl-D, where the terminal gives them as keys
 OUT_OF_STEP = "the keys are out of step with the questions, and no more are read"
@@ -50,8 +53,14 @@ def ask(file: Path, told: Callable[[], Suggested], by: str | None, settings: Set
         With every problem of the input; what was answered before is kept.
     """
     who = who_says(str(file), by, "answers")
-    person = _Terminal()
     last: list[Suggested] = []
+
+    def label_of(line: str) -> WrittenLabel | str:
+        result = last[0].result
+        label = typed_label(line, result.analysis.graph.elements, result.vocabulary)
+        return label if isinstance(label, str) else contradiction(label, result) or label
+
+    person = _Terminal(label_of)
     brought: list[WrittenLabel] = []  # since the questions were made
 
     def again() -> None:
@@ -65,15 +74,22 @@ def ask(file: Path, told: Callable[[], Suggested], by: str | None, settings: Set
         again()
         return asked_now(last[0])
 
-    def keep(question: Question, key: str) -> tuple[str, ...]:
+    def write(answered: Callable[[str], Written], labels: Iterable[WrittenLabel]) -> tuple[str, ...]:
         with one_run(), editing(file):  # of its own: the file was read before, and is ours
-            written = with_answer(str(file), question, key, who, today(os.environ), settings)
+            written = answered(today(os.environ))
             if written.added:
                 emit(written.text, file, edited=file)
-                brought.extend(brings(reply.label for row in question.rows if (reply := row.reply(key))))
+                brought.extend(brings(labels))
         return written.remarks
 
-    conversation = Conversation(now, keep, person, lambda rows: closing(rows, last[0].result))
+    def keep(question: Question, key: str) -> tuple[str, ...]:
+        labels = (reply.label for row in question.rows if (reply := row.reply(key)))
+        return write(lambda day: with_answer(str(file), question, key, who, day, settings), labels)
+
+    def typed(label: WrittenLabel) -> tuple[str, ...]:
+        return write(lambda day: with_label(str(file), label, who, day, settings), [label])
+
+    conversation = Conversation(now, keep, person, lambda rows: closing(rows, last[0].result), typed)
     whole = conversation.run()
     if not whole:
         again()
@@ -88,13 +104,19 @@ class _Terminal:
 
     A file of keys may have been made for other questions. So there no single key takes data away, nor a number: a line
     does, which names the element.
+
+    Parameters
+    ----------
+    label_of
+        The label that a line says, or in words why it says none.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, label_of: Callable[[str], WrittenLabel | str]) -> None:
+        self.label_of = label_of
         self.last: Question | None = None
         self.next: list[str] = []  # the rest of what a line comes to
 
-    def key(self, question: Question, picked: frozenset[int]) -> str:
+    def key(self, question: Question, picked: frozenset[int]) -> str | WrittenLabel:
         if question != self.last:
             _say(question_lines(question))
         self.last = question
@@ -102,31 +124,47 @@ class _Terminal:
             typer.echo(keys_line(question, picked, allowed(question, picked)))
             typer.echo("> ", nl=False)
             key = self._next(question, picked)
+            if key is None:
+                continue
+            if isinstance(key, WrittenLabel):
+                return key
             typer.echo(shown(key))
             if key != HELP:
                 return key
             _say(help_lines(question, allowed(question, picked)))
 
-    def _next(self, question: Question, picked: frozenset[int]) -> str:
+    def _next(self, question: Question, picked: frozenset[int]) -> str | WrittenLabel | None:
+        """The next key, or a label typed as a line; nothing if there is no more, None for what is neither."""
         if self.next:
             return self.next.pop(0)
         key = _pressed()
+        if key.startswith(BEGINS):
+            return self._line(_typed_line(key) if at_terminal() else key + _rest_of_line(), question, picked)
         if not at_terminal():
             return self._piped(key, question, picked)
         return _number(key) if question.about == LISTED and key and DIGITS.issuperset(key) else key
+
+    def _line(self, line: str, question: Question, picked: frozenset[int]) -> str | WrittenLabel | None:
+        """The keys that a line comes to, if the question offers what it says; or the label that it is."""
+        self.next = list(keys_of(line, question, picked))
+        if self.next:
+            return self.next.pop(0)
+        label = self.label_of(line)
+        if isinstance(label, WrittenLabel):
+            if not at_terminal():  # which has shown it already
+                typer.echo(shown(line))
+            return label
+        if at_terminal():
+            typer.echo(f"{shown(line)!r} is no answer here: {label}")
+            return None
+        typer.echo(f"{shown(line)!r} is no answer here: {'' if label == TYPED_AS else f'{label}; '}{OUT_OF_STEP}")
+        return ""
 
     def told(self, remark: str) -> None:
         typer.echo(remark)
 
     def _piped(self, key: str, question: Question, picked: frozenset[int]) -> str:
-        """What a key of a file says, or the line that begins with it; nothing if no more may be read."""
-        if key == BEGINS:
-            line = key + _rest_of_line()
-            self.next = list(keys_of(line, question, picked))
-            if self.next:
-                return self.next.pop(0)
-            typer.echo(f"{shown(line)!r} is no answer here: {OUT_OF_STEP}")
-            return ""
+        """What a key of a file says; nothing if no more may be read."""
         whole = question.about == LISTED
         if key not in DIGITS or (key in (can := allowed(question, picked)) and not takes_away(question, key)):
             return key
@@ -164,11 +202,20 @@ def _number(first: str) -> str:
 
 
 def _rest_of_line() -> str:
-    """What stands on a line after its first sign; of an endless line its beginning."""
+    """What stands on a line of a file after its first sign; of an endless line its beginning."""
     rest = ""
     while (key := _read()) and key not in ENTER and len(rest) < LONGEST_ANSWER:
         rest += key
     return rest
+
+
+def _typed_line(begun: str) -> str:
+    """A line that begins with what was typed so far; the terminal shows it while it is typed."""
+    typer.echo(begun, nl=False)
+    try:
+        return begun + sys.stdin.readline(LONGEST_ANSWER).rstrip()
+    except UNREADABLE:
+        return begun
 
 
 def _pressed() -> str:
@@ -188,6 +235,6 @@ def _read() -> str:
             key = typer.getchar()
             return "" if key in ENDED else key
         key = sys.stdin.read(1)
-    except (EOFError, KeyboardInterrupt, OSError, ValueError):  # ValueError: bytes that are no text, or a closed file
+    except UNREADABLE:
         return ""
     return key

@@ -23,7 +23,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rosprivacy.analysis.suggesting.question_rows import Question
+    from rosprivacy.analysis.suggesting.written import WrittenLabel
     from rosprivacy.labelling.suggested_labels import Suggested
+    from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.settings import Settings
 
 
@@ -45,9 +47,7 @@ def with_answer(file: str, question: Question, key: str, who: str, day: str, set
     InputErrors
         If the file is no label file, or cannot be changed without losing something.
     """
-    text = text_of(file)
-    vocabulary = load(ontologies=settings.ontologies)
-    check_room(file, text, with_refusals(text, ()), vocabulary)
+    text, vocabulary = _begun(file, settings)
     if key == NO:
         lines = [refusal(label, who, day) for row in question.rows for label in row.refused]
         new = with_refusals(text, lines)
@@ -57,6 +57,27 @@ def with_answer(file: str, question: Question, key: str, who: str, day: str, set
         file, text, list(_labels(question, key, f"answered by {who} on {day}{_in_list(question)}")), vocabulary
     )
     return Written(file, done.text, done.count, done.remarks)
+
+
+def with_label(file: str, label: WrittenLabel, who: str, day: str, settings: Settings) -> Written:
+    """Return a label file with a label that a person has typed.
+
+    Raises
+    ------
+    InputErrors
+        If the file is no label file, or cannot be changed without losing something.
+    """
+    text, vocabulary = _begun(file, settings)
+    done = with_labels(file, text, [NewLabel(*label, f"typed by {who} on {day}")], vocabulary)
+    return Written(file, done.text, done.count, done.remarks)
+
+
+def _begun(file: str, settings: Settings) -> tuple[str, Vocabulary]:
+    """The text of a label file that has room for answers, and in whose words it is written."""
+    text = text_of(file)
+    vocabulary = load(ontologies=settings.ontologies)
+    check_room(file, text, with_refusals(text, ()), vocabulary)
+    return text, vocabulary
 
 
 def _labels(question: Question, key: str, note: str) -> Iterator[NewLabel]:

@@ -6,18 +6,16 @@ finding; they are asked by themselves. That is no estimate: the labels are put o
 
 from __future__ import annotations
 
-import json
-from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.suggesting.question_rows import NOTHING
-from rosprivacy.ingest.labels.label_file import parse_labels
+from rosprivacy.labelling.question_order import by_likeness
+from rosprivacy.labelling.tried_labels import with_more
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from rosprivacy.analysis.suggesting.alike_channels import Alike
     from rosprivacy.analysis.suggesting.question_rows import Question, Row
     from rosprivacy.result import Result
 
@@ -28,12 +26,9 @@ def without_closing(question: Question, result: Result) -> Question:
     Fewer labels close no more, so that rows can be taken out. One run of the analysis for each likeness; where it loses
     a finding, one for each row.
     """
-    parts: dict[tuple[Alike, tuple[str, ...]], list[Row]] = defaultdict(list)
-    for row in question.rows:
-        parts[row.alike, row.kinds].append(row)
     apart: list[Row] = []
-    for (likeness, _), rows in parts.items():
-        if likeness and len(rows) > 1 and _closes([row.saying(NOTHING) for row in rows], result):
+    for rows in by_likeness(question.rows):
+        if rows[0].alike and len(rows) > 1 and _closes([row.saying(NOTHING) for row in rows], result):
             apart += _by_themselves(rows, result)
     if not apart:
         return question
@@ -70,15 +65,10 @@ def closing(rows: Sequence[Row], result: Result) -> Sequence[Row]:
 
 def _closes(rows: Sequence[Row], result: Result) -> bool:
     """Whether a finding is lost by what is said of channels; where nobody can tell, it is."""
-    if result.again is None:
-        return True
-    sections: dict[str, dict[str, dict[str, list[str]]]] = defaultdict(lambda: defaultdict(lambda: defaultdict(list)))
-    for label in (reply.label for row in rows for reply in row.replies):
-        for role, kinds in label.said.items():
-            sections[label.section][label.name][role] += kinds
     try:
-        said = parse_labels(json.dumps({"labels": 1, **sections}), result.vocabulary, name="a list of channels")
-        after = result.again((*result.labels, said))
+        after = with_more(result, (reply.label for row in rows for reply in row.replies), "a list of channels")
     except InputErrors:  # they go against what a label says
+        return True
+    if after is None:
         return True
     return not {one.id for one in result.analysis.findings} <= {one.id for one in after.analysis.findings}

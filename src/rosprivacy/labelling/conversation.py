@@ -17,9 +17,7 @@ from typing import TYPE_CHECKING, Protocol
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.suggesting.question_rows import (
     BRINGS_IN,
-    GOES_ON,
     GOES_THROUGH,
-    LETS_OUT,
     LISTED,
     MAKES,
     MOST_ROWS,
@@ -27,6 +25,7 @@ from rosprivacy.analysis.suggesting.question_rows import (
     YES,
     Question,
 )
+from rosprivacy.analysis.suggesting.written import WrittenLabel
 from rosprivacy.analysis.text import counted
 from rosprivacy.labelling.answer_keys import (
     EACH_KIND,
@@ -40,21 +39,13 @@ from rosprivacy.labelling.answer_keys import (
     letter,
     takes_away_of_each,
 )
+from rosprivacy.labelling.question_order import STAGES, by_likeness, waits
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
 
-    from rosprivacy.analysis.suggesting.alike_channels import Alike
     from rosprivacy.analysis.suggesting.question_rows import Row
 
-STAGES = {
-    BRINGS_IN: 0,
-    LETS_OUT: 0,
-    MAKES: 0,
-    GOES_ON: 1,
-    GOES_THROUGH: 2,
-    LISTED: 2,
-}  # a leak of one is known
 BY_ITSELF = "it could close a known finding, and is asked by itself"
 CHANGED = "this list is not as it was any more: nothing is kept, and it is asked anew"
 FOUND_SINCE = "a finding of such data has become known since: nothing is kept, and it is asked anew"
@@ -65,8 +56,8 @@ Said = tuple[str, Identity, tuple[str, ...]]  # what a row asks, in this convers
 class Person(Protocol):
     """Who answers."""
 
-    def key(self, question: Question, picked: frozenset[int]) -> str:
-        """Return a key, of a list also a number that was confirmed; nothing if there is no more."""
+    def key(self, question: Question, picked: frozenset[int]) -> str | WrittenLabel:
+        """Return a key, of a list also a number, or a label in place of an answer; nothing if there is no more."""
         ...
 
     def told(self, remark: str) -> None:
@@ -86,6 +77,8 @@ class Conversation:
         Keeps what is said of all rows of a question by a key, before it returns; returns remarks if it could not.
     closing
         Which of some channels, each with the one reply that is said of it, would close a finding: no list has these.
+    typed
+        Keeps a label that was typed in place of an answer; returns remarks.
     lists
         How many rows each list had that was confirmed.
     """
@@ -94,6 +87,7 @@ class Conversation:
     keep: Callable[[Question, str], tuple[str, ...]]
     person: Person
     closing: Callable[[Sequence[Row]], Sequence[Row]] = lambda rows: rows
+    typed: Callable[[WrittenLabel], tuple[str, ...]] = lambda _: ("no label is kept here",)
     answers: int = 0
     _later: dict[tuple[str, Identity], set[str]] = field(default_factory=lambda: defaultdict(set))
     lists: list[int] = field(default_factory=list)
@@ -111,16 +105,16 @@ class Conversation:
     def _round(self, pending: deque[Question]) -> bool:
         """Ask until there is more to know of what is left; return False if the person stops."""
         answered: set[int] = set()
-        while pending:
+        while pending and not waits(pending[0], answered):
             question = pending.popleft()
-            stage = STAGES[question.about]
-            if any(one < stage for one in answered) or (answered and _tells_findings(question)):
-                return True
             if question.about == LISTED:
                 return self._listed(question)
             answer = self._answer(question)
             if answer is None:
                 return False
+            if isinstance(answer, WrittenLabel):
+                self._typed(answer)
+                return True
             key, rows = answer
             if len(rows) > 1 and takes_away_of_each(rows, key):
                 return self._picked([row.saying(key) for row in rows])
@@ -129,7 +123,7 @@ class Conversation:
             elif self._taken(question, rows, key):
                 return True
             else:
-                answered.add(stage)
+                answered.add(STAGES[question.about])
             if rest := tuple(row for row in question.rows if row not in rows):
                 pending.appendleft(Question(question.about, rest))
             if key == OPEN:
@@ -176,7 +170,7 @@ class Conversation:
         for question in self._asked():
             rows = [row for row in question.rows if not self._is_later(question, row)]
             listed = [row for row in rows if row.alike and _said(question, row) not in self._taken_out | self._alone]
-            lists = [part for part in _by_likeness(listed) if len(part) >= FEWEST]
+            lists = [part for part in by_likeness(listed) if len(part) >= FEWEST]
             in_lists = [row for part in lists for row in part]
             yield from (Question(LISTED, tuple(row.saying(NOTHING) for row in part)) for part in lists)
             together = [row for row in rows if row not in in_lists and _said(question, row) not in self._alone]
@@ -214,13 +208,14 @@ class Conversation:
         while True:
             key = self.person.key(question, frozenset(out))
             rows = tuple(row for at, row in enumerate(question.rows) if at not in out)
-            at = letter(key)
             if key in ("", QUIT):
                 return False
-            if 0 <= at < len(question.rows):
-                out ^= {at}
+            if isinstance(key, WrittenLabel):
+                self._typed(key)
+            elif 0 <= letter(key) < len(question.rows):
+                out ^= {letter(key)}
                 continue
-            if key == OPEN:
+            elif key == OPEN:
                 out = set(range(len(question.rows)))
             elif key == SKIP:
                 self._postponed(GOES_THROUGH, rows)
@@ -251,14 +246,16 @@ class Conversation:
         self.answers += 1
         self.lists.append(len(question.rows))
 
-    def _answer(self, question: Question) -> tuple[str, list[Row]] | None:
-        """The key that is said of rows, and these; None if the person stops."""
+    def _answer(self, question: Question) -> tuple[str, list[Row]] | WrittenLabel | None:
+        """The key that is said of rows, and these, or a label in its place; None if the person stops."""
         picked: set[int] = set()
         while True:
             key = self.person.key(question, frozenset(picked))
             rows = [row for at, row in enumerate(question.rows) if at in picked or not picked]
             if key in ("", QUIT):
                 return None
+            if isinstance(key, WrittenLabel):
+                return key
             at = letter(key)
             if 0 <= at < len(question.rows) and len(question.rows) > 1:
                 picked ^= {at}
@@ -266,6 +263,11 @@ class Conversation:
                 return key, rows
             else:
                 self.person.told(f"{key!r} is no answer here")
+
+    def _typed(self, label: WrittenLabel) -> None:
+        for remark in self.typed(label):
+            self.person.told(remark)
+        self.answers += 1
 
     def _kept(self, question: Question, key: str) -> bool:
         """Keep an answer; return whether it changes what data get where."""
@@ -279,22 +281,6 @@ class Conversation:
             return False
         reply = question.rows[0].reply(key)
         return question.about in (BRINGS_IN, MAKES) or bool(reply and reply.takes_away)
-
-
-def _tells_findings(question: Question) -> bool:
-    """Whether a question has to tell findings that an answer before it may have made known: a leak among nodes is one.
-
-    No answer about a channel makes a finding known.
-    """
-    takes_away = any(reply.takes_away for row in question.rows for reply in row.replies)
-    return takes_away and question.about != GOES_THROUGH
-
-
-def _by_likeness(rows: Iterable[Row]) -> tuple[tuple[Row, ...], ...]:
-    parts: dict[tuple[Alike, tuple[str, ...]], list[Row]] = {}
-    for row in rows:
-        parts.setdefault((row.alike, row.kinds), []).append(row)
-    return tuple(map(tuple, parts.values()))
 
 
 def _of_channel(row: Row) -> Said:

@@ -1,0 +1,55 @@
+"""``rosprivacy suggest --ask`` as tests answer it: by a file of keys, or at a terminal."""
+
+from __future__ import annotations
+
+import io
+import os
+import select
+import sys
+import termios
+import time
+from typing import TYPE_CHECKING
+
+from tests.helpers.little_robots import policy_of
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    import pytest
+
+    from tests.helpers.command import Cli, Done
+    from tests.helpers.little_robots import Nodes
+
+DAY = "1767225600"  # 2026-01-01
+SECONDS = 60
+
+
+def robot_of(folder: Path, nodes: Nodes, labels: str) -> Path:
+    """Write a policy and labels; return the folder."""
+    (folder / "p.xml").write_text(policy_of(nodes), "utf-8")
+    (folder / "l.yaml").write_text(labels, "utf-8")
+    return folder
+
+
+def ask(cli: Cli, folder: Path, keys: str, patch: pytest.MonkeyPatch, *more: str) -> Done:
+    """Answer by a file of keys."""
+    with patch.context() as context:
+        context.setattr(sys, "stdin", io.StringIO(keys))
+        return cli("suggest", "p.xml", "--into", "l.yaml", "--ask", *more, cwd=folder, SOURCE_DATE_EPOCH=DAY)
+
+
+def wait_for_keys(terminal: int, *, whole_lines: bool = False) -> None:
+    """Wait until the program reads single keys of a terminal, or lines: what is typed before is no answer."""
+    ends = time.monotonic() + SECONDS
+    while bool(termios.tcgetattr(terminal)[3] & termios.ICANON) is not whole_lines:
+        assert time.monotonic() < ends
+        time.sleep(0.01)
+
+
+def read_until(terminal: int, end: bytes) -> bytes:
+    """Read what the program writes, up to some end."""
+    screen = b""
+    while not screen.endswith(end):
+        assert select.select([terminal], [], [], SECONDS)[0], screen
+        screen += os.read(terminal, 1)
+    return screen
