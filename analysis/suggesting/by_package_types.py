@@ -1,6 +1,7 @@
 """Open channels of which well-known packages know the type, and that this type is not made for what reaches them.
 
-In: open elements, a graph, packages, the table of types. Out: evidence that such data never go through: ``may``.
+In: open elements, a graph, its nodes of packages, the table of types. Out: evidence that such data never go through:
+``may``.
 
 A package speaks of its own nodes only, and does not know who else writes to a channel. So all who write a topic, or
 who serve a service or an action, have to be nodes of packages by their names and at least half of their interfaces,
@@ -15,9 +16,9 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.many_flows import parted
 from rosprivacy.analysis.model import STATED, Confidence, Method
-from rosprivacy.analysis.suggesting.by_package import is_called, recognised
 from rosprivacy.analysis.suggesting.carried_kinds import no_leg_carries, suggests_nothing
 from rosprivacy.analysis.suggesting.evidence import NEVER, PACKAGE, Evidence, Label, whole
+from rosprivacy.analysis.suggesting.nodes_of_packages import is_called
 from rosprivacy.analysis.suggesting.ros_package import USES
 
 if TYPE_CHECKING:
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.answer import OpenQuestion
     from rosprivacy.analysis.model import Bound, FlowGraph
     from rosprivacy.analysis.suggesting.carried_kinds import Rules
+    from rosprivacy.analysis.suggesting.nodes_of_packages import NodeOfPackage
     from rosprivacy.analysis.suggesting.ros_package import Package
 
     Identity = tuple[str, str, str]
@@ -34,7 +36,11 @@ MAKERS = {"topic": "publish", "service": "reply", "action": "execute"}  # whose 
 
 
 def by_package_types(
-    questions: Iterable[OpenQuestion], graph: FlowGraph, bound: Bound, packages: Sequence[Package], rules: Rules
+    questions: Iterable[OpenQuestion],
+    graph: FlowGraph,
+    bound: Bound,
+    of_packages: Iterable[NodeOfPackage],
+    rules: Rules,
 ) -> Iterator[Evidence]:
     """Yield for open channels the kinds that do not go through, by the types of packages.
 
@@ -43,14 +49,16 @@ def by_package_types(
     >>> from rosprivacy.analysis.model import Place
     >>> from rosprivacy.analysis.suggesting.carried_kinds import Rules
     >>> from rosprivacy.analysis.suggesting.example_names import NAMES
+    >>> from rosprivacy.analysis.suggesting.nodes_of_packages import nodes_of_packages
     >>> from rosprivacy.analysis.suggesting.ros_package import Interface, Package, PackageNode, Source
     >>> graph, bound, hierarchy = factory()
     >>> node = PackageNode(("camera",), (Interface("publishes", "video", "a/msg/Beep"),), ())
     >>> beeper = Package("beeper", "", (Source("a page", "2026-11-23", "1.0"),), (node,), Place("beeper.yaml", 1))
+    >>> of_packages = nodes_of_packages(graph, {}, [beeper])
     >>> asked = [OpenQuestion(graph.elements[VIDEO], ("Voice",), 1, False)]
     >>> for table in ({("a/msg/Beep", ""): ()}, {}):
     ...     rules = Rules(table, {}, NAMES, hierarchy)
-    ...     print([one.reason for one in by_package_types(asked, graph, bound, [beeper], rules)])
+    ...     print([one.reason for one in by_package_types(asked, graph, bound, of_packages, rules)])
     ['package beeper 1.0: a/msg/Beep, which is not made for Voice']
     []
     """
@@ -65,7 +73,7 @@ def by_package_types(
     for vertex, element in enumerate(graph.elements):
         if element.identity in asked:
             legs[element.identity].append(vertex)
-    typed = _typed(graph, bound, packages, legs) if asked else {}
+    typed = _typed(graph, bound, of_packages, legs) if asked else {}
     for identity, (type_, package) in typed.items():
         question = asked[identity]
         of_legs = [graph.elements[vertex].leg for vertex in legs[identity]]
@@ -78,16 +86,19 @@ def by_package_types(
 
 
 def _typed(
-    graph: FlowGraph, bound: Bound, packages: Sequence[Package], legs: Mapping[Identity, Sequence[int]]
+    graph: FlowGraph, bound: Bound, of_packages: Iterable[NodeOfPackage], legs: Mapping[Identity, Sequence[int]]
 ) -> dict[Identity, Known]:
     """The type of channels, where all who make it one of a type are nodes of packages, and agree."""
+    recognised = [one for one in of_packages if one.is_recognised]
+    if not recognised:
+        return {}
     makers = _makers(graph, bound, legs)
     said: dict[tuple[int, Identity], set[Known]] = defaultdict(set)
     of_node: dict[int, list[Identity]] = defaultdict(list)
     for identity, nodes in makers.items():
         for maker in nodes:
             of_node[maker].append(identity)
-    for vertex, package, node in recognised(graph, bound.types, packages):
+    for vertex, package, node in ((one.vertex, one.package, one.node) for one in recognised):
         base = graph.elements[vertex].name.rpartition("/")[2]
         for identity in of_node.get(vertex, ()):
             _, kind, name = identity

@@ -49,6 +49,10 @@ class Rules(NamedTuple):
         """Return whether data of one kind can be of the other."""
         return self.hierarchy.overlap(kind, other) is not None
 
+    def related_to_one(self, kind: str, others: Iterable[str]) -> bool:
+        """Return whether data of one kind can be of one of the others."""
+        return not self.hierarchy.overlaps[kind].keys().isdisjoint(others)
+
 
 class Clue(NamedTuple):
     """One reason to think that a channel carries a kind."""
@@ -134,7 +138,7 @@ def _excludes(kind: str, key: Key, rules: Rules) -> bool:
     if limit and kind in limit.kinds:
         return True
     said = rules.suggestions.get(key)
-    return said is not None and not any(rules.related(kind, one) for rule in said for one in rule.kinds)
+    return said is not None and not any(rules.related_to_one(kind, rule.kinds) for rule in said)
 
 
 def _clues(element: Element, types: Mapping[str, Place], rules: Rules) -> tuple[Clue, ...]:

@@ -12,7 +12,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     from rosprivacy.analysis.model import Confidence, Place
 
@@ -157,7 +157,7 @@ def is_silent(name: str, rules: NameRules) -> bool:
     part = next((part for part in map(words, name.split("/")[::-1]) if not rules.neutral.issuperset(part)), ())
     if not part or of_topic_nothing(name, rules):
         return bool(part)
-    return part[0] in rules.commanding or any(phrase in rules.silent for phrase in _ending_at(part, len(part)))
+    return part[0] in rules.commanding or not rules.silent.isdisjoint(_ending_at(part, len(part)))
 
 
 def of_topic_nothing(name: str, rules: NameRules) -> Spoken | None:
@@ -177,7 +177,7 @@ def ends_with(name: str, phrases: frozenset[Phrase]) -> bool:
     (True, False)
     """
     part = words(name.rpartition("/")[2])
-    return any(phrase in phrases for phrase in _ending_at(part, len(part)))
+    return not phrases.isdisjoint(_ending_at(part, len(part)))
 
 
 def has_word(name: str, some: frozenset[str]) -> bool:
@@ -226,8 +226,10 @@ def _phrases(part: Phrase) -> tuple[Phrase, ...]:
     return tuple(phrase for end in range(len(part), 0, -1) for phrase in _ending_at(part, end))
 
 
-def _ending_at(part: Phrase, end: int) -> Iterator[Phrase]:
-    return (part[start:end] for start in range(max(0, end - LONGEST_PHRASE), end))
+@lru_cache(maxsize=2**16)
+def _ending_at(part: Phrase, end: int) -> tuple[Phrase, ...]:
+    """The phrases of a part that end there, the longest first."""
+    return tuple(part[start:end] for start in range(max(0, end - LONGEST_PHRASE), end))
 
 
 def _instead(spoken: Spoken | None, parts: Sequence[str], rules: NameRules) -> Spoken | None:
@@ -237,6 +239,6 @@ def _instead(spoken: Spoken | None, parts: Sequence[str], rules: NameRules) -> S
     for part in parts:
         for phrase in _phrases(words(part)):
             rule = rules.carries.get(phrase)
-            if rule and not set(spoken.rule.kinds).isdisjoint(rule.instead_of):
+            if rule and rule.instead_of and not set(spoken.rule.kinds).isdisjoint(rule.instead_of):
                 return Spoken(rule, phrase)
     return spoken

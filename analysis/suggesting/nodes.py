@@ -13,7 +13,7 @@ source of where somebody is.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.model import Confidence, Method, interface_of
 from rosprivacy.analysis.suggesting.carried_kinds import ANYTHING, Clue, cannot_carry
@@ -34,7 +34,7 @@ from rosprivacy.analysis.suggesting.weighing import surer
 SAID, WANTED = "SpeechTranscript", "VoiceCommand"
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.model import Bound, Element, FlowGraph
     from rosprivacy.analysis.suggesting.carried_kinds import Rules
@@ -43,7 +43,14 @@ if TYPE_CHECKING:
 
     Clues = Mapping[int, tuple[Clue, ...]]
     ByKind = dict[str, list[Clue]]
-    Typed = Sequence[tuple[Element, Sequence[str]]]  # channels with the names of their types
+
+
+class _Channel(NamedTuple):
+    """A channel that a node writes, with the names of its types, and what is thought that goes into it."""
+
+    element: Element
+    types: Sequence[str]
+    clues: Sequence[Clue]
 
 
 def of_nodes(graph: FlowGraph, bound: Bound, told: Traffic, clues: Clues, rules: Rules) -> Iterator[Evidence]:
@@ -74,31 +81,29 @@ def of_nodes(graph: FlowGraph, bound: Bound, told: Traffic, clues: Clues, rules:
     heard = {at: _of_node(some, names) for at, some in clues.items()}
     sent = {at: _of_writer(graph.elements[at], some, names) for at, some in heard.items()}
     unknown = _Unknown(graph, types, clues, rules)
-    brought = {at: _brought_in(graph.elements[at].name, some, names) for at, some in sent.items()}
     for vertex, element in enumerate(graph.elements):
         if not element.is_node:
             continue
         written, read = told.writes.get(vertex, ()), told.reads.get(vertex, ())
-        into = _by_kind(heard, read)
         if read and (spoken := of_node(element.name, names.lets_out)):
             reason = f"'{'_'.join(spoken.words)}' in the name of the node: {spoken.rule.why}"
             label = Label(element, LEAK, ANYTHING)
             yield Evidence(label, NAMED, spoken.rule.confidence, reason, spoken.rule.place)
         if written:
-            typed = [(graph.elements[one], types.get(one, ())) for one in written]
-            out = _by_kind(sent, written), _by_kind(brought, written)
-            node = _Node(element, rules, typed, *out, into, unknown.reader(read))
+            channels = [_Channel(graph.elements[one], types.get(one, ()), sent.get(one, ())) for one in written]
+            into = _by_kind(heard.get(one, ()) for one in read)
+            node = _Node(element, rules, channels, into, unknown.reader(read))
             yield from node.outputs()
             yield from node.by_name()
             yield from node.understood()
             yield from node.dropped()
 
 
-def _by_kind(clues: Clues, channels: Sequence[int]) -> ByKind:
+def _by_kind(channels: Iterable[Sequence[Clue]]) -> ByKind:
     """What channels are thought to carry; that they can carry anything says nothing of a node."""
     found: ByKind = {}
-    for channel in channels:
-        for clue in clues.get(channel, ()):
+    for clues in channels:
+        for clue in clues:
             if clue.kind != ANYTHING:
                 found.setdefault(clue.kind, []).append(clue)
     return found
@@ -120,11 +125,13 @@ def _of_writer(channel: Element, clues: tuple[Clue, ...], names: NameRules) -> t
     return tuple(clue for clue in clues if clue.confidence is not Confidence.MAY)
 
 
-def _brought_in(topic: str, clues: tuple[Clue, ...], names: NameRules) -> tuple[Clue, ...]:
-    """What is thought of a topic, as far as it says that who writes it brings it in."""
-    if any(word in names.reworked or word in names.simulated for part in topic.split("/") for word in words(part)):
-        return tuple(map(_doubtful, clues))
-    return tuple(_worked_out(clue) if clue.kind in names.computed else clue for clue in clues)
+def _brought_in(kind: str, channel: _Channel, names: NameRules) -> Iterator[Clue]:
+    """What is thought of a channel and a kind, as far as it says that who writes it brings that in."""
+    clues = [clue for clue in channel.clues if clue.kind == kind]
+    parts = map(words, channel.element.name.split("/")) if clues else ()
+    if not all(names.reworked.isdisjoint(part) and names.simulated.isdisjoint(part) for part in parts):
+        return map(_doubtful, clues)
+    return map(_worked_out, clues) if kind in names.computed else iter(clues)
 
 
 def _worked_out(clue: Clue) -> Clue:
@@ -134,7 +141,7 @@ def _worked_out(clue: Clue) -> Clue:
 
 
 def _doubtful(clue: Clue) -> Clue:
-    return clue._replace(ground=DATA_FLOW, confidence=Confidence.MAY)
+    return Clue(clue.kind, DATA_FLOW, Confidence.MAY, clue.reason, clue.place)
 
 
 class _Unknown:
@@ -169,14 +176,12 @@ class _Node:
         self,
         element: Element,
         rules: Rules,
-        written: Typed,
-        out: ByKind,
-        brought: ByKind,
+        written: Sequence[_Channel],
         into: ByKind,
         reads_unknown: Callable[[], bool],
     ) -> None:
         self.element, self.rules, self.written = element, rules, written
-        self.out, self.brought, self.into, self.reads_unknown = out, brought, into, reads_unknown
+        self.out, self.into, self.reads_unknown = _by_kind(one.clues for one in written), into, reads_unknown
         self.named = of_node(element.name, rules.names.brings_in, rules.names.silent)
 
     def outputs(self) -> Iterator[Evidence]:
@@ -193,8 +198,9 @@ class _Node:
 
     def _written(self, kind: str) -> Iterator[Evidence]:
         """Yield what its channels say of a source; only its own name, or its code, says that it brings the kind in."""
-        clues = [*map(_doubtful, self.brought[kind])] if self._in_doubt() else self.brought[kind]
-        names_it = self.named is not None and any(self.rules.related(kind, one) for one in self.named.rule.kinds)
+        clues = [clue for channel in self.written for clue in _brought_in(kind, channel, self.rules.names)]
+        clues = [*map(_doubtful, clues)] if self._in_doubt() else clues
+        names_it = self.named is not None and self.rules.related_to_one(kind, self.named.rule.kinds)
         typed = any(clue.ground == TYPE for clue in clues)
         for clue in clues:
             weaker = clue.ground == TYPE and clue.confidence is Confidence.LIKELY and not names_it
@@ -228,16 +234,19 @@ class _Node:
         What it writes has to be able to carry them.
         """
         spoken = self.named
-        for kind in spoken.rule.kinds if spoken else ():
-            stays = self._stays(kind) and not self._made_of(kind)
-            able = spoken and (spoken.rule.any_type or not (self._cannot_write(kind) or stays))
-            if spoken and able and not self._reads(kind):
-                yield from self._by_its_name(kind, spoken)
+        if spoken is None:
+            return
+        for kind in spoken.rule.kinds:
+            if self._reads(kind):
+                continue
+            made_of = self._made_of(kind)
+            stays = not made_of and self._stays(kind)
+            if spoken.rule.any_type or not (stays or self._cannot_write(kind)):
+                yield from self._by_its_name(kind, spoken, made_of)
 
-    def _by_its_name(self, kind: str, spoken: Spoken) -> Iterator[Evidence]:
+    def _by_its_name(self, kind: str, spoken: Spoken, made_of: Sequence[str]) -> Iterator[Evidence]:
         rule = spoken.rule
         reason = f"'{'_'.join(spoken.words)}' in the name of the node: {rule.why}"
-        made_of = self._made_of(kind)
         for one in made_of:
             yield self._derived(one, kind, Clue(kind, NAMED, rule.confidence, reason, rule.place))
         if not made_of:
@@ -250,7 +259,7 @@ class _Node:
         names, rule = self.rules.names, self.rules.names.becomes.get(SAID, {}).get(WANTED)
         if rule is None or SAID not in self.into or WANTED in self.out:
             return
-        for element, types in self.written:
+        for element, types, _ in self.written:
             said = element.kind == "topic" and has_word(element.name, names.understood)
             if said and not cannot_carry(WANTED, element, types, self.rules):
                 reason = f"its name, as who writes it reads {SAID}: {element.name}"
@@ -273,14 +282,15 @@ class _Node:
 
     def _stays(self, kind: str) -> bool:
         """Whether data seem to stay in the node: what it writes is made of them (a microphone that writes text)."""
-        writes_it = any(self.rules.related(kind, one) for one in self.out)
-        return not writes_it and any(one in self.rules.names.becomes.get(kind, ()) for one in self.out)
+        if self.rules.related_to_one(kind, self.out):
+            return False
+        return not self.rules.names.becomes.get(kind, {}).keys().isdisjoint(self.out)
 
     def _reads(self, kind: str) -> bool:
-        return any(self.rules.related(kind, one) for one in self.into)
+        return self.rules.related_to_one(kind, self.into)
 
     def _cannot_write(self, kind: str) -> bool:
-        return all(cannot_carry(kind, element, types, self.rules) for element, types in self.written)
+        return all(cannot_carry(kind, element, types, self.rules) for element, types, _ in self.written)
 
     def _label(self, role: str, kind: str) -> Label:
         return Label(self.element, role, kind)

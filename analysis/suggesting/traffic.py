@@ -36,15 +36,15 @@ def traffic(graph: FlowGraph, bound: Bound) -> Traffic:
     >>> named(told.writes[CAMERA]), named(told.reads[FILTER]), named(told.readers[told.writes[CAMERA][0]])
     (['/video'], ['/video'], ['/face_id', '/filter'])
     """
-    elements = graph.elements
+    is_channel = [element.is_channel for element in graph.elements]
     standard = standard_in(bound)
     found: list[dict[int, set[int]]] = [defaultdict(set) for _ in Traffic._fields]
     writes, reads, writers, readers = found
     for _, flow in parted(graph.flows)[0]:  # a meeting is one of channels
         source, target = flow.source, flow.target
-        if elements[source].is_channel == elements[target].is_channel or standard & {source, target}:
+        if is_channel[source] == is_channel[target] or source in standard or target in standard:
             continue
-        if elements[target].is_channel:
+        if is_channel[target]:
             writes[source].add(target)
             writers[target].add(source)
         else:

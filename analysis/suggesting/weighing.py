@@ -37,6 +37,7 @@ if TYPE_CHECKING:
 
 _SURENESS = {confidence: place for place, confidence in enumerate(Confidence)}  # the surest first
 _PLACES = {role: place for place, role in enumerate(ROLES)}
+_OF_GROUNDS = {ground: place for place, ground in enumerate(GROUNDS)}
 
 
 def proposals(evidence: Iterable[Evidence], found: Collection[str] = ()) -> tuple[Proposal, ...]:
@@ -111,4 +112,4 @@ def _in_order(reasons: Sequence[Evidence]) -> tuple[Evidence, ...]:
 
 
 def _evidence_order(one: Evidence) -> tuple[object, ...]:
-    return (_SURENESS[one.confidence], GROUNDS.index(one.ground), one.reason, one.place)
+    return (_SURENESS[one.confidence], _OF_GROUNDS[one.ground], one.reason, one.place)

@@ -21,6 +21,7 @@ from rosprivacy.analysis.suggesting.evidence import HIDING
 from rosprivacy.analysis.suggesting.library_rules import CPP, PYTHON, NodeUse
 from rosprivacy.analysis.suggesting.model_answers import judged
 from rosprivacy.analysis.suggesting.name_rules import of_topic
+from rosprivacy.analysis.suggesting.nodes_of_packages import nodes_of_packages
 from rosprivacy.explorer.journal import read_journal
 from rosprivacy.explorer.session import Session
 from rosprivacy.ingest.bags.bag_folders import read_bags
@@ -128,7 +129,7 @@ def _limits() -> Result:
 def _matched() -> None:
     """What a package says is never certain, and of nodes that are there."""
     graph = _base().analysis.graph
-    for said in package_evidence(graph, {}, [read_package("package.yaml", load())]):
+    for said in package_evidence(graph, nodes_of_packages(graph, {}, [read_package("package.yaml", load())])):
         assert said.confidence is not Confidence.CERTAIN
         assert said.label.element in graph.elements
 

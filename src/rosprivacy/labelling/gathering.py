@@ -14,6 +14,7 @@ from rosprivacy.analysis.suggesting.by_package_types import by_package_types
 from rosprivacy.analysis.suggesting.carried_kinds import carried_kinds
 from rosprivacy.analysis.suggesting.evidence import SOURCE
 from rosprivacy.analysis.suggesting.nodes import of_nodes
+from rosprivacy.analysis.suggesting.nodes_of_packages import nodes_of_packages
 from rosprivacy.analysis.suggesting.open_elements import of_channels, of_open
 from rosprivacy.analysis.suggesting.traffic import traffic
 from rosprivacy.analysis.suggesting.unprompted import of_the_rest, unprompted
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Bound, FlowGraph
     from rosprivacy.analysis.suggesting.evidence import Evidence
     from rosprivacy.analysis.suggesting.library_rules import NodeUse
+    from rosprivacy.analysis.suggesting.nodes_of_packages import NodeOfPackage
     from rosprivacy.analysis.suggesting.traffic import Traffic
     from rosprivacy.labelling.knowledge import Known
 
@@ -41,13 +43,19 @@ def evidence(
     """
     graph = analysis.graph
     told = traffic(graph, bound)
-    yield from lasting_evidence(graph, bound, told, known, uses)
+    of_packages = nodes_of_packages(graph, bound.types, known.packages)
+    yield from lasting_evidence(graph, bound, told, of_packages, known, uses)
     yield from of_open(analysis.open, graph, bound, told, known.rules)
-    yield from by_package_types(analysis.open, graph, bound, known.packages, known.rules)
+    yield from by_package_types(analysis.open, graph, bound, of_packages, known.rules)
 
 
 def lasting_evidence(
-    graph: FlowGraph, bound: Bound, told: Traffic, known: Known, uses: Mapping[int, Sequence[NodeUse]]
+    graph: FlowGraph,
+    bound: Bound,
+    told: Traffic,
+    of_packages: Sequence[NodeOfPackage],
+    known: Known,
+    uses: Mapping[int, Sequence[NodeUse]],
 ) -> Iterator[Evidence]:
     """Yield what is found whatever a person has said: of what is bound to the graph, only types are looked at."""
     rules = known.rules
@@ -55,7 +63,7 @@ def lasting_evidence(
     found = [
         *of_nodes(graph, bound, told, clues, rules),
         *unprompted(graph, told, rules.names),
-        *package_evidence(graph, bound.types, known.packages),
+        *package_evidence(graph, of_packages),
         *library_evidence(graph, bound, told, clues, uses, rules, known.libraries),
     ]
     yield from found

@@ -12,6 +12,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.suggesting.evidence import LEAK
+from rosprivacy.analysis.suggesting.nodes_of_packages import nodes_of_packages
 from rosprivacy.analysis.suggesting.open_elements import of_open
 from rosprivacy.analysis.suggesting.traffic import standard_in, traffic
 from rosprivacy.labelling.gathering import lasting_evidence
@@ -75,7 +76,8 @@ class Suggester:
         graph, bound = result.analysis.graph, result.bound
         told = traffic(graph, bound)
         said: dict[Identity, list[Evidence]] = defaultdict(list)
-        for one in lasting_evidence(graph, bound, told, self.known, {}):
+        of_packages = nodes_of_packages(graph, bound.types, self.known.packages)
+        for one in lasting_evidence(graph, bound, told, of_packages, self.known, {}):
             said[one.label.element.identity].append(one)
         return _Lasting(graph, bound.types, standard_in(bound), told, dict(said))
 

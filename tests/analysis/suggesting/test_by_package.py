@@ -10,6 +10,7 @@ import pytest
 import rosprivacy
 from rosprivacy.analysis.model import Confidence
 from rosprivacy.analysis.suggesting.by_package import package_evidence
+from rosprivacy.analysis.suggesting.nodes_of_packages import nodes_of_packages
 from rosprivacy.ingest.packages.package_folders import catalogue
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.question import question_of
@@ -36,7 +37,8 @@ def evidence(text: str, labels: str = "labels: 1\n") -> tuple[Evidence, ...]:
 
 def evidence_of(policy_file: str, *labels: str) -> tuple[Evidence, ...]:
     system = robot_system((policy_file,), labels, question_of(Settings()))
-    return package_evidence(system.graph, system.bound.types, catalogue(load()))
+    of_packages = nodes_of_packages(system.graph, system.bound.types, catalogue(load()))
+    return tuple(package_evidence(system.graph, of_packages))
 
 
 def told(found: tuple[Evidence, ...], role: str, kind: str) -> list[tuple[str, Confidence, str]]:
