@@ -56,6 +56,8 @@ def chosen(
     by_name = [one for one in sure if _needs_name(one, comments, vocabulary) and one.line not in taken]
     taken |= {one.line: one for one in sure if not _needs_name(one, comments, vocabulary)}
     remarks = []
+    if least and not comments:
+        remarks.append(f"{file}: it has no '# suggest:' line; rosprivacy suggest POLICY --into FILE writes them")
     if by_name:
         what = f"{counted(len(by_name), 'suggestion')} could hide a leak or what nobody looked at"
         remarks.append(f"{file}: {what}: accept these one by one, by the name of the element")

@@ -17,7 +17,7 @@ from rosprivacy.labelling.suggested_lines import with_accepted, with_suggestions
 from rosprivacy.labelling.suggesting import suggest_labels
 from rosprivacy.report.contract import suggested
 from rosprivacy.settings import Settings
-from tests.helpers.command import LINE, cli
+from tests.helpers.command import LINE, cli, refused
 from tests.helpers.little_robots import HOSTILE, Nodes, policy_of
 from tests.helpers.model_server import answer, elements, said
 from tests.helpers.paths import ROOT
@@ -848,6 +848,23 @@ def test_what_cannot_be_accepted_leaves_the_file_as_it_is(
     assert (done.returncode, file.read_text("utf-8")) == (2, text)
     assert done.stderr.startswith(message)
     assert all(LINE.match(line) for line in done.stderr.splitlines())
+
+
+def test_of_a_file_that_is_not_there_nothing_is_accepted(cli: Cli, robot: Path) -> None:
+    (robot / "robot.labels.yaml").write_text(BY_HAND, "utf-8")
+    (line,) = refused(cli("labels", "--accept", "may", "--by", "A", "-l", "robt.labels.yaml", cwd=robot))
+    assert line == "robt.labels.yaml: file not found; did you mean robot.labels.yaml?"
+    assert not (robot / "robt.labels.yaml").exists()
+
+
+def test_a_file_without_suggestions_is_told(cli: Cli, robot: Path) -> None:
+    (robot / "l.yaml").write_text(BY_HAND, "utf-8")
+    done = cli("labels", "--accept", "may", "--by", "A", "-l", "l.yaml", cwd=robot)
+    assert (done.returncode, (robot / "l.yaml").read_text("utf-8")) == (0, BY_HAND)
+    assert done.stderr.splitlines() == [
+        "l.yaml: it has no '# suggest:' line; rosprivacy suggest POLICY --into FILE writes them",
+        "l.yaml: 0 suggestions accepted",
+    ]
 
 
 def test_json_has_no_room_for_comments(cli: Cli, robot: Path) -> None:

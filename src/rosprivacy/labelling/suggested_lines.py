@@ -89,9 +89,11 @@ def with_accepted(
     ------
     InputErrors
         With every problem of the file.
+    LabelError
+        If it is not there: then there is nothing to accept.
     """
     file = own_file(labels)
-    text = text_of(file)
+    text = _read(file)
     who = who_says(file, by)
     vocabulary = load(ontologies=settings.ontologies)
 
@@ -143,8 +145,10 @@ def text_of(file: str) -> str:
     LabelError
         If it cannot be read.
     """
-    if not Path(file).exists():
-        return NEW
+    return _read(file) if Path(file).exists() else NEW
+
+
+def _read(file: str) -> str:
     return read_utf8(file, yaml_values.MAX_BYTES, partial(LabelError, file))[0]
 
 
