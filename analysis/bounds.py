@@ -9,10 +9,10 @@ a bound met by leaving something out in silence (rule S11).
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields, replace
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors, shown
+from rosprivacy.analysis.written_names import did_you_mean, nearest
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -84,9 +84,9 @@ class Bounds:
         for text in written:
             name, _, number = text.partition("=")
             if name not in WHAT:
-                near = get_close_matches(name.casefold(), WHAT, n=1, cutoff=0)[0]
+                near = nearest(name.casefold(), WHAT, like=0)
                 what = f"{shown(name)!r} is none of {', '.join(WHAT)}"
-                problems.append(InputError(OPTION, 0, what, f"did you mean {near}?"))
+                problems.append(InputError(OPTION, 0, what, did_you_mean(near, "")))
             elif not (number.isascii() and number.isdecimal() and len(number) < len(str(LARGEST)) and int(number)):
                 what = f"{shown(text)!r} sets no bound"
                 problems.append(InputError(OPTION, 0, what, f"write a whole number above 0, as in {name}=1000"))

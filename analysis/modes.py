@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
-from difflib import get_close_matches
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors, shown
+from rosprivacy.analysis.written_names import did_you_mean, nearest
 
 if TYPE_CHECKING:
     from typing import NoReturn
@@ -26,10 +26,10 @@ class Mode(StrEnum):
     @classmethod
     def _missing_(cls, value: object) -> NoReturn:
         known = [str(mode) for mode in cls]
-        near = get_close_matches(str(value).casefold(), known, n=1, cutoff=0)[0]
+        near = nearest(str(value).casefold(), known, like=0)
         what = f"{shown(str(value))!r} is none of {', '.join(known)}"
         option = _WORD.sub("-", cls.__name__).lower()
-        raise InputErrors([InputError(f"--{option}", 0, what, f"did you mean {near}?")])
+        raise InputErrors([InputError(f"--{option}", 0, what, did_you_mean(near, ""))])
 
 
 class View(Mode):

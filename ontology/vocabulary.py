@@ -7,7 +7,6 @@ under the hash of all files (``cache.py``), so that rdflib is imported only afte
 from __future__ import annotations
 
 import hashlib
-from difflib import get_close_matches
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -17,6 +16,7 @@ from rosprivacy.analysis.errors import InputErrors, OntologyError, reason
 from rosprivacy.analysis.files_read import noted
 from rosprivacy.analysis.hierarchy import Hierarchy
 from rosprivacy.analysis.legal import close
+from rosprivacy.analysis.written_names import FEW, did_you_mean, nearest
 from rosprivacy.ontology import cache as kept
 from rosprivacy.ontology.iris import STORED, as_stored
 from rosprivacy.ontology.pointed import Pointed
@@ -111,7 +111,7 @@ class Vocabulary(NamedTuple):
             for category in self.categories.values()
             for spelling in (*category.synonyms, category.title, category.name)
         }
-        close_ones = get_close_matches(text.casefold(), by_spelling, n=3, cutoff=0.6)
+        close_ones = nearest(text.casefold(), by_spelling, FEW)
         return list(dict.fromkeys(by_spelling[spelling] for spelling in close_ones))
 
     def hint(self, text: str) -> str:
@@ -120,8 +120,7 @@ class Vocabulary(NamedTuple):
         >>> load().hint("Biometrik"), load().hint("qqqqqq")
         ('did you mean Biometric?', 'rosprivacy categories lists all of them')
         """
-        close_ones = self.nearest(text)
-        return f"did you mean {' or '.join(close_ones)}?" if close_ones else "rosprivacy categories lists all of them"
+        return did_you_mean(self.nearest(text), "rosprivacy categories lists all of them")
 
     @property
     def law_as_of(self) -> str:

@@ -17,11 +17,11 @@ import json
 import re
 from contextlib import suppress
 from dataclasses import dataclass
-from difflib import get_close_matches
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import QueryError, shown
+from rosprivacy.analysis.written_names import A_LITTLE, FEW, did_you_mean, nearest
 from rosprivacy.queries.graph_values import Path
 
 if TYPE_CHECKING:
@@ -95,8 +95,7 @@ class Query:
         known = {field.name: field for field in self.parameters}
         problems = []
         for name in sorted(set(given) - set(known)):
-            close = get_close_matches(name, known, n=1)
-            hint = f"did you mean {close[0]!r}?" if close else f"it takes {', '.join(known) or 'none'}"
+            hint = did_you_mean([*map(repr, nearest(name, known))], f"it takes {', '.join(known) or 'none'}")
             problems.append(f"{self.name}: unknown parameter {shown(name)!r}; {hint}")
         values: dict[str, Any] = {}
         for name, field in known.items():
@@ -150,8 +149,7 @@ def find(name: str) -> Query:
     """
     queries = pack()
     if name not in queries:
-        close = get_close_matches(name, queries, n=3, cutoff=0.4)
-        hint = f"did you mean {' or '.join(close)}?" if close else "see them with rosprivacy query"
+        hint = did_you_mean(nearest(name, queries, FEW, A_LITTLE), "see them with rosprivacy query")
         raise QueryError(f"{shown(name)}: there is no such query; {hint}")
     return queries[name]
 

@@ -8,12 +8,12 @@ from __future__ import annotations
 import json
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from difflib import get_close_matches
 from itertools import accumulate
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import DatabaseError as OurDatabaseError
 from rosprivacy.analysis.errors import QueryError, shown
+from rosprivacy.analysis.written_names import A_LITTLE, FEW, did_you_mean, nearest
 from rosprivacy.queries.graph_values import GraphValue, graph_values, nodes_in, plain, value_of, with_known
 from rosprivacy.queries.library import NAMES
 from rosprivacy.queries.reading import refuse_unless_reading
@@ -145,8 +145,7 @@ def check_names(driver: Driver, query: Query, values: Mapping[str, Any]) -> None
         if not run(driver, known, {"name": asked}).rows:
             rows = run(driver, f"MATCH (n:{label}) RETURN DISTINCT n.{key}", limit=None).rows
             names = sorted(str(name) for (name,) in rows)
-            close = get_close_matches(asked, names, n=3, cutoff=0.5)
-            hint = f"did you mean {' or '.join(map(shown, close))}?" if close else f"{len(names):,} others are there"
+            hint = did_you_mean(nearest(asked, names, FEW, A_LITTLE), f"{len(names):,} others are there")
             problems.append(f"{query.name}: no {field.type} {shown(asked)!r} is in the database; {hint}")
     if problems:
         raise QueryError("\n".join(problems))

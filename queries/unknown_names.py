@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Mapping
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import QueryError, shown
+from rosprivacy.analysis.written_names import FEW, did_you_mean, nearest
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -52,8 +52,7 @@ def refuse_unknown_names(transaction: Transaction, summary: ResultSummary, known
         if name in known[kind]:
             continue
         there = set(known[kind]) | {str(record[0]) for record in transaction.run(_LISTED[kind])}
-        close = get_close_matches(name, sorted(there), n=3)
-        hint = f"did you mean {' or '.join(map(shown, close))}?" if close else "see them with rosprivacy query --schema"
+        hint = did_you_mean(nearest(name, sorted(there), FEW), "see them with rosprivacy query --schema")
         problems.append(f"nothing has the {kind} {shown(name)!r}; {hint}")
     if problems:
         raise QueryError("\n".join(problems))

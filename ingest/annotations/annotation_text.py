@@ -7,12 +7,12 @@ wrong with it. A comment that looks like an annotation and is none is a problem:
 from __future__ import annotations
 
 import re
-from difflib import get_close_matches
 from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 from rosprivacy.analysis.errors import LabelError, shown
 from rosprivacy.analysis.model import CLEANS, Method, Place, Statement
+from rosprivacy.analysis.written_names import MUCH, did_you_mean, nearest
 from rosprivacy.ingest.labels.entries import OWN, naming, specificity
 from rosprivacy.ingest.labels.non_ros_reader import is_non_ros
 
@@ -131,7 +131,7 @@ def _begins_one(words: Sequence[str], at: int, behind: Sequence[int]) -> bool:
 @lru_cache(maxsize=2**12)
 def _is_sign(word: str) -> bool:
     near = len(word) in _LENGTHS and word[0] in "pP" and "v" in word.lower()
-    return near and bool(get_close_matches(word.lower(), [SIGN], cutoff=0.8))
+    return near and bool(nearest(word.lower(), [SIGN], like=MUCH))
 
 
 def _no_annotation(text: str, place: Place) -> LabelError | None:
@@ -153,8 +153,7 @@ def _of_word(name: str, word: str, rest: str, place: Place, vocabulary: Vocabula
     if len(rest) > LONGEST:
         raise LabelError(*place, f"an annotation of more than {LONGEST} characters", "write it in several lines")
     if word not in WORDS:
-        near = get_close_matches(word.lower(), WORDS, n=1)
-        hint = f"did you mean {near[0]!r}?" if near else f"one of {', '.join(WORDS)}"
+        hint = did_you_mean([*map(repr, nearest(word.lower(), WORDS))], f"one of {', '.join(WORDS)}")
         what = f"unknown word {shown(word)!r} in an annotation" if word else "an annotation that says nothing"
         raise LabelError(*place, what, hint)
     if word == NOTE:
@@ -223,8 +222,7 @@ class _Reader:
         if method in CLEANS:
             return self.about(self.kind(kind.strip()))._replace(method=Method(method))
         if self.vocabulary.find(text) is None and kind and self.vocabulary.find(kind.strip()):
-            near = get_close_matches(method, CLEANS, n=1)
-            hint = f"did you mean {near[0]}?" if near else f"one of {', '.join(CLEANS)}"
+            hint = did_you_mean(nearest(method, CLEANS), f"one of {', '.join(CLEANS)}")
             raise LabelError(*self.place, f"sanitizer method {shown(method)!r}", hint)
         return self.about(self.kind(text))._replace(method=Method.PSEUDONYMISE, stated=False)
 

@@ -10,7 +10,6 @@ import hashlib
 import re
 from dataclasses import dataclass, field
 from datetime import date
-from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.bounds import BOUNDS
@@ -18,6 +17,7 @@ from rosprivacy.analysis.decisions import Choice, Decision, Decisions
 from rosprivacy.analysis.errors import DecisionError, InputError, InputErrors, shown
 from rosprivacy.analysis.model import Place
 from rosprivacy.analysis.remembered import About
+from rosprivacy.analysis.written_names import did_you_mean, nearest
 from rosprivacy.ingest.reading import yaml_values
 from rosprivacy.ingest.reading.format_reader import FileReader
 from rosprivacy.ingest.reading.legal_basis import read_bases
@@ -172,8 +172,7 @@ class _Reader(FileReader):
         elif value.kind == "text" and value.text in set(Choice):
             return Choice(value.text)
         else:
-            close = get_close_matches(value.text, list(Choice), n=1)
-            hint = f"did you mean {close[0]}?" if close else f"one of {choices}"
+            hint = did_you_mean(nearest(value.text, list(Choice)), f"one of {choices}")
             self.problem(value.line, f"decision {shown(value.text or value.kind)!r}", hint)
         return Choice.MITIGATE
 
@@ -198,8 +197,7 @@ class _Reader(FileReader):
     def _category(self, written: str, line: int) -> str:
         category = self.vocabulary.find(written)
         if category is None:
-            nearest = ", ".join(self.vocabulary.nearest(written))
-            self.problem(line, f"unknown category {shown(written)!r}", f"did you mean one of: {nearest}?")
+            self.problem(line, f"unknown category {shown(written)!r}", self.vocabulary.hint(written))
             return ""
         return category.name
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import dataclass, replace
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.durations import ordered
@@ -16,7 +15,7 @@ from rosprivacy.analysis.errors import FleetError, InputError, InputErrors, show
 from rosprivacy.analysis.fleet.likeness import Likeness
 from rosprivacy.analysis.model import UNSTATED, Element, Surroundings
 from rosprivacy.analysis.non_ros import by_kind
-from rosprivacy.analysis.written_names import meant
+from rosprivacy.analysis.written_names import A_LITTLE, FEW, did_you_mean, meant, nearest
 from rosprivacy.ingest.fleet.alike_robots import COLON, chosen, known_to_flows
 from rosprivacy.ingest.fleet.dds_domains import alone, pseudo_robot, shared
 from rosprivacy.ingest.fleet.mergeable_graph import Part, numbered, together
@@ -166,8 +165,8 @@ def no_robot(fleet: Fleet, flow: FlowEntry, end: str) -> InputError | None:
     known = known_to_flows(fleet)
     if not colon or chosen(end, known):
         return None
-    close = get_close_matches(robots, known, n=3, cutoff=0.5)
-    hint = f"did you mean {' or '.join(close)}?" if close else "name robots of the fleet, such as *:/camera"
+    close = nearest(robots, known, FEW, A_LITTLE)
+    hint = did_you_mean(close, "name robots of the fleet, such as *:/camera")
     what = f"a flow names the robot {shown(robots)!r}, which is not there"
     return FleetError(flow.place.file, flow.place.line, what, hint)
 

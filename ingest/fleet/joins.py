@@ -7,11 +7,11 @@ goes no further, and a domain that is misspelt looks like one that is meant.
 from __future__ import annotations
 
 from collections import defaultdict
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import Diagnostic, Severity
+from rosprivacy.analysis.written_names import did_you_mean, nearest
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -74,9 +74,8 @@ class _Joins:
     def _domain(self, name: str, robot: Robot) -> Diagnostic:
         what = f"domain {shown(name)} joins nothing: {shown(robot.id)} is alone in it"
         others = {other.lower(): other for other in sorted(self._domains) if other != name}
-        close = get_close_matches(name.lower(), others, n=1)
-        hint = f"; did you mean {shown(others[close[0]])}?" if close else ""
-        return _notice(robot.place, what + hint)
+        hint = did_you_mean([others[close] for close in nearest(name.lower(), others)], "")
+        return _notice(robot.place, f"{what}; {hint}" if hint else what)
 
     def _infrastructure(self, robot: Robot) -> Diagnostic:
         what = f"infrastructure {shown(robot.id)} joins nothing: it names no domain, so it has one of its own"

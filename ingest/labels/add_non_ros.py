@@ -8,13 +8,12 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import replace
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors, LabelError, shown
 from rosprivacy.analysis.many_flows import Flows, parted
 from rosprivacy.analysis.model import PARTICIPANT, STATED, Element, Flow, FlowGraph, Grant
-from rosprivacy.analysis.written_names import literal, meant
+from rosprivacy.analysis.written_names import A_LITTLE, FEW, did_you_mean, literal, meant, nearest
 from rosprivacy.ingest.labels.bag_storages import recorded
 from rosprivacy.ingest.labels.entries import End
 from rosprivacy.ingest.labels.non_ros_reader import is_non_ros
@@ -150,10 +149,10 @@ def ambiguous(end: End, kinds: Iterable[str], place: Place, error: type[InputErr
 def missing(end: End, known: Iterable[str], place: Place, error: type[InputError] = LabelError) -> InputError:
     """Return the error for the end of a flow that is not there, with the nearest names."""
     alike = [other for other in dict.fromkeys(known) if is_non_ros(other) == is_non_ros(end.name)]
-    close = get_close_matches(meant(end.name), [other for other in alike if other != end.name], n=3, cutoff=0.5)
+    close = nearest(meant(end.name), [other for other in alike if other != end.name], FEW, A_LITTLE)
     close = close if is_non_ros(end.name) else [literal(name) for name in close]
-    hint = "define it under elements" if is_non_ros(end.name) else "see the names with rosprivacy labels --init"
-    hint = f"did you mean {' or '.join(map(shown, close))}?" if close else hint
+    otherwise = "define it under elements" if is_non_ros(end.name) else "see the names with rosprivacy labels --init"
+    hint = did_you_mean(close, otherwise)
     kind = f"the {end.kind} " if end.kind else ""
     return error(place.file, place.line, f"a flow names {kind}{shown(end.name)!r}, which is not there", hint)
 

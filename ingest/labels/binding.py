@@ -7,7 +7,6 @@ names that exist, never silence (rule S11).
 from __future__ import annotations
 
 from collections import defaultdict
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.bounds import BOUNDS, Tally
@@ -17,9 +16,9 @@ from rosprivacy.analysis.many_flows import at_most, leaving, parted
 from rosprivacy.analysis.model import NOWHERE, PARTICIPANT, Bound, Diagnostic, NonRosFacts, Severity, Surroundings
 from rosprivacy.analysis.non_ros import by_kind
 from rosprivacy.analysis.text import counted
-from rosprivacy.analysis.written_names import is_glob, literal, meant
+from rosprivacy.analysis.written_names import A_LITTLE, FEW, did_you_mean, is_glob, literal, meant, nearest
 from rosprivacy.ingest.labels.bag_storages import recorded_types
-from rosprivacy.ingest.labels.graph_names import NEAREST, GraphNames, Unmatched
+from rosprivacy.ingest.labels.graph_names import GraphNames, Unmatched
 from rosprivacy.ingest.labels.label_file import OURS
 from rosprivacy.ingest.labels.stated_processing import two_of_one, united
 from rosprivacy.ingest.labels.stated_types import in_order, of_no_channel, stated_at
@@ -230,9 +229,7 @@ def _through(
             through[vertex, expressions] = tuple(index for index, name in flows.items() if name in chosen)
         for name in expressions:
             if vertices and not covered(name, written):
-                close = [literal(one) for one in get_close_matches(meant(name), sorted(written), NEAREST, 0.5)]
-                hint = (
-                    f"did you mean {' or '.join(map(shown, close))}?" if close else "name a channel that it writes to"
-                )
+                close = [literal(one) for one in nearest(meant(name), sorted(written), FEW, A_LITTLE)]
+                hint = did_you_mean(close, "name a channel that it writes to")
                 what = f"{shown(entry.name)!r} writes to no channel {shown(name)!r}"
                 yield LabelError(entry.place.file, entry.place.line, what, hint)

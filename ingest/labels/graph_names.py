@@ -5,11 +5,10 @@ In: a ``FlowGraph``. Out: vertices, or the error that says so.
 
 from __future__ import annotations
 
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import LabelError, shown
-from rosprivacy.analysis.written_names import literal, meant
+from rosprivacy.analysis.written_names import A_LITTLE, FEW, did_you_mean, literal, meant, nearest
 from rosprivacy.ingest.policies.names import covered
 
 if TYPE_CHECKING:
@@ -18,7 +17,6 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import FlowGraph
     from rosprivacy.ingest.labels.entries import Entry, FlowEntry
 
-NEAREST = 3
 COMPARISONS = 50_000  # of names, in the search for the nearest; a label file of another system is refused soon
 
 
@@ -64,10 +62,8 @@ class Unmatched:
         ]
         if elsewhere:
             hint = f"there is a {elsewhere[0]} of that name: move it to the section for it"
-        elif close:
-            hint = f"did you mean {' or '.join(map(shown, close))}?"
         else:
-            hint = "see the names with rosprivacy labels --init"
+            hint = did_you_mean(close, "see the names with rosprivacy labels --init")
         return LabelError(entry.place.file, entry.place.line, what, hint)
 
     def of_flow(self, entry: FlowEntry) -> LabelError:
@@ -75,7 +71,7 @@ class Unmatched:
         hints = []
         for end in (entry.source, entry.target):
             close = [] if self._names.matching(end) else self._close(end, self._names.by_kind)
-            hints += [f"instead of {shown(end)} did you mean {' or '.join(map(shown, close))}?"] if close else []
+            hints += [f"instead of {shown(end)} {did_you_mean(close, '')}"] if close else []
         what = f"no flow goes from {shown(entry.source)!r} to {shown(entry.target)!r}"
         hint = " ".join(hints) or "name two elements with a flow between them, in its direction"
         return LabelError(entry.place.file, entry.place.line, what, hint)
@@ -86,4 +82,4 @@ class Unmatched:
         self._comparisons += len(known)
         if self._comparisons > COMPARISONS:
             return []
-        return [literal(close) for close in get_close_matches(meant(name), known, n=NEAREST, cutoff=0.5)]
+        return [literal(close) for close in nearest(meant(name), known, FEW, A_LITTLE)]

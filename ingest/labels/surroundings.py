@@ -6,11 +6,11 @@ problem for what is neither (rule S11).
 
 from __future__ import annotations
 
-from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any, Protocol
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import CONTEXTS, Surroundings
+from rosprivacy.analysis.written_names import A_LITTLE, FEW, did_you_mean, nearest
 from rosprivacy.ingest.labels.countries import countries
 
 if TYPE_CHECKING:
@@ -18,8 +18,6 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.model import FlowGraph
     from rosprivacy.ingest.reading.yaml_values import Value
-
-NEAREST, LIKE = 3, 0.5
 
 
 class Problems(Protocol):
@@ -109,5 +107,4 @@ def everywhere(graph: FlowGraph, own: Mapping[int, Surroundings], system: Surrou
 
 
 def _hint(text: str) -> str:
-    close = get_close_matches(text.casefold(), CONTEXTS, NEAREST, LIKE)
-    return f"did you mean {' or '.join(close)}?" if close else f"one of {', '.join(CONTEXTS)}"
+    return did_you_mean(nearest(text.casefold(), CONTEXTS, FEW, A_LITTLE), f"one of {', '.join(CONTEXTS)}")

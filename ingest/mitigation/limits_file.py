@@ -8,13 +8,12 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import dataclass, field, fields
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import InputError, InputErrors, LimitsError, shown
 from rosprivacy.analysis.mitigation.limits import CHANGES, LARGEST_COST, Limits, Rule, Weights
-from rosprivacy.analysis.written_names import literal, meant
+from rosprivacy.analysis.written_names import A_LITTLE, FEW, did_you_mean, literal, meant, nearest
 from rosprivacy.ingest.policies.names import covered
 from rosprivacy.ingest.reading import yaml_values
 from rosprivacy.ingest.reading.format_reader import FileReader
@@ -28,7 +27,6 @@ if TYPE_CHECKING:
 
 TOP = ("limits", "time_critical", "weights", "places")
 PLACE = ("at", "from", "to", "never", "factor", "note")
-NEAREST = 3
 
 
 def read_limits(file: str, graph: FlowGraph, bounds: Bounds = BOUNDS) -> Limits:
@@ -147,8 +145,8 @@ class _Reader(FileReader):
         name = item.text
         found = sorted(v for other in covered(name, self.by_name) for v in self.by_name[other])
         if not found:
-            close = [literal(other) for other in get_close_matches(meant(name), self.by_name, n=NEAREST, cutoff=0.5)]
-            hint = f"did you mean {' or '.join(map(shown, close))}?" if close else "name an element of the system"
+            close = [literal(other) for other in nearest(meant(name), self.by_name, FEW, A_LITTLE)]
+            hint = did_you_mean(close, "name an element of the system")
             self.problem(item.line, f"{shown(name)!r} matches no element of the system", hint)
         return found
 

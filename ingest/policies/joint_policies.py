@@ -10,11 +10,11 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import OBSERVED, REFUSED_NAME, SHARED_ENCLAVE, Diagnostic, Place, Severity
+from rosprivacy.analysis.written_names import did_you_mean, nearest
 from rosprivacy.ingest.policies.names import is_pattern
 from rosprivacy.ingest.policies.seen_although_denied import seen_although_denied
 
@@ -115,14 +115,13 @@ def _refused_names(policies: Iterable[Policy]) -> Iterator[Diagnostic]:
                 good[grant.kind].add(grant.name)
     for number, ((kind, name), why) in enumerate(sorted(refused.items())):
         near = _nearest(name, good[kind], compare=number < COMPARED)
-        hint = f"did you mean {shown(near)}?" if near else "correct it"
+        hint = did_you_mean(near, "correct it")
         message = f"no ROS node can use the {kind} {shown(repr(name))}: {why}; {hint}"
         yield Diagnostic(first[kind, name].place, Severity.WARNING, message, REFUSED_NAME)
 
 
-def _nearest(name: str, good: set[str], *, compare: bool) -> str:
+def _nearest(name: str, good: set[str], *, compare: bool) -> list[str]:
     mended = re.sub(r"/+", "/", name.strip()).rstrip("/")
     if mended in good:
-        return mended
-    close = get_close_matches(name, sorted(good), n=1) if compare else []
-    return close[0] if close else ""
+        return [mended]
+    return nearest(name, sorted(good)) if compare else []

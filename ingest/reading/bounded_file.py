@@ -6,20 +6,17 @@ written in the same run.
 
 from __future__ import annotations
 
-from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.errors import reason, shown
+from rosprivacy.analysis.errors import reason
 from rosprivacy.analysis.files_read import noted
+from rosprivacy.analysis.written_names import MUCH, did_you_mean, nearest
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from rosprivacy.analysis.errors import InputError
-
-
-ALIKE = 0.8  # names that share their ending only are not
 
 
 def contents(path: Path, name: str = "") -> bytes:
@@ -55,8 +52,8 @@ def nearest_file(path: Path) -> str:
         there = sorted(other.name for other in path.parent.iterdir())
     except (OSError, ValueError):
         there = []
-    near = get_close_matches(path.name, there, n=1, cutoff=ALIKE)
-    return f"did you mean {shown(str(path.with_name(near[0])))}?" if near else "correct the path"
+    near = nearest(path.name, there, like=MUCH)  # names that share their ending only are not alike
+    return did_you_mean([str(path.with_name(name)) for name in near], "correct the path")
 
 
 def read_regular(file: str, max_bytes: int, fail: Callable[[int, str, str], InputError]) -> bytes:

@@ -6,11 +6,11 @@ In: values that know their line (``yaml_values.py``). Out: what a format's reade
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.bounds import BOUNDS, Bounds
 from rosprivacy.analysis.errors import InputError, InputErrors, shown
+from rosprivacy.analysis.written_names import did_you_mean, nearest
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -59,8 +59,7 @@ class FileReader:
             if key in known:
                 yield key, line, child
             else:
-                close = get_close_matches(key, known, n=1)
-                hint = f"did you mean {close[0]!r}?" if close else f"one of {', '.join(known)}"
+                hint = did_you_mean([*map(repr, nearest(key, known))], f"one of {', '.join(known)}")
                 self.problem(line, f"unknown key {shown(key)!r}", hint)
 
     def list_of(self, value: Value, what: str, hint: str = "write […]") -> tuple[Value, ...]:

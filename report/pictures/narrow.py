@@ -7,11 +7,11 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import replace
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import DrawingError, shown
 from rosprivacy.analysis.text import counted
+from rosprivacy.analysis.written_names import FEW, did_you_mean, nearest
 from rosprivacy.report.pictures.looks import MATCHES
 from rosprivacy.report.pictures.picture import Box, Line, Picture, sorted_lines
 
@@ -116,8 +116,7 @@ def _part(picture: Picture, kept: Collection[Key], what: str) -> str:
 
 def _nearest(name: str, names: Iterable[str]) -> str:
     every = sorted(names)
-    close = get_close_matches(name[:1000], [other for other in every if len(other) <= 1000], n=3)  # noqa: PLR2004 - its time grows with the square
-    return f"did you mean {', '.join(map(shown, close))}?" if close else f"there are {counted(len(every), 'name')}"
+    return did_you_mean(nearest(name, every, FEW), f"there are {counted(len(every), 'name')}")
 
 
 def _as_one(some: Sequence[Box]) -> Box:

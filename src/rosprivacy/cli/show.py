@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from difflib import get_close_matches
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from rosprivacy.analysis.errors import InputError, InputErrors, shown
+from rosprivacy.analysis.written_names import did_you_mean, nearest
 from rosprivacy.cli.inputs import Inputs, reads_system
 from rosprivacy.cli.options import Language, Output, TextOrJson
 from rosprivacy.cli.output import emit, on_console
@@ -58,6 +58,5 @@ def _chosen(report: Mapping[str, Any], written: str) -> Sequence[Mapping[str, An
     fitting = [one for one in known if one.startswith(written)] if len(written) >= SHORTEST else []
     if fitting:
         return list({known[one]["id"]: known[one] for one in fitting}.values())
-    near = get_close_matches(written, known, n=1)
-    hint = f"did you mean {near[0]}?" if near else f"such as {next(iter(known))}" if known else "there is no finding"
+    hint = did_you_mean(nearest(written, known), f"such as {next(iter(known))}" if known else "there is no finding")
     raise InputErrors([InputError("ID", 0, f"{shown(written)!r} is not the id of a finding, nor how one begins", hint)])

@@ -6,10 +6,10 @@ In: typer's error. Out: the same with a message of ours; typer's own lists the v
 from __future__ import annotations
 
 import re
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.written_names import did_you_mean, nearest
 from rosprivacy.cli.exit_code import GONE
 
 if TYPE_CHECKING:
@@ -22,8 +22,7 @@ def with_nearest(error: typer.BadParameter) -> typer.BadParameter:
     """Name the nearest value, or what stands for a word of an earlier version."""
     if told := LISTED.fullmatch(error.message):
         values, given = re.findall("'([^']*)'", told["values"]), told["given"]
-        near = get_close_matches(given.casefold(), values, 1)
-        hint = f"did you mean {near[0]}" if near else f"one of {', '.join(values)}"
+        hint = did_you_mean(nearest(given.casefold(), values), f"one of {', '.join(values)}")
         option = error.param.name if error.param else ""
         if option == "fail_on" and "undetermined" in values and given in GONE:
             hint = GONE[given]

@@ -6,12 +6,11 @@ of data than the right one; then the node is asked about, and the person knows b
 
 from __future__ import annotations
 
-from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import InputErrors, shown
 from rosprivacy.analysis.suggesting.written import TYPED_AS, WrittenLabel
-from rosprivacy.analysis.written_names import literal
+from rosprivacy.analysis.written_names import did_you_mean, literal, nearest
 from rosprivacy.labelling.tried_labels import with_more
 
 if TYPE_CHECKING:
@@ -65,7 +64,7 @@ def contradiction(label: WrittenLabel, result: Result) -> str:
 def _unknown(name: str, kinds: Sequence[str], elements: Iterable[Element], vocabulary: Vocabulary) -> str:
     nodes = dict.fromkeys(one.name for one in elements if one.is_node)
     if name not in nodes:
-        near = get_close_matches(name, nodes, 1)
-        return f"no node is called {shown(name)!r}; did you mean {shown(near[0])}?" if near else TYPED_AS
+        near = nearest(name, nodes)
+        return f"no node is called {shown(name)!r}; {did_you_mean(near, '')}" if near else TYPED_AS
     other = next((one for one in kinds if one not in vocabulary.hierarchy.ancestors), "")
     return f"unknown category {shown(other)!r}; {vocabulary.hint(other)}" if other else ""

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, shown
 from rosprivacy.analysis.findings.why_not import why_not
-from rosprivacy.analysis.written_names import meant
+from rosprivacy.analysis.written_names import A_LITTLE, FEW, did_you_mean, meant, nearest
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -67,12 +66,8 @@ def vertices_called(analysis: Analysis, written: str, asked: str = "why-not") ->
     for vertex, element in enumerate(elements):
         known.setdefault(element.full_name, []).append(vertex)
     if meant(written) not in known:
-        close = get_close_matches(written, known, n=3, cutoff=0.5)
-        hint = (
-            f"did you mean {' or '.join(map(shown, close))}?"
-            if close
-            else "see the names with rosprivacy labels --init"
-        )
+        close = nearest(written, known, FEW, A_LITTLE)
+        hint = did_you_mean(close, "see the names with rosprivacy labels --init")
         raise InputError(asked, 0, f"no element is called {shown(written)!r}", hint)
     found = known[meant(written)]
     return [vertex for vertex in found if not elements[vertex].is_channel] or found

@@ -136,7 +136,14 @@ def test_decisions_of_one_rank_that_differ_accept_nothing() -> None:
         ("decisions: 1\nfindings:\n- id: 7ac\n  decision: avoid", "3: id '7ac'"),
         ("decisions: 1\nfindings:\n- decision: avoid", "3: a decision about everything"),
         ("decisions: 1\nfindings:\n- decision: avoid\n  kind: disclosure", "3: a decision about everything"),
-        ("decisions: 1\nfindings:\n- category: Vidio\n  decision: avoid", "3: unknown category 'Vidio'"),
+        (
+            "decisions: 1\nfindings:\n- category: Vidio\n  decision: avoid",
+            "3: unknown category 'Vidio'; did you mean Video or Voice?",
+        ),
+        (
+            "decisions: 1\nfindings:\n- category: qqqqqq\n  decision: avoid",
+            "3: unknown category 'qqqqqq'; rosprivacy categories lists all of them",
+        ),
         (f"decisions: 1\nfindings:\n- id: {ID}\n  decision: avoid\n  expires: 2026-02-30", "5: expires '2026-02-30'"),
         (f"decisions: 1\nfindings:\n- id: {ID}\n  decision: avoid\n  expires: tomorrow", "5: expires 'tomorrow'"),
         (f"decisions: 1\nfindings:\n- id: {ID}\n  decision: avoid\n  expires:", "5: expires 'empty'"),
