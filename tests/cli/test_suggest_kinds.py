@@ -12,13 +12,10 @@ from hypothesis import strategies as st
 import rosprivacy
 from rosprivacy.analysis.suggesting.question_rows import GOES_ON, GOES_THROUGH, LISTED, PASSES, Question
 from rosprivacy.labelling.answer_keys import EACH_KIND, FEWEST, OPEN, QUIT, SKIP, allowed
-from rosprivacy.labelling.asking import asked_now, with_answer
-from rosprivacy.labelling.closing_lists import closing
-from rosprivacy.labelling.conversation import Conversation
-from rosprivacy.labelling.suggesting import suggest_labels
+from rosprivacy.labelling.asking import with_answer
 from rosprivacy.report.suggest.question_lines import keys_line, question_lines
 from rosprivacy.settings import Settings
-from tests.helpers.asked_by_keys import ask, robot_of
+from tests.helpers.asked_by_keys import ask, conversation_in, robot_of
 from tests.helpers.command import cli
 from tests.helpers.little_robots import policy_of
 
@@ -26,7 +23,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
-    from rosprivacy.labelling.suggested_labels import Suggested
     from tests.helpers.command import Cli
     from tests.helpers.little_robots import Nodes
 
@@ -65,22 +61,6 @@ class Scripted:
         self.remarks.append(remark)
 
 
-def conversation(folder: Path, person: object, file: str = "l.yaml") -> Conversation:
-    path = folder / file
-    last: list[Suggested] = []
-
-    def now() -> tuple[Question, ...]:
-        last[:] = [suggest_labels((str(folder / "p.xml"),), (str(path),), Settings())]
-        return asked_now(last[0])
-
-    def keep(question: Question, key: str) -> tuple[str, ...]:
-        written = with_answer(str(path), question, key, "Ada", "2026-11-23", Settings())
-        path.write_text(written.text, "utf-8")
-        return written.remarks
-
-    return Conversation(now, keep, person, lambda rows: closing(rows, last[0].result))  # type: ignore[arg-type]  # several kinds of persons
-
-
 def found(folder: Path, file: str = "l.yaml") -> set[str]:
     analysis = rosprivacy.analyze(str(folder / "p.xml"), str(folder / file)).analysis
     return {one.id for one in analysis.findings}
@@ -101,7 +81,7 @@ def said(folder: Path, file: str) -> list[tuple[object, ...]]:
 
 def test_channels_that_different_data_reach_are_one_question_and_each_row_names_its_own(robot: Path) -> None:
     person = Scripted()
-    conversation(robot, person).run()
+    conversation_in(robot, person).run()
     (question,) = person.asked
     assert {row.element.name: row.kinds for row in question.rows} == {
         "/in": ("Video", "Voice"), "/seen": ("Voice",), **dict.fromkeys(CHANNELS, ("Video", "Voice")),
@@ -110,7 +90,7 @@ def test_channels_that_different_data_reach_are_one_question_and_each_row_names_
 
 def test_a_digit_says_the_same_kind_of_each_row_and_nothing_of_a_row_that_only_one_kind_reaches(robot: Path) -> None:
     person = Scripted()
-    conversation(robot, person).run()
+    conversation_in(robot, person).run()
     for row in person.asked[0].rows:
         kinds = {one.key: one.label.said["only"] for one in row.replies if "only" in one.label.said}
         assert kinds == ({"1": ["Video"], "2": ["Voice"]} if len(row.kinds) > 1 else {})
@@ -144,13 +124,13 @@ class Listing:
 
 @pytest.mark.parametrize("wrong", ["", "2", "4", "y", "1", "33", QUIT])
 def test_a_list_of_one_kind_at_most_is_confirmed_by_its_number_alone(robot: Path, wrong: str) -> None:
-    conversation(robot, Listing(["/a", "/b", "/c"], "2", wrong, QUIT)).run()
+    conversation_in(robot, Listing(["/a", "/b", "/c"], "2", wrong, QUIT)).run()
     assert (robot / "l.yaml").read_text("utf-8") == REVIEWED
 
 
 def test_each_label_of_a_list_of_one_kind_at_most_tells_it(robot: Path) -> None:
     person = Listing(["/a", "/b", "/c"], "2")
-    conversation(robot, person).run()
+    conversation_in(robot, person).run()
     assert sorted(row.element.name for row in person.lists[0].rows) == ["/a", "/b", "/c"]
     assert "Is it so that of Video and Voice only Voice goes through each of these?" in question_text(person.lists[0])
     assert keys_line(person.lists[0], (), ()).startswith("  3 and Enter for Voice at most in all 3, ")
@@ -162,7 +142,7 @@ def test_each_label_of_a_list_of_one_kind_at_most_tells_it(robot: Path) -> None:
 
 def test_of_rows_that_nobody_picked_no_kind_is_said_together(robot: Path) -> None:
     person = Scripted("1", QUIT)
-    conversation(robot, person).run()
+    conversation_in(robot, person).run()
     assert person.remarks == ["'1' is no answer here"]
     assert (robot / "l.yaml").read_text("utf-8") == REVIEWED
 
@@ -181,7 +161,7 @@ def test_the_channel_by_which_alone_a_known_finding_is_left_is_asked_by_itself(r
     (robot / "l.yaml").write_text(f"{REVIEWED}  /out: {{leak: [Voice]}}\n", "utf-8")
     before = found(robot)
     person = Listing(["/a", "/b", "/c"], "1")
-    conversation(robot, person).run()
+    conversation_in(robot, person).run()
     assert {row.element.name for row in person.lists[0].rows} == {"/a", "/b"}
     assert person.remarks == ["topic /c: it could close a known finding, and is asked by itself"]
     shown = question_text(person.lists[0])
@@ -197,10 +177,10 @@ def test_each_kind_is_asked_by_itself_where_a_person_wants_it(robot: Path) -> No
     """Of one row: one kind can go through, the other cannot; the others are asked as before."""
     name = "/a"
     first = Scripted()
-    conversation(robot, first).run()
+    conversation_in(robot, first).run()
     at = [row.element.name for row in first.asked[0].rows].index(name)
     person = Scripted(ascii_uppercase[at], EACH_KIND)
-    conversation(robot, person).run()
+    conversation_in(robot, person).run()
     rows = {row.kinds: row for row in person.asked[1].rows if row.element.name == name}
     assert list(rows) == [("Video",), ("Voice",)]
     assert [[one.label.said for one in row.replies] for row in rows.values()] == [
@@ -241,11 +221,11 @@ def test_a_leak_among_nodes_is_known_before_channels_are_asked_about(robot: Path
     (robot / "p.xml").write_text(policy_of(nodes), "utf-8")
     (robot / "l.yaml").write_text(HEAD, "utf-8")
     first = Scripted()
-    conversation(robot, first).run()
+    conversation_in(robot, first).run()
     names = [row.element.name for row in first.asked[0].rows]
     assert sorted(names) == ["/behind", "/end", "/here", "/middle"]
     person = Scripted(ascii_uppercase[names.index("/end")], "1", *"ABC", "2")
-    conversation(robot, person).run()
+    conversation_in(robot, person).run()
     assert [one.about for one in person.asked] == [GOES_ON, GOES_ON, GOES_THROUGH]
     assert {one.partition(" [")[0].partition("-> ")[2] for one in person.asked[-1].rows[0].closes} == {"/end"}
 
@@ -256,7 +236,7 @@ def test_what_may_be_a_leak_comes_first_and_is_called_a_conduit_only_if_it_is_pi
     (robot / "p.xml").write_text(policy_of(nodes), "utf-8")
     (robot / "l.yaml").write_text("labels: 1\nnodes:\n  /one: {source: [Video]}\n", "utf-8")
     person = Scripted("2", "A", "1")
-    conversation(robot, person).run()
+    conversation_in(robot, person).run()
     question = person.asked[0]
     assert [(row.element.name, row.doubtful) for row in question.rows] == [
         ("/uploader", True), ("/middle", False), ("/end", True),
@@ -282,7 +262,7 @@ def test_a_leak_that_became_known_in_the_same_question_is_told_before_a_node_end
             return super().key(question, picked) if question.about == GOES_ON else SKIP
 
     person = AboutNodes("B", "1")
-    conversation(robot, person).run()
+    conversation_in(robot, person).run()
     first, last = person.asked[0], person.asked[-1]
     assert [(row.element.name, row.closes) for row in first.rows] == [("/counter", ()), ("/end", ())]
     ((name, closes),) = [(row.element.name, row.closes) for row in last.rows]
@@ -297,7 +277,7 @@ def test_a_finding_of_what_is_made_of_the_data_is_told_before_these_are_taken_aw
     text = f"labels: 1\nnodes:\n  /one: {{source: [Video]}}\n  /worker: {{{made}}}\n  /end: {{leak: [FaceTemplate]}}\n"
     (robot / "l.yaml").write_text(f"{text}topics:\n  /made: sensitive\n", "utf-8")
     person = Scripted()
-    conversation(robot, person).run()
+    conversation_in(robot, person).run()
     (row,) = person.asked[0].rows
     assert (row.element.name, row.kinds) == ("/in", ("Video",))
     assert [told.partition(" [")[0] for told in row.closes] == ["FaceTemplate: /one -> /end"]
@@ -307,7 +287,7 @@ def test_one_kind_at_most_is_not_said_of_a_channel_that_a_person_says_carries_an
     """Both at once would be no label file (S7)."""
     (robot / "l.yaml").write_text(f"{REVIEWED}topics:\n  /a: {{sensitive: [Location]}}\n", "utf-8")
     person = Scripted()
-    conversation(robot, person).run()
+    conversation_in(robot, person).run()
     keys = {row.element.name: [one.key for one in row.replies] for row in person.asked[0].rows}
     assert (keys["/a"], keys["/b"]) == (["y", "0"], ["y", "1", "2", "0"])
 
@@ -316,19 +296,19 @@ def test_what_takes_data_away_of_a_topic_takes_none_of_a_service_of_its_name(rob
     """Where a line of channels speaks of both, the topic gets a line of its own."""
     (robot / "l.yaml").write_text(f"{REVIEWED}channels:\n  /a: {{sensitive: [Location]}}\n", "utf-8")
     first = Scripted()
-    conversation(robot, first).run()
+    conversation_in(robot, first).run()
     at = [row.element.name for row in first.asked[0].rows].index("/a")
-    conversation(robot, Scripted(ascii_uppercase[at], "0")).run()
+    conversation_in(robot, Scripted(ascii_uppercase[at], "0")).run()
     text = (robot / "l.yaml").read_text("utf-8")
     assert "channels:\n  /a: {sensitive: [Location]}\ntopics:\n  /a: {never: [Video, Voice], note: " in text
 
 
 def test_one_by_one_speaks_of_the_rows_that_are_picked(robot: Path) -> None:
     person = Scripted("A", "B", OPEN)
-    conversation(robot, person).run()
+    conversation_in(robot, person).run()
     rest = len(person.asked[0].rows) - 2
     person = Scripted("A", "B", OPEN, "y", "y")
-    conversation(robot, person).run()
+    conversation_in(robot, person).run()
     assert [len(one.rows) for one in person.asked] == [rest + 2, 1, 1, rest]
 
 
@@ -336,7 +316,7 @@ def test_one_by_one_speaks_of_the_rows_that_are_picked(robot: Path) -> None:
 def test_signs_that_come_at_once_pick_no_row(robot: Path, keys: str) -> None:
     """Who types A and B fast and then 0 wants a list, and does not say it of A alone."""
     person = Scripted(keys, "0")
-    conversation(robot, person).run()
+    conversation_in(robot, person).run()
     assert person.remarks == [f"{keys!r} is no answer here", "'0' is no answer here"]
     assert (robot / "l.yaml").read_text("utf-8") == REVIEWED
 
@@ -350,7 +330,7 @@ def test_what_comes_later_is_not_asked_again_when_fewer_kinds_get_there(robot: P
             return key
 
     person = Later(SKIP)
-    assert conversation(robot, person).run()
+    assert conversation_in(robot, person).run()
     assert len(person.asked) == 1
 
 
@@ -362,7 +342,7 @@ def test_what_is_written_by_hand_meanwhile_is_read_after_later(robot: Path) -> N
             return super().key(question, picked)
 
     person = Writing("A", SKIP)
-    conversation(robot, person).run()
+    conversation_in(robot, person).run()
     names = [[row.element.name for row in one.rows] for one in person.asked]
     assert len(names[0]) == len(CHANNELS) + 2
     assert names[1:]
@@ -402,7 +382,7 @@ def test_a_list_closes_no_known_finding_and_says_what_single_answers_say(
         (tmp_path / file).write_text(text, "utf-8")
     before = found(tmp_path)
     person = EachKind(sorted(picked), key) if apart else Listing(sorted(picked), key)
-    conversation(tmp_path, person).run()
+    conversation_in(tmp_path, person).run()
     assert found(tmp_path) == before
     alone = tmp_path / "alone.yaml"
     for row in [row for one in person.lists[:1] for row in one.rows]:
@@ -481,7 +461,7 @@ def test_whatever_is_pressed_no_known_finding_is_closed_but_by_what_is_said_of_o
     text += "".join(f"  /{name}: conduit\n" for name in passing if reviewed)
     (tmp_path / "l.yaml").write_text(text, "utf-8")
     known = let_out(tmp_path)
-    asking = conversation(tmp_path, Anybody(lambda keys: data.draw(st.sampled_from(keys))))
+    asking = conversation_in(tmp_path, Anybody(lambda keys: data.draw(st.sampled_from(keys))))
     keep = asking.keep
 
     def kept(question: Question, key: str) -> tuple[str, ...]:

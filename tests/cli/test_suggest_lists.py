@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import os
 import pty
+import select
 import subprocess
 import sys
 import time
@@ -18,12 +19,10 @@ from hypothesis import strategies as st
 import rosprivacy
 from rosprivacy.analysis.suggesting.question_rows import GOES_THROUGH, LISTED, NOTHING
 from rosprivacy.labelling.answer_keys import QUIT, SKIP, allowed
-from rosprivacy.labelling.asking import asked_now, with_answer
-from rosprivacy.labelling.closing_lists import closing
-from rosprivacy.labelling.conversation import Conversation
+from rosprivacy.labelling.asking import asked_now
 from rosprivacy.labelling.suggesting import suggest_labels
 from rosprivacy.settings import Settings
-from tests.helpers.asked_by_keys import ask, robot_of
+from tests.helpers.asked_by_keys import ask, conversation, conversation_in, robot_of, wait_for_keys
 from tests.helpers.command import cli
 from tests.helpers.little_robots import policy_of
 from tests.helpers.planted_leaks import planted
@@ -34,7 +33,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from rosprivacy.analysis.suggesting.question_rows import Question
-    from rosprivacy.labelling.suggested_labels import Suggested
     from tests.helpers.command import Cli
     from tests.helpers.little_robots import Nodes
 
@@ -93,7 +91,7 @@ def line(*names: str) -> str:
 
 
 def test_a_list_is_confirmed_by_its_number_and_each_note_says_so(robot: Path) -> None:
-    conversation(robot / "p.xml", robot / "l.yaml", Careless()).run()
+    conversation_in(robot, Careless()).run()
     text = (robot / "l.yaml").read_text("utf-8")
     for name in ("arm", "battery", "joints"):
         assert f"  /{name}: {{never: [Video], " in text
@@ -128,7 +126,7 @@ def test_no_other_number_confirms_it(robot: Path, number: str) -> None:
         def told(self, remark: str) -> None:
             told.append(remark)
 
-    conversation(robot / "p.xml", robot / "l.yaml", Mistyping()).run()
+    conversation_in(robot, Mistyping()).run()
     assert told == ([f"{number!r} is no answer here; 3 rows left"] if number else [])
     assert (robot / "l.yaml").read_text("utf-8") == before
 
@@ -247,10 +245,10 @@ def test_channels_that_a_person_picks_are_asked_as_a_list(robot: Path) -> None:
     """Also those of which nobody knows the type: each was picked by its letter, and is shown again."""
     (robot / "l.yaml").write_text(HEAD + "  /here: conduit\n", "utf-8")
     stopped = Picking(QUIT)
-    conversation(robot / "p.xml", robot / "l.yaml", stopped).run()
+    conversation_in(robot, stopped).run()
     assert stopped.lists == [("/a", "/arm", "/battery", "/grid", "/joints", "/plain", "/text")]
     assert "never" not in (robot / "l.yaml").read_text("utf-8")
-    conversation(robot / "p.xml", robot / "l.yaml", Picking()).run()
+    conversation_in(robot, Picking()).run()
     text = (robot / "l.yaml").read_text("utf-8")
     assert text.count('never: [Video], note: "answered by Ada on 2026-11-23 in a list of 7"') == 7
 
@@ -261,7 +259,7 @@ def test_a_picked_channel_that_would_close_a_finding_is_asked_by_itself(robot: P
     (robot / "l.yaml").write_text(f"{HEAD}  /here: conduit\n  /out: {{leak: [Video]}}\n", "utf-8")
     before = found(robot / "p.xml", robot / "l.yaml")
     person = Picking()
-    conversation(robot / "p.xml", robot / "l.yaml", person).run()
+    conversation_in(robot, person).run()
     assert person.lists == [("/arm", "/battery", "/grid", "/plain", "/text")]
     told = "it could close a known finding, and is asked by itself"
     assert person.remarks == [f"topic /a: {told}", f"topic /joints: {told}"]
@@ -277,22 +275,6 @@ def test_of_rows_that_nobody_picked_nothing_is_said_together(robot: Path) -> Non
 
 def asked_of(robot: Path) -> tuple[Question, ...]:
     return asked_now(suggest_labels((str(robot / "p.xml"),), (str(robot / "l.yaml"),), Settings()))
-
-
-def conversation(policy: Path, file: Path, person: object) -> Conversation:
-    options = Settings()
-    last: list[Suggested] = []
-
-    def now() -> tuple[Question, ...]:
-        last[:] = [suggest_labels((str(policy),), (str(file),), options)]
-        return asked_now(last[0])
-
-    def keep(question: Question, key: str) -> tuple[str, ...]:
-        written = with_answer(str(file), question, key, "Ada", "2026-11-23", options)
-        file.write_text(written.text, "utf-8")
-        return written.remarks
-
-    return Conversation(now, keep, person, lambda rows: closing(rows, last[0].result))  # type: ignore[arg-type]  # several kinds of persons
 
 
 CHANNELS = ("joints", "battery", "arm", "text", "plain")
@@ -435,9 +417,10 @@ def test_two_digits_that_come_at_once_confirm_no_list_without_enter(robot: Path)
         shown = b""
         while not shown.endswith(b"> ") and (more := process.stdout.read(1)):
             shown += more
-        for keys in (b"10", b"q"):
-            time.sleep(0.5)  # what is typed before the terminal waits for a key is no answer
-            os.write(ours, keys)
+        wait_for_keys(theirs)
+        os.write(ours, b"10")
+        while not select.select([process.stdout], [], [], 0.1)[0]:
+            os.write(ours, b"q")  # again: what is typed before the terminal waits for a key is no answer
         while b"rows left" not in shown and (more := process.stdout.read(1)):
             shown += more
         os.close(ours)

@@ -1,4 +1,4 @@
-"""``rosprivacy suggest --ask`` as tests answer it: by a file of keys, or at a terminal."""
+"""``rosprivacy suggest --ask`` as tests answer it: by a file of keys, at a terminal, or as a person in Python."""
 
 from __future__ import annotations
 
@@ -10,6 +10,11 @@ import termios
 import time
 from typing import TYPE_CHECKING
 
+from rosprivacy.labelling.asking import asked_now, with_answer
+from rosprivacy.labelling.closing_lists import closing
+from rosprivacy.labelling.conversation import Conversation
+from rosprivacy.labelling.suggesting import suggest_labels
+from rosprivacy.settings import Settings
 from tests.helpers.little_robots import policy_of
 
 if TYPE_CHECKING:
@@ -17,6 +22,9 @@ if TYPE_CHECKING:
 
     import pytest
 
+    from rosprivacy.analysis.suggesting.question_rows import Question
+    from rosprivacy.labelling.conversation import Person
+    from rosprivacy.labelling.suggested_labels import Suggested
     from tests.helpers.command import Cli, Done
     from tests.helpers.little_robots import Nodes
 
@@ -36,6 +44,27 @@ def ask(cli: Cli, folder: Path, keys: str, patch: pytest.MonkeyPatch, *more: str
     with patch.context() as context:
         context.setattr(sys, "stdin", io.StringIO(keys))
         return cli("suggest", "p.xml", "--into", "l.yaml", "--ask", *more, cwd=folder, SOURCE_DATE_EPOCH=DAY)
+
+
+def conversation_in(folder: Path, person: Person) -> Conversation:
+    """Return a conversation about the robot of a folder."""
+    return conversation(folder / "p.xml", folder / "l.yaml", person)
+
+
+def conversation(policy: Path, file: Path, person: Person) -> Conversation:
+    """Return a conversation about a policy, whose answers go into a label file."""
+    last: list[Suggested] = []
+
+    def now() -> tuple[Question, ...]:
+        last[:] = [suggest_labels((str(policy),), (str(file),), Settings())]
+        return asked_now(last[0])
+
+    def keep(question: Question, key: str) -> tuple[str, ...]:
+        written = with_answer(str(file), question, key, "Ada", "2026-11-23", Settings())
+        file.write_text(written.text, "utf-8")
+        return written.remarks
+
+    return Conversation(now, keep, person, lambda rows: closing(rows, last[0].result))
 
 
 def wait_for_keys(terminal: int, *, whole_lines: bool = False) -> None:
