@@ -13,10 +13,19 @@ source of where somebody is.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import Confidence, Method, interface_of
 from rosprivacy.analysis.suggesting.carried_kinds import ANYTHING, Clue, cannot_carry
+from rosprivacy.analysis.suggesting.clues_of_nodes import (
+    WrittenChannel,
+    brought_in,
+    by_kind,
+    doubtful,
+    of_reader,
+    of_writer,
+    surest,
+)
 from rosprivacy.analysis.suggesting.evidence import (
     DATA_FLOW,
     DERIVATION,
@@ -28,29 +37,21 @@ from rosprivacy.analysis.suggesting.evidence import (
     Evidence,
     Label,
 )
-from rosprivacy.analysis.suggesting.name_rules import ends_with, has_word, is_silent, of_node, words
+from rosprivacy.analysis.suggesting.name_rules import has_word, is_silent, of_node
 from rosprivacy.analysis.suggesting.weighing import surer
 
 SAID, WANTED = "SpeechTranscript", "VoiceCommand"
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.model import Bound, Element, FlowGraph
     from rosprivacy.analysis.suggesting.carried_kinds import Rules
-    from rosprivacy.analysis.suggesting.name_rules import NameRules, Spoken
+    from rosprivacy.analysis.suggesting.name_rules import Spoken
     from rosprivacy.analysis.suggesting.traffic import Traffic
 
     Clues = Mapping[int, tuple[Clue, ...]]
     ByKind = dict[str, list[Clue]]
-
-
-class _Channel(NamedTuple):
-    """A channel that a node writes, with the names of its types, and what is thought that goes into it."""
-
-    element: Element
-    types: Sequence[str]
-    clues: Sequence[Clue]
 
 
 def of_nodes(graph: FlowGraph, bound: Bound, told: Traffic, clues: Clues, rules: Rules) -> Iterator[Evidence]:
@@ -78,8 +79,8 @@ def of_nodes(graph: FlowGraph, bound: Bound, told: Traffic, clues: Clues, rules:
     /face_id derivation Video FaceTemplate
     """
     names, types = rules.names, {at: [said.name for said in some] for at, some in bound.types.items()}
-    heard = {at: _of_node(some, names) for at, some in clues.items()}
-    sent = {at: _of_writer(graph.elements[at], some, names) for at, some in heard.items()}
+    heard = {at: of_reader(some, names) for at, some in clues.items()}
+    sent = {at: of_writer(graph.elements[at], some, names) for at, some in heard.items()}
     unknown = _Unknown(graph, types, clues, rules)
     for vertex, element in enumerate(graph.elements):
         if not element.is_node:
@@ -90,58 +91,13 @@ def of_nodes(graph: FlowGraph, bound: Bound, told: Traffic, clues: Clues, rules:
             label = Label(element, LEAK, ANYTHING)
             yield Evidence(label, NAMED, spoken.rule.confidence, reason, spoken.rule.place)
         if written:
-            channels = [_Channel(graph.elements[one], types.get(one, ()), sent.get(one, ())) for one in written]
-            into = _by_kind(heard.get(one, ()) for one in read)
+            channels = [WrittenChannel(graph.elements[one], types.get(one, ()), sent.get(one, ())) for one in written]
+            into = by_kind(heard.get(one, ()) for one in read)
             node = _Node(element, rules, channels, into, unknown.reader(read))
             yield from node.outputs()
             yield from node.by_name()
             yield from node.understood()
             yield from node.dropped()
-
-
-def _by_kind(channels: Iterable[Sequence[Clue]]) -> ByKind:
-    """What channels are thought to carry; that they can carry anything says nothing of a node."""
-    found: ByKind = {}
-    for clues in channels:
-        for clue in clues:
-            if clue.kind != ANYTHING:
-                found.setdefault(clue.kind, []).append(clue)
-    return found
-
-
-def _of_node(clues: tuple[Clue, ...], names: NameRules) -> tuple[Clue, ...]:
-    """What is thought of a topic, as far as it says something of who writes or reads it."""
-    alone = names.not_by_type
-    if not any(clue.kind in alone for clue in clues):
-        return clues
-    alone -= {clue.kind for clue in clues if clue.ground == NAMED}
-    return tuple(clue for clue in clues if clue.kind not in alone or clue.confidence is not Confidence.MAY)
-
-
-def _of_writer(channel: Element, clues: tuple[Clue, ...], names: NameRules) -> tuple[Clue, ...]:
-    """What is thought of a channel, for who writes it: what a goal or a request may carry, it does not bring in."""
-    if channel.leg != "request" and not ends_with(channel.name, names.wanted):
-        return clues
-    return tuple(clue for clue in clues if clue.confidence is not Confidence.MAY)
-
-
-def _brought_in(kind: str, channel: _Channel, names: NameRules) -> Iterator[Clue]:
-    """What is thought of a channel and a kind, as far as it says that who writes it brings that in."""
-    clues = [clue for clue in channel.clues if clue.kind == kind]
-    parts = map(words, channel.element.name.split("/")) if clues else ()
-    if not all(names.reworked.isdisjoint(part) and names.simulated.isdisjoint(part) for part in parts):
-        return map(_doubtful, clues)
-    return map(_worked_out, clues) if kind in names.computed else iter(clues)
-
-
-def _worked_out(clue: Clue) -> Clue:
-    """A clue of a kind that programs work out, for a source of it."""
-    sure = Confidence.LIKELY if clue.confidence is Confidence.CERTAIN else clue.confidence
-    return clue._replace(ground=DATA_FLOW if sure is Confidence.MAY else clue.ground, confidence=sure)
-
-
-def _doubtful(clue: Clue) -> Clue:
-    return Clue(clue.kind, DATA_FLOW, Confidence.MAY, clue.reason, clue.place)
 
 
 class _Unknown:
@@ -176,12 +132,12 @@ class _Node:
         self,
         element: Element,
         rules: Rules,
-        written: Sequence[_Channel],
+        written: Sequence[WrittenChannel],
         into: ByKind,
         reads_unknown: Callable[[], bool],
     ) -> None:
         self.element, self.rules, self.written = element, rules, written
-        self.out, self.into, self.reads_unknown = _by_kind(one.clues for one in written), into, reads_unknown
+        self.out, self.into, self.reads_unknown = by_kind(one.clues for one in written), into, reads_unknown
         self.named = of_node(element.name, rules.names.brings_in, rules.names.silent)
 
     def outputs(self) -> Iterator[Evidence]:
@@ -198,8 +154,8 @@ class _Node:
 
     def _written(self, kind: str) -> Iterator[Evidence]:
         """Yield what its channels say of a source; only its own name, or its code, says that it brings the kind in."""
-        clues = [clue for channel in self.written for clue in _brought_in(kind, channel, self.rules.names)]
-        clues = [*map(_doubtful, clues)] if self._in_doubt() else clues
+        clues = [clue for channel in self.written for clue in brought_in(kind, channel, self.rules.names)]
+        clues = [*map(doubtful, clues)] if self._in_doubt() else clues
         names_it = self.named is not None and self.rules.related_to_one(kind, self.named.rule.kinds)
         typed = any(clue.ground == TYPE for clue in clues)
         for clue in clues:
@@ -294,19 +250,3 @@ class _Node:
 
     def _label(self, role: str, kind: str) -> Label:
         return Label(self.element, role, kind)
-
-
-def surest(clues: Sequence[Clue]) -> Clue:
-    """Return the surest of some clues, of several the first.
-
-    >>> from rosprivacy.analysis.model import Place
-    >>> from rosprivacy.analysis.suggesting.carried_kinds import Clue
-    >>> one = Clue("Video", "name", Confidence.MAY, "a word", Place("names.yaml", 1))
-    >>> surest([one, one._replace(confidence=Confidence.LIKELY)]).confidence.value
-    'likely'
-    """
-    first = clues[0]
-    for clue in clues[1:]:
-        if surer(clue.confidence, first.confidence):
-            first = clue
-    return first
