@@ -86,7 +86,7 @@ class Bounds:
             if name not in WHAT:
                 near = nearest(name.casefold(), WHAT, like=0)
                 what = f"{shown(name)!r} is none of {', '.join(WHAT)}"
-                problems.append(InputError(OPTION, 0, what, did_you_mean(near, "")))
+                problems.append(InputError(OPTION, 0, what, did_you_mean(near)))
             elif not (number.isascii() and number.isdecimal() and len(number) < len(str(LARGEST)) and int(number)):
                 what = f"{shown(text)!r} sets no bound"
                 problems.append(InputError(OPTION, 0, what, f"write a whole number above 0, as in {name}=1000"))

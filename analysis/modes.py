@@ -29,7 +29,7 @@ class Mode(StrEnum):
         near = nearest(str(value).casefold(), known, like=0)
         what = f"{shown(str(value))!r} is none of {', '.join(known)}"
         option = _WORD.sub("-", cls.__name__).lower()
-        raise InputErrors([InputError(f"--{option}", 0, what, did_you_mean(near, ""))])
+        raise InputErrors([InputError(f"--{option}", 0, what, did_you_mean(near))])
 
 
 class View(Mode):

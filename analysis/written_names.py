@@ -66,7 +66,7 @@ def nearest(name: str, known: Iterable[str], most: int = 1, like: float = ALIKE)
     return get_close_matches(name[:LONGEST], [one for one in known if len(one) <= LONGEST], most, like)
 
 
-def did_you_mean(names: Collection[str], otherwise: str) -> str:
+def did_you_mean(names: Collection[str], otherwise: str = "") -> str:
     """Return the hint of a message: whether one of some names was meant, or what else to do if there is none.
 
     >>> did_you_mean(["/camera", "/cameras"], "see the names"), did_you_mean([], "see the names")

@@ -21,7 +21,7 @@ from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import QueryError, shown
-from rosprivacy.analysis.written_names import A_LITTLE, FEW, did_you_mean, nearest
+from rosprivacy.analysis.written_names import FEW, did_you_mean, nearest
 from rosprivacy.queries.graph_values import Path
 
 if TYPE_CHECKING:
@@ -149,7 +149,7 @@ def find(name: str) -> Query:
     """
     queries = pack()
     if name not in queries:
-        hint = did_you_mean(nearest(name, queries, FEW, A_LITTLE), "see them with rosprivacy query")
+        hint = did_you_mean(nearest(name, queries, FEW, like=0.4), "see them with rosprivacy query")
         raise QueryError(f"{shown(name)}: there is no such query; {hint}")
     return queries[name]
 

@@ -43,13 +43,13 @@ def package_evidence(graph: FlowGraph, of_packages: Iterable[NodeOfPackage]) -> 
 def _of_node(graph: FlowGraph, one: NodeOfPackage) -> Iterator[Evidence]:
     element, interfaces = whole(graph.elements[one.vertex]), len(one.node.interfaces)
     by = f"its name, {one.confirmed} of {interfaces} of its interfaces" if one.confirmed else "its name alone"
-    another = interfaces and not one.confirmed and one.all_typed
+    matched, another = one.is_recognised, interfaces and not one.confirmed and one.all_typed
     for claim in _leaks_of_others_data(one.node) if another else one.node.claims:
         label = Label(element, claim.role, claim.kind, claim.method, claim.to)
-        confidence = claim.confidence if one.is_recognised else Confidence.MAY
+        confidence = claim.confidence if matched else Confidence.MAY
         where = f", to a {claim.where}" if claim.where else ""
         reason = f"package {one.package.name} {one.package.version}{where}: {claim.why} ({by})"
-        yield Evidence(label, PACKAGE if one.is_recognised else NAMED, confidence, reason, claim.place)
+        yield Evidence(label, PACKAGE if matched else NAMED, confidence, reason, claim.place)
 
 
 def _leaks_of_others_data(node: PackageNode) -> list[Claim]:

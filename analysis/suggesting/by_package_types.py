@@ -98,7 +98,7 @@ def _typed(
     for identity, nodes in makers.items():
         for maker in nodes:
             of_node[maker].append(identity)
-    for vertex, package, node in ((one.vertex, one.package, one.node) for one in recognised):
+    for vertex, package, node, *_ in recognised:
         base = graph.elements[vertex].name.rpartition("/")[2]
         for identity in of_node.get(vertex, ()):
             _, kind, name = identity

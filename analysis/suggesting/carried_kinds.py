@@ -45,10 +45,6 @@ class Rules(NamedTuple):
     names: NameRules
     hierarchy: Hierarchy
 
-    def related(self, kind: str, other: str) -> bool:
-        """Return whether data of one kind can be of the other."""
-        return self.hierarchy.overlap(kind, other) is not None
-
     def related_to_one(self, kind: str, others: Iterable[str]) -> bool:
         """Return whether data of one kind can be of one of the others."""
         return not self.hierarchy.overlaps[kind].keys().isdisjoint(others)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Element
     from rosprivacy.analysis.suggesting.name_rules import NameRules
 
-    ByKind = dict[str, list[Clue]]
+ByKind = dict[str, list[Clue]]
 
 
 class WrittenChannel(NamedTuple):

@@ -97,7 +97,7 @@ class LibraryNode(NamedTuple):
 
     def related(self, kind: str, kinds: Iterable[str]) -> bool:
         """Return whether data of a kind can be of one of some others; that they can be anything says nothing."""
-        return any(one != ANYTHING and self.rules.related(kind, one) for one in kinds)
+        return self.rules.related_to_one(kind, (one for one in kinds if one != ANYTHING))
 
     def is_named_after(self, kind: str) -> bool:
         """Return whether the node is called after what brings in such a kind."""

@@ -47,11 +47,11 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.model import Bound, Element, FlowGraph
     from rosprivacy.analysis.suggesting.carried_kinds import Rules
+    from rosprivacy.analysis.suggesting.clues_of_nodes import ByKind
     from rosprivacy.analysis.suggesting.name_rules import Spoken
     from rosprivacy.analysis.suggesting.traffic import Traffic
 
     Clues = Mapping[int, tuple[Clue, ...]]
-    ByKind = dict[str, list[Clue]]
 
 
 def of_nodes(graph: FlowGraph, bound: Bound, told: Traffic, clues: Clues, rules: Rules) -> Iterator[Evidence]:

@@ -74,7 +74,7 @@ class _Joins:
     def _domain(self, name: str, robot: Robot) -> Diagnostic:
         what = f"domain {shown(name)} joins nothing: {shown(robot.id)} is alone in it"
         others = {other.lower(): other for other in sorted(self._domains) if other != name}
-        hint = did_you_mean([others[close] for close in nearest(name.lower(), others)], "")
+        hint = did_you_mean([others[close] for close in nearest(name.lower(), others)])
         return _notice(robot.place, f"{what}; {hint}" if hint else what)
 
     def _infrastructure(self, robot: Robot) -> Diagnostic:

@@ -71,7 +71,7 @@ class Unmatched:
         hints = []
         for end in (entry.source, entry.target):
             close = [] if self._names.matching(end) else self._close(end, self._names.by_kind)
-            hints += [f"instead of {shown(end)} {did_you_mean(close, '')}"] if close else []
+            hints += [f"instead of {shown(end)} {did_you_mean(close)}"] if close else []
         what = f"no flow goes from {shown(entry.source)!r} to {shown(entry.target)!r}"
         hint = " ".join(hints) or "name two elements with a flow between them, in its direction"
         return LabelError(entry.place.file, entry.place.line, what, hint)

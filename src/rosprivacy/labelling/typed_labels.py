@@ -65,6 +65,6 @@ def _unknown(name: str, kinds: Sequence[str], elements: Iterable[Element], vocab
     nodes = dict.fromkeys(one.name for one in elements if one.is_node)
     if name not in nodes:
         near = nearest(name, nodes)
-        return f"no node is called {shown(name)!r}; {did_you_mean(near, '')}" if near else TYPED_AS
+        return f"no node is called {shown(name)!r}; {did_you_mean(near)}" if near else TYPED_AS
     other = next((one for one in kinds if one not in vocabulary.hierarchy.ancestors), "")
     return f"unknown category {shown(other)!r}; {vocabulary.hint(other)}" if other else ""
