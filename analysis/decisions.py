@@ -21,11 +21,12 @@ from rosprivacy.analysis.remembered import changes, told
 from rosprivacy.analysis.written_names import is_glob, meant
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping
+    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.answer import Finding
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.legal_bases import Verdicts
+    from rosprivacy.analysis.model import Acceptance, Doubt
     from rosprivacy.analysis.remembered import About, Change
 
 FARTHEST = 1_000_000
@@ -153,6 +154,18 @@ def _covers(written: str, name: str) -> bool:
     return not written or meant(written) == name
 
 
+def _is_about(entry: Acceptance, doubt: Doubt) -> bool:
+    """Whether an entry is about a doubt: all that it names must hold."""
+    name, robot = (doubt.element.name, doubt.element.robot) if doubt.element else ("", "")
+    return (
+        entry.id in ("", doubt.id)
+        and entry.name in ("", doubt.name)
+        and _covers(entry.element, name)
+        and _covers(entry.robot, robot)
+        and _covers(entry.file, doubt.place.file)
+    )
+
+
 @dataclass(frozen=True)
 class Decisions:
     """A decisions file on a day.
@@ -163,6 +176,8 @@ class Decisions:
         ISO date.
     instead_of
         An earlier date that was asked for, by which fewer decisions have expired; empty if there is none.
+    doubts
+        What people accepted of the list of doubts.
     """
 
     file: str
@@ -171,8 +186,37 @@ class Decisions:
     entries: tuple[Decision, ...]
     hierarchy: Hierarchy = field(repr=False)
     instead_of: str = ""
+    doubts: tuple[Acceptance, ...] = ()
 
-    def state(self, decision: Decision) -> State:
+    def on_doubts(
+        self, doubts: Iterable[Doubt], *, everything: bool
+    ) -> tuple[tuple[Doubt, ...], tuple[Diagnostic, ...]]:
+        """Return doubts with what is accepted of them, and what is to be said of such entries.
+
+        Parameters
+        ----------
+        everything
+            Whether these are all doubts that there are: else no entry is called orphaned.
+        """
+        used: set[Acceptance] = set()
+        decided = []
+        for doubt in doubts:
+            entry = next((entry for entry in self.doubts if _is_about(entry, doubt)), None)
+            valid = next((e for e in self.doubts if _is_about(e, doubt) and self.state(e) is State.VALID), None)
+            used.update([entry] if entry else [])
+            decided.append(replace(doubt, accepted=valid))
+        return tuple(decided), tuple(self._of_doubts(used, everything=everything))
+
+    def _of_doubts(self, used: Collection[Acceptance], *, everything: bool) -> Iterator[Diagnostic]:
+        for entry in self.doubts:
+            what = f"the acceptance of the doubt {entry.id or entry.name}"
+            if self.state(entry) is State.EXPIRED:
+                message = f"{what} expired on {entry.expires} and no longer counts; decide anew"
+                yield Diagnostic(entry.place, Severity.WARNING, message)
+            elif everything and entry not in used:
+                yield Diagnostic(entry.place, Severity.WARNING, f"{what} is about no doubt: it is orphaned; remove it")
+
+    def state(self, decision: Decision | Acceptance) -> State:
         """Whether a decision is still valid."""
         return State.EXPIRED if decision.expires and decision.expires < self.today else State.VALID
 

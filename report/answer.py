@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.findings.processed import Processed
     from rosprivacy.analysis.fleet.counts import Counts
     from rosprivacy.analysis.fleet.patterns import FleetView
-    from rosprivacy.analysis.model import Bound, Diagnostic, NonRosFacts, Surroundings
+    from rosprivacy.analysis.model import Bound, Diagnostic, Doubt, NonRosFacts, Surroundings
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 
@@ -72,6 +72,8 @@ class Answer:
         As of ``Options``: whether a person has accepted what would be a finding.
     enforced
         What the enforced view adds to this one; None where nobody asked.
+    doubts
+        What is not known, or rests on more than a person's word (rule S11); the verdict takes them into account.
     """
 
     analysis: Analysis
@@ -85,6 +87,7 @@ class Answer:
     infrastructure: frozenset[tuple[str, str]] = frozenset()
     accepts: Callable[[Case], bool] | None = field(default=None, repr=False, compare=False)
     enforced: Enforced | None = field(default=None, repr=False, compare=False)
+    doubts: tuple[Doubt, ...] = ()
 
     @property
     def shown(self) -> Analysis:

@@ -9,20 +9,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.many_flows import parted
 from rosprivacy.analysis.model import Place
+from rosprivacy.analysis.policy_lines import first_lines, in_a_file
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Mapping
     from typing import Any
 
     from rosprivacy.analysis.answer import Analysis, Finding, OpenQuestion, Step
     from rosprivacy.analysis.kernel.roles import Facts
-    from rosprivacy.analysis.model import Element, Flow, Grant
+    from rosprivacy.analysis.model import Element
 
     Shown = tuple[str, ...]
 
-OURS = "rosprivacy:"  # label files that come with the program have no path
 NOWHERE = Place("the database", 0)  # what people added there by hand stands in no file
 
 
@@ -62,8 +61,9 @@ class Places:
         for profile in analysis.graph.profiles:
             if in_a_file(profile.place):
                 profiles.setdefault(profile.node, profile.place)
+        wanted = {question.element.shown_as for question in to_review(analysis) if question.element.is_channel}
         files = [entry["file"] for kind in ("labels", "policies") for entry in assumptions.get(kind) or ()]
-        return cls(analysis.spread.facts, vertices, _lines(analysis), profiles, tuple(files))
+        return cls(analysis.spread.facts, vertices, first_lines(analysis.graph, wanted), profiles, tuple(files))
 
     def of_finding(self, finding: Finding) -> Place:
         """Return the line that lets the data into the leak; the line of a label where no policy line does (S3)."""
@@ -104,35 +104,6 @@ def of_step(step: Step) -> list[Place]:
     """Return the lines that allow a step, sorted; none for a step from a wildcard to what it covers."""
     places = {(grant.place.file, grant.place.line) for grant in step.grants if in_a_file(grant.place)}
     return [Place(*place) for place in sorted(places)]
-
-
-def in_a_file(place: Place) -> bool:
-    """Whether a place is a line of a file that a person can open."""
-    return place.line > 0 and bool(place.file) and not place.file.startswith(OURS)
-
-
-def _lines(analysis: Analysis) -> dict[Shown, Place]:
-    """The first policy line that names each channel to be reviewed."""
-    elements = analysis.graph.elements
-    wanted = {question.element.shown_as for question in to_review(analysis) if question.element.is_channel}
-    found: dict[Shown, tuple[str, int]] = {}
-    for vertex, grants in _grants_at(analysis.graph.flows) if wanted else ():
-        end = elements[vertex].shown_as
-        if end in wanted:
-            lines = [(grant.place.file, grant.place.line) for grant in grants if in_a_file(grant.place)]
-            known = [found[end]] if end in found else []
-            if lines or known:
-                found[end] = min([*lines, *known])
-    return {end: Place(*line) for end, line in found.items()}
-
-
-def _grants_at(flows: Sequence[Flow]) -> Iterator[tuple[int, tuple[Grant, ...]]]:
-    """What allows a flow at an element; of nodes that share their rights once, at the channels."""
-    own, meetings = parted(flows)
-    yield from ((vertex, flow.grants) for _, flow in own for vertex in (flow.source, flow.target))
-    for meeting in meetings:  # no line states those of wildcards
-        for side, rights in ((meeting.written, meeting.of_written), (meeting.read, meeting.of_read)):
-            yield from ((vertex, right.grants) for vertex, right in zip(side, rights, strict=False))
 
 
 def _first(places: Iterable[Place | None]) -> Place:

@@ -19,13 +19,13 @@ PATHS = ("node", "topic", "service", "action")
 AS_IT_IS = ("categories", "contexts", "look_at")  # of the ontology: kinds of data and the law
 KEPT = {
     "because", "area", "article9", "backups", "beside", "by", "carries", "cause", "categories", "categories_asked",
-    "category",
-    "condition", "context", "contexts", "countries_as_of", "country", "data_types_asked", "decision", "expires",
+    "category", "condition", "context", "contexts", "countries_as_of", "country", "data_types_asked", "decision",
+    "doubt", "expires",
     "finding", "findings", "format", "from", "holds", "id", "identity_factors_asked", "kind", "law_as_of", "leaves",
     "leaves_pseudonymised", "legal_bases", "legal_basis", "method", "missing", "paths", "pattern", "provision",
-    "pseudonymised", "recipient", "retention", "role", "roles", "rosprivacy", "severity", "sha256", "special_basis",
-    "state", "taken_as", "taken_by_kind", "to", "transfer", "unlabelled_channel", "unknown", "unlabelled_node",
-    "verdict", "verdict_then", "view", "what", "without_limit",
+    "pseudonymised", "rank", "recipient", "retention", "role", "roles", "rosprivacy", "severity", "sha256",
+    "special_basis", "state", "taken_as", "taken_by_kind", "to", "transfer", "unlabelled_channel", "unknown",
+    "unlabelled_node",    "verdict", "verdict_then", "view", "what", "without_limit",
 }  # fmt: skip
 MAPS = ("because", "legal_bases", "purposes", "retention", "taken_away_by", "taken_by_kind")  # keys are no names
 FILES = ("file", "joining_file")  # also among the values of a reason

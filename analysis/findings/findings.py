@@ -73,8 +73,6 @@ class Options(NamedTuple):
     choose
         Of a spread, the kinds of findings and the bits of the categories: source -> ``Chosen`` of the findings to
         make; None for all.
-    unread
-        Where grants stand that were not read: with any, nothing is said to have no leak (rule S11).
     bounds
         Above ``path_steps`` paths are not counted, which a warning says.
     """
@@ -86,7 +84,6 @@ class Options(NamedTuple):
     accepts: Callable[[Case], bool] | None = None
     choose: Callable[[Spread, Sequence[Concern], int], Mapping[int, AbstractSet[Chosen]]] | None = None
     today: str = ""
-    unread: tuple[Place, ...] = ()
     bounds: Bounds = BOUNDS
 
 
@@ -132,7 +129,7 @@ def analyse(
     leak = any(finding.stands for finding in findings)
     return Analysis(
         graph=graph,
-        verdict=Verdict.of(leak=leak, is_open=bool(questions), known=not lacks and not options.unread),
+        verdict=Verdict.of(leak=leak, is_open=bool(questions), known=not lacks),
         emitted=tuple(wanted),
         findings=findings,
         open=questions,

@@ -16,15 +16,13 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Analysis, Finding
 
 
-def held_by_types(under: Analysis, without: Analysis, gone: tuple[Finding, ...], *, all_read: bool = True) -> Analysis:
+def held_by_types(under: Analysis, without: Analysis, gone: tuple[Finding, ...]) -> Analysis:
     """Return an analysis under limits with what only these close.
 
     Parameters
     ----------
     gone
         The findings that only the limits close; of a fleet one of each pattern.
-    all_read
-        Whether all grants were read (rule S11).
 
     Examples
     --------
@@ -39,6 +37,6 @@ def held_by_types(under: Analysis, without: Analysis, gone: tuple[Finding, ...],
     return replace(
         under,
         open=without.open,
-        verdict=Verdict.of(leak=leak, is_open=bool(without.open), known=not under.lacking and all_read),
+        verdict=Verdict.of(leak=leak, is_open=bool(without.open), known=not under.lacking),
         closed=ClosedByTypes(*closed(under.spread, mask), gone),
     )

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
 from rosprivacy.analysis.errors import DecisionError, InputError, shown
-from rosprivacy.analysis.model import Place
-from rosprivacy.ingest.decisions.decisions_file import LISTS, TARGET, parse_decisions
+from rosprivacy.analysis.model import Acceptance, Place
+from rosprivacy.ingest.decisions.decisions_file import LISTS, OF_DOUBTS, TARGET, parse_decisions
 from rosprivacy.ingest.reading.bounded_file import read_regular
 from rosprivacy.ingest.reading.kept_yaml import FAILURES, changed, keeps_comments
 from rosprivacy.ingest.reading.yaml_values import MAX_BYTES
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
     from pathlib import Path
 
-    from rosprivacy.analysis.decisions import Decision
+    from rosprivacy.analysis.decisions import Decision, Decisions
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 NEW = """\
@@ -32,10 +32,13 @@ NEW = """\
 decisions: 1
 findings: []
 """
+FINDINGS, DOUBTS = "findings", "doubts"  # sections of the file
 _NOWHERE = Place("", 0)
 
 
-def with_decision(file: str, text: str | None, entry: Mapping[str, Any], remark: str, vocabulary: Vocabulary) -> str:
+def with_decision(
+    file: str, text: str | None, entry: Mapping[str, Any], remark: str, vocabulary: Vocabulary, section: str = FINDINGS
+) -> str:
     """Return the text of a decisions file with an entry added, or changed where there is one with the same target.
 
     Of an entry that is there, what the new one does not say stays; what it says otherwise goes into its history.
@@ -50,6 +53,8 @@ def with_decision(file: str, text: str | None, entry: Mapping[str, Any], remark:
         Key -> value; dates as ``datetime.date``.
     remark
         For people, as a comment beside the id; empty for none.
+    section
+        What it is about: ``findings`` or ``doubts``.
 
     Raises
     ------
@@ -59,12 +64,12 @@ def with_decision(file: str, text: str | None, entry: Mapping[str, Any], remark:
         If it cannot be written without losing something.
     """
     old = NEW if text is None else text
-    before = parse_decisions(file, old, vocabulary, "").entries
+    before = _entries_of(parse_decisions(file, old, vocabulary, ""), section)
     try:
-        new, place = _written(old, entry, remark)
+        new, place = _written(old, entry, remark, section)
     except FAILURES as error:
         raise _by_hand(file, f"cannot be changed: {shown(str(error).splitlines()[0])}") from None
-    after = parse_decisions(file, new, vocabulary, "").entries
+    after = _entries_of(parse_decisions(file, new, vocabulary, ""), section)
     others = [*before[:place], *before[place + 1 :]]
     if _facts([*after[:place], *after[place + 1 :]]) != _facts(others) or len(after) != max(len(before), place + 1):
         raise _by_hand(file, "cannot be changed without changing another decision")
@@ -97,11 +102,15 @@ def _by_hand(file: str, problem: str) -> InputError:
     return DecisionError(file, 0, problem, "add the entry by hand")
 
 
-def _facts(entries: Iterable[Decision]) -> list[Decision]:
-    return [replace(entry, place=_NOWHERE) for entry in entries]
+def _entries_of(decisions: Decisions, section: str) -> tuple[Decision, ...] | tuple[Acceptance, ...]:
+    return decisions.entries if section == FINDINGS else decisions.doubts
 
 
-def _written(text: str, entry: Mapping[str, Any], remark: str) -> tuple[str, int]:
+def _facts(entries: Iterable[Decision | Acceptance]) -> list[Decision | Acceptance]:
+    return [e._replace(place=_NOWHERE) if isinstance(e, Acceptance) else replace(e, place=_NOWHERE) for e in entries]
+
+
+def _written(text: str, entry: Mapping[str, Any], remark: str, section: str) -> tuple[str, int]:
     """The new text, and the number of the entry in it."""
     places: list[int] = []
 
@@ -111,7 +120,7 @@ def _written(text: str, entry: Mapping[str, Any], remark: str) -> tuple[str, int
     }
 
     def change(top: Any) -> None:
-        entries = _entries(top)
+        entries = _entries(top, section)
         place = next((i for i, there in enumerate(entries) if _same_target(there, entry)), len(entries))
         places.append(place)
         if place == len(entries):
@@ -141,21 +150,21 @@ def _in_brackets(names: Iterable[str]) -> CommentedSeq:
 
 def _change(there: Any, entry: Mapping[str, Any]) -> None:
     """Say it anew; what was said before stays in the ``history`` of the entry, the latest last."""
-    before = {key: there[key] for key in there if key not in (*TARGET, "history", "note")}
-    if any(before.get(key) != value for key, value in entry.items() if key not in (*TARGET, "date")):
+    before = {key: there[key] for key in there if key not in (*TARGET, *OF_DOUBTS, "history", "note")}
+    if any(before.get(key) != value for key, value in entry.items() if key not in (*TARGET, *OF_DOUBTS, "date")):
         there.setdefault("history", CommentedSeq()).append(CommentedMap(deepcopy(before)))  # no alias
     there.update(entry)
 
 
-def _entries(top: Any) -> Any:
+def _entries(top: Any, section: str) -> Any:
     """The list of entries; a new one where there is none yet."""
-    entries = top.get("findings")
+    entries = top.get(section)
     if not entries:
         fresh = CommentedSeq()
         with suppress(KeyError):  # comments that stand after an empty list go with the key
             fresh.ca.comment = entries.ca.comment if entries is not None else None
-        top["findings"] = fresh
-    return top["findings"]
+        top[section] = fresh
+    return top[section]
 
 
 def _same_target(there: Mapping[str, Any], entry: Mapping[str, Any]) -> bool:
@@ -163,5 +172,5 @@ def _same_target(there: Mapping[str, Any], entry: Mapping[str, Any]) -> bool:
 
 
 def _target(entry: Mapping[str, Any]) -> dict[str, object]:
-    said = {key: entry[key] for key in TARGET if key in entry}
+    said = {key: entry[key] for key in dict.fromkeys((*TARGET, *OF_DOUBTS)) if key in entry}
     return {key: set(value) if isinstance(value, list) else str(value) for key, value in said.items()}

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.decisions import Choice, Decision, Decisions
 from rosprivacy.analysis.errors import DecisionError, InputError, InputErrors, shown
-from rosprivacy.analysis.model import Place
+from rosprivacy.analysis.model import Acceptance, Place
 from rosprivacy.analysis.remembered import About
 from rosprivacy.analysis.written_names import did_you_mean, nearest
 from rosprivacy.ingest.reading import yaml_values
@@ -29,11 +29,13 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.reading.yaml_values import Value
     from rosprivacy.ontology.vocabulary import Vocabulary
 
-TOP = ("decisions", "findings", "note")
+TOP = ("decisions", "findings", "doubts", "note")
 NAMES = ("id", "category", "source", "leak", "robot", "from_robot", "kind")
 LISTS = ("robots", "from_robots")  # of robots, by their full names
 TARGET = (*NAMES, *LISTS, "pseudonymised")
 TEXTS = ("reason", "owner", "ticket")
+OF_DOUBTS = ("id", "doubt", "element", "robot", "file")
+DOUBT_KEYS = (*OF_DOUBTS, "decision", *TEXTS, "date", "expires", "note", "history")
 KEYS = (*TARGET, "decision", *TEXTS, "legal_basis", "date", "expires", "note", "history", "made_about")
 REMEMBERED = ("view", "path", "disjoint_paths", "robots")
 LONGEST = 10_000  # characters of a text
@@ -77,10 +79,10 @@ def parse_decisions(file: str, text: str, vocabulary: Vocabulary, day: str) -> D
 
 def _decisions(file: str, top: Value, data: bytes, vocabulary: Vocabulary, day: str) -> Decisions:
     reader = _Reader(file, vocabulary)
-    entries = tuple(reader.document(top))
+    entries, doubts = tuple(reader.document(top)), tuple(reader.doubts(top))
     if reader.problems:
         raise InputErrors(reader.problems)
-    return Decisions(file, hashlib.sha256(data).hexdigest(), day, entries, vocabulary.hierarchy)
+    return Decisions(file, hashlib.sha256(data).hexdigest(), day, entries, vocabulary.hierarchy, doubts=doubts)
 
 
 def is_id(written: str) -> bool:
@@ -115,6 +117,33 @@ class _Reader(FileReader):
                 self.problem(item.line, f"a decision is a map, not a {item.kind}", "write id: … and decision: …")
             else:
                 yield self._decision(item)
+
+    def doubts(self, top: Value) -> Iterator[Acceptance]:
+        """What is accepted of the list of doubts; problems of the whole file are reported with the findings."""
+        listed = top.get("doubts")
+        for item in self.list_of(listed, "doubts", "write '- id: …' lines") if listed else ():
+            if item.kind != "map":
+                self.problem(item.line, f"a decision is a map, not a {item.kind}", "write id: … and decision: accept")
+            else:
+                yield self._acceptance(item)
+
+    def _acceptance(self, item: Value) -> Acceptance:
+        stated = {key: value for key, _, value in self.entries_of(item, DOUBT_KEYS)}
+        texts = {key: self._text(stated[key], key) for key in (*OF_DOUBTS, *TEXTS) if key in stated}
+        choice = stated.get("decision")
+        if choice is None or choice.text != Choice.ACCEPT:
+            self.problem(choice.line if choice else item.line, "a doubt is accepted or not", "write decision: accept")
+        if not texts.get("id") and not texts.get("doubt"):
+            self.problem(item.line, "an acceptance of every doubt", "name the id or the name of a doubt")
+        if texts.get("id") and not is_id(texts["id"]):
+            self.problem(stated["id"].line, f"id {shown(texts['id'])!r}", "copy the 16 digits and letters of a doubt")
+        for key in ("date", "expires"):
+            if key in stated:
+                texts[key] = self._date(stated[key], key)
+        for key in ("reason", "owner", "expires"):
+            if not texts.get(key, "").strip():
+                self.problem(item.line, f"an accepted doubt without {key}", f"add {key}: it is what a person signs")
+        return Acceptance(Place(self.file, item.line), name=texts.pop("doubt", ""), **texts)
 
     def _decision(self, item: Value) -> Decision:
         before = len(self.problems)

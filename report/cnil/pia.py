@@ -22,8 +22,10 @@ from rosprivacy.report.cnil import lawfulness
 from rosprivacy.report.cnil.answers import Known
 from rosprivacy.report.cnil.markup import Html, escaped, joined, paragraph
 from rosprivacy.report.cnil.told import NAMES, Told
+from rosprivacy.report.document.doubts import verdict_facts
 from rosprivacy.report.element_counts import count_elements
 from rosprivacy.report.inventory import kinds_of
+from rosprivacy.report.verdict import verdict_sentence
 from rosprivacy.report.words.words import Words
 
 if TYPE_CHECKING:
@@ -59,7 +61,8 @@ def cnil_pia(answer: Answer, created: str, language: str = "en") -> dict[str, An
         analysis, kinds, answer.stated, accepted, answer.subjects, vocabulary.hierarchy, told, answer.processed
     )
     measures = list(_measures(known))
-    note = _note(analysis, assumptions, _fleet(view, told) if view else "", told)
+    sentence = verdict_sentence(verdict_facts(answer), told.words)
+    note = _note(analysis, assumptions, _fleet(view, told) if view else "", sentence, told)
     texts = {
         121: cnil_answers.data(known),
         122: joined(cnil_answers.life_cycle(known), _read(assumptions, told)),
@@ -204,13 +207,13 @@ def _rows(rows: list[Html], told: Told) -> Html:
     return told.rows(rows[:NAMES], len(rows))
 
 
-def _note(analysis: Analysis, assumptions: Mapping[str, Any], about: str, told: Told) -> Html:
-    """Whose word this is."""
+def _note(analysis: Analysis, assumptions: Mapping[str, Any], about: str, sentence: str, told: Told) -> Html:
+    """Whose word this is, and the answer that it rests on."""
     said = told(
         "cnil.note",
         program=escaped(f"rosprivacy {assumptions.get('rosprivacy', '')}".strip()),
         view=Html(analysis.graph.view),
-        verdict=Html(analysis.verdict),
+        verdict=escaped(sentence),
         elements=told.count(count_elements(question.element for question in analysis.open).elements, "element"),
         more=Html(f" {about}." if about else ""),
     )

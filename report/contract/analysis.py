@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from rosprivacy.report.contract.records import (
         DeniedEntry,
         DiagnosticEntry,
+        DoubtEntry,
         ElementEntry,
         EnclaveEntry,
         FindingEntry,
@@ -203,6 +204,8 @@ class AnalysisDocument(TypedDict):
     findings: list[FindingEntry]
     open: list[OpenEntry]
     unknown_ends: NotRequired[list[UnknownEnd]]
+    doubts: NotRequired[list[DoubtEntry]]
+    sentence: NotRequired[str]
     taken_away: NotRequired[list[LedgerRow]]
     hangs_on: NotRequired[list[RelianceEntry]]
     carries: list[Carried]

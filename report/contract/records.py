@@ -205,6 +205,28 @@ class DiagnosticEntry(PlaceEntry):
     code: NotRequired[str]
 
 
+class AcceptedDoubt(PlaceEntry):
+    """Who accepted a doubt, why, and until when; the line of the decisions file."""
+
+    reason: str
+    owner: str
+    expires: str
+    ticket: str
+
+
+class DoubtEntry(PlaceEntry):
+    """Something that is not known, or rests on more than a person's word (rule S11)."""
+
+    id: str
+    doubt: str
+    rank: str
+    element: ElementEntry | None
+    categories: list[str]
+    count: int
+    message: str
+    accepted: AcceptedDoubt | None
+
+
 class EnclaveEntry(TypedDict):
     """An enclave of the policies."""
 

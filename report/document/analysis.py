@@ -6,16 +6,17 @@ In: an ``Analysis`` and what it rests on. Out: plain dicts and lists, sorted, wi
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, cast
 
 from rosprivacy.analysis.contexts import article9_in, revealed
 from rosprivacy.analysis.findings.review_order import Behind
 from rosprivacy.analysis.findings.sanitizing import absent, cleanings, makings
 from rosprivacy.analysis.kernel.ranks import in_words
 from rosprivacy.analysis.legal import turned_special
-from rosprivacy.analysis.model import GAPS, GOES_NOWHERE, NO_LEAK_NAMED
 from rosprivacy.analysis.written_names import literal
 from rosprivacy.report.document import ledger, reliance
+from rosprivacy.report.document.doubts import doubt_entry
+from rosprivacy.report.document.elements import element_dict
 from rosprivacy.report.document.non_ros import inventory, taken_by_kind, without_backups
 from rosprivacy.report.document.pointers import pointers, situations
 
@@ -79,6 +80,7 @@ def analysis_document(answer: Answer) -> AnalysisDocument:
             }
             for end in analysis.unknown_ends
         ],
+        "doubts": [doubt_entry(doubt) for doubt in answer.doubts],
         "taken_away": ledger.rows(taken, element_dict),
         "hangs_on": reliance.rows(answer.hangs_on, element_dict),
         "carries": [
@@ -134,33 +136,6 @@ def analysis_document(answer: Answer) -> AnalysisDocument:
             "globs": ledger.globs(answer.globs(taken), element_dict),
         },
     }
-
-
-def known_gap(document: Mapping[str, Any]) -> str:
-    """Return why a verdict can be undetermined with nothing open: the code of the first of ``GAPS``, else empty."""
-    codes = {said.get("code") for said in document["diagnostics"]}
-    return next((code for code in GAPS if code in codes), "")
-
-
-def lacking(document: Mapping[str, Any]) -> str:
-    """Return what 'no leak found' lacks where data has a source: ``GOES_NOWHERE``, ``NO_LEAK_NAMED``, else empty."""
-    codes = {said.get("code") for said in document["diagnostics"]}
-    return next((code for code in (GOES_NOWHERE, NO_LEAK_NAMED) if code in codes), "")
-
-
-def element_dict(element: Element) -> ElementEntry:
-    """Return E of the contract.
-
-    >>> from rosprivacy.analysis.model import Element
-    >>> element_dict(Element("service", "/add", leg="request"))
-    {'robot': '', 'kind': 'service', 'name': '/add', 'leg': 'request'}
-    """
-    shown: ElementEntry = {"robot": element.robot, "kind": element.kind, "name": element.name}
-    if element.leg:
-        shown["leg"] = element.leg
-    if element.pattern:
-        shown["pattern"] = True
-    return shown
 
 
 def label_key(element: Element) -> LabelKey:

@@ -8,8 +8,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import Element
-from rosprivacy.report.document.analysis import element_dict, finding_entry
+from rosprivacy.report.document.analysis import finding_entry
 from rosprivacy.report.document.decisions import decided_findings
+from rosprivacy.report.document.elements import element_dict
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.findings.beyond import Added, DenyLine, Right

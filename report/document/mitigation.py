@@ -9,7 +9,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.model import DISCLOSURE
-from rosprivacy.report.document.analysis import element_dict, label_key
+from rosprivacy.report.document.analysis import label_key
+from rosprivacy.report.document.elements import element_dict
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable

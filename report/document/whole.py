@@ -7,6 +7,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosprivacy.report.document.analysis import analysis_document
+from rosprivacy.report.document.doubts import with_sentence
 from rosprivacy.report.document.message_types import with_types
 from rosprivacy.report.document.processing import with_processing
 
@@ -30,4 +31,4 @@ def document(answer: Answer) -> AnalysisDocument:
         from rosprivacy.report.document.enforced import enforced_document  # noqa: PLC0415 - light start
 
         made["enforced"] = enforced_document(answer.enforced)
-    return made
+    return with_sentence(made)

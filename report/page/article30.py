@@ -25,6 +25,7 @@ from rosprivacy.report.page.kinds import provision
 from rosprivacy.report.page.non_ros import STORAGE, kept
 from rosprivacy.report.page.tables import OUTSIDE, can_come_from
 from rosprivacy.report.spreadsheet import as_csv
+from rosprivacy.report.verdict import verdict_sentence
 from rosprivacy.report.words.words import Words
 
 if TYPE_CHECKING:
@@ -67,7 +68,8 @@ def record(document: Mapping[str, Any], language: str) -> str:
     columns = [field.name for field in fields(Entry)]
     head = [index.words(f"r.{column}") for column in columns]
     rows = ([getattr(entry, column) for column in columns] for entry in entries(index))
-    return BOM + as_csv(head, rows, separator=SEPARATORS[language])
+    last = {"activity": index.words("r.answer"), "note": verdict_sentence(document, index.words)}
+    return BOM + as_csv(head, [*rows, [last.get(column, "") for column in columns]], separator=SEPARATORS[language])
 
 
 def entries(index: Index) -> tuple[Entry, ...]:

@@ -85,7 +85,7 @@ class Opening:
     more: str = ""
 
 
-def opening(index: Index, flows: Iterable[ToDecide], verdict: str, means: str) -> Opening:
+def opening(index: Index, flows: Iterable[ToDecide], verdict: str, means: str, doubts: tuple[str, ...] = ()) -> Opening:
     """Return what a report begins with.
 
     Parameters
@@ -94,6 +94,8 @@ def opening(index: Index, flows: Iterable[ToDecide], verdict: str, means: str) -
         All of them, see ``flows``.
     verdict, means
         Its verdict, and what that means, in words: of a report without anything to decide.
+    doubts
+        What is in doubt, in sentences.
 
     Complexity: O(flows).
     """
@@ -101,11 +103,11 @@ def opening(index: Index, flows: Iterable[ToDecide], verdict: str, means: str) -
     rows = [flow for flow in flows if flow.entries[0].state in TO_DECIDE]
     waiting = sum(row.waits for row in rows)
     if not rows:
-        return Opening(verdict, (means, *_first_to_review(index)))
+        return Opening(verdict, (means, *doubts, *_first_to_review(index)))
     headline = words.count(waiting, "b.decide") if waiting else words.count(len(rows), "b.carry")
     said = [_can(rows, index), *([words.count(len(rows) - waiting, "b.decided")] if 0 < waiting < len(rows) else [])]
     more = words("b.more", n=len(rows) - MOST) if len(rows) > MOST else ""
-    return Opening(headline, (*said, *_unreviewed(index)), tuple(rows[:MOST]), len(rows), more)
+    return Opening(headline, (*said, *_unreviewed(index), *doubts), tuple(rows[:MOST]), len(rows), more)
 
 
 def flows(index: Index, entries: Iterable[Entry]) -> list[ToDecide]:

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.model import SPECIAL
 from rosprivacy.analysis.text import fit
 from rosprivacy.report.compare.changes import ASKED, Changes, changes
-from rosprivacy.report.document.analysis import known_gap, lacking
 from rosprivacy.report.document.ledger import by_globs
 from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.finding_order import REVEALS, strength
@@ -26,6 +25,7 @@ from rosprivacy.report.page.closed import Closed, closed
 from rosprivacy.report.page.closing import Closing, closing
 from rosprivacy.report.page.criteria import Criterion, criteria
 from rosprivacy.report.page.decision_texts import Decision, orphans
+from rosprivacy.report.page.doubts import Sort, doubts, in_doubt
 from rosprivacy.report.page.finding_entries import Entry, finding_entries
 from rosprivacy.report.page.fleet_section import Fleet, fleet_told
 from rosprivacy.report.page.index import Index, state
@@ -35,8 +35,9 @@ from rosprivacy.report.page.non_ros import Outside, outside
 from rosprivacy.report.page.opening import Opening, flows, opening
 from rosprivacy.report.page.purposes import Row, processed, signed
 from rosprivacy.report.page.reliance import Hanging, hanging
-from rosprivacy.report.page.review import Group, review, unknown_ends
+from rosprivacy.report.page.review import Group, review
 from rosprivacy.report.page.typed_channels import Typed, only_by_types, typed
+from rosprivacy.report.verdict import verdict_meaning, verdict_sentence
 from rosprivacy.report.words.words import Words
 
 if TYPE_CHECKING:
@@ -46,8 +47,8 @@ if TYPE_CHECKING:
 
 DECIDE = "decide"  # its heading is what there is to decide
 SECTIONS = (
-    DECIDE, "closing", "hangs", "changes", "fleet", "findings", "beyond", "questions", "tables", "rights", "outside",
-    "sanitizers", "types", "risks", "criteria", "sign", "kinds", "assumptions", "inventory", "method",
+    DECIDE, "closing", "hangs", "changes", "fleet", "findings", "beyond", "doubts", "questions", "tables", "rights",
+    "outside", "sanitizers", "types", "risks", "criteria", "sign", "kinds", "assumptions", "inventory", "method",
 )  # fmt: skip
 NAMED = 3  # robots or policies in the title
 PARAGRAPHS = 10  # of the method note
@@ -93,7 +94,9 @@ class Outline:
     sections
         (anchor, heading), in order.
     verdict
-        Of the contract; ``nothing`` if no data was followed.
+        Of the contract; or what it lacks, as ``verdict_meaning`` says.
+    sentence
+        The verdict with its doubts, as all outputs say it.
     opening
         What it begins with: what is to be decided.
     closing
@@ -113,6 +116,7 @@ class Outline:
     sections: tuple[tuple[str, str], ...]
     code: str
     verdict: str
+    sentence: str
     opening: Opening
     closing: Closing | None
     means: tuple[str, ...]
@@ -141,7 +145,7 @@ class Outline:
     typed: tuple[Typed, ...]
     only_by_types: tuple[tuple[str, str], ...]
     questions: tuple[Group, ...]
-    ends: tuple[Group, ...]
+    doubts: tuple[Sort, ...]
     criteria: tuple[Criterion, ...]
     rights: tuple[rights.Persons, ...]
     assessment: Assessment
@@ -190,9 +194,9 @@ def outline(
     words = index.words
     differ = changes(earlier.document, document) if earlier else None
     entries = finding_entries(index, differ.marks() if differ else None)
-    verdict = _verdict(index)
+    verdict = verdict_meaning(document)
     decided = flows(index, entries)
-    begins = opening(index, decided, words(f"verdict.{verdict}"), _told_of(verdict, index))
+    begins = opening(index, decided, words(f"verdict.{verdict}"), _told_of(verdict, index), tuple(in_doubt(index)))
     links = tables.Links(entries)
     subjects, silent = tables.subjects(index, links)
     closes = closing(index, entries, proposals)
@@ -203,6 +207,7 @@ def outline(
         "fleet": bool(index.alike),
         "types": of_types,
         "beyond": "enforced" in document,
+        "doubts": bool(document.get("doubts")),
     }
     names = [name for name in SECTIONS if there.get(name, True)]
     return Outline(
@@ -215,6 +220,7 @@ def outline(
         sections=tuple((anchor, begins.headline if anchor == DECIDE else words(f"h.{anchor}")) for anchor in names),
         code=document["verdict"],
         verdict=verdict,
+        sentence=verdict_sentence(document, words),
         opening=begins,
         closing=closes,
         means=tuple(_means(index, names, sum(not entry.told for entry in entries))),
@@ -243,7 +249,7 @@ def outline(
         typed=typed(index),
         only_by_types=only_by_types(index),
         questions=review(index),
-        ends=unknown_ends(index),
+        doubts=doubts(index),
         criteria=criteria(index),
         rights=rights.rights(index),
         assessment=assessment(words, decided, answers or Answers(), signed(index)),
@@ -281,14 +287,6 @@ def _law(assumptions: Mapping[str, Any], words: Words) -> str:
     return "; ".join(said)
 
 
-def _verdict(index: Index) -> str:
-    """The verdict; ``nothing``, ``goes-nowhere`` or ``no-leak-named`` where it lacks grounds (rules S11, S12)."""
-    verdict = str(index.document["verdict"])
-    asked = verdict != "undetermined" or index.document["open"] or known_gap(index.document)
-    followed = index.document["categories"] and asked
-    return verdict if followed else lacking(index.document) or "nothing"
-
-
 def _told_of(verdict: str, index: Index) -> str:
     """What a verdict means."""
     words = index.words
@@ -306,13 +304,6 @@ def _means(index: Index, sections: list[str], left: int) -> Iterator[str]:
     accepted = sum(bool(finding.get("accepted")) for finding in index.findings)
     if accepted:
         yield words("verdict.accepted", ways=words.count(accepted, "way"), section=sections.index("findings") + 1)
-    ends = index.document["unknown_ends"]
-    if ends:
-        yield words(
-            "verdict.ends",
-            ends=words.count(count_rows(ends).elements, "element"),
-            section=sections.index("questions") + 1,
-        )
     if left:
         yield words.count(left, "f.left")
     yield words("not.legal")

@@ -82,16 +82,6 @@ def review(index: Index) -> tuple[Group, ...]:
     )
 
 
-def unknown_ends(index: Index) -> tuple[Group, ...]:
-    """Return the ends of data's path of which nothing is known, by what is not; the groups that are not empty."""
-    rows: dict[str, list[Mapping[str, Any]]] = {"q.reader": [], "q.flow": []}
-    for row in index.document["unknown_ends"]:
-        rows[f"q.{row['unknown']}"].append({**row, "distance": None})
-    return tuple(
-        Group(heading, _number(some, index), tuple(_questions(some, index))) for heading, some in rows.items() if some
-    )
-
-
 def _number(rows: Iterable[Mapping[str, Any]], index: Index) -> str:
     count = count_rows(rows)
     number = index.words.number(count.elements)

@@ -13,17 +13,18 @@ from itertools import chain, islice
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.legal import strongest_first
-from rosprivacy.analysis.model import NO_LEAK_NAMED, Place, Severity
+from rosprivacy.analysis.model import NO_LEAK_NAMED, Place, Rank, Severity
+from rosprivacy.analysis.policy_lines import in_a_file
 from rosprivacy.analysis.text import counted, utf8
+from rosprivacy.report.document.doubts import verdict_facts
 from rosprivacy.report.element_counts import ElementCount, count_elements
-from rosprivacy.report.places import Places, in_a_file, to_review
+from rosprivacy.report.places import Places, to_review
 from rosprivacy.report.sarif.beyond_profile import added_results
 from rosprivacy.report.sarif.flows import flows_between, further_paths, prose, text
 from rosprivacy.report.sarif.results import LAW, ROOT, Files, Results
 from rosprivacy.report.sarif.robots import with_robots
 from rosprivacy.report.sarif.rules import (
     BEYOND_PROFILE,
-    GAP_RULES,
     NO_LEAK,
     NO_VERDICT,
     NOTHING_FOLLOWED,
@@ -31,7 +32,10 @@ from rosprivacy.report.sarif.rules import (
     UNREVIEWED,
     descriptors,
     rule_of,
+    rule_of_doubt,
 )
+from rosprivacy.report.verdict import phrase, verdict_sentence
+from rosprivacy.report.words.words import IN_ENGLISH
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -70,11 +74,13 @@ def _log(answer: Answer, root: Path) -> dict[str, Any]:
         said += (*contexts.revealed(finding), *pointed.of_finding(finding.kind))
     taxa = sorted({legal.iri: legal for legal in said}.values(), key=lambda legal: legal.name)
     found = (rule_of(finding.kind) for finding in analysis.findings)
-    codes = {said.code for said in diagnostics}
-    not_read = [rule for code, rule in GAP_RULES.items() if code in codes][:1]
+    facts = verdict_facts(answer)
+    rows = zip(answer.doubts, facts["doubts"], strict=True)
+    in_doubt = tuple((doubt, doubt.message or phrase([row], IN_ENGLISH)) for doubt, row in rows)
+    of_doubts = [rule_of_doubt(doubt.name, breaks=doubt.rank is Rank.BREAKS) for doubt in answer.doubts]
     not_named = [NO_LEAK] if analysis.lacking == NO_LEAK_NAMED else []
     beyond = [BEYOND_PROFILE] if answer.enforced else []
-    told = (*RULES, *found, UNREVIEWED, NOTHING_FOLLOWED, *not_named, *not_read, *beyond)
+    told = (*RULES, *found, UNREVIEWED, NOTHING_FOLLOWED, *not_named, *of_doubts, *beyond)
     rules = {rule.id: rule for rule in told}
     made = Results(
         analysis,
@@ -88,12 +94,13 @@ def _log(answer: Answer, root: Path) -> dict[str, Any]:
         accepted=answer.accepted,
         contexts=contexts,
         pointed=pointed,
+        doubts=in_doubt,
     )
     all_results = made.all()
     if answer.enforced:
         all_results = chain(all_results, added_results(answer.enforced, made.rules[BEYOND_PROFILE.id], files))
     results = list(_within(islice(all_results, MAX_RESULTS)))
-    notices = [*_about(answer, results), *_said((*diagnostics, *analysis.diagnostics), files)]
+    notices = [*_about(answer, results, verdict_sentence(facts)), *_said((*diagnostics, *analysis.diagnostics), files)]
     driver = {
         "name": "rosprivacy",
         "version": str(assumptions.get("rosprivacy", "")),
@@ -112,6 +119,7 @@ def _log(answer: Answer, root: Path) -> dict[str, Any]:
         "results": results,
         "properties": {
             "verdict": str(analysis.verdict),
+            "sentence": verdict_sentence(facts),
             "view": analysis.graph.view,
             "unreviewedElements": _unreviewed(analysis).elements,
             "standardChannels": analysis.standard_channels,
@@ -175,17 +183,15 @@ def _unreviewed(analysis: Analysis) -> ElementCount:
     return count_elements(question.element for question in analysis.open)
 
 
-def _about(answer: Answer, results: Sequence[Mapping[str, Any]]) -> Iterator[dict[str, Any]]:
+def _about(answer: Answer, results: Sequence[Mapping[str, Any]], sentence: str) -> Iterator[dict[str, Any]]:
     """The verdict with what is open, and what was left out of the file."""
     analysis, added = answer.shown, answer.enforced.added if answer.enforced else ()
     count = _unreviewed(analysis)
     are = "is" if count.elements == 1 else "are"
     unreviewed = f"{counted(count.elements, 'element')} that data reaches {are} not reviewed{count.more}"
-    yield _notice(
-        "note" if not analysis.open else "warning", "verdict", f"{analysis.verdict}; {unreviewed}. {NO_VERDICT}"
-    )
+    yield _notice("note" if not analysis.open else "warning", "verdict", f"{sentence}; {unreviewed}. {NO_VERDICT}")
     findings = [*analysis.findings, *(one.finding for one in added)]
-    left_out = len(findings) + len(to_review(analysis)) - len(results)
+    left_out = len(findings) + len(to_review(analysis)) + len(answer.doubts) - len(results)
     if left_out > 0:
         yield _notice("warning", "bound", f"{left_out} results are left out: a viewer takes {MAX_RESULTS} at most.")
     left = sum(1 + further_paths(finding) for finding in findings)

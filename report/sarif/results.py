@@ -12,18 +12,19 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.answer import Verdict
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.legal import turned_special
-from rosprivacy.analysis.model import MAY_REVEAL, NO_LEAK_NAMED, Place
+from rosprivacy.analysis.model import MAY_REVEAL, NO_LEAK_NAMED, Place, Rank
+from rosprivacy.analysis.policy_lines import in_a_file
 from rosprivacy.report.made_of import making
 from rosprivacy.report.places import NOWHERE, of_step, to_review
 from rosprivacy.report.sarif.artifacts import uri_of
 from rosprivacy.report.sarif.flows import flows_of, logical, named, prose, text
 from rosprivacy.report.sarif.rules import (
-    GAP_RULES,
     NO_LEAK,
     NOTHING_FOLLOWED,
     UNREVIEWED,
     Rule,
     rule_of,
+    rule_of_doubt,
 )
 
 if TYPE_CHECKING:
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import Analysis, Finding, OpenQuestion
     from rosprivacy.analysis.contexts import Contexts
-    from rosprivacy.analysis.model import Category, Element, Flow, Legal, Pointer
+    from rosprivacy.analysis.model import Category, Doubt, Element, Flow, Legal, Pointer
     from rosprivacy.ontology.pointed import Pointed
     from rosprivacy.report.places import Places
 
@@ -89,6 +90,8 @@ class Results:
         Of the sources.
     pointed
         The provisions that a kind of finding is about.
+    doubts
+        Of the answer, with what is said of each.
     """
 
     analysis: Analysis
@@ -102,21 +105,24 @@ class Results:
     accepted: Mapping[str, str]
     contexts: Contexts
     pointed: Pointed
+    doubts: tuple[tuple[Doubt, str], ...] = ()
 
     def all(self) -> Iterator[dict[str, Any]]:
         """One result per finding, the dismissed ones last, then one per node to review next (rules S10, S11).
 
-        What is undetermined has a result, so that an empty list never stands for it (S12).
+        What is undetermined has a result, so that an empty list never stands for it (S12), and so has each doubt.
         """
         for finding in sorted(self.analysis.findings, key=lambda f: f.dismissed):
             yield self._finding(finding)
         for question in to_review(self.analysis):
             yield self._question(question)
         if self.analysis.verdict is Verdict.UNDETERMINED and not self.analysis.open:
-            not_seen = [rule for rule in GAP_RULES.values() if rule.id in self.rules]
-            lacks_leak = self.analysis.lacking == NO_LEAK_NAMED
-            known = not_seen if self.analysis.carried else []
-            yield self._rule_alone(known[0] if known else NO_LEAK if lacks_leak else NOTHING_FOLLOWED)
+            if self.analysis.lacking == NO_LEAK_NAMED:
+                yield self._rule_alone(NO_LEAK)
+            elif self.analysis.lacking or not self.doubts:
+                yield self._rule_alone(NOTHING_FOLLOWED)
+        for doubt, message in self.doubts:
+            yield self._doubt(doubt, message)
 
     def _finding(self, finding: Finding) -> dict[str, Any]:
         rule = rule_of(finding.kind)
@@ -169,6 +175,24 @@ class Results:
             "partialFingerprints": _fingerprints(digest),
             "properties": {"categories": [shown(name) for name in question.categories], "distance": question.distance},
         }
+
+    def _doubt(self, doubt: Doubt, message: str) -> dict[str, Any]:
+        rule = rule_of_doubt(doubt.name, breaks=doubt.rank is Rank.BREAKS)
+        place = doubt.place if in_a_file(doubt.place) else self.places.last_resort()
+        where = {"physicalLocation": self.files.physical(place)}
+        result = {
+            "ruleId": rule.id,
+            "ruleIndex": self.rules[rule.id],
+            "level": rule.level,
+            "message": {"text": prose(f"{message[:1].upper()}{message[1:]}.")},
+            "locations": [self._location(doubt.element, place) if doubt.element else where],
+            "partialFingerprints": _fingerprints(doubt.id),
+            "properties": {"rank": str(doubt.rank), "categories": [shown(name) for name in doubt.categories]},
+        }
+        if doubt.accepted:
+            why = prose(doubt.accepted.reason)
+            result["suppressions"] = [{"kind": "external", "status": "accepted", "justification": why}]
+        return result
 
     def _rule_alone(self, rule: Rule) -> dict[str, Any]:
         """A result about the whole system."""

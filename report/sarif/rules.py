@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.model import ACCESS_GAP, BAG_GAP, OBSERVATION_GAP, UNREAD_FILE
+from rosprivacy.report.words.words import IN_ENGLISH
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -123,39 +123,6 @@ BEYOND_PROFILE = Rule(
     ),
     "note",
 )
-OBSERVATION_GAPS = Rule(
-    "observation-gaps",
-    "ObservationHasGaps",
-    "An observation is known to miss something: that nothing is found does not say that there is nothing.",
-    "A policy was made of what was seen running, and says itself what was not seen. What that does is not known.",
-    ("Observe again until no gap is left, or name a policy.",),
-)
-BAG_GAPS = Rule(
-    "bag-gaps",
-    "BagIsNotAllKnown",
-    "Of a bag that is a storage not all is known: that nothing is found does not say that there is nothing.",
-    "It is not complete, holds more than messages, or has topics that no policy names. What is in these is not known.",
-    ("Name the policies of the system that was recorded, or repair or replace the bag.",),
-)
-ACCESS_GAPS = Rule(
-    "access-gaps",
-    "WhatIsAllowedIsNotKnown",
-    "Not all is known of what is allowed: that nothing is found does not say that there is nothing.",
-    "The governance asks no permissions for some topics or was not read, permissions lie in a folder of policies, or "
-    "an access list of Zenoh does not tell who is at the other end of a link: what a program does there is not known.",
-    (
-        "Name the governance of each domain, and let it ask permissions.",
-        "Name certificates in access lists.",
-        "Analyse the enforced view.",
-    ),
-)
-FILES_NOT_READ = Rule(
-    "files-not-read",
-    "PoliciesNotRead",
-    "Policy files with grants were not read: that nothing is found does not say that there is nothing.",
-    "A folder that was named holds a part of a policy that no policy includes. What it allows is not known.",
-    ("Name the policy that includes the file, or remove the file.",),
-)
 NOTHING_FOLLOWED = Rule(
     "no-data-followed",
     "PersonalDataNotFollowed",
@@ -172,12 +139,18 @@ NO_LEAK = Rule(
     ("Name what lets data out (leak: [Video]) in a label file; if nothing does, say so at a node that might (none).",),
 )
 
-GAP_RULES = {  # what is known to be missing, by the code of the notice, in the order in which it counts
-    UNREAD_FILE: FILES_NOT_READ,
-    OBSERVATION_GAP: OBSERVATION_GAPS,
-    BAG_GAP: BAG_GAPS,
-    ACCESS_GAP: ACCESS_GAPS,
-}
+
+def rule_of_doubt(name: str, *, breaks: bool) -> Rule:
+    """Return the rule of a sort of doubts: a warning where it breaks the verdict, a note where it rides on it.
+
+    >>> rule_of_doubt("no-reader", breaks=False).name
+    'DoubtNoReader'
+    """
+    short, remedy = (IN_ENGLISH(f"doubt.{name}.{part}") for part in ("title", "do"))
+    camel = "Doubt" + "".join(part.capitalize() for part in name.split("-"))
+    full = f"{short}: that nothing is found does not say that there is nothing."
+    steps = (f"{remedy[:1].upper()}{remedy[1:]}.",)
+    return Rule(f"doubt-{name}", camel, f"{short}.", full, steps, WARNING if breaks else "note")
 
 
 def rule_of(kind: str) -> Rule:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
+from rosprivacy.report.called_alike import named
 from rosprivacy.report.naming import shown_name
-from rosprivacy.report.terminal.called_alike import named
 from rosprivacy.report.terminal.finding_lines import details
 
 if TYPE_CHECKING:

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import ASSUMED, MERGED
-from rosprivacy.report.document.analysis import known_gap, lacking
+from rosprivacy.report.called_alike import legs
 from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import shown_name
 from rosprivacy.report.observed_lines import observed_lines
 from rosprivacy.report.review_groups import SHOWN
 from rosprivacy.report.terminal.added_lines import enforced_lines
-from rosprivacy.report.terminal.called_alike import legs
 from rosprivacy.report.terminal.denied import denied_lines
+from rosprivacy.report.terminal.doubt_lines import doubt_lines
 from rosprivacy.report.terminal.finding_lines import MANY, details, law_lines, overview
 from rosprivacy.report.terminal.fleet import fleet_lines
 from rosprivacy.report.terminal.globs import glob_lines, glob_warnings
@@ -25,11 +25,11 @@ from rosprivacy.report.terminal.labels import absent_lines, overruled_lines, sta
 from rosprivacy.report.terminal.ledger import hanging_lines, ledger_lines, taken_away_lines
 from rosprivacy.report.terminal.next_step import next_lines
 from rosprivacy.report.terminal.reliance import reliance_lines
-from rosprivacy.report.terminal.restriction import asked_at_verdict, asked_lines
+from rosprivacy.report.terminal.restriction import asked_lines
 from rosprivacy.report.terminal.review import review_lines
 from rosprivacy.report.terminal.types_told import type_lines
-from rosprivacy.report.terminal.unknown_ends import end_lines, ends_at_verdict
 from rosprivacy.report.terminal.wrapped import wrapped
+from rosprivacy.report.verdict import verdict_sentence
 from rosprivacy.report.words.words import IN_ENGLISH, Words
 
 if TYPE_CHECKING:
@@ -78,17 +78,8 @@ def report_text(
 
 def verdict_line(report: Mapping[str, Any], words: Words = IN_ENGLISH) -> Line:
     """Return the line that says the verdict, what it leaves open, and what was not asked for (rules S11, S12)."""
-    verdict = report["verdict"]
-    style, meaning = STYLES[verdict], words(f"tty.verdict.{verdict}")
-    if not any(report["categories"]) or (verdict == "undetermined" and not report["open"]):
-        gap = known_gap(report) if any(report["categories"]) else ""
-        meaning = words(f"tty.gap.{gap}" if gap else f"tty.lacking.{lacking(report) or 'nothing'}")
-    accepted = sum(finding["accepted"] for finding in report["findings"])
-    if accepted and verdict != "leak":
-        style, meaning = "bold yellow", words(f"tty.accepted.{verdict}")
-    meaning += f"; {words('tty.n.accepted', findings=words.count(accepted, 'tty.finding'))}" if accepted else ""
-    meaning += "".join(f"; {end}" for end in ends_at_verdict(report, words)) + asked_at_verdict(report, words)
-    return words.pair(verdict, meaning), style
+    accepted = any(finding["accepted"] for finding in report["findings"]) and report["verdict"] != "leak"
+    return verdict_sentence(report, words), STYLES["undetermined" if accepted else report["verdict"]]
 
 
 def _lines(report: Mapping[str, Any], words: Words, *, verbose: bool, quiet: bool) -> Iterator[Line]:
@@ -101,7 +92,7 @@ def _lines(report: Mapping[str, Any], words: Words, *, verbose: bool, quiet: boo
     yield from _findings(report, words, verbose=verbose)
     yield from enforced_lines(report, words)
     yield from review_lines(report, words, verbose=verbose)
-    yield from end_lines(report, most, words)
+    yield from doubt_lines(report, most, words)
     yield from denied_lines(report, words, most=most)
     yield from reliance_lines(report, words, verbose=verbose)
     if verbose:
@@ -191,8 +182,6 @@ def _assumed_outside(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
     assumptions = report["assumptions"]
     for kind, role in assumptions["taken_by_kind"].items():
         yield f"   {words(f'tty.taken.{role}', kind=words.known(f'tty.kind.of.{kind}', kind))}", ""
-    if taken := assumptions["backups_taken_as_none"]:
-        yield f"   {words('tty.backups', names=', '.join(map(shown_name, taken)))}", "yellow"
     if "countries_as_of" in assumptions:
         yield f"   {words('tty.countries', date=words.date(assumptions['countries_as_of']))}", ""
     for row in report["outside"]:
@@ -203,7 +192,8 @@ def _assumed_outside(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
 
 def _diagnostics(report: Mapping[str, Any], words: Words, *, verbose: bool) -> Iterator[Line]:
     """Messages about files: they are in English, as other tools read them."""
-    told = [d for d in report["diagnostics"] if d.get("code") not in ASSUMED]
+    listed = {doubt["doubt"] for doubt in report["doubts"]}
+    told = [d for d in report["diagnostics"] if d.get("code") not in (*ASSUMED, *listed)]
     notices = [d for d in told if d["severity"] == "notice" and d.get("code") != MERGED]
     for diagnostic in told:
         if verbose or diagnostic not in notices:

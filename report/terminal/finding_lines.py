@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import CHANNELS
 from rosprivacy.analysis.text import blanked
+from rosprivacy.report.called_alike import kind_in
 from rosprivacy.report.finding_order import in_order
 from rosprivacy.report.made_of import data_made
 from rosprivacy.report.naming import key, shown_name
-from rosprivacy.report.terminal.called_alike import kind_in
 from rosprivacy.report.terminal.context_lines import context_lines, further_lines, pointer_lines
 from rosprivacy.report.terminal.decision_lines import decision_lines
 from rosprivacy.report.terminal.fleet import on_robots, robots_of

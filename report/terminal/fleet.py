@@ -8,8 +8,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
+from rosprivacy.report.called_alike import both, named
 from rosprivacy.report.robots import forms_in_words
-from rosprivacy.report.terminal.called_alike import both, named
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence

@@ -8,14 +8,12 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import GOES_NOWHERE, NO_LEAK_NAMED
-from rosprivacy.report.document.analysis import known_gap, lacking
+from rosprivacy.report.called_alike import named
 from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import shown_name
 from rosprivacy.report.review_groups import next_round
-from rosprivacy.report.terminal.called_alike import named
-from rosprivacy.report.terminal.restriction import asked_at_verdict
+from rosprivacy.report.verdict import doubts_of, lacking, restriction, subject
 from rosprivacy.report.words.words import IN_ENGLISH, Words
 
 if TYPE_CHECKING:
@@ -57,8 +55,8 @@ def _step(report: Mapping[str, Any], words: Words) -> str:
     if report["verdict"] != "undetermined":
         return ""
     source = words("tty.next.source", example=EXAMPLE)
-    if not followed(report) and (restriction := asked_at_verdict(report, words)):
-        return words("tty.next.all", source=source, restriction=restriction)
+    if not followed(report) and (asked := restriction(report, words)):
+        return words("tty.next.all", source=source, restriction=asked)
     if not followed(report):
         likely = candidates(report)
         names = words("tty.next.candidates", names=named(likely, words)) if likely else ""
@@ -68,14 +66,13 @@ def _step(report: Mapping[str, Any], words: Words) -> str:
         others = count_rows(report["open"]).elements - 1
         more = words("tty.more", n=others) if others else ""
         return words("tty.next.review", element=shown_name(first), more=more)
-    return _gap_step(report, words) or lacking_step(lacking(report), words)
+    return lacking_step(lacking(report), words) or _doubt_step(report, words)
 
 
-def _gap_step(report: Mapping[str, Any], words: Words) -> str:
-    """What to do about something that is known to be missing; empty if nothing is."""
-    gap = known_gap(report)
-    files = sorted({shown(said["file"]) for said in report["diagnostics"] if said.get("code") == gap})
-    return words(f"tty.next.{gap}", file=files[0]) if gap else ""
+def _doubt_step(report: Mapping[str, Any], words: Words) -> str:
+    """What to do about the first doubt; those that break the verdict stand first."""
+    first = next(iter(doubts_of(report)), None)
+    return words.pair(subject(first), words(f"doubt.{first['doubt']}.do")) if first else ""
 
 
 def candidates(report: Mapping[str, Any]) -> list[str]:

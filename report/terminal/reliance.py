@@ -8,8 +8,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
+from rosprivacy.report.called_alike import both
 from rosprivacy.report.naming import shown_name
-from rosprivacy.report.terminal.called_alike import both
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping

@@ -28,6 +28,7 @@ PARTS = (
     "review_",
     "trials_",
     "cypher_",
+    "doubts_",
 )  # a module each
 
 
@@ -104,14 +105,14 @@ class Words:
         places = {name: part for name, part in cited.groupdict().items() if part}
         return self(f"cite.{list(places)[-1]}", **places)
 
-    def count(self, number: int, thing: str) -> str:
+    def count(self, number: int, thing: str, **values: Any) -> str:
         """Return how many of a thing there are; its key ends in ``.one`` or ``.many``. In French, none is as one.
 
         >>> Words("en").count(1, "robot"), Words("de").count(2, "robot"), Words("fr").count(0, "robot")
         ('1 robot', '2 Roboter', '0 robot')
         """
         one = number == 1 or (number == 0 and self.language == "fr")
-        return self(f"{thing}.{'one' if one else 'many'}", n=number)
+        return self(f"{thing}.{'one' if one else 'many'}", n=number, **values)
 
     def pair(self, what: str, said: str) -> str:
         """Return what something is, after its name.

@@ -140,7 +140,6 @@ WORDS = {
         "No path to a recipient was found, but data can get to {open} that no label speaks of. Until these are reviewed, "
         "nothing can be concluded: one of them may let data out."
     ),
-    "verdict.ends": "Unknown ends ({ends}): it is not known who reads or what flows in; see section {section}.",
     "verdict.no-leak-found.means": (
         "Under the labels given, no path leads from a source to a recipient, and everything on the way was reviewed. "
         "This holds only as far as the labels and policies are true. It says nothing about what lies outside them."
@@ -749,8 +748,6 @@ WORDS = {
         "to take as free of personal data"
     ),
     "q.brings": "is a source itself ({data}); does it pass on what comes in?",
-    "q.reader": "Channels with data that nobody known reads: a reader may stand in a policy that was not given",
-    "q.flow": "Elements outside ROS that no flow reaches: what flows into them may have been forgotten",
     "c.data": "Kinds of data",
     "c.distance": "From a source",
     "c.through": "Comes through",

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.answer import ClosedByTypes
 from rosprivacy.analysis.contexts import Contexts
+from rosprivacy.analysis.findings.doubts import doubts, judged
 from rosprivacy.analysis.findings.findings import Options, analyse
 from rosprivacy.analysis.findings.processed import lacks, processed
 from rosprivacy.analysis.fleet.likeness import pattern_id
-from rosprivacy.analysis.model import unread
 from rosprivacy.analysis.modes import Paths, View
 from rosprivacy.assumptions import assumptions_of
-from rosprivacy.decided import accepts, joined_to, law_of
+from rosprivacy.decided import accepts, doubts_decided, joined_to, law_of
 from rosprivacy.ingest.labels.shipped import infrastructure_of
 from rosprivacy.question import in_contexts
 from rosprivacy.result import Result
@@ -61,7 +61,6 @@ def answer(system: System, question: Question, *, count_paths: bool = True, befo
         accepts=accepts(question.decisions, system.likeness),
         choose=groups,
         today=question.today,
-        unread=unread(system.diagnostics),
         bounds=question.settings.bounds,
     )
     limits = question.type_limits() if question.type_limits and system.bound.types else None
@@ -88,7 +87,7 @@ def _beside(system: System, options: Options, analysis: Analysis) -> Analysis:
     hierarchy = system.vocabulary.hierarchy
     without = analyse(system.graph, system.bound, hierarchy, options._replace(choose=closed, paths=Paths.witness))
     gone = closed.of(without.findings) if closed else _gone(system, analysis, without)
-    return held_by_types(analysis, without, gone, all_read=not options.unread)
+    return held_by_types(analysis, without, gone)
 
 
 def _gone(system: System, under: Analysis, without: Analysis) -> tuple[Finding, ...]:
@@ -140,18 +139,22 @@ def concluded(
     at_sources = Contexts.of(system.graph, system.bound, system.vocabulary.categories, together=system.is_fleet)
     law = law_of(system.vocabulary, analysis.emitted, at_sources.everywhere)
     analysis = replace(analysis, diagnostics=(*analysis.diagnostics, *lacks(rows, law)))
+    listed = doubts(analysis, system.diagnostics, system.likeness.weight, restricted=question.asked is not None)
+    listed, remarks = doubts_decided(question.decisions, listed, everything=question.asked is None)
+    analysis = judged(analysis, listed)
     joined = joined_to(question.decisions, analysis, law, question.asked, system.likeness, view)
     return Result(
         analysis,
         system.bound,
         system.vocabulary,
-        system.diagnostics + (joined.diagnostics if joined else ()),
+        (*system.diagnostics, *(joined.diagnostics if joined else ()), *remarks),
         assumptions_of(system.rests_on, analysis, question, typed=bool(system.bound.types)),
         joined,
         view,
         counts,
         infrastructure_of((question.element for question in analysis.open), system.vocabulary),
         accepts=options.accepts,
+        doubts=listed,
         policies=system.policies,
         labels=system.labels,
         types=system.types,

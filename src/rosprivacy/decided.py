@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.analysis.fleet.patterns import FleetView
     from rosprivacy.analysis.legal_bases import Verdicts
+    from rosprivacy.analysis.model import Diagnostic, Doubt
     from rosprivacy.analysis.remembered import About
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.settings import Settings
@@ -75,6 +76,15 @@ def joined_to(
 
     now = about_today(analysis, view)
     return decided(decisions, analysis.findings, law, everything=asked is None, case_of=case_of, now=now)
+
+
+def doubts_decided(
+    decisions: Decisions | None, doubts: tuple[Doubt, ...], *, everything: bool
+) -> tuple[tuple[Doubt, ...], tuple[Diagnostic, ...]]:
+    """Return doubts with what people accepted of them, and what is to be said of such decisions (rule S11)."""
+    if decisions is None or not decisions.doubts:
+        return doubts, ()
+    return decisions.on_doubts(doubts, everything=everything)
 
 
 def about_today(analysis: Analysis, view: FleetView | None) -> dict[str, About]:

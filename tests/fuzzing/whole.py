@@ -28,7 +28,7 @@ REFUSED = 2
 
 def report_whole(result: Result, *, twice: bool) -> None:
     """Write a result in every format."""
-    assert exit_code(result, FailOn.undetermined) in ANSWERS
+    assert exit_code(result, (FailOn.undetermined,)) in ANSWERS
     for name in FORMATS:
         text = result.to(name)
         assert text, f"nothing in {name}"

@@ -109,7 +109,7 @@ class Planted:
             result = answer(system, QUESTION)
         except InputErrors:
             return Tried(BAD_INPUT)
-        return Tried(exit_code(result, FailOn.undetermined), system, result)
+        return Tried(exit_code(result, (FailOn.undetermined,)), system, result)
 
     def steps(self, random: Random, singles: int, pairs: int) -> Iterator[tuple[Line, ...]]:
         """Yield no step, single ones and pairs of them: all, or as many as are given, drawn at random.

@@ -123,12 +123,14 @@ def analyze(
         int, typer.Option(min=1, metavar="N", help="Bound on the listed ways of a finding.", rich_help_panel=ASKED)
     ] = 100,
     fail_on: Annotated[
-        FailOn,
+        list[FailOn] | None,
         typer.Option(
-            help="Exit with 1 on a finding that is not accepted, and with 4 if undetermined. leak: not with 4, unless "
-            "no data was followed; undecided: with 1 only where nobody has decided; never: with 0."
+            show_default="undetermined",
+            help="Exit with 1 on a finding that is not accepted, and with 4 if undetermined. doubt: with 4 on a doubt "
+            "that is not accepted, too; leak: not with 4, unless no data was followed; undecided: with 1 only where "
+            "nobody has decided; never: with 0. May be repeated: the strictest counts.",
         ),
-    ] = FailOn.undetermined,
+    ] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print the verdict only.")] = False,
     verbose: Annotated[bool, typer.Option("--verbose", "-v", help="Print every open element and notice.")] = False,
 ) -> None:
@@ -136,6 +138,9 @@ def analyze(
     from rosprivacy.formats import Style, in_pieces
 
     inputs = inputs.viewed(view)
+    fails = tuple(fail_on or (FailOn.undetermined,))
+    if FailOn.never in fails and len(set(fails)) > 1:
+        raise typer.BadParameter("--fail-on never stands alone")
     settings = replace(
         inputs.settings,
         article9=article9,
@@ -158,7 +163,7 @@ def analyze(
         said = "--view both writes text, json and sarif, and takes neither --per-policy nor --engine spark"
         raise typer.BadParameter(said)
     if per_policy:
-        raise typer.Exit(_each_alone(inputs, settings, format, style, output, fail_on))
+        raise typer.Exit(_each_alone(inputs, settings, format, style, output, fails))
     if results and output:
         from rosprivacy.report.atomic import check_outputs
 
@@ -171,7 +176,7 @@ def analyze(
         result = inputs.result(settings, both=view is ViewOrBoth.both)
     graphs = {save_graph: _saved_graph(result)} if save_graph else {}
     emit(in_pieces(result, format.value, style), output, graphs)
-    raise typer.Exit(exit_code(result, fail_on))
+    raise typer.Exit(exit_code(result, fails))
 
 
 def _check(inputs: Inputs, engine: Engine, *, save_graph: bool, per_policy: bool, of_spark: bool) -> None:
@@ -200,7 +205,7 @@ def _saved_graph(result: Result) -> str:
 
 
 def _each_alone(
-    inputs: Inputs, settings: Settings, form: Format, style: Style, output: Path | None, fail_on: FailOn
+    inputs: Inputs, settings: Settings, form: Format, style: Style, output: Path | None, fail_on: tuple[FailOn, ...]
 ) -> int:
     from rosprivacy.cli import per_policy
     from rosprivacy.reading.robot_system import answer_each

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 PATTERN = "A pattern of findings"  # a panel of help
+DOUBT = "A doubt"
 SHORTEST = 4  # digits of an id, where the report says which are meant
 
 
@@ -96,20 +97,41 @@ def decide(
             rich_help_panel=PATTERN,
         ),
     ] = None,
+    doubt: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="Accept a sort of doubts, such as no-reader; needs --expires.",
+            show_default=False,
+            rich_help_panel=DOUBT,
+        ),
+    ] = None,
+    element: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="Of an element: name or glob.", show_default=False, rich_help_panel=DOUBT),
+    ] = None,
+    file: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="Of a file: name or glob.", show_default=False, rich_help_panel=DOUBT),
+    ] = None,
     ontology: Ontologies = None,
 ) -> None:
-    """Decide about findings, or about a pattern of them, in a file that analyze and mitigate take into account."""
+    """Decide about findings, a pattern of them, or doubts, in a file that analyze and mitigate take into account."""
     from rosprivacy.clock import today
-    from rosprivacy.ingest.decisions.decision_writer import text_in, with_decision
+    from rosprivacy.ingest.decisions.decision_writer import DOUBTS, FINDINGS, text_in, with_decision
     from rosprivacy.ontology.vocabulary import load
     from rosprivacy.report.editing import editing
 
     names = {"category": category, "source": source, "leak": leak, "robot": robot, "from_robot": from_robot}
     pattern = {key: value for key, value in names.items() if value}
+    in_doubt = {key: value for key, value in {"doubt": doubt, "element": element, "file": file}.items() if value}
+    if in_doubt:
+        pattern = _doubt_pattern(choice, in_doubt, pattern)
     _check_target(ids, pattern)
     _check_expiry(expires)
     findings = _findings(report) if report else None
-    targets = _targets(ids, findings, str(report)) if ids else [pattern]
+    doubts = _doubts(report) if report else {}
+    targets = _targets(ids, None if findings is None else findings | doubts, str(report)) if ids else [pattern]
     entry = {
         "decision": choice.value,
         "reason": reason,
@@ -127,17 +149,28 @@ def decide(
         text = text_in(decisions)
         for target in targets:
             whole = {**target, **said, **_made_about(findings, target)}
-            text = with_decision(str(decisions), text, whole, _remark(findings, target), vocabulary)
+            section = DOUBTS if in_doubt or target.get("id") in doubts else FINDINGS
+            remark = _remark(findings, target) or _doubt_remark(doubts.get(target.get("id", "")))
+            text = with_decision(str(decisions), text, whole, remark, vocabulary, section)
         if ids and not report:
             print("the ids were not checked; --report FILE checks them against an analysis", file=sys.stderr)
         emit(answer, None, {decisions: text or ""}, edited=decisions)  # the one file that is read and written
+
+
+def _doubt_pattern(choice: Decide, in_doubt: Mapping[str, str], pattern: Mapping[str, str]) -> dict[str, str]:
+    """What an acceptance by the name of a doubt is about."""
+    if "doubt" not in in_doubt:
+        raise typer.BadParameter("--element and --file go with --doubt")
+    if choice is not Decide.accept or pattern.keys() - {"robot"}:
+        raise typer.BadParameter("--doubt is for accept, with --element, --file and --robot")
+    return {**in_doubt, **pattern}
 
 
 def _check_target(ids: list[str] | None, pattern: Mapping[str, str]) -> None:
     if ids and pattern:
         raise typer.BadParameter("name findings by their ids, or a pattern of them, not both")
     if not ids and not pattern:
-        raise typer.BadParameter("name a finding's id, or a pattern: --category, --source, --leak")
+        raise typer.BadParameter("name an id, or a pattern: --category, --source, --leak, --doubt")
 
 
 def _check_expiry(expires: str | None) -> None:
@@ -174,6 +207,20 @@ def _findings(report: Path) -> dict[str, dict[str, Any]]:
     return {p["id"]: findings[p["finding"]] | _all_of(p, robots) for p in document["fleet"]["patterns"]}
 
 
+def _doubts(report: Path) -> dict[str, dict[str, Any]]:
+    """The doubts of a JSON report by id."""
+    from rosprivacy.report.compare.earlier import read_earlier
+
+    return {doubt["id"]: doubt for doubt in read_earlier(str(report)).document.get("doubts", ())}
+
+
+def _doubt_remark(doubt: Mapping[str, Any] | None) -> str:
+    """What a person reads beside the id of a doubt."""
+    if doubt is None:
+        return ""
+    return f"{doubt['doubt']}: {doubt['element']['name'] if doubt['element'] else doubt['file']}"
+
+
 def _all_of(pattern: dict[str, Any], robots: list[str]) -> dict[str, Any]:
     """What holds for all findings of a pattern; what goes from one robot to another is about all of the fleet."""
     pseudonymised = pattern["pseudonymised"] == pattern["findings"]
@@ -196,11 +243,11 @@ def _chosen(findings: dict[str, dict[str, Any]], written: str, report: str) -> d
     """The finding that is meant by an id or its beginning."""
     fitting = [one for one in findings if one.startswith(written)] if len(written) >= SHORTEST else []
     if len(fitting) != 1:
-        which = f"begins {len(fitting)} ids" if fitting else "is no finding"
+        which = f"begins {len(fitting)} ids" if fitting else "is no finding and no doubt"
         hint = f"copy one: {', '.join(list(findings)[:5])}" if findings else "the report has no finding"
         raise InputErrors([DecisionError(report, 0, f"{shown(written)!r} {which} of the report", hint)])
     (one,) = fitting
-    return {"id": one, **({"pseudonymised": True} if findings[one].get("pseudonymised") else {})}
+    return {"id": one, **({"pseudonymised": True} if findings[one].get("pseudonymised") is True else {})}
 
 
 def _remark(findings: dict[str, dict[str, Any]] | None, target: dict[str, Any]) -> str:

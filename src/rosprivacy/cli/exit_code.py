@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.model import NOTHING_FOLLOWED
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     from rosprivacy.result import Result
 
 CODES = {
@@ -20,7 +22,8 @@ CODES = {
     "and `annotations --check` a difference",
     2: "bad input or usage",
     3: "a server (database, middleware, Spark) cannot be reached",
-    4: "`analyze` and `bag`: undetermined; `--fail-on leak` makes it 0, but never where no data was followed; "
+    4: "`analyze` and `bag`: undetermined; `--fail-on leak` makes it 0, but never where no data was followed; with "
+    "`--fail-on doubt` also a doubt that nobody has accepted; "
     "`check`: nothing differs, but not all is known; `observe`: nothing was seen; `diff --as usage`: the observation "
     "has gaps",
     70: "an error of the program itself: no answer; the message says which file to send",
@@ -35,6 +38,7 @@ class FailOn(StrEnum):
     undetermined = "undetermined"
     leak = "leak"
     undecided = "undecided"
+    doubt = "doubt"
     never = "never"
 
 
@@ -45,19 +49,29 @@ GONE = {  # words of earlier versions -> what to write; no alias, since what end
 }
 
 
-def exit_code(result: Result, fail_on: FailOn) -> int:
-    """Return 1 for a finding that counts, 4 for an answer that is undetermined, else 0.
+def exit_code(result: Result, fail_on: Collection[FailOn]) -> int:
+    """Return 1 for a finding that counts, 4 for an answer that is undetermined or in doubt, else 0.
 
+    Parameters
+    ----------
+    fail_on
+        What ends with another code than 0; the strictest of them counts.
+
+    Notes
+    -----
     A leak that may be, because nobody named a source whose data goes anywhere, is not let through by ``leak``: nothing
-    was looked at then.
+    was looked at then. ``doubt`` fails on what fails otherwise too, and on doubts that ride on the verdict and that
+    nobody has accepted (rule S11).
     """
-    analysis, decided = result.analysis, result.decided
-    if fail_on is FailOn.never:
+    analysis, decided, words = result.analysis, result.decided, set(fail_on)
+    if words == {FailOn.never}:
         return 0
     left = [finding for finding in analysis.findings if finding.stands]
-    if fail_on is FailOn.undecided:
+    if FailOn.undecided in words and words <= {FailOn.undecided, FailOn.doubt}:
         left = [finding for finding in left if not (decided and decided.valid(finding))]
     if left:
         return LEAK
-    followed = analysis.lacking not in NOTHING_FOLLOWED
-    return UNDETERMINED if analysis.verdict == "undetermined" and not (fail_on is FailOn.leak and followed) else 0
+    if FailOn.doubt in words and any(doubt.accepted is None for doubt in result.doubts):
+        return UNDETERMINED
+    let_through = words == {FailOn.leak} and analysis.lacking not in NOTHING_FOLLOWED
+    return UNDETERMINED if analysis.verdict == "undetermined" and not let_through else 0

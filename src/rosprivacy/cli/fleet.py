@@ -50,7 +50,7 @@ def fleet(
 
 
 def _lines(fleet: Fleet, groups: tuple[Alike, ...]) -> Iterator[str]:
-    from rosprivacy.report.terminal.called_alike import named
+    from rosprivacy.report.called_alike import named
     from rosprivacy.report.words.words import IN_ENGLISH
 
     kinds = sum(not group.fixed for group in groups)
