@@ -18,19 +18,31 @@ if TYPE_CHECKING:
     from rosprivacy.report.compare.snapshot import Snapshot
 
 FORMAT = "rosprivacy.diff/1"
-SECTIONS = ("findings", "robots", "grants", "elements")
+SECTIONS = ("findings", "doubts", "robots", "grants", "elements")
+BETTER_FIRST = ("no-leak-found", "undetermined", "leak")
+SIDES = (("before", "before"), ("now", "after"))
+RANKS = ("rides", "breaks")
 NAMES = {
     "findings": ("kind", "category", "source", "leak", "across", "beside"),
+    "doubts": ("doubt", "robot", "kind", "name", "leg", "file", "message"),
     "robots": ("robot",),
     "grants": ("policy", "enclave", "node", "role", "kind", "name"),
     "elements": ("robot", "kind", "name", "leg"),
+}
+NOT_COMPARED = {
+    "grants": "the policies of one side are not at hand",
+    "doubts": "one side was saved by a version that has no list of them",
 }
 SIGNS = {"new": "+", "gone": "-", "changed": "~"}
 
 
 def difference(before: Snapshot, after: Snapshot) -> dict[str, Any]:
-    """Return the document: what differs, by section; ``None`` for grants if the policies of one are not at hand."""
+    """Return the document: what differs, by section.
+
+    ``None`` stands for grants if the policies of one are not at hand, and for doubts if one has no list of them.
+    """
     found: dict[str, Any] = {"format": FORMAT, "verdict": {"before": before.verdict, "after": after.verdict}}
+    found["sentence"] = {"before": before.sentence, "after": after.sentence}
     for section in SECTIONS:
         ours, theirs = getattr(before, section), getattr(after, section)
         found[section] = None if ours is None or theirs is None else _section(compare(ours, theirs), NAMES[section])
@@ -38,7 +50,9 @@ def difference(before: Snapshot, after: Snapshot) -> dict[str, Any]:
         row["allowed_at"] = after.lines.get(tuple(row.get(name, "") for name in NAMES["findings"]), "")
     asked = scope(before.assumptions, after.assumptions)
     found["asked_otherwise"] = [{"what": what, "before": old, "after": new} for what, old, new in asked]
-    found["worse"] = worse(found)
+    labelled = bool(before.assumptions["labels"] or after.assumptions["labels"])
+    found["labelled"], found["followed"] = labelled, {"before": before.followed, "after": after.followed}
+    found["worse"] = worse(found) or _doubts_worse(found["doubts"], before)
     return found
 
 
@@ -51,14 +65,37 @@ def _section(changes: Changes, names: tuple[str, ...]) -> dict[str, Any]:
 
 
 def worse(document: Mapping[str, Any]) -> bool:
-    """Return whether there is a finding that was not, or not as it is or not on so many robots.
+    """Return whether the verdict is worse, or a finding is new, in a worse form, or on more robots.
 
-    A finding that is dismissed is none here, since another one stands for it; nor is one that is accepted.
+    A finding that is dismissed is none here, since another one stands for it; nor is one that is accepted. Verdicts are
+    compared only where data was followed on both sides (rule S12).
     """
-    findings = document["findings"]
+    findings, verdict = document["findings"], document["verdict"]
+    if all(document["followed"].values()) and _later(BETTER_FIRST, verdict["before"], verdict["after"]):
+        return True
     if any(not (row["after"]["dismissed"] or row["after"]["accepted"]) for row in findings["new"]):
         return True
     return any(_worse(row["before"], row["after"]) for row in findings["changed"])
+
+
+def incomparable(document: Mapping[str, Any]) -> bool:
+    """Return whether labels are given and no data was followed on a side: then it is no comparison (rule S12)."""
+    return document["labelled"] and not all(document["followed"].values())
+
+
+def _doubts_worse(doubts: Mapping[str, Any] | None, before: Snapshot) -> bool:
+    """Whether a doubt is new, or of a higher rank, on an element that was neither open nor doubted (rule S12)."""
+    if doubts is None:
+        return False
+    known = {key[1:] for key in before.doubts or ()}
+    known |= {(*key, "", "") for key, facts in before.elements.items() if facts.get("open")}
+    names = NAMES["doubts"][1:]
+    new = any(tuple(row.get(name, "") for name in names) not in known for row in doubts["new"])
+    return new or any(_later(RANKS, row["before"]["rank"], row["after"]["rank"]) for row in doubts["changed"])
+
+
+def _later(order: tuple[str, ...], before: str, after: str) -> bool:
+    return order.index(after) > order.index(before)
 
 
 def _worse(before: Mapping[str, Any], after: Mapping[str, Any]) -> bool:
@@ -83,29 +120,47 @@ def difference_lines(document: Mapping[str, Any]) -> Iterator[str]:
     """Return the document as lines for people."""
     before, after = document["verdict"]["before"], document["verdict"]["after"]
     yield f"verdict: {after}" if before == after else f"verdict: {before} before, {after} now"
+    yield from (f"{when}: {document['sentence'][side]}" for when, side in SIDES)
+    yield from remarks(document)
     for row in document["asked_otherwise"]:
         yield shown(f"asked otherwise: {row['what']}: {row['before']} before, {row['after']} now")
     for section in SECTIONS:
         changes = document[section]
         if changes is None:
-            yield f"{section}: not compared, the policies of one side are not at hand"
+            yield f"{section}: not compared, {NOT_COMPARED[section]}"
             continue
         if any(changes.values()):
             yield ""
             yield f"{section}: " + ", ".join(f"{len(rows):,} {what}" for what, rows in changes.items() if rows)
         for what, sign in SIGNS.items():
             for row in changes[what]:
-                yield f"  {sign} {shown(_title(section, row))}"
+                yield f"  {sign} {shown(title(section, row))}"
                 yield from (f"      {shown(line)}" for line in _details(row, what))
     if not differs(document):
         yield "nothing differs"
 
 
-def _title(section: str, row: Mapping[str, Any]) -> str:
+def remarks(document: Mapping[str, Any]) -> Iterator[str]:
+    """Return what has to be known before anything is read out of a comparison (rule S12)."""
+    if not document["labelled"]:
+        yield "no label is given, so no data was followed: grants are compared, and nothing else"
+    elif incomparable(document):
+        sides = [when for when, side in SIDES if not document["followed"][side]]
+        yield f"no data was followed {' and '.join(sides)}: no label names a source there, so findings are not compared"
+
+
+def title(section: str, row: Mapping[str, Any]) -> str:
+    """Return what a row of a section is about."""
     if section == "findings":
         across = " from one robot to another" if row.get("across") else ""
         kind = "" if row["kind"] == "disclosure" else f"{row['kind']}, "
         return f"{kind}{row['category']}: {row['source']} -> {row['leak']}{across}"
+    if section == "doubts":
+        robot = f"{row['robot']}:" if row.get("robot") else ""
+        about = (
+            [f"{robot}{row['name']}"] if row.get("name") else [row[key] for key in ("file", "message") if key in row]
+        )
+        return ": ".join([row["doubt"], *about])
     if section == "robots":
         return str(row["robot"])
     if section == "grants":

@@ -44,6 +44,13 @@ class Snapshot:
         Key of a finding -> the policy line that lets the data in, as ``file:line``; it may move, and is not compared.
     assumptions
         As in the document.
+    doubts
+        (sort of doubt, robot or model, kind, name, leg, file, message) -> its rank; those that nobody has accepted.
+        None of a document of an earlier version, which has no list of them.
+    followed
+        Whether any data was followed.
+    sentence
+        Of the verdict, with its doubts; the verdict alone of a document of an earlier version.
     """
 
     verdict: str
@@ -53,6 +60,9 @@ class Snapshot:
     findings: Facts
     lines: Mapping[Key, str]
     assumptions: Mapping[str, Any]
+    doubts: Facts | None
+    followed: bool
+    sentence: str
 
 
 def snapshot(document: Mapping[str, Any], policies: Iterable[Policy] | None) -> Snapshot:
@@ -67,6 +77,9 @@ def snapshot(document: Mapping[str, Any], policies: Iterable[Policy] | None) -> 
         _findings(document, identity),
         dict(_lines(document, identity)),
         document["assumptions"],
+        _doubts(document, identity) if "doubts" in document else None,
+        bool(document["carries"]),
+        document.get("sentence", document["verdict"]),
     )
 
 
@@ -77,6 +90,18 @@ def _grants(policies: Iterable[Policy], *, named: bool) -> Facts:
             key = (policy.file if named else "", g.enclave, g.node, g.role, g.kind, g.name)
             rules[key].add("ALLOW" if g.allow else "dead DENY" if g.dead else "DENY")
     return {key: {"rule": " and ".join(sorted(found))} for key, found in rules.items()}
+
+
+def _doubts(document: Mapping[str, Any], identity: Identity) -> Facts:
+    """A line may move, and is not compared; what is wrong with a file is."""
+    rows = (row for row in document["doubts"] if not row["accepted"])
+    return {(row["doubt"], *_about(row, identity)): {"rank": row["rank"]} for row in rows}
+
+
+def _about(row: Mapping[str, Any], identity: Identity) -> Key:
+    if row["element"]:
+        return (*identity.element(row["element"]), "", "")
+    return ("", "", "", "", row["file"], row["message"])
 
 
 def _elements(document: Mapping[str, Any], identity: Identity) -> Facts:

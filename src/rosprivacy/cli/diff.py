@@ -65,7 +65,11 @@ def diff(
     ] = DiffFormat.text,
     output: Output = None,
     fail_on: Annotated[
-        FailOnChange, typer.Option(help="Exit with 1 on a finding that is new or worse, or on any difference.")
+        FailOnChange,
+        typer.Option(
+            help="Exit with 1 on a finding, doubt or verdict that is new or worse, or on any difference; with 4 where "
+            "labels are given and no data was followed on a side."
+        ),
     ] = FailOnChange.worse,
     compared_as: Annotated[
         As,
@@ -90,14 +94,16 @@ def diff(
         _usage(old, new, inputs, format, output, patch)
     if patch:
         raise typer.BadParameter("--patch is for --as usage")
-    from rosprivacy.report.compare.difference import difference, differs
+    from rosprivacy.report.compare.difference import difference, differs, incomparable
 
     settings, given = inputs.settings, tuple(inputs.labels or ())
     before = _snapshot(old, tuple(old_labels) if old_labels else given, settings)
     document = difference(before, _snapshot(new, given, settings))
     emit(_text(document, format), output)
+    if fail_on is FailOnChange.never:
+        raise typer.Exit(0)
     failed = document["worse"] if fail_on is FailOnChange.worse else differs(document)
-    raise typer.Exit(1 if failed and fail_on is not FailOnChange.never else 0)
+    raise typer.Exit(1 if failed else UNDETERMINED if incomparable(document) else 0)
 
 
 def _usage(

@@ -15,6 +15,8 @@ from rosprivacy.explorer.questions import GROUPS
 from rosprivacy.explorer.web.element_pane import Pane, pane_of
 from rosprivacy.explorer.web.titles import title_of
 from rosprivacy.explorer.web.whose import stands_for
+from rosprivacy.report.document.doubts import verdict_facts
+from rosprivacy.report.verdict import doubt_phrases, verdict_meaning
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -94,6 +96,7 @@ class Page:
 
     version: int
     verdict: str
+    doubts: str
     left: int
     decided: int
     exits: int
@@ -116,6 +119,7 @@ def page_of(standing: Standing, view: View, words: Words) -> Page:
     return Page(
         version=standing.version,
         verdict=verdict_of(standing),
+        doubts="; ".join(doubt_phrases(verdict_facts(standing.result), words)),
         left=len(standing.questions),
         decided=len(standing.carried.keys() - standing.open_kinds.keys()),
         exits=len({finding.leak.identity for finding in standing.analysis.findings if finding.stands}),
@@ -131,14 +135,7 @@ def page_of(standing: Standing, view: View, words: Words) -> Page:
 
 def verdict_of(standing: Standing) -> str:
     """Return the verdict, or what it lacks, where nothing could have been found (rules S11, S12)."""
-    analysis = standing.analysis
-    if str(analysis.verdict) != "undetermined" or (analysis.emitted and analysis.open):
-        return str(analysis.verdict)
-    return analysis.lacking if analysis.lacking in ("goes-nowhere", "no-leak-named") else _unfollowed(standing)
-
-
-def _unfollowed(standing: Standing) -> str:
-    return "undetermined" if standing.analysis.emitted else "nothing"
+    return verdict_meaning(verdict_facts(standing.result))
 
 
 def _first(groups: Sequence[Group]) -> str:

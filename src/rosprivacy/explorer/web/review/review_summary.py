@@ -14,6 +14,7 @@ from rosprivacy.explorer.web.page import verdict_of
 from rosprivacy.explorer.web.review.review_questions import named_with_robots
 from rosprivacy.explorer.web.titles import titles_of
 from rosprivacy.explorer.web.whose import target_told
+from rosprivacy.report.page.doubts import in_doubt
 from rosprivacy.report.page.finding_entries import finding_entries
 from rosprivacy.report.page.index import Index
 from rosprivacy.report.page.kinds import kinds
@@ -79,7 +80,7 @@ def summary_of(standing: Standing, questions: Sequence[Asked], words: Words) -> 
     decided, followed = tuple(_decided(standing, words)), bool(standing.analysis.emitted)
     return Summary(
         verdict=words.known(f"rv.verdict.{verdict}", words.known(f"verdict.{verdict}", verdict)),
-        end=tuple(_end(questions, words, decided=bool(decided), followed=followed)),
+        end=(*_end(questions, words, decided=bool(decided), followed=followed), *in_doubt(index)),
         decided=decided,
         open=tuple(_open(one, standing, words) for one in questions),
         kinds=tuple(kind for kind in kinds(index, finding_entries(index)) if kind.entries),
