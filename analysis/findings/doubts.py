@@ -100,7 +100,7 @@ def _of_files(diagnostics: Iterable[Diagnostic]) -> Iterator[Doubt]:
     for diagnostic in diagnostics:
         if diagnostic.code in GAPS or diagnostic.code in RIDES:
             rank = Rank.BREAKS if diagnostic.code in GAPS else Rank.RIDES
-            yield Doubt(diagnostic.code, rank, place=diagnostic.place, message=diagnostic.message)
+            yield Doubt(diagnostic.code, rank, None, diagnostic.place, (), diagnostic.number, diagnostic.message)
 
 
 def _ends(analysis: Analysis) -> Iterator[Doubt]:

@@ -10,7 +10,7 @@ from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.many_flows import parted
-from rosprivacy.analysis.model import NON_ROS, PARTICIPANT, UnknownEnd
+from rosprivacy.analysis.model import NETWORK, NON_ROS, PARTICIPANT, UnknownEnd
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
@@ -93,10 +93,15 @@ def _readable(graph: FlowGraph) -> Collection[int]:
     return known
 
 
+def _is_network(element: Element) -> bool:
+    """Whether an element stands for whoever is on the network: what it reads is a matter of the enforced view (S6)."""
+    return element.kind == PARTICIPANT and element.name == NETWORK
+
+
 def _unreached(spread: Spread) -> Iterator[int]:
     """Elements outside ROS that nothing flows into; where data may begin, a flow out is enough."""
     graph = spread.graph
-    outside = [vertex for vertex, element in enumerate(graph.elements) if element.kind in NON_ROS]
+    outside = [v for v, e in enumerate(graph.elements) if e.kind in NON_ROS and not _is_network(e)]
     if not outside:
         return
     own = [flow for _, flow in parted(graph.flows)[0]]  # a meeting is one of channels, or of them and nodes

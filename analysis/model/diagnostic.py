@@ -33,7 +33,8 @@ OBSERVATION_GAP = "observation-gap"  # what an observation is known to miss: the
 BAG_GAP = "bag-gap"  # what is not known of a bag that is a storage: the verdict is undetermined at best (S11)
 ACCESS_GAP = "access-gap"  # permissions are not asked, or not read: what is allowed is not known (S6, S11)
 GAPS = (UNREAD_FILE, OBSERVATION_GAP, BAG_GAP, ACCESS_GAP)  # doubts that break the verdict (rule S11)
-RIDES = (FALLBACK_TAKEN, EMPTY_GROUP, PATHS_NOT_COUNTED)  # doubts that ride on it
+NOTHING_ENFORCED = "nothing-enforced"  # for nodes that were observed, and of which no policy is deployed (rule S6)
+RIDES = (NOTHING_ENFORCED, FALLBACK_TAKEN, EMPTY_GROUP, PATHS_NOT_COUNTED)  # doubts that ride on it
 RECORDING = "recording"  # a bag that is a storage: its size, its time, its topics
 SEEN_ALTHOUGH_DENIED = "seen-although-denied"
 ASSUMED = (OBSERVED, ENCLAVES_MADE_UP, FOLDED_NAMES, RECORDING)  # notices that stand under Assumed
@@ -90,12 +91,15 @@ class Diagnostic(NamedTuple):
     ----------
     code
         What it is, for programs: ``UNREAD_FILE`` and others; empty where nobody has to tell it from others.
+    number
+        How many elements it is about.
     """
 
     place: Place
     severity: Severity
     message: str
     code: str = ""
+    number: int = 1
 
 
 def unread(diagnostics: Iterable[Diagnostic]) -> tuple[Place, ...]:

@@ -7,6 +7,7 @@ from dataclasses import field
 from rosprivacy.analysis.model.fact import fact
 
 CHANNELS = ("action", "service", "topic")
+NETWORK = "network"  # the participant that stands for whoever is on the network, where nothing is enforced (rule S6)
 PARTICIPANT = "participant"  # what was seen in a domain and is no node (rule S16)
 NON_ROS = (  # rule S9
     "device", "display", "external-system", PARTICIPANT, "person", "shared-memory", "side-channel", "storage",

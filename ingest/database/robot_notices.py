@@ -26,7 +26,7 @@ def _as_dict(diagnostic: Diagnostic) -> dict[str, Any]:
     place = diagnostic.place
     code = {"code": diagnostic.code} if diagnostic.code else {}
     said = {"file": place.file, "line": place.line, "severity": diagnostic.severity, "message": diagnostic.message}
-    return said | code
+    return said | code | ({"number": diagnostic.number} if diagnostic.number > 1 else {})
 
 
 def unreadable(robot: Mapping[str, Any]) -> str:
@@ -56,6 +56,8 @@ def loaded_with(robot: Mapping[str, Any]) -> dict[str, Any]:
 def diagnostics_of(robot: Mapping[str, Any]) -> tuple[Diagnostic, ...]:
     """Return what was said of a robot when it was loaded, from its properties."""
     return tuple(
-        Diagnostic(Place(d["file"], d["line"]), Severity(d["severity"]), d["message"], d.get("code", ""))
+        Diagnostic(
+            Place(d["file"], d["line"]), Severity(d["severity"]), d["message"], d.get("code", ""), d.get("count", 1)
+        )
         for d in json.loads(robot.get("diagnostics") or "[]")
     )

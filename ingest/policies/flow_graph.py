@@ -25,6 +25,7 @@ from rosprivacy.ingest.policies.enclave_rights import alike, enforced, of_each, 
 from rosprivacy.ingest.policies.meetings import literal_ends, meetings
 from rosprivacy.ingest.policies.name_index import Expressions, PlainNames
 from rosprivacy.ingest.policies.names import dds_names, endpoints, is_pattern
+from rosprivacy.ingest.policies.unsecured import in_one_enclave, network_profiles, read_by_network, unsecured
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -46,7 +47,8 @@ def build(policies: Iterable[Policy], view: str = View.declared, bounds: Bounds 
     ----------
     view
         ``declared``: each node does what its own profile says. ``enforced``: each node may do what any profile of
-        its enclave may (rule S6).
+        its enclave may (rule S6); nodes for which nothing is enforced stand in one, and the network reads what they
+        can. It is an element of the declared view, too, so that labels can speak of it.
 
     Raises
     ------
@@ -62,14 +64,20 @@ def build(policies: Iterable[Policy], view: str = View.declared, bounds: Bounds 
     policies = tuple(policies)
     profiles = tuple(sorted({p for policy in policies for p in policy.profiles}, key=_profile_key))
     grants = sorted({grant for policy in policies for grant in policy.grants}, key=_grant_key)
+    nothing_enforced = unsecured(policies)
+    network = network_profiles(profiles, nothing_enforced)
+    reading: Iterable[tuple[str, Grant, Endpoint]] = ()
+    if View(view) is View.enforced and nothing_enforced:
+        reading = read_by_network([grant for grant in grants if grant.allow], nothing_enforced)
+        profiles, grants = in_one_enclave(profiles, grants, nothing_enforced)
     allowed = [grant for grant in grants if grant.allow]
     work = Comparisons(bounds)
     denials = _Denials([grant for grant in grants if not grant.allow and not grant.dead], work)
-    participants = {profile.node: profile.participant for profile in profiles if profile.participant}
+    participants = {profile.node: profile.participant for profile in (*profiles, *network) if profile.participant}
     groups = alike(profiles, participants) if View(view) is View.enforced else {}
     rights = enforced(allowed, profiles, groups) if groups else ((grant.node, grant) for grant in allowed)
     drafts = _Drafts(work, bounds, participants)
-    for profile in profiles:
+    for profile in (*profiles, *network):
         drafts.elements.add(drafts.owner(profile.node))
     for grant in grants:
         if not grant.allow:  # a channel that is only denied is still there to be seen
@@ -77,6 +85,8 @@ def build(policies: Iterable[Policy], view: str = View.declared, bounds: Bounds 
     for node, grant in rights:
         for endpoint in endpoints(grant.role, grant.kind, grant.name):
             drafts.add(node, grant, endpoint, denials)
+    for node, grant, endpoint in reading:
+        drafts.add(node, grant, endpoint, denials)
     drafts.join()
     return drafts.graph(tuple(p for p in profiles if p.node not in participants), str(view), groups)
 

@@ -13,10 +13,11 @@ from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.model import OBSERVED, REFUSED_NAME, SHARED_ENCLAVE, Diagnostic, Place, Severity
+from rosprivacy.analysis.model import REFUSED_NAME, SHARED_ENCLAVE, Diagnostic, Place, Severity
 from rosprivacy.analysis.written_names import did_you_mean, nearest
 from rosprivacy.ingest.policies.names import is_pattern
 from rosprivacy.ingest.policies.seen_although_denied import seen_although_denied
+from rosprivacy.ingest.policies.unsecured import is_observed, unsecured_notices
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Sequence
@@ -41,13 +42,18 @@ _REFUSED = (
 def joint_warnings(policies: Iterable[Policy]) -> tuple[Diagnostic, ...]:
     """Return what is to be said of policies that are read as one system."""
     policies = sorted(policies, key=lambda policy: policy.file)
-    found = (*_shared_enclaves(policies), *_refused_names(policies), *seen_although_denied(policies))
+    found = (
+        *_shared_enclaves(policies),
+        *_refused_names(policies),
+        *seen_although_denied(policies),
+        *unsecured_notices(policies),
+    )
     return tuple(sorted(found, key=lambda said: (said.place.file, said.place.line, said.message)))
 
 
 def deployed(policies: Iterable[Policy]) -> list[Policy]:
     """Return the policies that may be in force: one that was made of an observation stands beside them (rule S16)."""
-    return [policy for policy in policies if all(said.code != OBSERVED for said in policy.diagnostics)]
+    return [policy for policy in policies if not is_observed(policy)]
 
 
 def _shared_enclaves(policies: Sequence[Policy]) -> Iterator[Diagnostic]:

@@ -43,6 +43,12 @@ DOUBTS = {
         "{n} Kanäle enden bei keinem bekannten Leser ({names})",
         "die Policy des Lesers dazugeben oder nachsehen, wer liest (rosprivacy observe)",
     ),
+    "nothing-enforced": (
+        "Für das Beobachtete wird nichts durchgesetzt",
+        "für {n} Knoten wird nichts durchgesetzt ({names})",
+        "für {n} Knoten wird nichts durchgesetzt ({names})",
+        "ansehen, was jedes Programm im Netz lesen kann (--view both); die Policy, die rosprivacy observe geschrieben hat, kann durchgesetzt werden: ros2 security generate_artifacts -k KEYSTORE -p POLICY, und ROS_SECURITY_STRATEGY=Enforce",
+    ),
     "observation-gap": (
         "Eine Beobachtung, der bekanntermaßen etwas fehlt",
         "der Beobachtung fehlt bekanntermaßen etwas ({names})",

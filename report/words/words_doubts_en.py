@@ -43,6 +43,12 @@ DOUBTS = {
         "{n} channels end at no known reader ({names})",
         "give the policy of whoever reads it, or look who does (rosprivacy observe)",
     ),
+    "nothing-enforced": (
+        "Nothing is enforced for what was observed",
+        "nothing is enforced for {n} node ({names})",
+        "nothing is enforced for {n} nodes ({names})",
+        "see what any program on the network can read (--view both); the policy that rosprivacy observe wrote can be enforced: ros2 security generate_artifacts -k KEYSTORE -p POLICY, and ROS_SECURITY_STRATEGY=Enforce",
+    ),
     "observation-gap": (
         "An observation that is known to miss something",
         "the observation is known to miss something ({names})",

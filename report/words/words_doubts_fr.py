@@ -43,6 +43,12 @@ DOUBTS = {
         "{n} canaux n'ont pas de lecteur connu ({names})",
         "fournir la politique de qui lit, ou regarder qui lit (rosprivacy observe)",
     ),
+    "nothing-enforced": (
+        "Rien n'est imposé à ce qui a été observé",
+        "rien n'est imposé à {n} nœud ({names})",
+        "rien n'est imposé à {n} nœuds ({names})",
+        "regarder ce que tout programme sur le réseau peut lire (--view both) ; la politique que rosprivacy observe a écrite peut être imposée : ros2 security generate_artifacts -k KEYSTORE -p POLICY, et ROS_SECURITY_STRATEGY=Enforce",
+    ),
     "observation-gap": (
         "Une observation à laquelle il manque quelque chose",
         "il manque quelque chose à l'observation ({names})",
