@@ -27,6 +27,7 @@ SAME_PART = {
     "bags": {"recordings", "report/contract"},  # the answer about bags, and its keys
     "categories": {"cli", "report/terminal"},  # the command, and what it prints
     "decisions": {"analysis", "report/document"},  # what they mean, and how the document tells them
+    "doubts": {"analysis/findings", "report/document", "report/page"},  # the list of doubts, and how it is told
     "findings": {"analysis/findings", "report/rdf"},  # findings, and findings as RDF
     "fleet": {"cli", "report/contract", "report/document", "report/terminal"},  # what is told of a fleet
     "law": {"cli", "report/terminal"},  # the command, and what it prints
@@ -46,7 +47,6 @@ SAME_PART = {
     "why_not": {"analysis/findings", "cli", "report/document", "report/terminal"},  # the question, and its answer
     "session": {"explorer", "spark"},  # what lasts from its begin to its end: of a person, and of a cluster
     "typed_channels": {"report/page", "report/rdf"},  # types of channels, as rows and as triples
-    "unknown_ends": {"analysis/findings", "report/terminal"},  # what nobody knows the end of, and how it is told
 }
 
 

@@ -26,6 +26,7 @@ from rosprivacy.report.document.doubts import verdict_facts
 from rosprivacy.report.element_counts import count_elements
 from rosprivacy.report.inventory import kinds_of
 from rosprivacy.report.verdict import verdict_sentence
+from rosprivacy.report.words.typography import plain
 from rosprivacy.report.words.words import Words
 
 if TYPE_CHECKING:
@@ -213,7 +214,7 @@ def _note(analysis: Analysis, assumptions: Mapping[str, Any], about: str, senten
         "cnil.note",
         program=escaped(f"rosprivacy {assumptions.get('rosprivacy', '')}".strip()),
         view=Html(analysis.graph.view),
-        verdict=escaped(sentence),
+        verdict=escaped(plain(sentence)),
         elements=told.count(count_elements(question.element for question in analysis.open).elements, "element"),
         more=Html(f" {about}." if about else ""),
     )

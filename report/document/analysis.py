@@ -16,7 +16,7 @@ from rosprivacy.analysis.legal import turned_special
 from rosprivacy.analysis.written_names import literal
 from rosprivacy.report.document import ledger, reliance
 from rosprivacy.report.document.doubts import doubt_entry
-from rosprivacy.report.document.elements import element_dict
+from rosprivacy.report.document.element_entry import element_dict
 from rosprivacy.report.document.non_ros import inventory, taken_by_kind, without_backups
 from rosprivacy.report.document.pointers import pointers, situations
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.report.document.elements import element_dict
+from rosprivacy.report.document.element_entry import element_dict
 from rosprivacy.report.verdict import doubts_of, phrase, verdict_sentence
 from rosprivacy.report.words.words import IN_ENGLISH
 

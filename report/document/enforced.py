@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.model import Element
 from rosprivacy.report.document.analysis import finding_entry
 from rosprivacy.report.document.decisions import decided_findings
-from rosprivacy.report.document.elements import element_dict
+from rosprivacy.report.document.element_entry import element_dict
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.findings.beyond import Added, DenyLine, Right

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.report.document.elements import element_dict
+from rosprivacy.report.document.element_entry import element_dict
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -107,7 +107,7 @@ def outputs(said: Said) -> tuple[list[dict[str, str]], dict[int, str]]:
         result = rosprivacy.analyze("p.xml", "l.yaml")
         record, file = result.to("article30"), json.loads(result.to("cnil-pia"))
     columns = {WORDS(f"r.{name}"): name for name in article30.Entry.__dataclass_fields__}
-    rows = csv.DictReader(io.StringIO(record.removeprefix("\ufeff")))
+    *rows, _ = csv.DictReader(io.StringIO(record.removeprefix("\ufeff")))  # the last is the answer it rests on
     answers = {one["reference_to"]: one["data"]["text"] or "\n".join(one["data"]["list"]) for one in file["answers"]}
     answers[0] = "\n".join(measure["content"] for measure in file["measures"])
     return [{columns[key]: cell for key, cell in row.items()} for row in rows], answers
