@@ -48,7 +48,7 @@ def build(policies: Iterable[Policy], view: str = View.declared, bounds: Bounds 
     view
         ``declared``: each node does what its own profile says. ``enforced``: each node may do what any profile of
         its enclave may (rule S6); nodes for which nothing is enforced stand in one, and the network reads what they
-        can. It is an element of the declared view, too, so that labels can speak of it.
+        write or read.
 
     Raises
     ------
@@ -64,10 +64,10 @@ def build(policies: Iterable[Policy], view: str = View.declared, bounds: Bounds 
     policies = tuple(policies)
     profiles = tuple(sorted({p for policy in policies for p in policy.profiles}, key=_profile_key))
     grants = sorted({grant for policy in policies for grant in policy.grants}, key=_grant_key)
-    nothing_enforced = unsecured(policies)
-    network = network_profiles(profiles, nothing_enforced)
+    network: list[Profile] = []
     reading: Iterable[tuple[str, Grant, Endpoint]] = ()
-    if View(view) is View.enforced and nothing_enforced:
+    if View(view) is View.enforced and (nothing_enforced := unsecured(policies)):
+        network = network_profiles(profiles, nothing_enforced)
         reading = read_by_network([grant for grant in grants if grant.allow], nothing_enforced)
         profiles, grants = in_one_enclave(profiles, grants, nothing_enforced)
     allowed = [grant for grant in grants if grant.allow]

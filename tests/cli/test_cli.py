@@ -176,7 +176,7 @@ def test_the_next_step_stands_last(cli: Cli, before: Path, after: Path, runs: li
         ("todo", "write leak"),
         ("all", "leave out --decisions"),
         ("Undetermined", "did you mean undetermined"),
-        ("nope", "one of undetermined, leak, undecided, never"),
+        ("nope", "one of undetermined, leak, undecided, doubt, never"),
     ],
 )
 def test_a_word_that_fail_on_does_not_know_is_told_which_to_write(cli: Cli, word: str, instead: str) -> None:

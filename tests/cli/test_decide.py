@@ -256,7 +256,7 @@ def test_a_file_that_is_no_decisions_file_is_left_as_it_is(cli: Cli, tmp_path: P
 
 def test_an_id_that_the_report_does_not_have_is_refused(cli: Cli, tmp_path: Path, report: Path) -> None:
     (line,) = refused(cli("decide", "avoid", OTHER, "--report", report, cwd=tmp_path))
-    assert f"'{OTHER}' is no finding of the report; copy one: {ID}" in line
+    assert f"'{OTHER}' is no finding and no doubt of the report; copy one: {ID}" in line
     for text in ("{}", "[]", "nothing", json.dumps({"findings": [1]})):
         report.write_text(text)
         refused(cli("decide", "avoid", ID, "--report", report, cwd=tmp_path))
