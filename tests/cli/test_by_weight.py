@@ -22,10 +22,11 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from tests.helpers.command import Cli
+    from tests.helpers.little_robots import Nodes
 
 __all__ = ["cli"]
 
-NODES = {
+NODES: Nodes = {
     "amcl": (["/particle_cloud"], ["/scan"]),
     "audio_capture": (["/audio"], []),
     "camera": (["/camera/image_raw", "/camera/depth/image", "/tf_static"], []),
@@ -83,7 +84,7 @@ def robot(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def leaking(tmp_path: Path) -> Path:
-    nodes = {name: ([f"/{name}/out"], []) for name in WORKERS}
+    nodes: Nodes = {name: ([f"/{name}/out"], []) for name in WORKERS}
     return robot_of(tmp_path, {**nodes, "viewer": ([], [f"/{name}/out" for name in WORKERS])}, LABELLED)
 
 
@@ -161,7 +162,7 @@ def _found(folder: Path) -> Sequence[rosprivacy.Finding]:
 
 def test_of_what_is_alike_in_the_review_the_heaviest_kind_is_asked_about_first(robot: Path, cli: Cli) -> None:
     """S11: frontier, then distance; only then the weight. Nodes that are alike but for what they get."""
-    ends = {"a_end": ([], ["/map"]), "b_end": ([], ["/camera/image_raw"])}
+    ends: Nodes = {"a_end": ([], ["/map"]), "b_end": ([], ["/camera/image_raw"])}
     begins = {name: NODES[name] for name in ("camera", "map_server")}
     robot_of(
         robot, begins | ends, "labels: 1\nnodes:\n  /camera: {source: [Video]}\n  /map_server: {source: [HomeMap]}\n"
