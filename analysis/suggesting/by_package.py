@@ -3,8 +3,8 @@
 In: a graph, its nodes of packages. Out: evidence. The rule (docs/packages.md): the name and at least half of the
 interfaces are ``likely``; less is ``may``, and evidence of a name; nothing is ever ``certain``, since anybody may call
 a node so. Where a node has no interfaces by which it could be known, and is called as its package, what it lets out is
-``likely`` by the name alone. A node of which all types are known, and that has none of the interfaces, is another one: to be on the safe
-side what it lets out is told all the same, but for what it would bring in itself.
+``likely`` by the name alone. A node of which all types are known, and that has none of the interfaces, is another one:
+to be on the safe side what it lets out is told all the same, but for what it would bring in itself.
 """
 
 from __future__ import annotations
