@@ -8,6 +8,7 @@ import pytest
 from lxml import html
 
 from rosprivacy.explorer.element_ids import element_id
+from rosprivacy.explorer.web.review.review_questions import asked
 from rosprivacy.report.words.words import Words
 from tests.helpers.explorers import Explorer, label, node
 from tests.helpers.little_robots import policy_of
@@ -139,6 +140,7 @@ def test_a_row_says_what_is_surest_and_a_list_with_a_likely_source_is_not_folded
     rows = rows_of(page)
     assert rows[0][0] == page.xpath("string(//h2[@id='h-element']/bdi)") == "/camera", "it is in hand first"
     assert rows[0][1].endswith("perhaps brings in: video of persons")
+    assert asked(explorer.site.standing)[0].element.name == "/camera", "a review begins with it, too"
     told = [one.xpath("string(.//p/b)") for one in page.cssselect(".offer")]
     assert told.index("It perhaps brings in: video of persons") == 0
     assert "It perhaps brings in: body pose" in told[1:]
@@ -150,9 +152,9 @@ def test_a_row_says_what_is_surest_and_a_list_with_a_likely_source_is_not_folded
     assert folded(left), "nothing is likely any more"
 
 
-@pytest.mark.parametrize(("entry", "asked"), [("", True), ("  /cloud_uploader: conduit\n", False)])
+@pytest.mark.parametrize(("entry", "told"), [("", True), ("  /cloud_uploader: conduit\n", False)])
 def test_that_a_node_lets_data_out_is_told_although_a_glob_calls_it_a_conduit(
-    explore: Explore, tmp_path: Path, entry: str, *, asked: bool
+    explore: Explore, tmp_path: Path, entry: str, *, told: bool
 ) -> None:
     """S11, users.md U1: a glob has not seen the node; a person's full name has."""
     nodes = {"camera": (["/image"], []), "cloud_uploader": ([], ["/image"]), "recorder": ([], ["/other"])}
@@ -160,4 +162,4 @@ def test_that_a_node_lets_data_out_is_told_although_a_glob_calls_it_a_conduit(
     said = f'labels: 1\nnodes:\n  /camera: {{source: [Video]}}\n  "/*": conduit\n{entry}topics:\n  /image: sensitive\n'
     (tmp_path / "labels.yaml").write_text(said, "utf-8")
     page = html.fromstring(opened(explore, tmp_path).client().get("/").text)
-    assert [name for name, _ in rows_of(page)] == (["/cloud_uploader"] if asked else [])  # nothing gets to the recorder
+    assert [name for name, _ in rows_of(page)] == (["/cloud_uploader"] if told else [])  # nothing gets to the recorder
