@@ -10,10 +10,13 @@ from collections import defaultdict
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.model import CHANNELS
+from rosprivacy.report.finding_order import weights
 from rosprivacy.report.naming import key
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+
+    from rosprivacy.analysis.model import Weight
 
     Question = Mapping[str, Any]
 
@@ -52,8 +55,13 @@ class ReviewGroup(NamedTuple):
 
 
 def review_groups(report: Mapping[str, Any]) -> tuple[ReviewGroup, ReviewGroup, ReviewGroup]:
-    """Return nodes on the frontier, channels, and what lies behind."""
-    rows = sorted(report["open"], key=lambda q: (-q.get("leaks", 0), -q.get("closes", 0), q["distance"]))
+    """Return nodes on the frontier, channels, and what lies behind; of what is alike, the heaviest kinds first."""
+    kinds = weights(report)
+
+    def urgency(q: Question) -> tuple[int, int, int, Weight]:
+        return -q.get("leaks", 0), -q.get("closes", 0), q["distance"], min(kinds[one] for one in q["categories"])
+
+    rows = sorted(report["open"], key=urgency)
     nodes = [q for q in rows if q["element"]["kind"] not in CHANNELS]
     return (
         ReviewGroup(FIRST, tuple(q for q in nodes if q["frontier"])),

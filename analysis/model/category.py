@@ -5,13 +5,50 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Collection, Iterable, Mapping
 
 DISCLOSURE, STORAGE_LIMITATION, THIRD_COUNTRY = "disclosure", "storage-limitation", "third-country-transfer"
 UNPROTECTED = "unprotected-channel"  # who is on the network can read what flows there
 ARTICLE_9, ARTICLE_10 = "GDPR Art. 9(1)", "GDPR Art. 10"
 SPECIAL, MAY_REVEAL = ("always", "conditional"), "may-reveal"
 ARTICLE_9_VERDICTS = (*SPECIAL, MAY_REVEAL, "no", "unknown")
+SENSED = ("video", "audio", "image", "thermal", "point-cloud", "depth")  # data types of a sensor: what it saw or heard
+FORMS = (
+    *SENSED,
+    "template",
+    "text",
+    "record",
+    "map",
+    "position",
+    "identifier",
+    "number",
+    "class-label",
+)  # the rawest first
+_BY_LAW = (*SPECIAL, MAY_REVEAL, "unknown")
+
+Weight = tuple[int, tuple[int, ...]]
+
+
+def weight(verdicts: Collection[str], data_types: Iterable[str]) -> Weight:
+    """Return the place of a kind of data in the order in which people look at kinds: the heaviest is the least.
+
+    First what Article 9 or 10 names, then what may reveal it; of these what is rawest: video before a position.
+
+    Parameters
+    ----------
+    verdicts
+        Of provisions, and the one of Article 9.
+
+    Examples
+    --------
+    >>> video, pose, template = (weight({one}, of) for one, of in (
+    ...     ("may-reveal", ["video"]), ("may-reveal", ["position"]), ("conditional", ["template"])))
+    >>> template < video < pose
+    True
+    """
+    law = next((place for place, verdict in enumerate(_BY_LAW) if verdict in verdicts), len(_BY_LAW))
+    forms = sorted(FORMS.index(form) if form in FORMS else len(FORMS) for form in data_types)
+    return law, tuple(forms) or (len(FORMS),)
 
 
 def is_article_9(provision: str) -> bool:
@@ -188,6 +225,11 @@ class Category(NamedTuple):
         verdicts = {legal.verdict for legal in self.law if legal.special}
         stated = "no" if self.reason else "unknown"
         return next((verdict for verdict in ARTICLE_9_VERDICTS[:3] if verdict in verdicts), stated)
+
+    @property
+    def weight(self) -> Weight:
+        """Its place in the order of kinds, the heaviest first."""
+        return weight({self.article9, *(legal.verdict for legal in self.law)}, self.data_types)
 
     def text(self, what: str, language: str) -> str:
         """Return its ``title``, ``definition``, ``reason`` or ``gdpr`` in a language, else in English."""

@@ -2,8 +2,9 @@
 
 In: a graph, its nodes of packages. Out: evidence. The rule (docs/packages.md): the name and at least half of the
 interfaces are ``likely``; less is ``may``, and evidence of a name; nothing is ever ``certain``, since anybody may call
-a node so. A node of which all types are known, and that has none of the interfaces, is another one: to be on the safe
-side what it lets out is told all the same, but for what it would bring in itself.
+a node so. Where a node has no interfaces by which it could be known, and is called as its package, what it lets out is
+``likely`` by the name alone. A node of which all types are known, and that has none of the interfaces, is another one:
+to be on the safe side what it lets out is told all the same, but for what it would bring in itself.
 """
 
 from __future__ import annotations
@@ -43,9 +44,11 @@ def package_evidence(graph: FlowGraph, of_packages: Iterable[NodeOfPackage]) -> 
 def _of_node(graph: FlowGraph, one: NodeOfPackage) -> Iterator[Evidence]:
     element, interfaces = whole(graph.elements[one.vertex]), len(one.node.interfaces)
     by = f"its name, {one.confirmed} of {interfaces} of its interfaces" if one.confirmed else "its name alone"
-    matched, another = one.is_recognised, interfaces and not one.confirmed and one.all_typed
+    another = interfaces and not one.confirmed and one.all_typed
+    bare = not interfaces and element.name.rpartition("/")[2] == one.package.name
     for claim in _leaks_of_others_data(one.node) if another else one.node.claims:
         label = Label(element, claim.role, claim.kind, claim.method, claim.to)
+        matched = one.is_recognised or (bare and claim.role == LEAK)
         confidence = claim.confidence if matched else Confidence.MAY
         where = f", to a {claim.where}" if claim.where else ""
         reason = f"package {one.package.name} {one.package.version}{where}: {claim.why} ({by})"

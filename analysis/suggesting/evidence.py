@@ -15,7 +15,17 @@ HIDING = TAKING_AWAY | {CONDUIT}  # or that nobody looked
 OF_NODES = frozenset([SOURCE, LEAK, DERIVATION, SANITIZER, CONDUIT])  # the others are said of channels
 CODE, PACKAGE, TYPE, NAMED, DATA_FLOW, NEIGHBOUR = "code", "package", "type", "name", "data-flow", "neighbour"
 MODEL = "model"  # a language model, which read names and types; it makes nothing surer than may
-GROUNDS = (CODE, PACKAGE, TYPE, NAMED, DATA_FLOW, NEIGHBOUR, MODEL)  # what evidence comes from, in the order of reasons
+GLOBBED = "glob"  # a label that says otherwise, and names no element
+GROUNDS = (
+    GLOBBED,
+    CODE,
+    PACKAGE,
+    TYPE,
+    NAMED,
+    DATA_FLOW,
+    NEIGHBOUR,
+    MODEL,
+)  # what evidence comes from, in the order of reasons
 INDEPENDENT = frozenset([CODE, TYPE, NAMED])  # the others know types and names, or are drawn from them
 
 

@@ -1,7 +1,9 @@
 """Of all proposals those that a person is asked about: what nobody has said yet, one answer to each question.
 
 A person's word is never proposed away: where a label of a user, by a name or a glob, speaks of an element for a kind,
-no proposal does. Where proposals for one element go against each other, the one that could hide something is left out.
+no proposal does. But a glob that calls nodes conduits has not seen each of them (rule S11): that one lets data out is
+proposed all the same. Where proposals for one element go against each other, the one that could hide something is left
+out.
 """
 
 from __future__ import annotations
@@ -13,6 +15,7 @@ from rosprivacy.analysis.suggesting.evidence import (
     CONDUIT,
     DATA_FLOW,
     DERIVATION,
+    GLOBBED,
     LEAK,
     MUNDANE,
     NEIGHBOUR,
@@ -20,6 +23,7 @@ from rosprivacy.analysis.suggesting.evidence import (
     SANITIZER,
     SENSITIVE,
     SOURCE,
+    Evidence,
 )
 
 if TYPE_CHECKING:
@@ -53,7 +57,7 @@ def unsaid(proposals: Iterable[Proposal], graph: FlowGraph, bound: Bound, hierar
     for one in proposals:
         identity = one.label.element.identity
         if identity not in said or not _is_spoken_of(one, said[identity], hierarchy):
-            by_element[identity].append(one)
+            by_element[identity].append(_although(one, said.get(identity, ())))
     kept = (one for together in by_element.values() for one in together if not _outdone(one, together, hierarchy))
     return tuple(kept)
 
@@ -93,7 +97,22 @@ def spoken_of(label: Label, said: Sequence[Statement], hierarchy: Hierarchy) -> 
         or one.role == "only"
         or any(near(label.kind, kind) is not None for kind in one.categories)
         for one in said
+        if not (label.role == LEAK and _only_passes_on(one))
     )
+
+
+def _only_passes_on(statement: Statement) -> bool:
+    """Whether a glob, and no name, says that an element only passes data on."""
+    return statement.role == CONDUIT and statement.glob
+
+
+def _although(one: Proposal, said: Iterable[Statement]) -> Proposal:
+    """The proposal that an element lets data out, with the glob that says otherwise as its first reason."""
+    glob = next(filter(_only_passes_on, said), None) if one.label.role == LEAK else None
+    if glob is None:
+        return one
+    reason = f"your glob at {glob.place} calls {one.label.element.name} a conduit"
+    return one._replace(evidence=(Evidence(one.label, GLOBBED, one.confidence, reason, glob.place), *one.evidence))
 
 
 def _is_spoken_of(one: Proposal, said: Sequence[Statement], hierarchy: Hierarchy) -> bool:

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.suggesting.evidence import Evidence, Label
 
-_SURENESS = {confidence: place for place, confidence in enumerate(Confidence)}  # the surest first
+SURENESS = {confidence: place for place, confidence in enumerate(Confidence)}  # the surest first
 _PLACES = {role: place for place, role in enumerate(ROLES)}
 _OF_GROUNDS = {ground: place for place, ground in enumerate(GROUNDS)}
 
@@ -76,7 +76,7 @@ def surer(one: Confidence, other: Confidence) -> bool:
     >>> surer(Confidence.LIKELY, Confidence.MAY), surer(Confidence.MAY, Confidence.MAY)
     (True, False)
     """
-    return _SURENESS[one] < _SURENESS[other]
+    return SURENESS[one] < SURENESS[other]
 
 
 def closes_finding(label: Label, found: Collection[str]) -> bool:
@@ -112,4 +112,4 @@ def _in_order(reasons: Sequence[Evidence]) -> tuple[Evidence, ...]:
 
 
 def _evidence_order(one: Evidence) -> tuple[object, ...]:
-    return (_SURENESS[one.confidence], _OF_GROUNDS[one.ground], one.reason, one.place)
+    return (SURENESS[one.confidence], _OF_GROUNDS[one.ground], one.reason, one.place)

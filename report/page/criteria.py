@@ -8,14 +8,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.model import SPECIAL
+from rosprivacy.analysis.model import SENSED, SPECIAL
 from rosprivacy.report.finding_order import REVEALS, strength
 from rosprivacy.report.page.entries_of_robots import weight
 
 if TYPE_CHECKING:
     from rosprivacy.report.page.index import Index
 
-OBSERVES = {"image", "video", "depth", "point-cloud", "thermal", "audio"}  # data types of a sensor
 PERSONAL = {"CommunicationContent", "CommunicationMetadata", "Household", "Location", "Voice"}  # WP 248, criterion 4
 NAMED = 6
 
@@ -55,7 +54,7 @@ def _observes(index: Index) -> str:
     sources = [
         index.elements[element]
         for element, categories in index.of_role.get("source", {}).items()
-        if any(OBSERVES & set(index.categories[category]["data_types"]) for category in categories)
+        if any(not set(index.categories[category]["data_types"]).isdisjoint(SENSED) for category in categories)
     ]
     return index.words("w.observes", names=_row(list(index.names(sources)), index)) if sources else ""
 

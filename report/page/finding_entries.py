@@ -144,7 +144,7 @@ def finding_entries(index: Index, marks: Mapping[str, str] | None = None) -> tup
         return finding_pattern(finding), marks.get(finding["id"]), decided[finding["id"]]
 
     fleet = index.patterns  # there each finding is one of its pattern
-    findings = in_order(index.findings, index.document.get("fleet"))
+    findings = in_order(index.findings, index.document)
     groups = [[finding] for finding in findings] if fleet else grouped(findings, pattern)
     numbers = Counter(group[0]["category"] for group in groups)
     left = dict.fromkeys(numbers, share(numbers.values()))

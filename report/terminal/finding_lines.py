@@ -56,7 +56,7 @@ def overview(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
     unreviewed = {element for element, _ in _unreviewed(report, report["findings"])}
     yield "", ""
     yield words("tty.findings", n=str(len(report["findings"]))), "bold"
-    ordered = in_order(report["findings"], report.get("fleet"))
+    ordered = in_order(report["findings"], report)
     numbers = {finding["id"]: number for number, finding in enumerate(ordered, 1)}
     for finding, *others in by_line(ordered):
         number = numbers[finding["id"]]
@@ -91,7 +91,7 @@ def details(
     unreviewed, folder = _unreviewed(report, findings), policies_in(report)
     if folder and any(finding["steps"] for finding in findings):
         yield words("tty.folder", folder=shown(folder)), "dim"
-    for number, finding in enumerate(in_order(findings, report.get("fleet")), 1):
+    for number, finding in enumerate(in_order(findings, report), 1):
         yield "", ""
         yield f"{number}. {_title(report, finding, words)}   [{finding['id']}]", _style(finding)
         yield from robots_of(report, finding, words)
@@ -118,7 +118,7 @@ def law_lines(
     report: Mapping[str, Any], findings: Iterable[Mapping[str, Any]], words: Words = IN_ENGLISH
 ) -> Iterator[Line]:
     """Return what a person has to look up about each kind of data that arrives somewhere, once for each kind."""
-    told = in_order(findings)
+    told = in_order(findings, report)
     by_kind = {finding["category"]: finding for finding in told}
     findings_of = {kind: [finding for finding in told if finding["category"] == kind] for kind in by_kind}
     if not by_kind:
@@ -126,7 +126,7 @@ def law_lines(
     kinds = {category["name"]: category for category in report["categories"]}
     yield "", ""
     yield words("tty.law.title"), "bold"
-    for category, finding in sorted(by_kind.items()):
+    for category, finding in by_kind.items():
         for legal in _law(finding, kinds, words):
             yield f"   {words('tty.law.line', kind=category, **legal)}", "magenta"
         yield from context_lines(kinds.get(category, {}), findings_of[category], words)

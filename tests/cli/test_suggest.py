@@ -300,8 +300,40 @@ def test_of_a_node_that_lets_another_kind_out_a_leak_is_suggested(cli: Cli, robo
     found = rows(cli, robot)
     assert [row[1:] for row in found if row[0] == "/mover"] == [("leak", "Video", "may")]
     assert [row[1:] for row in found if row[0] == "/customer_bridge"] == [
-        ("leak", "PersonalData", "may"), ("leak", "Video", "may"),
+        ("leak", "Video", "may"), ("leak", "PersonalData", "may"),
     ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("entry", "asked"),
+    [
+        ("", True),
+        ("  /cloud_uploader: conduit\n", False),
+        ("  /cloud_uploader: {leak: none}\n", False),
+        ('  "*_uploader": {leak: none}\n', False),  # a glob that speaks of letting out
+    ],
+)
+def test_a_leak_is_suggested_although_a_glob_calls_the_node_a_conduit(
+    cli: Cli, tmp_path: Path, entry: str, *, asked: bool
+) -> None:
+    """S11, users.md U1: what only a glob answers for nobody has seen; a full name still silences it."""
+    (tmp_path / "p.xml").write_text(
+        policy_of({"camera": (["/image"], []), "cloud_uploader": ([], ["/image"])}), "utf-8"
+    )
+    said = f'labels: 1\nnodes:\n  /camera: {{source: [Video]}}\n  "/*": conduit\n{entry}topics:\n  /image: sensitive\n'
+    (tmp_path / "l.yaml").write_text(said, "utf-8")
+    document = json.loads(cli("suggest", "p.xml", "-l", "l.yaml", "-f", "json", cwd=tmp_path).stdout)
+    jsonschema.validate(document, SCHEMA)
+    told = [one for one in document["suggestions"] if one["name"] == "/cloud_uploader"]
+    assert [(one["role"], one["confidence"]) for one in told] == ([("leak", "may")] if asked else [])
+    for one in told:
+        glob, name, *_ = one["evidence"]
+        assert (glob["ground"], glob["file"], glob["line"]) == ("glob", "l.yaml", 4)
+        assert name["ground"] == "name"
+    cli("suggest", "p.xml", "-l", "l.yaml", "--into", "l.yaml", cwd=tmp_path)
+    cli("labels", "-l", "l.yaml", "--accept", "/cloud_uploader", "--by", "Ada", cwd=tmp_path)
+    found = rosprivacy.analyze(tmp_path / "p.xml", tmp_path / "l.yaml").findings
+    assert [one.leak.name for one in found] == (["/cloud_uploader"] if asked else [])
 
 
 def test_what_a_channel_is_not_made_for_is_a_never_and_never_sure(cli: Cli, robot: Path) -> None:

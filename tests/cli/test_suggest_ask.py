@@ -77,6 +77,19 @@ def test_a_limit_on_the_way_of_a_source_that_gets_a_yes_is_told(
         assert told not in ask(cli, robot, "n", monkeypatch).stdout
 
 
+def test_whether_a_node_lets_data_out_is_asked_although_a_glob_calls_it_a_conduit(
+    cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """S11, users.md U1: it is asked of the data that get there; a no is kept, and ends it."""
+    (robot / "l.yaml").write_text(f'{SOURCE}  "/*": conduit\ntopics:\n  "/*": sensitive\n', "utf-8")
+    asked = ask(cli, robot, "n", monkeypatch)
+    assert (
+        "node /customer_bridge: Video\n       your glob at l.yaml:5 calls /customer_bridge a conduit\n" in asked.stdout
+    )
+    assert "'bridge' in the name of the node" in asked.stdout
+    assert "customer_bridge: " not in ask(cli, robot, "", monkeypatch).stdout
+
+
 def test_a_no_is_kept_with_who_and_when_and_not_asked_again(
     cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

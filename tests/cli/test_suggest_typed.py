@@ -45,7 +45,7 @@ def test_another_kind_than_the_one_that_is_asked_about(cli: Cli, robot: Path, mo
     """What is still to be asked comes again, and what the new source reaches is asked about."""
     done = ask(cli, robot, "/lidar node source Location Voice\nn", monkeypatch)
     assert done.returncode == 0
-    assert "Which of these bring such data in?\n  A  node /lidar: LaserScan\n" in done.stdout
+    assert "Which of these bring such data in?\n  A  node /lidar: PersonPointCloud\n" in done.stdout
     assert "Does it bring such data in?\n  node /lidar: PersonPointCloud\n" in done.stdout
     assert "What do these do with Location and Voice?\n  A  node /finder\n" in done.stdout
     assert '  /lidar: {source: [Location, Voice], note: "typed by Ada on 2026-01-01"}\n' in text_of(robot)

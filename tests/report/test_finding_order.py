@@ -13,7 +13,7 @@ from tests.helpers.reports import care
 def test_the_worst_of_a_fleet_stands_first() -> None:
     """One robot lets raw video out that its likes pseudonymise: before what all robots do, and what is dismissed."""
     document = rosprivacy.analyze_fleet(ROOT / "examples" / "fleet" / "fleet.yaml").document()
-    order = in_order(document["findings"], document["fleet"])
+    order = in_order(document["findings"], document)
     assert [(f["category"], f["source"]["robot"], f["leak"]["name"]) for f in order[:2]] == [
         ("Video", "carrier_lent", "reviewer"),
         ("Video", "carrier_lent", "footage bucket"),
@@ -24,9 +24,9 @@ def test_the_worst_of_a_fleet_stands_first() -> None:
 def test_what_is_special_stands_before_what_is_not_and_data_as_it_is_before_pseudonymised_data() -> None:
     template, video, voice = care()["findings"]
     assert (template["article9"], video["pseudonymised"], voice["pseudonymised"]) == ("conditional", True, False)
-    assert in_order([video, voice, template]) == [template, voice, video]
+    assert in_order([video, voice, template], care()) == [template, voice, video]
     hidden = copy.deepcopy(template) | {"pseudonymised": True}
-    assert in_order([voice, hidden, template]) == [template, hidden, voice]
+    assert in_order([voice, hidden, template], care()) == [template, hidden, voice]
 
 
 def test_data_of_article_10_count_as_special() -> None:
@@ -34,10 +34,10 @@ def test_data_of_article_10_count_as_special() -> None:
     voice["law"] = [{**voice["law"][0], "provision": "GDPR Art. 10", "verdict": "always"}]
     voice["article9"] = "no"
     assert strength(voice) != strength(video)
-    assert in_order([{**video, "pseudonymised": False}, voice])[0] is voice
+    assert in_order([{**video, "pseudonymised": False}, voice], care())[0] is voice
 
 
 def test_what_is_accepted_or_dismissed_waits_for_nobody() -> None:
     template, video, voice = care()["findings"]
-    order = in_order([{**template, "dismissed": True}, {**voice, "accepted": True}, video])
+    order = in_order([{**template, "dismissed": True}, {**voice, "accepted": True}, video], care())
     assert [f["id"] for f in order] == [video["id"], voice["id"], template["id"]]

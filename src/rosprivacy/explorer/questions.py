@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import OpenQuestion
     from rosprivacy.analysis.findings.review_order import Shown
-    from rosprivacy.analysis.model import Element
+    from rosprivacy.analysis.model import Category, Element
     from rosprivacy.result import Result
 
 FIRST, AT_CHANNELS, BEHIND, WAITS, PROPOSED = "first", "channels", "behind", "waits", "proposed"
@@ -77,7 +77,8 @@ def questions(result: Result, order: Mapping[Shown, Behind] | None = None) -> tu
     order = result.review_order if order is None else order
     rows = (_question(q, order.get(q.element.shown_as, Behind()), result.infrastructure) for q in shown.open)
     asked: dict[tuple[str, str, str], Question] = {}
-    for one in sorted(rows, key=_urgency):
+    categories = result.vocabulary.categories
+    for one in sorted(rows, key=lambda one: _urgency(one, categories)):
         key = one.element.robot, one.section, one.name
         first = asked.setdefault(key, one)
         if first is not one:  # the other leg of a service or an action: one label answers for both
@@ -100,6 +101,8 @@ def _question(asked: OpenQuestion, behind: Behind, proposed: Collection[tuple[st
     )  # fmt: skip
 
 
-def _urgency(one: Question) -> tuple[int, int, int, int, object]:
+def _urgency(one: Question, categories: Mapping[str, Category]) -> tuple[object, ...]:
+    """What is reviewed first; of what is alike, what the heaviest kind of data reaches."""
     place = one.element.sort_key() if one.group == PROPOSED else ()  # others come in that order, by their steps
-    return GROUPS.index(one.group), -one.leaks, -one.closes, one.steps, place
+    heaviest = min(categories[kind].weight for kind in one.kinds)
+    return GROUPS.index(one.group), -one.leaks, -one.closes, one.steps, place or heaviest

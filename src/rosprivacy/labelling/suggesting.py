@@ -1,6 +1,6 @@
 """Policies, label files and observed types -> proposals of labels, in the order in which a person reviews them.
 
-In: names of files. Out: ``Suggested``. What no person has said yet is asked, the surest reasons first.
+In: names of files. Out: ``Suggested``. What no person has said yet is asked, the surest first.
 """
 
 from __future__ import annotations
@@ -15,21 +15,22 @@ from rosprivacy.analysis.suggesting.evidence import LEAK, SOURCE, TYPE
 from rosprivacy.analysis.suggesting.outdated_reasons import outdated_reasons
 from rosprivacy.analysis.suggesting.reached_kinds import reached_kinds
 from rosprivacy.analysis.suggesting.unsaid import unsaid
-from rosprivacy.analysis.suggesting.weighing import closes_finding, proposals
+from rosprivacy.analysis.suggesting.weighing import SURENESS, closes_finding, proposals
 from rosprivacy.ingest.packages.package_folders import replacements
 from rosprivacy.labelling.basis import NO_CODE, Basis
 from rosprivacy.labelling.gathering import evidence
 from rosprivacy.labelling.knowledge import NO_FILES, what_is_known
 from rosprivacy.labelling.refused import refused_in
 from rosprivacy.labelling.suggested_labels import Suggested
+from rosprivacy.ontology.vocabulary import TOP
 from rosprivacy.reading.robot_system import answer_robot
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
-    from rosprivacy.analysis.answer import Analysis, OpenQuestion
+    from rosprivacy.analysis.answer import OpenQuestion
     from rosprivacy.analysis.findings.review_order import Shown
-    from rosprivacy.analysis.model import Bound, MessageType
+    from rosprivacy.analysis.model import Bound, Category, MessageType, Weight
     from rosprivacy.analysis.suggesting.evidence import Evidence, Proposal
     from rosprivacy.analysis.suggesting.library_rules import LibraryRules
     from rosprivacy.ingest.annotations.code_units import Local
@@ -104,7 +105,7 @@ def suggested_by(
     asked = asked_by(chain(listed, interview.evidence(basis) if interview else ()), result, found, refused_in(result))
     by_hand = frozenset(one.label for one in asked if closes_finding(one.label, found))
     return Suggested(
-        in_review_order(asked, places),
+        in_review_order(asked, places, result.vocabulary.categories),
         frozenset(places),
         by_hand,
         result,
@@ -142,7 +143,7 @@ def asked_by(
 
 def basis_of(result: Result, sources: Sequence[str] = ()) -> Basis:
     """Return what there is to suggest about: an answer, with what source code says of its channels."""
-    places = review_places(result.analysis, result.review_order)
+    places = review_places(result, result.review_order)
     if not sources:
         return Basis(result, result.bound, places, {}, NO_CODE)
     from rosprivacy.ingest.annotations.code_comments import code_comments  # noqa: PLC0415 - light start
@@ -154,12 +155,20 @@ def basis_of(result: Result, sources: Sequence[str] = ()) -> Basis:
     return Basis(result, _with_types(result.bound, code.types), places, code_comments(codes), code)
 
 
-def in_review_order(asked: Sequence[Proposal], places: Mapping[Identity, int]) -> tuple[Proposal, ...]:
-    """Return proposals in the order in which a person reviews them (rule S11)."""
+def in_review_order(
+    asked: Sequence[Proposal], places: Mapping[Identity, int], categories: Mapping[str, Category]
+) -> tuple[Proposal, ...]:
+    """Return proposals in the order in which a person reviews them (rule S11).
 
-    def place(one: Proposal) -> tuple[int, int]:
-        at = places.get(one.label.element.identity, NOT_OPEN)
-        return at, 0 if one.label.role in (SOURCE, LEAK) else 1
+    Open elements come first; then what brings data in or lets it out. The surest come first, and of these the kinds of
+    data that weigh most.
+    """
+
+    def place(one: Proposal) -> tuple[int, bool, int, Weight]:
+        label = one.label
+        at = places.get(label.element.identity, NOT_OPEN)
+        weight = categories[label.to or label.kind or TOP].weight
+        return at, label.role not in (SOURCE, LEAK), SURENESS[one.confidence], weight
 
     return tuple(sorted(asked, key=place))  # stable: by element, role and kind within
 
@@ -200,7 +209,7 @@ def with_findings(result: Result) -> frozenset[str]:
     return frozenset(kind for one in result.analysis.findings for kind in hierarchy.overlaps[one.category])
 
 
-def review_places(analysis: Analysis, behind: Mapping[Shown, Behind]) -> dict[Identity, int]:
+def review_places(result: Result, behind: Mapping[Shown, Behind]) -> dict[Identity, int]:
     """Return the place of each open element in the order of review: that of ``review_groups``, what can wait last.
 
     Parameters
@@ -208,11 +217,13 @@ def review_places(analysis: Analysis, behind: Mapping[Shown, Behind]) -> dict[Id
     behind
         As ``review_order`` returns.
     """
+    categories = result.vocabulary.categories
 
-    def place(question: OpenQuestion) -> tuple[int, bool, int, int, int]:
+    def place(question: OpenQuestion) -> tuple[int, bool, int, int, int, Weight]:
         said = behind.get(question.element.shown_as, NOTHING_BEHIND)
         group = 1 if question.element.is_channel else 0 if question.frontier else 2
-        return group, said.waits, -said.leaks, -said.closes, question.distance
+        heaviest = min(categories[kind].weight for kind in question.categories)
+        return group, said.waits, -said.leaks, -said.closes, question.distance, heaviest
 
-    identities = dict.fromkeys(question.element.identity for question in sorted(analysis.open, key=place))
+    identities = dict.fromkeys(question.element.identity for question in sorted(result.analysis.open, key=place))
     return {identity: number for number, identity in enumerate(identities)}

@@ -11,7 +11,7 @@ from collections import defaultdict
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
-from rosprivacy.analysis.suggesting.evidence import LEAK
+from rosprivacy.analysis.suggesting.evidence import GLOBBED, LEAK
 from rosprivacy.analysis.suggesting.nodes_of_packages import nodes_of_packages
 from rosprivacy.analysis.suggesting.open_elements import of_open
 from rosprivacy.analysis.suggesting.traffic import standard_in, traffic
@@ -97,10 +97,17 @@ class Suggestions:
         there = {at for at, said in self._lasting.said.items() if any(one.label.role in roles for one in said)}
         if LEAK in roles:  # where data ends; of no other role of these is anything said of what is open
             there |= {question.element.identity for question in self._result.analysis.open}
+        asked = self._of(there)
         found: dict[Identity, list[Proposal]] = defaultdict(list)
-        for one in self._of(there):
+        for one in asked:
             found[one.label.element.identity].append(one)
-        return tuple(tuple(some) for some in found.values() if any(one.label.role in roles for one in some))
+        wanted = dict.fromkeys(one.label.element.identity for one in asked if one.label.role in roles)
+        return tuple(tuple(found[at]) for at in wanted)
+
+    def although_a_glob(self) -> tuple[Proposal, ...]:
+        """Return what says of nodes that they let data out although a glob calls them conduits."""
+        there = {at for at, said in self._lasting.said.items() if any(one.label.role == LEAK for one in said)}
+        return tuple(one for one in self._of(there) if one.evidence[0].ground == GLOBBED)
 
     def _of(self, identities: Collection[Identity]) -> tuple[Proposal, ...]:
         if not identities:
@@ -112,7 +119,7 @@ class Suggestions:
             said += of_open(questions, lasting.graph, result.bound, lasting.told, self._known.rules)
         asked = tuple(asked_by(said, result, self._found, self._refused))
         alone = len({one.label.element.identity for one in asked}) <= 1  # then its place decides nothing
-        return in_review_order(asked, {} if alone else self._places)
+        return in_review_order(asked, {} if alone else self._places, result.vocabulary.categories)
 
     @cached_property
     def _found(self) -> frozenset[str]:
@@ -124,4 +131,4 @@ class Suggestions:
 
     @cached_property
     def _places(self) -> Mapping[Identity, int]:
-        return review_places(self._result.analysis, self._order)
+        return review_places(self._result, self._order)

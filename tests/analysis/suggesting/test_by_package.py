@@ -193,3 +193,13 @@ def test_in_public_policies_a_planted_leak_stays_one(corpus: Path, file: str, so
         Path("all.yaml").write_text(f"labels: 1\nnodes:\n{labels}", "utf-8")
         assert rosprivacy.analyze(there, "all.yaml").analysis.verdict == "leak"
     assert len(found) > 5
+
+
+def test_what_a_node_that_is_called_as_its_package_lets_out_is_likely_where_nothing_else_could_be_looked_at() -> None:
+    """users.md U10: foxglove_bridge as rosbridge_websocket. Of a source a name proves nothing; nor of another name."""
+    found = evidence(policy("/foxglove_bridge</image", "/webrtc_ros_server</image"))
+    assert told(found, "leak", "PersonalData") == [
+        ("/foxglove_bridge", LIKELY, "its name alone"),
+        ("/webrtc_ros_server", MAY, "its name alone"),  # of webrtc_ros
+    ]
+    assert told(found, "source", "OperatorInput") == [("/foxglove_bridge", MAY, "its name alone")]

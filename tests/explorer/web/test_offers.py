@@ -8,6 +8,7 @@ import pytest
 from lxml import html
 
 from rosprivacy.explorer.element_ids import element_id
+from rosprivacy.explorer.web.review.review_questions import asked
 from rosprivacy.report.words.words import Words
 from tests.helpers.explorers import Explorer, label, node
 from tests.helpers.little_robots import policy_of
@@ -106,3 +107,59 @@ def test_an_answer_about_every_kind_leaves_what_is_made_of_data(explore: Explore
     assert label(client, node("/box"), "absent", reason="only in tests").status_code == 303
     assert "derives" not in explorer.session.said_of(box)
     assert gone in client.get("/").text
+
+
+def rows_of(page: html.HtmlElement) -> list[tuple[str, str]]:
+    """Name and what is told of each element that is suggested; the list is there whether it is folded or not."""
+    found = page.xpath("//ol[@class='rows']/li/a[starts-with(@id, 'suggested-')]")
+    return [(row.xpath("string(bdi)"), row.xpath("string(span)")) for row in found]
+
+
+def folded(page: html.HtmlElement) -> bool:
+    """Whether the list of what is suggested is folded."""
+    return bool(page.xpath("//details[@id='g-suggested' and not(@open)]"))
+
+
+def test_a_row_says_what_is_surest_and_a_list_with_a_likely_source_is_not_folded(
+    explore: Explore, tmp_path: Path
+) -> None:
+    """users.md U3: the camera with its video before /amcl; body pose is never what its row says."""
+    nodes = {
+        "amcl": (["/particle_cloud"], ["/scan"]),
+        "camera": (["/image", "/tf_static"], []),
+        "mapper": (["/map"], []),
+    }
+    types = {"particle_cloud": "nav2_msgs/msg/ParticleCloud", "image": "sensor_msgs/msg/Image"}
+    types |= {"tf_static": "tf2_msgs/msg/TFMessage", "map": "nav_msgs/msg/OccupancyGrid"}
+    said = "".join(f"  /{name}: {{types: [{of}]}}\n" for name, of in types.items())
+    (tmp_path / "robot.policy.xml").write_text(policy_of(nodes), "utf-8")
+    (tmp_path / "labels.yaml").write_text(f"labels: 1\ntopics:\n{said}", "utf-8")
+    explorer = opened(explore, tmp_path)
+    client = explorer.client()
+    page = html.fromstring(client.get("/").text)
+    rows = rows_of(page)
+    assert rows[0][0] == page.xpath("string(//h2[@id='h-element']/bdi)") == "/camera", "it is in hand first"
+    assert rows[0][1].endswith("perhaps brings in: video of persons")
+    assert asked(explorer.site.standing)[0].element.name == "/camera", "a review begins with it, too"
+    told = [one.xpath("string(.//p/b)") for one in page.cssselect(".offer")]
+    assert told.index("It perhaps brings in: video of persons") == 0
+    assert "It perhaps brings in: body pose" in told[1:]
+    assert label(client, node("/mapper"), "source", brings="HomeMap").status_code == 303
+    assert not folded(html.fromstring(client.get("/").text)), "the camera is likely a source"
+    assert label(client, node("/camera"), "source", brings="Video").status_code == 303
+    left = html.fromstring(client.get("/").text)
+    assert "/camera" in dict(rows_of(left)), "body pose is asked about"
+    assert folded(left), "nothing is likely any more"
+
+
+@pytest.mark.parametrize(("entry", "told"), [("", True), ("  /cloud_uploader: conduit\n", False)])
+def test_that_a_node_lets_data_out_is_told_although_a_glob_calls_it_a_conduit(
+    explore: Explore, tmp_path: Path, entry: str, *, told: bool
+) -> None:
+    """S11, users.md U1: a glob has not seen the node; a person's full name has."""
+    nodes = {"camera": (["/image"], []), "cloud_uploader": ([], ["/image"]), "recorder": ([], ["/other"])}
+    (tmp_path / "robot.policy.xml").write_text(policy_of(nodes), "utf-8")
+    said = f'labels: 1\nnodes:\n  /camera: {{source: [Video]}}\n  "/*": conduit\n{entry}topics:\n  /image: sensitive\n'
+    (tmp_path / "labels.yaml").write_text(said, "utf-8")
+    page = html.fromstring(opened(explore, tmp_path).client().get("/").text)
+    assert [name for name, _ in rows_of(page)] == (["/cloud_uploader"] if told else [])  # nothing gets to the recorder

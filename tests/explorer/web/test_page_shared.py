@@ -92,8 +92,7 @@ def test_suggestions_for_an_element_are_those_that_are_made_for_all(
             of_it = tuple(one for one in every if one.label.element.identity == element.identity)
             assert standing.suggestions.of(element.identity) == of_it
         for roles in (("source",), ("source", "leak")):
-            named = dict.fromkeys(one.label.element.identity for one in every if one.label.role in roles)
-            order = [at for at in dict.fromkeys(one.label.element.identity for one in every) if at in named]
+            order = dict.fromkeys(one.label.element.identity for one in every if one.label.role in roles)
             whole = tuple(tuple(one for one in every if one.label.element.identity == at) for at in order)
             assert standing.suggestions.of_role(*roles) == whole
         assert questions(session.result, standing.order) == session.questions()

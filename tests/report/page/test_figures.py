@@ -138,7 +138,7 @@ def test_each_way_has_its_picture_and_says_it_in_words() -> None:
     pictures = page.xpath("//figure[@class='picture']//*[@role='img']")
     assert [picture.get("aria-label") for picture in pictures] == [
         "Picture of the path: " + " → ".join(e["name"] for e in finding["witness"])
-        for finding in in_order(care()["findings"])
+        for finding in in_order(care()["findings"], care())
     ]
     assert "no picture" not in page.text_content()
     assert set(drawn.of) == {entry.id for entry in told.entries}

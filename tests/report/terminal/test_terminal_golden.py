@@ -113,7 +113,10 @@ def test_of_more_than_five_findings_there_is_a_line_each() -> None:
 
 
 def test_what_stands_before_what_is_dismissed_and_data_as_it_is_before_pseudonymised() -> None:
-    order = [(f["dismissed"], f["accepted"], f["pseudonymised"]) for f in in_order(document("fleet")["findings"])]
+    order = [
+        (f["dismissed"], f["accepted"], f["pseudonymised"])
+        for f in in_order(document("fleet")["findings"], document("fleet"))
+    ]
     assert order == sorted(order)
     assert not order[0][0]
     assert order[-1][0]

@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.model import Confidence
 from rosprivacy.analysis.suggesting.written import written
 from rosprivacy.explorer.element_ids import element_id
 from rosprivacy.explorer.web import forms
@@ -87,6 +88,8 @@ class Offer(NamedTuple):
         Whether it takes data away.
     closes
         The known findings that it could close: then nobody takes it by one key.
+    sure
+        Whether it is more than perhaps a source: then it is not folded.
     """
 
     told: str
@@ -94,6 +97,7 @@ class Offer(NamedTuple):
     fields: tuple[tuple[str, str], ...]
     takes: bool
     closes: tuple[str, ...]
+    sure: bool
 
 
 class Pane(NamedTuple):
@@ -207,6 +211,11 @@ def _whole(one: Proposal) -> bool:
     return one.label.role != forms.SANITIZER or one.label.method is not None
 
 
+def is_likely_source(one: Proposal) -> bool:
+    """Return whether it is more than perhaps so that an element brings data in."""
+    return one.label.role == forms.SOURCE and one.confidence is not Confidence.MAY
+
+
 def _offer(one: Proposal, standing: Standing, words: Words) -> Offer:
     """What could be said, as the form says it."""
     label = one.label
@@ -219,7 +228,8 @@ def _offer(one: Proposal, standing: Standing, words: Words) -> Offer:
     reasons = words.first([shown(reason.reason) for reason in one.evidence], REASONS)
     said = written(label).said
     closes = could_close(said, _findings(standing, words), standing.vocabulary)
-    return Offer(told, reasons, tuple(fields), not LIMITING.isdisjoint(said), words.first(closes, FINDINGS))
+    takes = not LIMITING.isdisjoint(said)
+    return Offer(told, reasons, tuple(fields), takes, words.first(closes, FINDINGS), is_likely_source(one))
 
 
 def _findings(standing: Standing, words: Words) -> Iterable[tuple[str, str]]:

@@ -12,16 +12,19 @@ from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import DISCLOSURE
 from rosprivacy.explorer.element_ids import element_id
 from rosprivacy.explorer.questions import GROUPS
-from rosprivacy.explorer.web.element_pane import Pane, pane_of
+from rosprivacy.explorer.web.element_pane import Pane, is_likely_source, pane_of
 from rosprivacy.explorer.web.titles import title_of
 from rosprivacy.explorer.web.whose import stands_for
 from rosprivacy.report.document.doubts import verdict_facts
+from rosprivacy.report.finding_order import place_of
 from rosprivacy.report.verdict import doubt_phrases, verdict_meaning
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from rosprivacy.analysis.model import Element
+    from rosprivacy.analysis.answer import Finding
+    from rosprivacy.analysis.model import Element, Weight
+    from rosprivacy.analysis.suggesting.evidence import Proposal
     from rosprivacy.explorer.web.standing import Standing
     from rosprivacy.explorer.web.view import View
     from rosprivacy.report.words.words import Words
@@ -61,11 +64,14 @@ class Group(NamedTuple):
         A group of ``questions.py``, ``SUGGESTED``, ``FOUND`` or ``EXITS``.
     left
         How many more there are.
+    sure
+        Whether a source among them is more than perhaps one: such a list is not folded.
     """
 
     key: str
     rows: tuple[Row, ...]
     left: int = 0
+    sure: bool = False
 
 
 class Switch(NamedTuple):
@@ -146,7 +152,7 @@ def _first(groups: Sequence[Group]) -> str:
 
 def _groups(standing: Standing, view: View, words: Words) -> list[Group]:
     groups = [Group(FOUND, _found(standing, view, words))] if view.find else []
-    suggested = [Group(SUGGESTED, _suggested(standing, view, words))]
+    suggested = [_suggested(standing, view, words)]
     asked = [_asked(key, standing, view, words) for key in GROUPS]
     exits = [Group(EXITS, _exits(standing, view, words))]
     groups += [*suggested, *asked, *exits]
@@ -164,23 +170,38 @@ def _asked(key: str, standing: Standing, view: View, words: Words) -> Group:
     return Group(key, tuple(rows), len(asked[FIRST_ROWS:]))
 
 
-def _suggested(standing: Standing, view: View, words: Words) -> tuple[Row, ...]:
-    """Sources that no label names: they are not followed at all. Leaks too, until data is there to be asked about."""
+def _suggested(standing: Standing, view: View, words: Words) -> Group:
+    """Sources that no label names: they are not followed at all. Leaks too, until data is there to be asked about.
+
+    Then only those that a glob calls conduits: nobody is asked about them. A row says of its element what is surest.
+    """
     wanted = ("source",) if standing.analysis.emitted else ("source", "leak")
-    rows = []
-    for proposals in standing.suggestions.of_role(*wanted):
-        one = next(one for one in proposals if one.label.role in wanted)
+    surest = [next(one for one in some if one.label.role in wanted) for some in standing.suggestions.of_role(*wanted)]
+    surest += (one for one in standing.suggestions.although_a_glob() if _gets_data(one, standing))
+    rows: dict[tuple[str, str, str], Row] = {}
+    for one in surest:
         title = title_of(one.label.kind, standing.vocabulary, words)
         told = words(f"x.perhaps.{one.label.role}", data=title)
-        rows.append(_row(one.label.element, told, standing, view, words))
-    return tuple(rows)
+        rows.setdefault(one.label.element.identity, _row(one.label.element, told, standing, view, words))
+    return Group(SUGGESTED, tuple(rows.values()), sure=any(map(is_likely_source, surest)))
+
+
+def _gets_data(one: Proposal, standing: Standing) -> bool:
+    """Whether data that it is thought to let out are there."""
+    there = standing.carried.get(element_id(one.label.element.identity), ())
+    return any(standing.vocabulary.hierarchy.overlap(one.label.kind, kind) is not None for kind in there)
 
 
 def _exits(standing: Standing, view: View, words: Words) -> tuple[Row, ...]:
-    """Where data gets to that it should not: each place once, with the kinds of data."""
+    """Where data gets to that it should not: each place once, with the kinds of data, what weighs most first."""
+
+    def weight(finding: Finding) -> tuple[bool, Weight, int]:
+        kind = standing.vocabulary.categories[finding.category]
+        return finding.pseudonymised, kind.weight, place_of(finding.leak.kind)
+
     found: dict[tuple[str, str, str], list[Way]] = {}
     elements: dict[tuple[str, str, str], Element] = {}
-    for finding in standing.analysis.findings:
+    for finding in sorted(standing.analysis.findings, key=weight):
         if finding.stands and finding.category not in view.hidden:
             elements[finding.leak.identity] = finding.leak
             source = shown(finding.source.full_name)
