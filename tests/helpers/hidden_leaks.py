@@ -136,10 +136,14 @@ HIDDEN = {
     "nothing is enforced": seen_running(OBSERVED, SEES, "nothing-enforced", breaks=False),
     # dead ends and restrictions (S11)
     "nobody known reads it": Hidden(
-        {"p.xml": enclaves("/camera>/video,/more", "/view</video"), "l.yaml": SEES}, "no-reader", breaks=False
+        {"p.xml": enclaves("/camera>/video,/more", "/view</video"), "l.yaml": SEES.replace("{/v", "{/more: sensitive, /v", 2)},
+        "no-reader",
+        breaks=False,
     ),
     "a service without a client": Hidden(
-        {"p.xml": with_services("/camera reply /ask"), "l.yaml": SEES}, "no-reader", breaks=False
+        {"p.xml": with_services("/camera reply /ask"), "l.yaml": SEES + "services: {/ask: sensitive}\n"},
+        "no-reader",
+        breaks=False,
     ),
     "an element outside ROS that nothing reaches": labelled(
         REVIEWED + "}\n" + SENSITIVE + "elements: {cloud: {kind: external, country: DE}}\n",
@@ -148,7 +152,7 @@ HIDDEN = {
         text=SEEN,
     ),
     "another kind was asked for": labelled(
-        "nodes: {/camera: {source: [Video, Voice]}, /view: {conduit: [Video, Voice]}, /uplink: {leak: [Video], "
+        "nodes: {/camera: {source: [Video, Voice]}, /view: {leak: none, conduit: [Video, Voice]}, /uplink: {leak: [Video], "
         "conduit: [Voice]}}\nchannels: {/video: sensitive}\n",
         "restricted",
         breaks=False,
