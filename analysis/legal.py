@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.model import Category, Element, Legal
 
+PROHIBITED = "AI Act Art. 5"  # the names of the provisions on prohibited practices begin with it
 _STRENGTH = {verdict: number for number, verdict in enumerate(ARTICLE_9_VERDICTS)}
 
 
@@ -124,6 +125,18 @@ def strongest_first(law: Iterable[Legal]) -> tuple[Legal, ...]:
     """
     distinct = {(legal.iri, legal.verdict, legal.condition): legal for legal in law}.values()
     return tuple(sorted(distinct, key=lambda legal: (_STRENGTH.get(legal.verdict, len(_STRENGTH)), legal.name)))
+
+
+def recognises(made: Category) -> bool:
+    """Return whether who makes such data recognises persons or judges them: that protects nobody, whatever it drops.
+
+    It is so of special categories, of data of Article 10, and of what Article 5 of the AI Act speaks of.
+
+    >>> from rosprivacy.analysis.example import CATEGORIES
+    >>> recognises(CATEGORIES["FaceTemplate"]), recognises(CATEGORIES["Video"])
+    (True, False)
+    """
+    return any(legal.verdict in SPECIAL for legal in made.law) or any(at.startswith(PROHIBITED) for at in made.look_at)
 
 
 def turned_special(finding: Finding, categories: Mapping[str, Category]) -> Element | None:

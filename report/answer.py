@@ -5,7 +5,7 @@ In: what was found, and what it rests on. Out: ``Answer``. A format is a functio
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -15,6 +15,7 @@ from rosprivacy.analysis.findings.ledger import ledger
 from rosprivacy.analysis.findings.processed import processed
 from rosprivacy.analysis.findings.reliance import Reliance, reliances
 from rosprivacy.analysis.findings.review_order import Behind, review_order
+from rosprivacy.analysis.findings.ways import Ways, ways
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
@@ -179,6 +180,19 @@ class Answer:
         """What is stated of purposes and legal bases where data begin and end, by kind; of robots alike of one."""
         rows = processed(self.shown, self.bound, self.vocabulary.hierarchy)
         return tuple(row for row in rows if row.element.robot not in self._beside)
+
+    @cached_property
+    def ways(self) -> tuple[Ways, ...]:
+        """What lies on the ways of each kind of data to each place; of robots that are alike of one."""
+        second = self.fleet.likeness.second if self.fleet else {}
+
+        def first(row: Ways) -> Ways:
+            shown = (p._replace(element=replace(p.element, robot=second.get(p.element.robot, p.element.robot)))
+                     for p in row.protections)
+            return row._replace(protections=tuple(dict.fromkeys(shown)))
+
+        rows = ways(self.shown, self.bound, self.vocabulary.categories)
+        return tuple(first(row) for row in rows if row.element is None or row.element.robot not in second)
 
     def fleet_counts(self, view: FleetView) -> Counts:
         """Return how many elements, flows and standard channels the fleet has, not its graph."""

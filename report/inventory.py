@@ -10,7 +10,7 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.findings.sanitizing import cleanings, makings
+from rosprivacy.analysis.findings.sanitizing import cleanings, makings, recognised
 from rosprivacy.analysis.legal import strongest_first
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ class Kind:
     reached
         Elements that it gets to, or a narrower kind does, in the order of the graph; the legs of a service are one.
     cleaned
-        Who cleans it where it, or a narrower kind, gets to.
+        Who cleans it where it, or a narrower kind, gets to; not who recognises persons or judges them.
     findings
         That are about it, those dismissed left out (rule S10).
     open
@@ -59,7 +59,12 @@ def kinds_of(analysis: Analysis, categories: Mapping[str, Category], hierarchy: 
     reached = _reached(analysis, hierarchy)
     here = {(name, element.identity) for name, elements in reached.items() for element in elements}
     spread, shown = analysis.spread, analysis.roles  # not of a robot of a fleet that another one stands for
-    cleaned = [c for c in cleanings(spread, analysis.emitted) if (c.category, c.element.identity) in here]
+    recognising = {spread.graph.elements[vertex] for vertex in recognised(spread, categories)}
+    cleaned = [
+        c
+        for c in cleanings(spread, analysis.emitted)
+        if (c.category, c.element.identity) in here and c.element not in recognising
+    ]
     made = [making for making in makings(spread, analysis.emitted) if making.element in shown]
     return tuple(
         Kind(

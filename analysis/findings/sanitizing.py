@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import TYPE_CHECKING, NamedTuple
 
+from rosprivacy.analysis.legal import recognises
 from rosprivacy.analysis.many_flows import parted
 from rosprivacy.analysis.model import Method
 
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.meeting import Meeting
-    from rosprivacy.analysis.model import Bound, Element, FlowGraph, Place
+    from rosprivacy.analysis.model import Bound, Category, Element, FlowGraph, Place
 
 
 class Cleaning(NamedTuple):
@@ -112,6 +113,19 @@ def makings(spread: Spread, wanted: Collection[str]) -> tuple[Making, ...]:
         for made in decided[category].derives
         if made in wanted and made != category
     )
+
+
+def recognised(spread: Spread, categories: Mapping[str, Category]) -> dict[int, tuple[str, ...]]:
+    """Return the elements that recognise persons or judge them (``recognises``), with the kinds that they make.
+
+    >>> from rosprivacy.analysis.example import CATEGORIES, FACE_ID, factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> recognised(spread(*factory()), CATEGORIES) == {FACE_ID: ("FaceTemplate",)}
+    True
+    """
+    made = {v: {one for facts in said.values() for one in facts.derives} for v, said in spread.facts.items()}
+    found = {v: tuple(sorted(one for one in some if recognises(categories[one]))) for v, some in made.items()}
+    return {vertex: kinds for vertex, kinds in found.items() if kinds}
 
 
 def absent(bound: Bound, graph: FlowGraph) -> tuple[tuple[Element, str], ...]:

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Analysis, Carried, Finding
     from rosprivacy.analysis.findings.processed import Processed
     from rosprivacy.analysis.findings.sanitizing import Cleaning
+    from rosprivacy.analysis.findings.ways import Ways
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.model import Element
     from rosprivacy.report.cnil.told import Told
@@ -50,8 +51,8 @@ class Known:
         Identity of a storage or recipient -> what people stated of it (``Answer.stated``).
     accepted
         Id of a finding -> why a person accepted it.
-    subjects
-        Identity of a source -> groups of persons that its data are about.
+    ways
+        Whose data of each kind get where, and are there at all.
     hierarchy
         Of the categories.
     told
@@ -64,7 +65,7 @@ class Known:
     kinds: tuple[Kind, ...]
     stated: Stated
     accepted: Mapping[str, str]
-    subjects: Mapping[tuple[str, str, str], tuple[str, ...]]
+    ways: tuple[Ways, ...]
     hierarchy: Hierarchy
     told: Told
     processed: tuple[Processed, ...] = ()
@@ -127,7 +128,9 @@ def _data_of(kind: Kind, known: Known) -> Iterator[Html]:
         f"{told.name(element)} ({known.kept(element, category.name) or told('cnil.kept.unstated')})"
         for element in known.storages_of(category.name)
     ]
-    persons = sorted({group for source in kind.sources for group in known.subjects.get(source.identity, ())})
+    of_kind = [way for way in known.ways if way.element is None and way.category == category.name]
+    persons = [group for way in of_kind for group in way.persons]
+    unnamed = not of_kind or any(way.unnamed for way in of_kind)
     yield bullets(
         [
             *told.lines("cnil.brought", kind.sources),
@@ -137,16 +140,16 @@ def _data_of(kind: Kind, known: Known) -> Iterator[Html]:
             told.line("cnil.kept", told.some(stored) or told("cnil.kept.none")),
             *([told.line("cnil.persons", told.some(persons))] if persons else []),
             *purposes_of(known.processed, category.name, told),
-            told(_open_of(persons, list(purposes_of(known.processed, category.name, told)))),
+            told(_open_of(list(purposes_of(known.processed, category.name, told)), unnamed=unnamed)),
         ]
     )
 
 
-def _open_of(persons: list[str], purposes: list[Html]) -> str:
+def _open_of(purposes: list[Html], *, unnamed: bool) -> str:
     """The sentence that names what a person has to complete."""
     if purposes:
-        return "cnil.access.open" if persons else "cnil.persons.access.open"
-    return "cnil.purpose.open" if persons else "cnil.persons.open"
+        return "cnil.persons.access.open" if unnamed else "cnil.access.open"
+    return "cnil.persons.open" if unnamed else "cnil.purpose.open"
 
 
 def life_cycle(known: Known) -> Html:

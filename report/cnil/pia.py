@@ -59,7 +59,7 @@ def cnil_pia(answer: Answer, created: str, language: str = "en") -> dict[str, An
     told = Told(Words(language), vocabulary.categories)
     accepted = _accepted(answer, told.words)
     known = Known(
-        analysis, kinds, answer.stated, accepted, answer.subjects, vocabulary.hierarchy, told, answer.processed
+        analysis, kinds, answer.stated, accepted, answer.ways, vocabulary.hierarchy, told, answer.processed
     )
     measures = list(_measures(known))
     sentence = verdict_sentence(verdict_facts(answer), told.words)

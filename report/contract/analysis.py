@@ -39,6 +39,7 @@ if TYPE_CHECKING:
         SubjectsEntry,
         SurroundingsEntry,
         TypesEntry,
+        WaysEntry,
     )
 
 
@@ -212,6 +213,7 @@ class AnalysisDocument(TypedDict):
     roles: NotRequired[list[RolesEntry]]
     outside: list[NonRosEntry]
     subjects: list[SubjectsEntry]
+    ways: NotRequired[list[WaysEntry]]
     surroundings: NotRequired[list[SurroundingsEntry]]
     types: NotRequired[list[TypesEntry]]
     contexts: NotRequired[list[ContextEntry]]

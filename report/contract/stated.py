@@ -146,6 +146,26 @@ class ProcessedEntry(TypedDict):
     missing: list[str]
 
 
+class ProtectionEntry(TypedDict):
+    """Who cleans data on the way, of which kind; whether the data get there in no other form."""
+
+    element: ElementEntry
+    category: str
+    method: str
+    stated: bool
+    everywhere: bool
+
+
+class WaysEntry(TypedDict):
+    """Whose data of a kind get to a place, or are there at all; what protects them before. Without an element: at all."""
+
+    element: NotRequired[ElementEntry]
+    category: str
+    subjects: list[str]
+    subjects_missing: bool
+    protections: list[ProtectionEntry]
+
+
 class SanitizerEntry(TypedDict):
     """Who cleans a category, and what passes all the same."""
 
@@ -159,6 +179,7 @@ class SanitizerEntry(TypedDict):
     beside: list[ElementEntry]
     cleaning_beside: NotRequired[list[ElementEntry]]
     places: NotRequired[list[PlaceEntry]]
+    recognises: NotRequired[list[str]]
 
 
 DerivationEntry = TypedDict(

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, cast
 
 from rosprivacy.analysis.contexts import article9_in, revealed
 from rosprivacy.analysis.findings.review_order import Behind
-from rosprivacy.analysis.findings.sanitizing import absent, cleanings, makings
+from rosprivacy.analysis.findings.sanitizing import absent, cleanings, makings, recognised
 from rosprivacy.analysis.kernel.ranks import in_words
 from rosprivacy.analysis.legal import turned_special
 from rosprivacy.analysis.written_names import literal
@@ -52,6 +52,7 @@ if TYPE_CHECKING:
         SanitizerEntry,
         SurroundingsEntry,
         Texts,
+        WaysEntry,
     )
 
 FORMAT = "rosprivacy.analysis/1"
@@ -102,10 +103,11 @@ def analysis_document(answer: Answer) -> AnalysisDocument:
             {"element": element_dict(graph.elements[vertex]), "subjects": list(groups)}
             for vertex, groups in sorted(answer.bound.subjects.items())
         ],
+        "ways": _ways(answer),
         "surroundings": _surroundings(answer),
         "contexts": situations(answer.vocabulary, contexts),
         "look_at": pointers(answer.vocabulary, analysis.emitted, contexts),
-        "sanitizers": _sanitizers(analysis),
+        "sanitizers": _sanitizers(analysis, categories),
         "derivations": _derivations(analysis),
         "unreached": _unreached(analysis),
         "enclaves": _enclaves(graph),
@@ -161,8 +163,36 @@ def _overruled(one: Overruled) -> OverruledEntry:
     }
 
 
-def _sanitizers(analysis: Analysis) -> list[SanitizerEntry]:
+def _ways(answer: Answer) -> list[WaysEntry]:
+    """What lies on the ways of each kind of data to each place."""
+    rows: list[WaysEntry] = []
+    for row in answer.ways:
+        rows.append(
+            {
+                "category": row.category,
+                "subjects": list(row.persons),
+                "subjects_missing": row.unnamed,
+                "protections": [
+                    {
+                        "element": element_dict(one.element),
+                        "category": one.category,
+                        "method": one.method,
+                        "stated": one.stated,
+                        "everywhere": one.everywhere,
+                    }
+                    for one in row.protections
+                ],
+            }
+        )
+        if row.element:
+            rows[-1]["element"] = element_dict(row.element)
+    return rows
+
+
+def _sanitizers(analysis: Analysis, categories: Mapping[str, Category]) -> list[SanitizerEntry]:
     """Who cleans data."""
+    found = recognised(analysis.spread, categories)
+    recognising = {analysis.graph.elements[vertex]: kinds for vertex, kinds in found.items()}
     return [
         {
             "element": element_dict(cleaning.element),
@@ -175,6 +205,7 @@ def _sanitizers(analysis: Analysis) -> list[SanitizerEntry]:
             "beside": [element_dict(element) for element in cleaning.beside],
             "cleaning_beside": [element_dict(element) for element in cleaning.cleaning_beside],
             "places": [{"file": place.file, "line": place.line} for place in cleaning.places],
+            "recognises": list(recognising.get(cleaning.element, ())),
         }
         for cleaning in cleanings(analysis.spread, analysis.emitted)
     ]

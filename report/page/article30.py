@@ -1,18 +1,21 @@
 """The record of processing activities (GDPR, Article 30(1)) as far as the analysis knows it, as CSV.
 
 In: a document and a language. Out: one row per kind of data and place where it leaves; one without such a place where
-none was found. What only a person can know is left empty, and a column says which fields these are. No cell says more
-than what people stated and the analysis found: a node is no recipient (Article 4(9)), a lack no measure, and where no
-basis of a transfer is stated, there is none.
+none was found. What only a person can know is to be completed, and a column says which fields these are. A cell states
+what lies on the ways of its own row: persons of the sources whose data get there as this kind, how long this very place
+keeps them, what cleans them before. A node is no recipient (Article 4(9)), a lack no measure, and where no basis of a
+transfer is stated, there is none.
 """
 
 from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import dataclass, fields
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.decisions import State
+from rosprivacy.analysis.legal_bases import transfer_of
 from rosprivacy.analysis.model import NO_BASIS
 from rosprivacy.analysis.non_ros import ADEQUATE, INSIDE, PARTLY, THIRD
 from rosprivacy.analysis.text import fit
@@ -22,8 +25,8 @@ from rosprivacy.report.page import purposes
 from rosprivacy.report.page.entries_of_robots import grouped
 from rosprivacy.report.page.index import Index
 from rosprivacy.report.page.kinds import provision
-from rosprivacy.report.page.non_ros import STORAGE, kept
-from rosprivacy.report.page.tables import OUTSIDE, can_come_from
+from rosprivacy.report.page.non_ros import kept, states_retention
+from rosprivacy.report.page.tables import OUTSIDE
 from rosprivacy.report.spreadsheet import as_csv
 from rosprivacy.report.verdict import verdict_sentence
 from rosprivacy.report.words.words import Words
@@ -35,6 +38,7 @@ if TYPE_CHECKING:
 
 SEPARATORS = {"en": ",", "de": ";", "fr": ";"}  # as spreadsheets in that language expect
 BOM = "\ufeff"  # without it Excel takes UTF-8 for something else
+PROTECTION = ("category", "method", "stated", "everywhere")  # what tells protections of elements of one name apart
 ABROAD = (PARTLY, THIRD)  # areas to which a transfer needs a basis of its own, chapter V
 
 
@@ -100,7 +104,6 @@ class _Facts:
         for at, row in index.outside.items():
             for category in row["holds"] if row["element"]["kind"] in OUTSIDE else ():
                 self._reached[category][at] = row["element"]
-        self._origins = can_come_from(index)
         self.enclaves = index.words.count(len(index.document["enclaves"]), "enclave")
 
     def recipients(self, category: str) -> list[list[Mapping[str, Any]]]:
@@ -114,10 +117,6 @@ class _Facts:
         rows = self.index.processed_for.items()
         return [row for (end, of), row in rows if of == category and (end in ends or not ends)]
 
-    def sources(self, category: str) -> list[str]:
-        """Groups of persons of the sources that the kind can come from."""
-        return sorted({group for source in self._origins[category] for group in self.index.subjects.get(source, ())})
-
 
 def _entry(category: str, group: Sequence[Mapping[str, Any]], facts: _Facts) -> Entry:
     index, words = facts.index, facts.index.words
@@ -126,6 +125,8 @@ def _entry(category: str, group: Sequence[Mapping[str, Any]], facts: _Facts) -> 
     stated = [index.outside[key(element)] for element in group if key(element) in index.outside]
     law = [provision(legal, category, index) for legal in known["law"]]
     rows = facts.processed(category, group)
+    persons, unnamed = index.persons(category, group)
+    kept_for, unlimited = _kept(category, group, index)
     values = {
         "activity": "",
         "controller": purposes.controllers(rows, index) or words("r.open"),
@@ -133,19 +134,19 @@ def _entry(category: str, group: Sequence[Mapping[str, Any]], facts: _Facts) -> 
         "category": index.data(category),
         "article9": words(f"article9.{known['article9']}"),
         "provisions": "; ".join(words.pair(p.name, p.condition) if p.condition else p.name for p in law),
-        "subjects": words.row(facts.sources(category)),
+        "subjects": words.row([*persons, *([words("r.open")] if unnamed else [])]),
         "exit": words.row(index.names(group)) if group else words("r.norecipient"),
         "recipient": _told(stated, _recipient, index),
         "country": _told(stated, _country, index),
-        "form": _form(findings, stated, index),
-        "transfer": _told(stated, _transfer, index),
+        "form": _form(category, group, index),
+        "transfer": _told(stated, partial(_transfer, rows), index),
         "basis": purposes.bases(rows, _bases(findings), index),
-        "retention": _kept(category, facts),
-        "measures": "; ".join(_measures(category, facts)),
+        "retention": "; ".join([*kept_for, *([words("r.open")] if unlimited else [])]),
+        "measures": "; ".join(_measures(category, group, facts)) or words("r.open"),
         "findings": words.row(finding["id"] for finding in findings),
-        "note": _note(category, index),
+        "note": "; ".join(_notes(category, stated, index)),
     }
-    missing = {"g", *_not_stated(rows), *(() if values["subjects"] else "c"), *(() if values["retention"] else "f")}
+    missing = {"g", *_not_stated(rows), *("c" if unnamed else ""), *("f" if unlimited else "")}
     if len(stated) < len(group) or any(not row.get("operator") or not row.get("recipient") for row in stated):
         missing.add("d")
     if len(stated) < len(group) or any(_transfer_unknown(row) for row in stated):
@@ -177,11 +178,13 @@ def _country(row: Mapping[str, Any], index: Index) -> str:
     return f"{fit(row['country'])} ({index.words('area.' + row['area'])})"
 
 
-def _transfer(row: Mapping[str, Any], index: Index) -> str:
+def _transfer(rows: Sequence[Mapping[str, Any]], row: Mapping[str, Any], index: Index) -> str:
     """The safeguard of a transfer, that there is none, or that none is stated; nothing where nothing leaves the EEA."""
     area, stated, words = row.get("area"), row.get("transfer", ""), index.words
     stated = "" if area == ADEQUATE and stated == NO_BASIS else stated
-    basis = words.known(f"transfer.{stated}", stated) if stated else ""
+    articles = {basis for said in rows for basis in said["legal_bases"] if transfer_of(basis) == stated}
+    exact = f"transfer.{stated}.{'.'.join(articles)}"  # of clauses of one point of Article 46(2): there are two
+    basis = words.known(exact, words.known(f"transfer.{stated}", stated)) if stated else ""
     if not area or area == INSIDE:
         return basis if not area else ""
     if area in ABROAD and not basis:
@@ -201,40 +204,54 @@ def _bases(findings: Sequence[Mapping[str, Any]]) -> Iterator[str]:
     yield from dict.fromkeys(basis for d in decisions if d["state"] == State.VALID for basis in d["legal_basis"])
 
 
-def _form(findings: Sequence[Mapping[str, Any]], stated: Sequence[Any], index: Index) -> str:
-    if not findings and not stated:
+def _form(category: str, group: Sequence[Mapping[str, Any]], index: Index) -> str:
+    """In which form the data arrive: as they are, if any do."""
+    if not group:
         return ""
-    hidden = bool(findings) and all(finding["pseudonymised"] for finding in findings)
+    hidden = all(index.pseudonymised(element, category) for element in group)
     return index.words("r.hidden" if hidden else "r.as.is")
 
 
-def _kept(category: str, facts: _Facts) -> str:
-    """Time limits of the storages that the kind gets to, each with what its backups keep longer."""
-    rows = [
-        row
-        for row in facts.index.outside.values()
-        if row["element"]["kind"] == STORAGE and category in row["holds"] and row.get("retention")
-    ]
-    words = facts.index.words
-    said = (words("r.kept", element=name(r["element"]), duration=kept(r, category, facts.index)) for r in rows)
-    return "; ".join(dict.fromkeys(said))
+def _kept(category: str, group: Sequence[Mapping[str, Any]], index: Index) -> tuple[list[str], bool]:
+    """How long the row's own places keep the kind, with what backups keep longer; and whether more is to be completed."""
+    words, lasting = index.words, {}
+    unlimited = not group
+    for element in group:
+        row = index.outside.get(key(element), {})
+        if states_retention(row, category, index):
+            lasting[words("r.kept", element=name(element), duration=kept(row, category, index))] = None
+            unlimited |= row.get("backups") is True
+        else:
+            unlimited = True
+    return list(lasting), unlimited
 
 
-def _measures(category: str, facts: _Facts) -> Iterator[str]:
-    """Technical measures that are seen: access control, cleaning, encryption at rest. Others are a person's to add."""
+def _measures(category: str, group: Sequence[Mapping[str, Any]], facts: _Facts) -> Iterator[str]:
+    """Technical measures that are seen on the ways of the row; others are a person's to add.
+
+    These are access control, what is cleaned before, and that the row's own places are encrypted.
+    """
     index, words = facts.index, facts.index.words
     if index.document["enclaves"]:
         yield words("r.measure.enclaves", enclaves=facts.enclaves)
-    rows = [row for row in index.document["sanitizers"] if row["category"] == category and row["reached"]]
-    for group in grouped(rows, lambda row: (whole(row["element"])[1:], row["method"], row["stated"])):
-        method = words(f"method.{group[0]['method']}" if group[0]["stated"] else "method.unstated")
-        names = words.row(index.names([row["element"] for row in group]))
-        yield words("r.measure.cleans", element=names, method=method)
-    for row in index.outside.values():
-        if row.get("encrypted") and category in row["holds"]:
-            yield words("r.measure.encrypted", element=name(row["element"]))
+    rows = index.protections(category, group)
+    for same in grouped(rows, lambda row: (whole(row["element"])[1:], *(str(row[of]) for of in PROTECTION))):
+        row = same[0]
+        method = words(f"method.{row['method']}" if row["stated"] else "method.unstated")
+        names = words.row(index.names([one["element"] for one in same]))
+        said = words("r.measure.cleans", element=names, data=index.data(row["category"]), method=method)
+        yield said if row["everywhere"] else words("r.measure.past", measure=said)
+    for element in group:
+        if index.outside.get(key(element), {}).get("encrypted"):
+            yield words("r.measure.encrypted", element=name(element))
 
 
-def _note(category: str, index: Index) -> str:
+def _notes(category: str, stated: Sequence[Mapping[str, Any]], index: Index) -> Iterator[str]:
+    """What is no measure and no recipient, and has to be known: a place that is not encrypted, what is not reviewed."""
+    words = index.words
+    for row in stated:
+        if row.get("encrypted") is False:
+            yield words("r.note.unencrypted", element=name(row["element"]))
     unknown = count_rows(q for q in index.document["open"] if category in q["categories"]).elements
-    return index.words("r.note.open", elements=index.words.count(unknown, "element")) if unknown else ""
+    if unknown:
+        yield words("r.note.open", elements=words.count(unknown, "element"))

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.text import fit
 from rosprivacy.report.looked_at import looked_at
-from rosprivacy.report.naming import key, text
+from rosprivacy.report.naming import key, text, whole
 from rosprivacy.report.page.entries_of_robots import names_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Collection, Iterable, Mapping
 
     from rosprivacy.report.naming import Key
     from rosprivacy.report.words.words import Words
@@ -83,6 +83,49 @@ class Index:
     def subjects(self) -> dict[Key, list[str]]:
         """Whom the data of a source are about."""
         return {key(row["element"]): [fit(group) for group in row["subjects"]] for row in self.document["subjects"]}
+
+    @cached_property
+    def ways(self) -> dict[tuple[Key | None, str], Mapping[str, Any]]:
+        """(element or nowhere in particular, category) -> whose data get there, and what protects them on the way."""
+        rows = self.document.get("ways", ())
+        return {(whole(row["element"]) if "element" in row else None, row["category"]): row for row in rows}
+
+    def persons(self, category: str, places: Collection[Mapping[str, Any]]) -> tuple[list[str], bool]:
+        """Return whose data of a kind get to one of some places, or are there at all; and whether some are not named."""
+        keys: list[Key | None] = [whole(element) for element in places] or [None]
+        rows = [self.ways.get((place, category), {"subjects": (), "subjects_missing": True}) for place in keys]
+        groups = {fit(group) for row in rows for group in row["subjects"]}
+        return sorted(groups), any(row["subjects_missing"] for row in rows)
+
+    def is_of(self, group: str | None, category: str, places: Collection[Mapping[str, Any]] = ()) -> bool:
+        """Return whether data of a group of persons get there as a kind; of None, of those that labels do not name."""
+        named, missing = self.persons(category, places)
+        return missing if group is None else group in named
+
+    def protections(self, category: str, places: Collection[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+        """Return who cleans data of a kind on the ways to one of some places; without places, where the kind ends."""
+        rows = [self.ways.get((whole(element), category), {}) for element in places]
+        found = [one for row in rows for one in row.get("protections", ())]
+        if not places:
+            cleaning = (row for row in self.document["sanitizers"] if row["category"] == category and row["reached"])
+            found = [{**row, "everywhere": True} for row in cleaning if not row.get("recognises")]
+        return [one for n, one in enumerate(found) if one not in found[:n]]
+
+    @cached_property
+    def carried(self) -> dict[Key, Mapping[str, Any]]:
+        """Element, its legs together -> which kinds of data get there as they are, and which pseudonymised."""
+        found: dict[Key, dict[str, set[str]]] = {}
+        for row in self.document["carries"]:
+            here = found.setdefault(whole(row["element"]), {"categories": set(), "pseudonymised": set()})
+            for form, kinds in here.items():
+                kinds.update(row[form])
+        return found
+
+    def pseudonymised(self, element: Mapping[str, Any], category: str) -> bool:
+        """Return whether a kind of data gets to an element pseudonymised only."""
+        here = self.carried.get(whole(element), {"categories": (), "pseudonymised": ()})
+        plain = any(category in self.upwards(kind) for kind in here["categories"])
+        return category in here["pseudonymised"] and not plain
 
     @cached_property
     def processed_for(self) -> dict[tuple[Key, str], Mapping[str, Any]]:

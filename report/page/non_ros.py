@@ -97,6 +97,11 @@ def retention(row: Mapping[str, Any], index: Index) -> str:
     )
 
 
+def states_retention(row: Mapping[str, Any], category: str, index: Index) -> bool:
+    """Return whether it is stated how long an element keeps a kind of data: of it, a broader one or all."""
+    return any(kind in row.get("retention", ()) for kind in (*index.upwards(category), EVERY))
+
+
 def kept(row: Mapping[str, Any], category: str, index: Index) -> str:
     """Return how long a storage keeps one kind of data, as stated of it or of the nearest broader one; with backups."""
     words, stated = index.words, row["retention"]

@@ -1,7 +1,7 @@
 """The rights of the persons: for each group of them, where data about them can lie (Articles 15, 17 and 20).
 
-In: an ``Index``. Out: rows of plain texts. A storage or recipient counts for a group if data of a kind that the group's
-sources bring in, or that can be made of it, can get there; how long it is kept is 'not known' where nobody states it.
+In: an ``Index``. Out: rows of plain texts. A storage or recipient counts for a group if data that the group's sources
+bring in, or that are made of these, can get there; how long it is kept is 'not known' where nobody states it.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.text import fit
 from rosprivacy.report.naming import key
 from rosprivacy.report.page.non_ros import STORAGE, country, kept
-from rosprivacy.report.page.tables import OUTSIDE, can_come_from
+from rosprivacy.report.page.tables import OUTSIDE
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -50,16 +50,16 @@ def rights(index: Index) -> tuple[Persons, ...]:
     for source in sources:
         for name in index.subjects.get(source, ()):
             groups.setdefault(name, set()).add(source)
-    told = [Persons(fit(name), tuple(_places(members, index))) for name, members in sorted(groups.items())]
+    told = [Persons(fit(name), tuple(_places(name, members, index))) for name, members in sorted(groups.items())]
     silent = {source for source in sources if source not in index.subjects}
     if silent:
-        told.append(Persons(index.words("subject.unknown"), tuple(_places(silent, index))))
+        told.append(Persons(index.words("subject.unknown"), tuple(_places(None, silent, index))))
     return tuple(told)
 
 
-def _places(members: set[Key], index: Index) -> Iterator[Place]:
+def _places(group: str | None, members: set[Key], index: Index) -> Iterator[Place]:
     """Storages first, then who receives data."""
-    there = sorted(_kinds(members, index).items(), key=lambda one: (one[0][1] != STORAGE, one[0]))
+    there = sorted(_kinds(group, members, index).items(), key=lambda one: (one[0][1] != STORAGE, one[0]))
     alike: dict[tuple[str, Place], list[Mapping[str, Any]]] = {}
     for place, kinds in there:
         element = index.elements[place]
@@ -68,9 +68,8 @@ def _places(members: set[Key], index: Index) -> Iterator[Place]:
         yield replace(made, name=index.words.row(index.names(elements)))
 
 
-def _kinds(members: set[Key], index: Index) -> dict[Key, dict[str, bool]]:
+def _kinds(group: str | None, members: set[Key], index: Index) -> dict[Key, dict[str, bool]]:
     """Place -> the kinds of the members' data that can get there, and whether these come pseudonymised only."""
-    origins = can_come_from(index)
     found: dict[Key, dict[str, bool]] = {}
     for finding in index.findings:
         if key(finding["source"]) in members:
@@ -78,8 +77,9 @@ def _kinds(members: set[Key], index: Index) -> dict[Key, dict[str, bool]]:
             here[category] = here.get(category, True) and finding["pseudonymised"]
     for place, row in index.outside.items():
         for category in row["holds"] if row["element"]["kind"] in OUTSIDE else ():
-            if members & origins.get(category, set()):
-                found.setdefault(place, {}).setdefault(category, False)
+            if index.is_of(group, category, [row["element"]]):
+                hidden = index.pseudonymised(row["element"], category)
+                found.setdefault(place, {}).setdefault(category, hidden)
     return found
 
 

@@ -40,6 +40,8 @@ class Cleaning:
     past, more
         The first entries of these kinds whose path does not lead through the element: (anchor, number); and how many
         more there are, in words.
+    recognises
+        Kinds that it makes by which persons are recognised or judged: then it is no measure.
     """
 
     name: str
@@ -51,6 +53,7 @@ class Cleaning:
     beside: tuple[str, ...]
     past: tuple[tuple[str, int], ...]
     more: str = ""
+    recognises: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,6 +111,8 @@ def _cleaning(group: list[Mapping[str, Any]], past: _Past, index: Index) -> Clea
     unreached = [c for c in dict.fromkeys(r["category"] for r in group) if c not in reached]
     leaves = [index.data(category) for category in row["leaves"]]
     leaves += [index.data(category, pseudonymised=True) for category in row["leaves_pseudonymised"]]
+    recognising = {key(r["element"]) for r in index.document["sanitizers"] if r.get("recognises")}
+    too = _cleaning_too(group)
     first, number = past.of({whole(r["element"]) for r in group}, reached)
     return Cleaning(
         name=words.row(index.names([r["element"] for r in group])),
@@ -117,9 +122,10 @@ def _cleaning(group: list[Mapping[str, Any]], past: _Past, index: Index) -> Clea
         unreached=index.all_data(unreached),
         leaves=words.row(leaves),
         beside=(
-            *index.names([element for r in group for element in r["beside"]]),
-            *(words("s.cleans.too", element=name) for name in index.names(_cleaning_too(group))),
+            *index.names([*(e for r in group for e in r["beside"]), *(e for e in too if key(e) in recognising)]),
+            *(words("s.cleans.too", element=name) for name in index.names(e for e in too if key(e) not in recognising)),
         ),
+        recognises=index.all_data(dict.fromkeys(kind for r in group for kind in r.get("recognises", ()))),
         past=tuple(first),
         more=words("more", n=number - len(first)) if number > len(first) else "",
     )

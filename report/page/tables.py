@@ -144,22 +144,25 @@ def subjects(index: Index, links: Links) -> tuple[Table, tuple[str, ...]]:
             groups[group].add(source)
         if source not in index.subjects:
             silent.append(source)
-    rows = sorted(groups.items())
-    rows += [(index.words("subject.unknown"), set(silent))] if silent else []
+    rows: list[tuple[str | None, set[Key]]] = sorted(groups.items())
+    rows += [(None, set(silent))] if silent else []
     findings: dict[tuple[Key, str], list[Mapping[str, Any]]] = defaultdict(list)
     for finding in index.findings:
         findings[key(finding["source"]), finding["category"]].append(finding)
-    origins = can_come_from(index)
     table = [
-        Row(fit(name), "", tuple(_about(members, c, findings, origins, index, links) for c in index.categories))
+        Row(
+            index.words("subject.unknown") if name is None else fit(name),
+            "",
+            tuple(_about(name, members, c, findings, index, links) for c in index.categories),
+        )
         for name, members in rows
     ]
     return Table(_columns(index), tuple(table)), index.names([index.elements[s] for s in silent])
 
 
 def _about(
-    members: set[Key], category: str, findings: Mapping[Any, list[Mapping[str, Any]]],
-    origins: Mapping[str, set[Key]], index: Index, links: Links,
+    name: str | None, members: set[Key], category: str, findings: Mapping[Any, list[Mapping[str, Any]]],
+    index: Index, links: Links,
 ) -> Cell:  # fmt: skip
     here = [finding for member in sorted(members) for finding in findings.get((member, category), ())]
     open_findings = [finding for finding in here if state(finding) == "open"]
@@ -171,20 +174,4 @@ def _about(
         return Cell(words("cell.accepted" if accepted else "cell.through"), links.to(here))
     if any(category in index.of_role["source"][member] for member in members):
         return Cell(words("cell.brought"))
-    return Cell(words("cell.made" if members & origins[category] else "cell.none"))
-
-
-def can_come_from(index: Index) -> dict[str, set[Key]]:
-    """Return for each kind of data the sources that bring it in, or what it can be made of."""
-    found: dict[str, set[Key]] = {category: set() for category in index.categories}
-    for source, categories in index.of_role.get("source", {}).items():
-        for category in categories:
-            found[category].add(source)
-    makes = {(row["from"], row["to"]) for row in index.document["derivations"] if row["reached"]}
-    changed = True
-    while changed:
-        before = sum(map(len, found.values()))
-        for of, made in sorted(makes):
-            found.setdefault(made, set()).update(found.get(of, ()))
-        changed = sum(map(len, found.values())) > before
-    return found
+    return Cell(words("cell.made" if index.is_of(name, category) else "cell.none"))

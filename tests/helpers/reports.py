@@ -161,6 +161,10 @@ def with_outside(document: dict[str, Any]) -> dict[str, Any]:
     kept["because"] = {"key": "no-retention", "values": {}}
     kept["leak"] = kept["witness"][-1] = OUTSIDE[1]["element"]
     document["findings"].append(kept)
+    of_kinds = {row["category"]: row for row in document["ways"] if "element" not in row}
+    document["ways"] += [
+        {**of_kinds[kind], "element": row["element"]} for row in OUTSIDE for kind in row["holds"] if kind in of_kinds
+    ]
     return document
 
 

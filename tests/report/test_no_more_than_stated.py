@@ -164,14 +164,15 @@ def check_transfer(cell: str, open_: str, here: Mapping[str, Any]) -> None:
 
 
 def check_kept(row: Mapping[str, str], kind: str, said: Said) -> None:
-    """Durations are those of storages that the kind gets to; encryption is told where it is stated to be."""
-    disk = said.facts["disk"]
+    """Durations and encryption are those of the row's own place; where none is stated, it is to be completed."""
+    disk = said.facts["disk"] if row["exit"] == "disk" else {}
     kept = disk.get("retention")
     kept = kept.get(kind) if isinstance(kept, dict) else kept
     told = {code for code, words in DURATIONS.items() if re.search(rf"\b{words}\b", row["retention"])}
     assert told == ({kept} if kept else set())
-    assert ("30(1)(f)" in row["complete"]) <= ("retention" not in disk or not kept)
+    assert ("30(1)(f)" in row["complete"]) == (OPEN in row["retention"]) == (not kept)
     assert ("encrypted" in row["measures"]) == (disk.get("encrypted") is True)
+    assert ("not encrypted" in row["note"]) == (disk.get("encrypted") is False)
 
 
 def check_answers(answers: Mapping[int, str], said: Said) -> None:
@@ -255,7 +256,7 @@ MUTANTS: dict[str, tuple[Any, str, Callable[..., Any], Said]] = {
     "an operator as the controller": (purposes, "controllers", lambda *_: "operator-cloud", NOTHING),
     "a purpose that is taken as known": (purposes, "purposes", lambda *_: "operation", NOTHING),
     "the country of another element": (article30, "_country", lambda *_: "DE (in the EEA)", EACH),
-    "a time limit of another kind": (article30, "_kept", lambda *_: "disk: 3 days", EACH),
+    "a time limit of another kind": (article30, "_kept", lambda *_: (["disk: 3 days"], False), EACH),
     "the purposes of all sources": (processed._Rows, "_ways", of_all_sources, EACH),
 }
 

@@ -42,7 +42,8 @@ def test_what_nobody_stated_is_to_be_completed_and_marked() -> None:
     for row in record(care()):
         assert row["controller"] == row["purpose"] == row["basis"] == "to be completed"
         assert row["complete"].startswith("30(1)(a), 30(1)(b)")
-        assert ("30(1)(c)" in row["complete"]) == (row["subjects"] == "")
+        assert ("30(1)(c)" in row["complete"]) == ("to be completed" in row["subjects"])
+        assert ("30(1)(f)" in row["complete"]) == ("to be completed" in row["retention"])
 
 
 def test_a_node_is_no_recipient() -> None:
@@ -57,7 +58,7 @@ def test_storages_and_recipients_fill_their_fields() -> None:
     speech = rows["voice", "speech service"]
     assert speech["recipient"].endswith("processor")
     assert speech["country"] == "US (adequacy decision for some recipients)"
-    assert speech["transfer"] == "US: standard contractual clauses (Article 46(2)(c) and (d))"
+    assert speech["transfer"] == "US: standard contractual clauses (Article 46(2)(c) or (d))"
     assert rows["video of persons", "archive"]["retention"].startswith("archive: 30 days, in backups")
 
 
@@ -90,6 +91,7 @@ def test_a_lack_is_no_measure() -> None:
     for row in record(with_outside(care())):
         assert "not encrypted" not in row["measures"]
         assert "whether it is enforced: to be completed" in row["measures"]
+        assert ("archive: not encrypted" in row["note"]) == (row["exit"] == "archive")
 
 
 def test_backups_are_part_of_the_time_limit() -> None:
