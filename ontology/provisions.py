@@ -1,4 +1,4 @@
-"""The provisions of the Turtle files by themselves: what they are called, as of when they were read, where they stand.
+"""The provisions of the Turtle files by themselves: what they are called, when we last looked, where they stand.
 
 In: a language. Out: ``Provision`` facts. rdflib reads them, which is heavy: import this where it is used.
 """
@@ -33,9 +33,11 @@ class Provision:
     meaning
         In one sentence of our own.
     as_of
-        The day of the newest source that was read, ``YYYY-MM-DD``.
+        The day on which the entry was last looked at, ``YYYY-MM-DD``; no word that the law was read in force then.
     address
         Where EUR-Lex has it; empty where nothing is known.
+    adopted
+        The day on which it was adopted, where we did not find it published; else empty.
     """
 
     name: str
@@ -43,6 +45,7 @@ class Provision:
     meaning: str
     as_of: str
     address: str
+    adopted: str = ""
 
 
 @cache
@@ -67,6 +70,7 @@ def provisions(language: str = ENGLISH) -> tuple[Provision, ...]:
             _text(graph, subject, SKOS.definition, language),
             str(graph.value(subject, RP.asOf)),
             str(graph.value(subject, RDFS.seeAlso) or ""),
+            str(graph.value(subject, RP.adopted) or "") if graph.value(subject, RP.confirmed) is not None else "",
         )
         for subject in sorted(subjects, key=lambda subject: str(graph.value(subject, RP.identifier)))
     )

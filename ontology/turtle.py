@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from rdflib import DCTERMS, RDF, RDFS, SKOS, Graph, Namespace, URIRef
 
 from rosprivacy.analysis.errors import InputErrors, OntologyError, shown
-from rosprivacy.analysis.model import Category, Legal, Pointer, Situation
+from rosprivacy.analysis.model import ARTICLE_10, CONCERNS, Category, Legal, Pointer, Situation
 from rosprivacy.ontology.iris import PUBLISHED, STORED, as_stored
 from rosprivacy.ontology.pointed import EVERY_SYSTEM, Pointed
 
@@ -157,12 +157,13 @@ def _law(graph: Graph, subject: Node, own: str) -> Iterator[Legal]:
 
 
 def _in_context(graph: Graph, subject: Node) -> Iterator[Legal]:
-    """What data of a kind may reveal in a context (rp:inContext)."""
+    """What data of a kind may reveal in a context (rp:inContext); what names no kind of data only concerns them."""
     for link in graph.objects(subject, RP.inContext):
         context = graph.value(link, RP.context)
         legal = _legal(graph, link, "")
         if legal and context is not None:
-            yield legal._replace(context=str(graph.value(context, SKOS.notation) or ""))
+            about = CONCERNS if not (legal.special or legal.name == ARTICLE_10) else legal.verdict
+            yield legal._replace(context=str(graph.value(context, SKOS.notation) or ""), verdict=about)
 
 
 def _legal(graph: Graph, link: Node, own: str) -> Legal | None:
@@ -220,6 +221,8 @@ def _pointer(graph: Graph, provision: Node) -> Pointer:
         country=str(graph.value(provision, RP.country) or ""),
         address=str(graph.value(provision, RDFS.seeAlso) or ""),
         translations=_translated(name=cited, title=title, meaning=meaning),
+        confirmed=graph.value(provision, RP.confirmed) is None,
+        adopted=str(graph.value(provision, RP.adopted) or ""),
     )
 
 

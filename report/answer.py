@@ -187,8 +187,10 @@ class Answer:
         second = self.fleet.likeness.second if self.fleet else {}
 
         def first(row: Ways) -> Ways:
-            shown = (p._replace(element=replace(p.element, robot=second.get(p.element.robot, p.element.robot)))
-                     for p in row.protections)
+            shown = (
+                p._replace(element=replace(p.element, robot=second.get(p.element.robot, p.element.robot)))
+                for p in row.protections
+            )
             return row._replace(protections=tuple(dict.fromkeys(shown)))
 
         rows = ways(self.shown, self.bound, self.vocabulary.categories)

@@ -1,7 +1,7 @@
-"""Which provisions that a document points at a reader sees: law of the Union, and national law that is called for.
+"""Which provisions that a document points at a reader sees: law of the Union, and the national law that is called for.
 
-In: a JSON document and a language. Out: its rows of ``look_at``. National law is called for by the country of the
-system, of a storage or recipient, or by the language in which a report is asked for.
+In: a JSON document. Out: its rows of ``look_at``. National law is that of the country where the system works, as label
+and fleet files state it (``country:``), whatever the language of the report; without one it is for a person to find.
 """
 
 from __future__ import annotations
@@ -11,18 +11,22 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-OF_LANGUAGE = {"de": "DE", "fr": "FR"}
+KNOWN = ("DE", "FR")  # countries of which the ontology knows some provisions
 
 
-def looked_at(document: Mapping[str, Any], language: str = "en") -> list[Mapping[str, Any]]:
+def countries_of_use(document: Mapping[str, Any]) -> list[str]:
+    """Return the countries where the system works, as people state them."""
+    return sorted({row["country"] for row in document.get("surroundings", ()) if row.get("country")})
+
+
+def looked_at(document: Mapping[str, Any]) -> list[Mapping[str, Any]]:
     """Return the provisions to look at.
 
     >>> rows = [{"provision": "BDSG § 22", "country": "DE"}, {"provision": "AI Act", "country": ""}]
-    >>> [row["provision"] for row in looked_at({"look_at": rows, "outside": []})]
+    >>> [row["provision"] for row in looked_at({"look_at": rows})]
     ['AI Act']
     """
-    countries = {row.get("country") for row in (*document["outside"], *document.get("surroundings", ()))}
-    countries |= {"", OF_LANGUAGE.get(language)}
+    countries = {"", *countries_of_use(document)}
     return [row for row in document.get("look_at", ()) if row["country"] in countries]
 
 

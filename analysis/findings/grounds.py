@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.kernel.spread import Spread
 
 SPEAKS_OF_LEAKS = ("leak", "no-leak")
-NO_SOURCE_OF_THESE = "no source emits one of the chosen categories: no data was followed"
+NO_SOURCE_OF_THESE = "no source emits one of the chosen categories, and nothing makes one: no data was followed"
 GOES_TO_SUCH = (
     "what the sources bring in goes nowhere but to standard channels and to those whose type cannot carry it: no data "
     "was followed"
@@ -29,7 +29,7 @@ WHAT = {
 
 
 class Grounds(NamedTuple):
-    """Whether a source begins what is asked for, whether its data goes on, and whether anybody speaks of leaks."""
+    """Whether what is asked for begins or is made, whether it goes on, and whether anybody speaks of leaks."""
 
     source: bool = False
     onward: bool = False
@@ -67,7 +67,8 @@ def grounds(spread: Spread, mask: int) -> Grounds:
     """
     asked = spread.names(mask)
     return Grounds(
-        source=any(spread.begins(vertex) & mask for vertex in spread.facts),
+        source=any(spread.begins(vertex) & mask for vertex in spread.facts)
+        or any(bits & mask for reached in (spread.arrives, spread.leaves) for bits in reached.values()),
         onward=_onward(spread, mask),
         leak=any(_judged(spread, vertex, asked) for vertex in spread.facts),
     )
@@ -101,8 +102,8 @@ def lacking(code: str, *, restricted: bool, limited: bool = False) -> tuple[Diag
     limited
         Whether there are channels that cannot carry some (rule S15).
 
-    >>> [said.message for said in lacking(NO_SOURCE, restricted=True)]
-    ['no source emits one of the chosen categories: no data was followed, so this says nothing about the system']
+    >>> [said.message.partition(":")[0] for said in lacking(NO_SOURCE, restricted=True)]
+    ['no source emits one of the chosen categories, and nothing makes one']
     """
     if not code:
         return ()

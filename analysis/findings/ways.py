@@ -75,8 +75,8 @@ def ways(analysis: Analysis, bound: Bound, categories: Mapping[str, Category]) -
 
     Notes
     -----
-    One search for all sources of which the same persons are stated, and a backward run for the places of one name that a
-    kind gets to pseudonymised, or made of another: O(flows) each.
+    One search for all sources of which the same persons are stated, and a backward run for the places of one name that
+    a kind gets to pseudonymised, or made of another: O(flows) each.
 
     Examples
     --------
@@ -180,9 +180,7 @@ class _Protections:
             if arriving and vertex not in vertices:
                 facts = spread.facts[vertex][cleaned]
                 everywhere = facts.method != Method.PSEUDONYMISE or not there >> plain & 1
-                yield Protection(
-                    spread.graph.elements[vertex], cleaned, facts.method, not facts.unstated, everywhere
-                )
+                yield Protection(spread.graph.elements[vertex], cleaned, facts.method, not facts.unstated, everywhere)
 
 
 def _passed(spread: Spread, categories: Mapping[str, Category]) -> Iterator[tuple[int, str]]:

@@ -11,6 +11,7 @@ DISCLOSURE, STORAGE_LIMITATION, THIRD_COUNTRY = "disclosure", "storage-limitatio
 UNPROTECTED = "unprotected-channel"  # who is on the network can read what flows there
 ARTICLE_9, ARTICLE_10 = "GDPR Art. 9(1)", "GDPR Art. 10"
 SPECIAL, MAY_REVEAL = ("always", "conditional"), "may-reveal"
+CONCERNS = "concerns"  # of a context: a provision is about such data there, and names nothing that they could reveal
 ARTICLE_9_VERDICTS = (*SPECIAL, MAY_REVEAL, "no", "unknown")
 SENSED = ("video", "audio", "image", "thermal", "point-cloud", "depth")  # data types of a sensor: what it saw or heard
 FORMS = (
@@ -70,7 +71,7 @@ class Legal(NamedTuple):
     as_of
         Date of the law, ``YYYY-MM-DD``.
     verdict
-        ``always``, ``conditional`` or ``may-reveal``.
+        ``always``, ``conditional`` or ``may-reveal``; in a context ``may-reveal`` or ``concerns``.
     condition
         When, where it is not always.
     sources
@@ -112,9 +113,11 @@ class Pointer(NamedTuple):
     title, meaning
         What it is about; what it says in one sentence of our own.
     as_of
-        The day of the newest source that was read, ``YYYY-MM-DD``.
+        The day on which the entry was last looked at, ``YYYY-MM-DD``; no word that the law was read in force then.
     applies
         The day from which it applies, or will; empty where it simply applies.
+    confirmed, adopted
+        Whether we found that law to be published; if not, the day on which it was adopted.
     country
         ISO 3166-1 code of the country whose law it is; empty for law of the Union.
     address
@@ -132,6 +135,8 @@ class Pointer(NamedTuple):
     country: str = ""
     address: str = ""
     translations: Mapping[str, Mapping[str, str]] = {}
+    confirmed: bool = True
+    adopted: str = ""
 
 
 class Situation(NamedTuple):

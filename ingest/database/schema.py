@@ -237,7 +237,11 @@ FINDING = NodeKind(
         Property("dismissed", BOOLEAN, "every path goes through another leak of the category"),
         Property("disjoint_paths", INTEGER, "paths that share no flow"),
         Property("article9", STRING, "strongest verdict under Art. 9(1) where its source works"),
-        Property("in_context", STRINGS, "what the data may reveal where its source works, `care: GDPR Art. 9(1) …`"),
+        Property(
+            "in_context",
+            STRINGS,
+            "what it may reveal, or what concerns it, where its source works, `care: GDPR Art. 9(1) …`",
+        ),
         Property("special_from", STRING, "element that makes a special category of other data; absent if none does"),
     ),
 )

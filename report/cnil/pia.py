@@ -58,9 +58,7 @@ def cnil_pia(answer: Answer, created: str, language: str = "en") -> dict[str, An
     kinds = kinds_of(analysis, vocabulary.categories, vocabulary.hierarchy)
     told = Told(Words(language), vocabulary.categories)
     accepted = _accepted(answer, told.words)
-    known = Known(
-        analysis, kinds, answer.stated, accepted, answer.ways, vocabulary.hierarchy, told, answer.processed
-    )
+    known = Known(analysis, kinds, answer.stated, accepted, answer.ways, vocabulary.hierarchy, told, answer.processed)
     measures = list(_measures(known))
     sentence = verdict_sentence(verdict_facts(answer), told.words)
     note = _note(analysis, assumptions, _fleet(view, told) if view else "", sentence, told)

@@ -44,6 +44,8 @@ class PointerEntry(TypedDict):
     meaning: str
     as_of: str
     applies_from: str
+    confirmed: NotRequired[bool]
+    adopted: NotRequired[str]
     country: str
     address: str
     categories: list[str]
@@ -157,7 +159,7 @@ class ProtectionEntry(TypedDict):
 
 
 class WaysEntry(TypedDict):
-    """Whose data of a kind get to a place, or are there at all; what protects them before. Without an element: at all."""
+    """Whose data of a kind get to a place, what protects them before; without an element: wherever the kind is."""
 
     element: NotRequired[ElementEntry]
     category: str

@@ -42,6 +42,8 @@ def pointers(vocabulary: Vocabulary, categories: Iterable[str], contexts: Collec
             "meaning": one.meaning,
             "as_of": one.as_of,
             "applies_from": one.applies,
+            "confirmed": one.confirmed,
+            "adopted": one.adopted,
             "country": one.country,
             "address": one.address,
             "categories": list(kinds),

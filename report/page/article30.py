@@ -213,8 +213,8 @@ def _form(category: str, group: Sequence[Mapping[str, Any]], index: Index) -> st
 
 
 def _kept(category: str, group: Sequence[Mapping[str, Any]], index: Index) -> tuple[list[str], bool]:
-    """How long the row's own places keep the kind, with what backups keep longer; and whether more is to be completed."""
-    words, lasting = index.words, {}
+    """How long the row's own places keep the kind, backups too; and whether more is to be completed."""
+    words, lasting = index.words, dict[str, None]()
     unlimited = not group
     for element in group:
         row = index.outside.get(key(element), {})

@@ -36,8 +36,8 @@ class Index:
 
     @cached_property
     def looked_at(self) -> list[Mapping[str, Any]]:
-        """The provisions to look at that a reader of this language sees."""
-        return looked_at(self.document, self.words.language)
+        """The provisions to look at that a reader sees."""
+        return looked_at(self.document)
 
     @cached_property
     def roles(self) -> dict[tuple[Key, str], list[str]]:
@@ -91,7 +91,7 @@ class Index:
         return {(whole(row["element"]) if "element" in row else None, row["category"]): row for row in rows}
 
     def persons(self, category: str, places: Collection[Mapping[str, Any]]) -> tuple[list[str], bool]:
-        """Return whose data of a kind get to one of some places, or are there at all; and whether some are not named."""
+        """Return whose data of a kind get to one of some places, or are anywhere; and whether some are not named."""
         keys: list[Key | None] = [whole(element) for element in places] or [None]
         rows = [self.ways.get((place, category), {"subjects": (), "subjects_missing": True}) for place in keys]
         groups = {fit(group) for row in rows for group in row["subjects"]}
@@ -112,7 +112,7 @@ class Index:
         return [one for n, one in enumerate(found) if one not in found[:n]]
 
     @cached_property
-    def carried(self) -> dict[Key, Mapping[str, Any]]:
+    def carried(self) -> dict[Key, dict[str, set[str]]]:
         """Element, its legs together -> which kinds of data get there as they are, and which pseudonymised."""
         found: dict[Key, dict[str, set[str]]] = {}
         for row in self.document["carries"]:
@@ -123,7 +123,7 @@ class Index:
 
     def pseudonymised(self, element: Mapping[str, Any], category: str) -> bool:
         """Return whether a kind of data gets to an element pseudonymised only."""
-        here = self.carried.get(whole(element), {"categories": (), "pseudonymised": ()})
+        here = self.carried.get(whole(element), {"categories": set(), "pseudonymised": set()})
         plain = any(category in self.upwards(kind) for kind in here["categories"])
         return category in here["pseudonymised"] and not plain
 

@@ -8,14 +8,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.model import MAY_REVEAL
 from rosprivacy.analysis.text import fit
-from rosprivacy.report.looked_at import of_every_system
+from rosprivacy.report.looked_at import KNOWN, countries_of_use, of_every_system
 from rosprivacy.report.naming import text
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
     from rosprivacy.report.page.index import Index
+
+WORKPLACE = "workplace"  # the context
+ABOUT_WORK = ("AI Act", "GDPR Art. 88", "GDPR Art. 22", "BDSG § 26", "BetrVG", "Labour code")
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +48,23 @@ def further(index: Index) -> tuple[tuple[str, tuple[LookAt, ...]], ...]:
     return tuple((heading, several) for heading, several in found if several)
 
 
+def at_work(index: Index) -> tuple[LookAt, ...]:
+    """Return what a works council has to look at: what the workplace and the kinds of data call for."""
+
+    def is_about_work(row: Mapping[str, Any]) -> bool:
+        return WORKPLACE in row["contexts"] or (row["categories"] and row["provision"].startswith(ABOUT_WORK))
+
+    return tuple(_told(filter(is_about_work, index.looked_at), index))
+
+
+def national(index: Index) -> tuple[str, ...]:
+    """Return whose national law is to be looked at, and how much of it is known here; never that of the language."""
+    words, countries = index.words, countries_of_use(index.document)
+    known = words.row(KNOWN)
+    told = [words(f"look.national.{'some' if one in KNOWN else 'none'}", country=one, known=known) for one in countries]
+    return tuple(told) or (words("look.national.unstated", known=known),)
+
+
 def context_of(name: str, index: Index) -> str:
     """Return what a context is called."""
     known = (one for one in index.document.get("contexts", ()) if one["name"] == name)
@@ -51,17 +72,20 @@ def context_of(name: str, index: Index) -> str:
 
 
 def revealed(finding: Mapping[str, Any], index: Index) -> Iterator[str]:
-    """Yield what the data of a finding may reveal where they are brought in: context, provision, reason."""
+    """Yield what the data of a finding may reveal where they are brought in: context, provision, reason.
+
+    What only concerns such data there is said once, of their kind.
+    """
     of_category = {
         (row["context"], row["provision"], row["condition"]): row
         for row in index.categories[finding["category"]].get("in_context", ())
     }
     for said in finding.get("in_context", ()):
         row = of_category.get((said["context"], said["provision"], said["condition"]))
-        if row:
+        if row and said["verdict"] == MAY_REVEAL:
             language = index.words.language
             yield index.words(
-                "f.context",
+                "f.context.may-reveal",
                 context=context_of(said["context"], index),
                 provision=text(row, "provision", language),
                 reason=text(row, "condition", language),
@@ -74,5 +98,7 @@ def _told(rows: Iterable[Mapping[str, Any]], index: Index) -> Iterator[LookAt]:
         dates = [words("law.as.of", date=words.date(row["as_of"]))]
         if row["applies_from"]:
             dates.append(words("look.applies", date=words.date(row["applies_from"])))
+        if not row.get("confirmed", True):
+            dates.append(words("look.unconfirmed", date=words.date(row["adopted"])))
         provision, title, meaning = (text(row, what, language) for what in ("provision", "title", "meaning"))
         yield LookAt(provision, title, meaning, "; ".join(dates))

@@ -30,7 +30,7 @@ from rosprivacy.report.page.finding_entries import Entry, finding_entries
 from rosprivacy.report.page.fleet_section import Fleet, fleet_told
 from rosprivacy.report.page.index import Index, state
 from rosprivacy.report.page.kinds import Kind, kinds
-from rosprivacy.report.page.look_at import LookAt, further
+from rosprivacy.report.page.look_at import LookAt, at_work, further, national
 from rosprivacy.report.page.non_ros import Outside, outside
 from rosprivacy.report.page.opening import Opening, flows, opening
 from rosprivacy.report.page.purposes import Row, processed, signed
@@ -139,6 +139,9 @@ class Outline:
     orphans: tuple[Decision, ...]
     hanging: tuple[Hanging, ...]
     look_at: tuple[tuple[str, tuple[LookAt, ...]], ...]
+    contexts: tuple[str, ...]
+    at_work: tuple[LookAt, ...]
+    national: tuple[str, ...]
     outside: tuple[Outside, ...]
     cleanings: tuple[sanitizers.Cleaning, ...]
     makings: tuple[sanitizers.Making, ...]
@@ -243,6 +246,9 @@ def outline(
         orphans=orphans(index),
         hanging=hanging(index),
         look_at=further(index),
+        contexts=tuple(context["name"] for context in document.get("contexts", ())),
+        at_work=at_work(index),
+        national=national(index),
         outside=outside(index),
         cleanings=sanitizers.cleanings(index, entries),
         makings=sanitizers.makings(index),

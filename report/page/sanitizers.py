@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.legal import PROHIBITED
 from rosprivacy.analysis.model import SPECIAL
 from rosprivacy.report.naming import key, whole
 from rosprivacy.report.page.entries_of_robots import grouped, without_robots
@@ -58,12 +59,16 @@ class Cleaning:
 
 @dataclass(frozen=True, slots=True)
 class Making:
-    """That an element makes one kind of data of another; ``special`` if it can be a special category only then."""
+    """That an element makes one kind of data of another; ``special`` if it can be a special category only then.
+
+    ``recognises`` if persons are recognised or judged by what it makes.
+    """
 
     name: str
     made_of: str
     made: str
     special: bool
+    recognises: bool = False
 
 
 def cleanings(index: Index, entries: Iterable[Entry]) -> tuple[Cleaning, ...]:
@@ -146,7 +151,14 @@ def makings(index: Index) -> tuple[Making, ...]:
             name=index.words.row(index.names([row["element"] for row in group])),
             made_of=index.data(group[0]["from"]),
             made=index.data(group[0]["to"]),
+            recognises=_recognises(index.categories.get(group[0]["to"], {})),
             special=article9.get(group[0]["to"], False) and not article9.get(group[0]["from"], False),
         )
         for group in groups
     )
+
+
+def _recognises(made: Mapping[str, Any]) -> bool:
+    """Whether persons are recognised or judged by such data, as ``recognises`` has it of a category."""
+    special = any(legal["verdict"] in SPECIAL for legal in made.get("law", ()))
+    return special or any(at.startswith(PROHIBITED) for at in made.get("look_at", ()))

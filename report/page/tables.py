@@ -124,6 +124,8 @@ def _gets(
     if any(category in index.outside.get(key(element), {}).get("holds", ()) for element in group):
         return Cell(words("cell.gets"))
     cleaned = [row for element in group if (row := index.cleaned.get((key(element), category)))]
+    if cleaned and cleaned[0].get("recognises"):
+        return Cell(words("cell.gets"))
     return Cell(_cleaned(cleaned[0], index) if cleaned else words("cell.no"))
 
 

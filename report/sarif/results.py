@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.answer import Verdict
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.legal import turned_special
-from rosprivacy.analysis.model import MAY_REVEAL, NO_LEAK_NAMED, Place, Rank
+from rosprivacy.analysis.model import CONCERNS, MAY_REVEAL, NO_LEAK_NAMED, Place, Rank
 from rosprivacy.analysis.policy_lines import in_a_file
 from rosprivacy.report.made_of import making
 from rosprivacy.report.places import NOWHERE, of_step, to_review
@@ -278,10 +278,16 @@ def _governed(finding: Finding) -> Iterator[Place]:
 
 def _to_check(law: Sequence[Legal]) -> list[str]:
     """What a person has to look up; of what such data may only reveal, the names."""
-    strong = [legal for legal in law if legal.verdict != MAY_REVEAL]
+    strong = [legal for legal in law if legal.verdict not in (MAY_REVEAL, CONCERNS)]
     weak = [text(legal.name) for legal in law if legal.verdict == MAY_REVEAL]
+    concerning = [text(legal.name) for legal in law if legal.verdict == CONCERNS]
     said = []
     for legal in strong:
         condition = f": {legal.condition}" if legal.condition else ""
         said.append(f"To be checked: {text(legal.name)} ({text(legal.verdict)}{prose(condition)}).")
-    return [*said, f"It may reveal what these speak of: {', '.join(dict.fromkeys(weak))}."] if weak else said
+    said += [f"It may reveal what these speak of: {', '.join(dict.fromkeys(weak))}."] if weak else []
+    return (
+        [*said, f"Where it is brought in, these concern it: {', '.join(dict.fromkeys(concerning))}."]
+        if concerning
+        else said
+    )

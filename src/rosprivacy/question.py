@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.contexts import article9_in
 from rosprivacy.analysis.errors import InputErrors, OntologyError, shown
-from rosprivacy.analysis.model import ARTICLE_9_VERDICTS, MAY_REVEAL
+from rosprivacy.analysis.model import ARTICLE_9_VERDICTS, ARTICLE_10, MAY_REVEAL
 from rosprivacy.clock import judged_on
 from rosprivacy.decided import decisions_of
 from rosprivacy.ingest.types import TABLE
@@ -171,8 +171,14 @@ def _chosen(category: Category, settings: Settings, contexts: Collection[str]) -
     return (
         _meets(category.data_types, settings.data_types)
         and _meets(category.identity_factors, settings.identity_factors)
-        and (not settings.article9 or article9_in(category, contexts) in _levels(settings))
+        and (not settings.article9 or _is_sensitive(category, settings, contexts))
     )
+
+
+def _is_sensitive(category: Category, settings: Settings, contexts: Collection[str]) -> bool:
+    """Whether a category falls under Article 9(1) or 10 as far as it is asked for, or that is not known."""
+    article10 = {legal.verdict for legal in category.law if legal.name == ARTICLE_10}
+    return not {article9_in(category, contexts), *article10}.isdisjoint(_levels(settings))
 
 
 def _meets(stated: tuple[str, ...], asked: tuple[str, ...]) -> bool:

@@ -21,29 +21,38 @@ __all__ = ["cli"]
     [
         (
             "en",
-            "GDPR Art. 9(1): Special categories of personal data (as of 2026-11-21)  https://eur-lex.",
+            "GDPR Art. 9(1): Special categories of personal data (reviewed 2026-11-21)  https://eur-lex.",
         ),
-        ("de", "EuGH C-21/23: ND gegen DR (Lindenapotheke), 4. Oktober 2024 (as of 2026-11-21)  https://eur-lex."),
-        ("fr", "art. 88 RGPD: Traitement de données dans le cadre des relations de travail (as of 2026-11-21)"),
+        ("de", "EuGH C-21/23: ND gegen DR (Lindenapotheke), 4. Oktober 2024 (reviewed 2026-11-21)  https://eur-lex."),
+        ("fr", "art. 88 RGPD: Traitement de données dans le cadre des relations de travail (reviewed 2026-11-21)"),
     ],
 )
 def test_each_provision_stands_there_with_its_date(cli: Cli, language: str, line: str) -> None:
     lines = cli("law", "--lang", language).stdout.splitlines()
     assert [one for one in lines if one.startswith(line)]
-    assert lines[-1].endswith(f"as of {countries().as_of}")
-    assert len(lines) == 2 + 2 * len(provisions())
+    assert lines[-1].endswith(f"reviewed {countries().as_of}")
+    unconfirmed = [one for one in provisions() if one.adopted]
+    assert len(lines) == 3 + 2 * len(provisions()) + len(unconfirmed)
+
+
+def test_what_no_public_source_confirms_is_named_and_is_4(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The dates of Annex III rest on an amendment of which no publication was found."""
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1779408000")  # 22 May 2026
+    done = cli("law", "--check")
+    assert done.returncode == 4
+    named = {line.partition(":")[0] for line in done.stdout.splitlines()}
+    assert named == {one.name for one in provisions() if one.adopted} >= {"AI Act Art. 26(7)", "AI Act Art. 27"}
+    assert all("2026-06-29" in line and "not confirmed" in line for line in done.stdout.splitlines())
 
 
 def test_what_is_older_than_six_months_is_4(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1779408000")  # 22 May 2026
-    done = cli("law", "--check")
-    assert (done.returncode, done.stdout) == (0, "nothing is older than six months; the oldest is of 2026-11-21\n")
-    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1811030400")  # 23 May 2027
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1811635200")  # 30 May 2027
     done = cli("law", "--check")
     assert done.returncode == 4
-    assert len(done.stdout.splitlines()) == len(provisions()) + 1
-    assert done.stdout.splitlines()[-1] == (
-        "Adequacy decisions (GDPR Art. 45): as of 2026-11-21, more than 6 months ago; look whether it still holds"
+    old = [line for line in done.stdout.splitlines() if "more than 6 months ago" in line]
+    assert len(old) == len(provisions()) + 1
+    assert old[-1] == (
+        "Adequacy decisions (GDPR Art. 45): reviewed 2026-11-21, more than 6 months ago; look whether it still holds"
     )
 
 

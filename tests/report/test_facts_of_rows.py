@@ -10,7 +10,7 @@ import csv
 import io
 import re
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -35,7 +35,7 @@ KINDS = ("PersonalData", "Biometric", "FaceTemplate", "Video", "Voice")
 TITLES = {VOCABULARY.categories[name].title: name for name in KINDS}
 WORDS = Words("en")
 OPEN = WORDS("r.open")
-REST = {"rosprivacy": "1", "policies": [], "labels": [], "law_as_of": "2026-01-01", "standard_channels": None}
+REST: dict[str, Any] = {"rosprivacy": "1", "policies": [], "labels": [], "standard_channels": None}
 DROPPED = re.compile(r"(/?n\d+) \(([^)]+)\): ")
 
 

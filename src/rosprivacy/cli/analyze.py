@@ -89,7 +89,7 @@ def analyze(
     article9: Annotated[
         bool,
         typer.Option(
-            "--article9", help="Answer for what can fall under Article 9(1) GDPR only.", rich_help_panel=ASKED
+            "--article9", help="Answer for what can fall under Article 9(1) or 10 GDPR only.", rich_help_panel=ASKED
         ),
     ] = False,
     article9_level: Annotated[

@@ -1,4 +1,4 @@
-"""``rosprivacy law``: the provisions that findings point to, and how old what the program knows of them is."""
+"""``rosprivacy law``: the provisions that findings point to, and how old and sure what is known of them is."""
 
 from __future__ import annotations
 
@@ -14,25 +14,29 @@ from rosprivacy.cli.output import emit
 
 def law(
     check: Annotated[
-        bool, typer.Option("--check", help="Print what was read more than six months ago; exit with 4 if there is any.")
+        bool,
+        typer.Option(
+            "--check",
+            help="Print what was last looked at more than six months ago, and what is not confirmed; exit with 4 if "
+            "there is any.",
+        ),
     ] = False,
     lang: Annotated[Language, typer.Option(help="Language of names and texts.")] = Language.en,
     output: Output = None,
 ) -> None:
-    """Print the provisions that findings point to, each with the date of the law, and that of adequacy decisions."""
+    """Print the provisions that findings point to, each with the day of our last look, and adequacy decisions."""
     from rosprivacy.clock import today
     from rosprivacy.ingest.labels.countries import countries
     from rosprivacy.ontology.provisions import provisions
-    from rosprivacy.report.terminal.law import law_lines, old_lines
+    from rosprivacy.report.terminal.law import law_lines, old_lines, unconfirmed_lines
 
     known, adequacy = provisions(lang.value), countries().as_of
     if not check:
         emit("".join(f"{line}\n" for line in law_lines(known, adequacy)), output)
         return
-    old = old_lines(known, adequacy, today(os.environ))
+    doubtful = [*old_lines(known, adequacy, today(os.environ)), *unconfirmed_lines(known)]
     oldest = min([adequacy, *(provision.as_of for provision in known)])
-    emit(
-        "".join(f"{line}\n" for line in old) or f"nothing is older than six months; the oldest is of {oldest}\n", output
-    )
-    if old:
+    fine = f"each entry was looked at in the last six months, the oldest on {oldest}\n"
+    emit("".join(f"{line}\n" for line in doubtful) or fine, output)
+    if doubtful:
         raise typer.Exit(UNDETERMINED)

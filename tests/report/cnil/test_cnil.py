@@ -248,7 +248,9 @@ def test_a_cleaner_is_named_only_for_what_gets_to_it(care_home: Tool) -> None:
     assert "/uplink: drop" not in seen(care_home, 122)
     contents = {m["title"]: Page(m["content"]).seen for m in care_home.measures.values()}
     assert set(contents) >= {"Connections denied by policy"}
-    assert "/face_recognizer" not in "".join(m for title, m in contents.items() if title != "Connections denied by policy")
+    assert "/face_recognizer" not in "".join(
+        m for title, m in contents.items() if title != "Connections denied by policy"
+    )
     assert "Location" not in "".join(contents.values())
     assert contents["Connections denied by policy"].startswith("/face_recognizer/faces to /uplink")
 

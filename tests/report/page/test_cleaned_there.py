@@ -47,7 +47,10 @@ def test_the_inventory_says_the_same(told: Outline) -> None:
 
 def test_all_who_read_beside_a_sanitizer_are_named(told: Outline, document: dict[str, Any]) -> None:
     rows = {row.name: row.beside for row in told.cleanings}
-    assert rows["/blur"] == ("/face_recognizer", "/uplink (said to clean it, too)")  # who recognises faces protects nobody
+    assert rows["/blur"] == (
+        "/face_recognizer",
+        "/uplink (said to clean it, too)",
+    )  # who recognises faces protects nobody
     (blur,) = (row for row in document["sanitizers"] if row["element"]["name"] == "/blur")
     assert [row["name"] for row in blur["cleaning_beside"]] == ["/face_recognizer", "/uplink"]
     assert [place["line"] for place in blur["places"]] == [12]
