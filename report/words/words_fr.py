@@ -256,7 +256,7 @@ _TYPED = {
     "wc.point.one": "{n} point reste à décider.",
     "wc.point.many": "{n} points restent à décider.",
     "wc.law": "Où regarder",
-    "wc.law.88": "Article 88 du RGPD : traitement dans le cadre des relations de travail ; les accords collectifs et d'entreprise doivent s'y conformer.",
+    "wc.law.88": "Article 88 du RGPD : traitement dans le cadre des relations de travail ; les accords collectifs et d'entreprise doivent le respecter.",
     "wc.law.context": "Aucune annotation ne dit que les robots travaillent à côté de salariés (contexte workplace). Si c'est le cas, les articles 5, paragraphe 1, point f), et 26, paragraphe 7, du règlement IA sont à examiner aussi : pas d'inférence d'émotions au travail ; information des travailleurs avant l'utilisation d'un système à haut risque.",
     "wc.recognised": "Où des personnes sont reconnues ou jugées",
     "wc.made": "produit à partir de : {of} → {made}. Ce n'est pas une protection.",

@@ -136,7 +136,7 @@ MEASURE = {  # where a sanitizer states no method
     "text": lambda name: f"sanitizer {name} states no method",
     "cnil-pia": lambda name: f"{name}: pseudonymise (the data is still personal), taken because the label states no",
     "turtle": lambda name: f'"pseudonymisation at {name}"@en ;',
-    "article30": lambda name: f"{name} not stated: taken as pseudonymising",
+    "article30": lambda name: f"{name} (video of persons): not stated: taken as pseudonymising",
 }
 
 
