@@ -42,7 +42,7 @@ PROPERTIES = {
     RP.fallsUnder: "falls under", RP.article9: "under Article 9(1)", RP.provision: "provision", RP.verdict: "verdict",
     RP.condition: "when", RP.reason: "why", RP.source: "source", RP.inContext: "in a context", RP.context: "context",
     RP.lookAt: "to look at", DCTERMS.bibliographicCitation: "cited as", RDFS.seeAlso: "address", RP.partOf: "part of",
-    RP.asOf: "as of", RP.appliesFrom: "applies from",
+    RP.asOf: "last looked at", RP.appliesFrom: "applies from", RP.confirmed: "confirmed", RP.adopted: "adopted",
 }  # fmt: skip
 BACK = {SKOS.broader: "narrower", RP.partOf: "parts", RP.provision: "said of"}
 COMMENT = re.compile(r"^# (rp:\w+)(?: \"\w+\")? {2,}(.+(?:\n# {5,}.+)*)", re.MULTILINE)

@@ -211,7 +211,7 @@ PROVISION = NodeKind(
         Property("iri", STRING, "unique"),
         Property("name", STRING, "short, such as GDPR Art. 9(1) health"),
         Property("title", STRING, "its meaning in one sentence, in our words"),
-        Property("as_of", STRING, "date of the law"),
+        Property("as_of", STRING, "when our entry of the law was last looked at"),
         Property("applies_from", STRING, "day from which it applies, or will; absent where it simply applies"),
         Property("country", STRING, "ISO 3166-1 code of the country whose law it is; absent for law of the Union"),
     ),

@@ -57,6 +57,9 @@ def provision_triples(provisions: Iterable[Legal | Pointer]) -> Iterator[Triple]
             applies = [Literal(legal.applies, datatype=XSD.date)] if legal.applies else []
             country = [text(legal.country)] if legal.country else []
             yield from about(foreign(legal.iri), (RP.appliesFrom, applies), (RP.country, country))
+            if not legal.confirmed:
+                adopted = [Literal(legal.adopted, datatype=XSD.date)]
+                yield from about(foreign(legal.iri), (RP.confirmed, [Literal(False)]), (RP.adopted, adopted))
         if (subject, RDF.type, INSIDE.LegalProvision) in shipped:
             named |= {URIRef(str(up)) for up in shipped.transitive_objects(subject, INSIDE.partOf)}
         else:  # of a vocabulary that is not the shipped one

@@ -33,8 +33,8 @@ def context_lines(kind: Mapping[str, Any], findings: Iterable[Mapping[str, Any]]
         if sources:
             texts = {what: _text(row, what, words) for what in ("provision", "condition")}
             who = {"kind": kind["name"], "sources": ", ".join(sources), "context": row["context"]}
-            key = f"tty.law.context.{row['verdict']}"
-            yield f"   {words(key, **who, **texts)}", "magenta"
+            sentence = f"tty.law.context.{row['verdict']}"
+            yield f"   {words(sentence, **who, **texts)}", "magenta"
 
 
 def pointer_lines(report: Mapping[str, Any], category: str, words: Words) -> Iterator[Line]:

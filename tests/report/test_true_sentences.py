@@ -205,7 +205,7 @@ def test_who_asks_for_sensitive_data_gets_convictions_too(tmp_path: Path) -> Non
         "labels: 1\nnodes: {/wifi: {source: [CriminalConviction]}, /up: {leak: [CriminalConviction]}}\n", "utf-8"
     )
     for level in (None, "always"):
-        result = rosprivacy.analyze(tmp_path / "p.xml", tmp_path / "l.yaml", article9=True, article9_level=level)  # type: ignore[arg-type]
+        result = rosprivacy.analyze(tmp_path / "p.xml", tmp_path / "l.yaml", article9=True, article9_level=level)
         assert [finding.category for finding in result.findings] == ["CriminalConviction"]
         assert "Article 9(1) or 10 GDPR" in seen(result, "text")
 

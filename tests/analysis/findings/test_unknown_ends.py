@@ -192,8 +192,8 @@ class TestRestrictions:
             (("-c", "Location", "-c", "Voice"), "Location, Voice"),
             (("--data-type", "image"), "data that is image"),
             (("--identity-factor", "physical"), "data with the identity factor physical"),
-            (("--article9",), "what can fall under Article 9(1) GDPR"),
-            (("-c", "Voice", "--article9"), "Voice and what can fall under Article 9(1) GDPR"),
+            (("--article9",), "what can fall under Article 9(1) or 10 GDPR"),
+            (("-c", "Voice", "--article9"), "Voice and what can fall under Article 9(1) or 10 GDPR"),
         ],
     )
     def test_the_verdict_names_the_restriction_also_when_it_is_all(

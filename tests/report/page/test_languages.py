@@ -125,7 +125,13 @@ def test_every_reason_is_told_in_the_readers_language(language: str, tmp_path: P
             "in backups 7 days more",
             "no retention is stated",
         ),
-        "de": ("Aufbewahrungsdauer 60 Tage", "Land: US", "Land: CN", "7 Tage länger", "keine Speicherdauer angegeben für"),
+        "de": (
+            "Aufbewahrungsdauer 60 Tage",
+            "Land: US",
+            "Land: CN",
+            "7 Tage länger",
+            "keine Speicherdauer angegeben für",
+        ),
         "fr": ("conservées 60 jours", "pays : US", "pays : CN", "et 7 jours de plus", "durée de conservation n'est"),
     }
     plain = text.replace("\u00a0", " ").replace("\u202f", " ")
