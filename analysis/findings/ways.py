@@ -18,7 +18,7 @@ from rosprivacy.analysis.kernel.states import Net
 from rosprivacy.analysis.model import Method
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.kernel.search import Search
@@ -58,7 +58,7 @@ class Ways(NamedTuple):
     unnamed
         Whether data of a source get there of which no label names the persons.
     protections
-        On the ways to all places of this kind and name; of the kind as a whole none.
+        On the ways to all such places of this kind and name, told at the first; of the kind as a whole none.
     """
 
     element: Element | None
@@ -69,9 +69,9 @@ class Ways(NamedTuple):
 
 
 def ways(analysis: Analysis, bound: Bound, categories: Mapping[str, Category]) -> tuple[Ways, ...]:
-    """Return what lies on the ways of each emitted kind of data: to each leak and element outside ROS, then as a whole.
+    """Return what lies on the ways of each emitted kind of data: to where its findings end and to elements outside ROS.
 
-    Where labels name no persons and nothing protects, there is no row.
+    Then the same of each kind as a whole. Where labels name no persons and nothing protects, there is no row.
 
     Notes
     -----
@@ -88,30 +88,32 @@ def ways(analysis: Analysis, bound: Bound, categories: Mapping[str, Category]) -
     ('/archive', 'Video', ['/filter'])
     """
     spread = analysis.spread
+    passed = tuple(_passed(spread, categories))
+    if not passed and not bound.subjects:
+        return ()
     persons = _Persons.of(spread, bound)
-    places = _places(analysis)
-    protections = _Protections(spread, categories, places)
     rows = []
-    for vertices in places.values():
-        there = reduce(or_, map(spread.present, vertices), 0)
-        element = spread.graph.elements[vertices[0]]
-        for category in (name for name in spread.names(there) if name in analysis.emitted):
-            groups, unnamed = persons.at(vertices, spread.both(category))
-            rows.append(Ways(element, category, groups, unnamed, protections.to(element, category)))
+    for (_, _, category), places in _places(analysis).items():
+        both, protections = spread.both(category), _protections(spread, passed, places, category)
+        for vertices in places.values():
+            rows.append(Ways(spread.graph.elements[vertices[0]], category, *persons.at(vertices, both), protections))
+            protections = ()
     rows += [Ways(None, category, *persons.anywhere(spread.both(category))) for category in analysis.emitted]
     return tuple(row for row in rows if row.persons or row.protections)
 
 
-def _places(analysis: Analysis) -> dict[Identity, list[int]]:
-    """The vertices of leaks, of where findings end, and of what lies outside ROS."""
+def _places(analysis: Analysis) -> dict[tuple[str, str, str], dict[Identity, list[int]]]:
+    """(Kind and name of an element, kind of data) -> the elements of that name that such data get to and leave at."""
     spread = analysis.spread
-    wanted = {element.identity for element in analysis.outside}
-    wanted |= {finding.leak.identity for finding in analysis.findings}
-    places: dict[Identity, list[int]] = defaultdict(list)
+    outside = {element.identity for element in analysis.outside}
+    ends = {(finding.leak.identity, finding.category) for finding in analysis.findings}
+    wanted = outside | {identity for identity, _ in ends}
+    found: dict[tuple[str, str, str], dict[Identity, list[int]]] = defaultdict(lambda: defaultdict(list))
     for vertex, element in enumerate(spread.graph.elements):
-        if element.identity in wanted or spread.leaks.get(vertex):
-            places[element.identity].append(vertex)
-    return dict(places)
+        for category in spread.names(spread.present(vertex)) if element.identity in wanted else ():
+            if category in analysis.emitted and (element.identity in outside or (element.identity, category) in ends):
+                found[element.kind, element.name, category][element.identity].append(vertex)
+    return found
 
 
 class _Persons(NamedTuple):
@@ -148,39 +150,27 @@ def _anywhere(reach: Search) -> int:
     return there | reduce(or_, (bits for vertex in reach.making for bits, _ in reach.left[vertex]), 0)
 
 
-class _Protections:
-    """The sanitizers that data pass on, looked up once for the places of one kind and name, whatever their robots."""
-
-    def __init__(
-        self, spread: Spread, categories: Mapping[str, Category], places: Mapping[Identity, Collection[int]]
-    ) -> None:
-        self._spread = spread
-        self._passed = list(_passed(spread, categories))
-        self._vertices: dict[tuple[str, str], list[int]] = defaultdict(list)
-        for (_, kind, name), vertices in places.items():
-            self._vertices[kind, name] += vertices
-        self._known: dict[tuple[str, str, str], tuple[Protection, ...]] = {}
-
-    def to(self, element: Element, category: str) -> tuple[Protection, ...]:
-        """Return what protects a kind of data on the ways to an element and those of its name."""
-        key = element.kind, element.name, category
-        if key not in self._known:
-            self._known[key] = tuple(self._find(self._vertices[element.kind, element.name], category))
-        return self._known[key]
-
-    def _find(self, vertices: Collection[int], category: str) -> Iterator[Protection]:
-        spread = self._spread
-        plain, hidden = spread.bits.forms(spread.categories.index(category))
-        there = reduce(or_, map(spread.present, vertices), 0)
-        if not self._passed or not (there >> hidden & 1 or spread.categories.index(category) in spread.made):
-            return
-        leading = backward(spread, dict.fromkeys(vertices, there & spread.both(category))).entering
-        for vertex, cleaned in self._passed:
-            arriving = spread.arrives.get(vertex, 0) & leading.get(vertex, 0) & spread.both(cleaned)
-            if arriving and vertex not in vertices:
-                facts = spread.facts[vertex][cleaned]
-                everywhere = facts.method != Method.PSEUDONYMISE or not there >> plain & 1
-                yield Protection(spread.graph.elements[vertex], cleaned, facts.method, not facts.unstated, everywhere)
+def _protections(
+    spread: Spread, passed: Iterable[tuple[int, str]], places: Mapping[Identity, list[int]], category: str
+) -> tuple[Protection, ...]:
+    """Return the sanitizers that data of a kind pass on the ways to some places."""
+    vertices = [vertex for some in places.values() for vertex in some]
+    number = spread.categories.index(category)
+    plain, hidden = spread.bits.forms(number)
+    there = reduce(or_, map(spread.present, vertices), 0)
+    if not passed or not (there >> hidden & 1 or number in spread.made):
+        return ()
+    leading = backward(spread, dict.fromkeys(vertices, there & spread.both(category))).entering
+    found = []
+    for vertex, cleaned in passed:
+        arriving = spread.arrives.get(vertex, 0) & leading.get(vertex, 0) & spread.both(cleaned)
+        if arriving and vertex not in vertices:
+            facts = spread.facts[vertex][cleaned]
+            everywhere = facts.method != Method.PSEUDONYMISE or not there >> plain & 1
+            found.append(
+                Protection(spread.graph.elements[vertex], cleaned, facts.method, not facts.unstated, everywhere)
+            )
+    return tuple(found)
 
 
 def _passed(spread: Spread, categories: Mapping[str, Category]) -> Iterator[tuple[int, str]]:

@@ -103,13 +103,14 @@ class Index:
         return missing if group is None else group in named
 
     def protections(self, category: str, places: Collection[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-        """Return who cleans data of a kind on the ways to one of some places; without places, where the kind ends."""
-        rows = [self.ways.get((whole(element), category), {}) for element in places]
-        found = [one for row in rows for one in row.get("protections", ())]
+        """Return who cleans data of a kind on the ways to places of one name; without places, where the kind ends."""
+        names = {(element["kind"], element["name"]) for element in places}
+        here = (row for (at, of), row in self.ways.items() if at and of == category and at[1:3] in names)
+        found = [one for row in here for one in row["protections"]]
         if not places:
             cleaning = (row for row in self.document["sanitizers"] if row["category"] == category and row["reached"])
             found = [{**row, "everywhere": True} for row in cleaning if not row.get("recognises")]
-        return [one for n, one in enumerate(found) if one not in found[:n]]
+        return found
 
     @cached_property
     def carried(self) -> dict[Key, dict[str, set[str]]]:
