@@ -16,6 +16,7 @@ from rosprivacy.analysis.findings.processed import processed
 from rosprivacy.analysis.findings.reliance import Reliance, reliances
 from rosprivacy.analysis.findings.review_order import Behind, review_order
 from rosprivacy.analysis.findings.ways import Ways, ways
+from rosprivacy.analysis.fleet.likeness import NO_ROBOTS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
@@ -183,18 +184,22 @@ class Answer:
 
     @cached_property
     def ways(self) -> tuple[Ways, ...]:
-        """What lies on the ways of each kind of data to each place; of robots that are alike of one."""
-        second = self.fleet.likeness.second if self.fleet else {}
+        """What lies on the ways of each kind of data to each place; of robots that are alike of one.
 
-        def first(row: Ways) -> Ways:
+        Where the graph does not hold the whole fleet, the persons of other robots are not known at what robots share.
+        """
+        likeness = self.fleet.likeness if self.fleet else NO_ROBOTS
+
+        def told(row: Ways) -> Ways:
             shown = (
-                p._replace(element=replace(p.element, robot=second.get(p.element.robot, p.element.robot)))
+                p._replace(element=replace(p.element, robot=likeness.second.get(p.element.robot, p.element.robot)))
                 for p in row.protections
             )
-            return row._replace(protections=tuple(dict.fromkeys(shown)))
+            shared = row.element is None or not likeness.is_robot(row.element.robot)
+            unnamed = row.unnamed or (self.counts is not None and shared)
+            return row._replace(protections=tuple(dict.fromkeys(shown)), unnamed=unnamed)
 
-        rows = ways(self.shown, self.bound, self.vocabulary.categories)
-        return tuple(first(row) for row in rows if row.element is None or row.element.robot not in second)
+        return tuple(map(told, ways(self.shown, self.bound, self.vocabulary.categories)))
 
     def fleet_counts(self, view: FleetView) -> Counts:
         """Return how many elements, flows and standard channels the fleet has, not its graph."""

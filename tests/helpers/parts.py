@@ -175,6 +175,16 @@ def purposes_of_fewer(got: list[dict[str, Any]], expected: list[dict[str, Any]])
             assert set(row[key]) <= set(known[key]), (key, row, known)
 
 
+def ways_of_fewer(got: list[dict[str, Any]], expected: list[dict[str, Any]]) -> None:
+    """At what robots share, the persons of those that are shown, and that there are others; no other protections."""
+    whole = {(*row.get("element", {}).values(), row["category"]): row for row in expected}
+    for row in got:
+        known = whole[*row.get("element", {}).values(), row["category"]]
+        assert set(row["subjects"]) <= set(known["subjects"])
+        assert row["subjects"] == known["subjects"] or row["subjects_missing"], (row, known)
+        assert all(one["element"]["name"] in str(known["protections"]) for one in row["protections"])
+
+
 def documents(file: str, run: Callable[[str], Result]) -> None:
     """The same document, but that its rows for robots are those of fewer robots."""
     expected, got = answer_fleet(file, Settings()).document(), run(file).document()
@@ -183,6 +193,7 @@ def documents(file: str, run: Callable[[str], Result]) -> None:
     assert "open elements in the whole fleet: ways and distances are" in in_parts["message"]
     got["diagnostics"].remove(in_parts)
     purposes_of_fewer(got.pop("processed_for", []), expected.pop("processed_for", []))
+    ways_of_fewer(got.pop("ways"), expected.pop("ways"))
     flagged = [[row for row in told["diagnostics"] if row.get("code") == LEGAL_BASIS] for told in (got, expected)]
     assert all(row in flagged[1] for row in flagged[0])
     for told, some in zip((got, expected), flagged, strict=True):
