@@ -57,7 +57,7 @@ def test_a_finding_says_its_path_with_policy_lines_and_what_the_law_says(explore
     said = text(there, "element")
     assert "Video of persons can get from /robot_camera to /archive_server, which lets it out." in said
     assert "before.policy.xml:48 (enclave /factory, profile /robot_camera)" in said
-    assert "Article 9(1) GDPR: such data may reveal it" in said
+    assert "Article 9(1) GDPR: such data may reveal special categories" in said
     assert "as it is, not pseudonymised" in said
     assert "to assess disclosure" in said
     assert "/new_pose topic not reviewed" in said
