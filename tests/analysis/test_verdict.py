@@ -10,11 +10,12 @@ from hypothesis import strategies as st
 
 from rosprivacy.analysis.answer import Analysis, Verdict, robot_verdicts
 from rosprivacy.analysis.errors import InputErrors
+from rosprivacy.analysis.findings.doubts import judged
 from rosprivacy.analysis.findings.findings import Options, analyse
-from rosprivacy.analysis.model import Element, Place
+from rosprivacy.analysis.model import UNREAD_FILE, Doubt, Element, Place, Rank
 from tests.helpers.systems import HIERARCHY, System, statement, systems
 
-UNREAD = (Place("part.xml", 3),)
+UNREAD = (Doubt(UNREAD_FILE, Rank.BREAKS, place=Place("part.xml", 3), message="not read"),)
 
 
 def one_robot(analysis: Analysis, *, unread: bool = False) -> Verdict:
@@ -31,9 +32,9 @@ def test_a_finding_decides_then_what_is_open_then_what_is_known(*, leak: bool, i
 
 @given(systems(), st.booleans(), st.booleans())
 def test_the_verdict_on_the_only_robot_is_that_on_the_system(system: System, accepted: bool, unread: bool) -> None:  # noqa: FBT001
-    options = Options(accepts=(lambda _: True) if accepted else None, unread=UNREAD if unread else ())
+    options = Options(accepts=(lambda _: True) if accepted else None)
     try:
-        analysis = system.analyse(options)
+        analysis = judged(system.analyse(options), UNREAD if unread else ())
     except InputErrors:
         return
     assert one_robot(analysis, unread=unread) is analysis.verdict
