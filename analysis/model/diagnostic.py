@@ -32,11 +32,14 @@ FOLDED_NAMES = "folded-names"
 OBSERVATION_GAP = "observation-gap"  # what an observation is known to miss: the verdict is undetermined at best (S16)
 BAG_GAP = "bag-gap"  # what is not known of a bag that is a storage: the verdict is undetermined at best (S11)
 ACCESS_GAP = "access-gap"  # permissions are not asked, or not read: what is allowed is not known (S6, S11)
-GAPS = (UNREAD_FILE, OBSERVATION_GAP, BAG_GAP, ACCESS_GAP)  # doubts that break the verdict (rule S11)
 NOTHING_ENFORCED = "nothing-enforced"  # for nodes that were observed, and of which no policy is deployed (rule S6)
-RIDES = (NOTHING_ENFORCED, FALLBACK_TAKEN, EMPTY_GROUP, PATHS_NOT_COUNTED)  # doubts that ride on it
 RECORDING = "recording"  # a bag that is a storage: its size, its time, its topics
 SEEN_ALTHOUGH_DENIED = "seen-although-denied"
+WITHOUT_WARNINGS = "made-without-warnings"  # a text of what runs, without what the tool warned of (rule S16)
+GAPS = (UNREAD_FILE, OBSERVATION_GAP, BAG_GAP, ACCESS_GAP)  # doubts that break the verdict (rule S11)
+RIDES = (  # doubts that ride on it
+    NOTHING_ENFORCED, FALLBACK_TAKEN, EMPTY_GROUP, PATHS_NOT_COUNTED, EMPTY_INCLUDE, WITHOUT_WARNINGS,
+)  # fmt: skip
 ASSUMED = (OBSERVED, ENCLAVES_MADE_UP, FOLDED_NAMES, RECORDING)  # notices that stand under Assumed
 NO_SOURCE = "no-source"  # what 'no leak found' lacks, so that it says nothing (rules S11, S12)
 GOES_NOWHERE = "goes-nowhere"
