@@ -105,30 +105,25 @@ def test_a_gap_makes_the_verdict_undetermined_at_best(cli: Cli, robot: Path) -> 
 
 
 TWO = node_info("/n") + node_info("/n", subscribers="/image: sensor_msgs/msg/Image")  # as ROS may tell one of two twice
+ONE, C = node_info("/n"), node_info("/c")
+KNOWN = 'There are 3 nodes in the graph with the exact name "/n". You are seeing information about only one of them.\n'
+UNWARNED = {"made-without-warnings": 1}
 
 
 @pytest.mark.parametrize(
     ("text", "gaps"),
     [
-        (CAMERA + node_info("/n") + node_info("/c"), {"made-without-warnings": 1}),
-        (CAMERA + TWO + node_info("/c"), {"made-without-warnings": 1, "same-name": 1}),
-        ("/cam\n/n\n/n\n/c\n" + CAMERA + TWO + node_info("/c"), {"made-without-warnings": 1, "same-name": 1}),
-        ("/cam\n/n\n/n\n/c\n" + CAMERA + node_info("/n") + node_info("/c"), {"made-without-warnings": 1, "same-name": 1}),
-        ("/cam\n/n\n/c\n/d\n" + CAMERA + node_info("/n") + node_info("/c"), {"made-without-warnings": 1, "unanswered": 1}),
-        (
-            "/cam\n/n\n/c\n/_ros2cli_7\n" + CAMERA + node_info("/n") + node_info("/c")
-            + "Unable to find node '/_ros2cli_7'\n",
-            {},
-        ),
-        (CAMERA + node_info("/n", publishers="/n/_action/status: a/msg/S") + node_info("/c"), {}),
-        ("[WARN] [1.2] [rcl]: something\n" + CAMERA + node_info("/n") + node_info("/c"), {}),
-        (
-            'There are 3 nodes in the graph with the exact name "/n". You are seeing information about only one of them.\n'
-            + CAMERA + TWO + node_info("/c") + "Unable to find node '/d'\n",
-            {"same-name": 2, "unanswered": 1},
-        ),
+        (CAMERA + ONE + C, UNWARNED),
+        (CAMERA + TWO + C, {**UNWARNED, "same-name": 1}),
+        ("/cam\n/n\n/n\n/c\n" + CAMERA + TWO + C, {**UNWARNED, "same-name": 1}),
+        ("/cam\n/n\n/n\n/c\n" + CAMERA + ONE + C, {**UNWARNED, "same-name": 1}),
+        ("/cam\n/n\n/c\n/d\n" + CAMERA + ONE + C, {**UNWARNED, "unanswered": 1}),
+        ("/cam\n/n\n/c\n/_ros2cli_7\n" + CAMERA + ONE + C + "Unable to find node '/_ros2cli_7'\n", {}),
+        (CAMERA + node_info("/n", publishers="/n/_action/status: a/msg/S") + C, {}),
+        ("[WARN] [1.2] [rcl]: something\n" + CAMERA + ONE + C, {}),
+        (KNOWN + CAMERA + TWO + C + "Unable to find node '/d'\n", {"same-name": 2, "unanswered": 1}),
     ],
-)  # fmt: skip
+)
 def test_what_a_text_lacks_is_seen_with_and_without_standard_error(
     cli: Cli, robot: Path, text: str, gaps: dict[str, int]
 ) -> None:

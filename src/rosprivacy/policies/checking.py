@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.model import ACCESS_GAP
+from rosprivacy.analysis.model import ACCESS_GAP, UNREAD_FILE
 from rosprivacy.ingest.keystore.deployed_rights import differences
 from rosprivacy.ingest.keystore.generator_losses import generator_losses
 from rosprivacy.reading.granted import ZENOH, read_granted
@@ -58,7 +58,7 @@ def check_document(policy: str, deployed: tuple[str, ...], settings: Settings) -
             {"loss": one.fault, "message": one.message, "file": one.place.file, "line": one.place.line}
             for one in losses
         ],
-        "undetermined": any(one.code == ACCESS_GAP for one in told),
+        "undetermined": any(one.code in (ACCESS_GAP, UNREAD_FILE) for one in told),
         "diagnostics": list(_diagnostics(told)),
         "policies": [
             {"file": file, "sha256": digest} for file, digest in sorted({one for some in read for one in some.sources})

@@ -206,7 +206,9 @@ def test_the_library_a_fleet_and_check_take_them(cli: Cli, folder: Path) -> None
     ]
 
 
-@pytest.mark.parametrize(("name", "what"), [("x.xml", "it is"), ("x.p7s", "1 signed file is (x.p7s)")])
+@pytest.mark.parametrize(
+    ("name", "what"), [("x.xml", "it is"), ("x.p7s", "1 file is (x.p7s)"), ("x.bak", "1 file is (x.bak)")]
+)
 def test_such_a_file_in_a_folder_of_policies_is_a_gap(cli: Cli, folder: Path, name: str, what: str) -> None:
     mixed = folder / "mixed"
     mixed.mkdir()

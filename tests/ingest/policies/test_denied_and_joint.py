@@ -201,7 +201,7 @@ def test_xml_counts_in_any_case_and_other_files_are_counted(here: Path, cli: Cli
     write(here, "d/r.policy", "")
     done = cli("analyze", "d", "-l", "open.yaml", "-v", *STRICT)
     assert (done.returncode, "/uplink  (node; 2 steps" in done.stdout) == (4, True)
-    assert "notice: d: 1 file is not read, as the name does not end in .xml: r.policy; name" in done.stdout
+    assert "notice: d: 1 file is not read, as the name does not end in .xml: r.policy" in done.stdout
 
 
 def test_a_linked_folder_is_read_once_whatever_leads_to_it(here: Path, cli: Cli) -> None:
@@ -241,7 +241,7 @@ def test_a_fragment_with_grants_that_nothing_includes_leaves_it_undetermined(her
     write(here, "d/q.xml", UPLINK)
     done = cli("analyze", "d", "-l", "rev.yaml", *STRICT)
     assert done.returncode == 4
-    assert done.stdout.startswith("undetermined: no leak reached, but policy files with grants were not read")
+    assert done.stdout.startswith("undetermined: no leak reached, but files with grants were not read")
     assert (
         "warning: d/q.xml:1: not read: the root element is <enclave>, not <policy>, and no policy read" in done.stdout
     )
