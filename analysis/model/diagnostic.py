@@ -36,11 +36,16 @@ NOTHING_ENFORCED = "nothing-enforced"  # for nodes that were observed, and of wh
 RECORDING = "recording"  # a bag that is a storage: its size, its time, its topics
 SEEN_ALTHOUGH_DENIED = "seen-although-denied"
 WITHOUT_WARNINGS = "made-without-warnings"  # a text of what runs, without what the tool warned of (rule S16)
-GAPS = (UNREAD_FILE, OBSERVATION_GAP, BAG_GAP, ACCESS_GAP)  # doubts that break the verdict (rule S11)
-RIDES = (  # doubts that ride on it
-    NOTHING_ENFORCED, FALLBACK_TAKEN, EMPTY_GROUP, PATHS_NOT_COUNTED, EMPTY_INCLUDE, WITHOUT_WARNINGS,
+JOINS_NOTHING = "joins-nothing"  # a domain or infrastructure: data that gets there goes no further (rule S11)
+LEAK_JOINS_NOTHING = "leak-joins-nothing"  # one in which data is let out or kept, if it got there
+OWN_DOMAINS = "own-domains"  # robots of which nobody says in which domain they are (rule S1)
+GAPS = (  # doubts that break the verdict (rule S11)
+    UNREAD_FILE, OBSERVATION_GAP, BAG_GAP, ACCESS_GAP, LEAK_JOINS_NOTHING,
 )  # fmt: skip
-ASSUMED = (OBSERVED, ENCLAVES_MADE_UP, FOLDED_NAMES, RECORDING)  # notices that stand under Assumed
+RIDES = (  # doubts that ride on it
+    NOTHING_ENFORCED, FALLBACK_TAKEN, EMPTY_GROUP, PATHS_NOT_COUNTED, EMPTY_INCLUDE, WITHOUT_WARNINGS, JOINS_NOTHING,
+)  # fmt: skip
+ASSUMED = (OBSERVED, ENCLAVES_MADE_UP, FOLDED_NAMES, RECORDING, OWN_DOMAINS)  # notices that stand under Assumed
 NO_SOURCE = "no-source"  # what 'no leak found' lacks, so that it says nothing (rules S11, S12)
 GOES_NOWHERE = "goes-nowhere"
 NO_LEAK_NAMED = "no-leak-named"

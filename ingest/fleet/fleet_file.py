@@ -164,6 +164,7 @@ class _Fleet:
         self._drafts: list[tuple[str, Spec, bool]] = []  # id, what is said, whether it is infrastructure
         self._groups: list[tuple[FleetReader, Spec, Value]] = []
         self._parts: list[FleetReader] = []
+        self._domains: dict[str, tuple[str, Place]] = {}  # as they are compared -> as one is written first, and where
 
     def read(self, file: str, within: tuple[str, ...]) -> None:
         """Read one file with all that it includes; ``within`` are the files that are being read."""
@@ -287,6 +288,9 @@ class _Fleet:
         if not (model.policies or spec.policies):
             self._problem(spec.place, f"robot {shown(name)!r} has no policies", "name some, or a model that has some")
             return
+        domain = spec.domain or model.domain
+        if domain:
+            self._one_spelling(domain, self._line(spec if spec.domain else model, "domain"))
         own = bool(spec.strip or spec.add)
         namespace = (spec.strip, spec.add) if own else (model.strip, model.add)
         strip, add = (text.replace(STAR, name) for text in namespace)
@@ -297,13 +301,21 @@ class _Fleet:
             (*model.policies, *spec.policies),
             model.labels,
             spec.labels,
-            spec.domain or model.domain,
+            domain,
             strip,
             add,
             joined((self._everywhere(), model.surroundings, spec.surroundings)),
             tuple(dict.fromkeys((*model.types, *spec.types))),
         )
         (self._infrastructure if shared else self._robots)[name] = robot
+
+    def _one_spelling(self, domain: str, place: Place) -> None:
+        """Refuse a domain that looks like another: ``Lab`` and ``lab``, ``01`` and ``1`` would join nothing (S1)."""
+        alike = str(int(domain)) if domain.isdecimal() else domain.lower()
+        first, where = self._domains.setdefault(alike, (domain, place))
+        if first != domain:
+            what = f"domain {domain!r} is another one than {first!r} (at {where}), and looks like it"
+            self._problem(place, what, "write it in one way, or give them names that differ by more")
 
     def _members(self, part: FleetReader, spec: Spec, item: Value) -> Iterator[tuple[str, Spec]]:
         """The robots of a group: so many, or one for each file that a glob matches."""

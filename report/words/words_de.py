@@ -338,6 +338,7 @@ WORDS = {
     "a.enclaves-made-up": "{file}: Die Enclaves sind angenommen, eine je Knoten; was DDS je Enclave durchsetzt, ist nicht bekannt ({said}).",
     "a.folded-names": "{file}: Namen, die ein Programm bei jedem Start neu bildet, sind zusammengefasst ({said}).",
     "a.recording": "{file}: Ein Speicher ist eine Aufzeichnung (Bag); keine Nachricht darin wurde gelesen ({said}).",
+    "a.own-domains": "{file}: {n} Roboter ohne genannte Domain, jeder gilt als in einer eigenen; ROS 2 legt alle in Domain 0.",
     "a.law": "Nur die DSGVO wird auf den Wegen verfolgt, so wie die Ontologie des Programms sie mit Stand {date} kennt. Die KI-Verordnung, das Recht der elektronischen Kommunikation, nationales Recht und Betriebsvereinbarungen werden nicht betrachtet. Vorschläge für neues Recht werden nicht angewandt.",
     "a.labels": "Angaben sind das Wort einer Person. Was ein Knoten im Inneren tut und was ihn an ROS vorbei verlässt, kann das Programm nicht nachsehen.",
     "t.closed": "Auf jemandes Wort hin verschlossen: Ohne es kämen Daten weiter",

@@ -385,6 +385,7 @@ WORDS = {
     "a.enclaves-made-up": "{file}: {said}; what DDS enforces per enclave is not known.",
     "a.folded-names": "{file}: {said}.",
     "a.recording": "{file}: {said}.",
+    "a.own-domains": "{file}: {said}.",
     "a.law": "Only the GDPR is followed into paths, as the ontology of the program knows it as of {date}. The AI Act, the law on electronic communications, national law and agreements with works councils are not looked at. Proposals of new law are not applied.",
     "a.labels": "Labels are a person's word. The program cannot check what a node does inside, or what leaves it past ROS.",
     "t.closed": "Closed on somebody's word: without it, data would get on",

@@ -343,6 +343,7 @@ _TYPED = {
     "a.enclaves-made-up": "{file} : les enclaves sont supposées, une par nœud ; ce que DDS impose par enclave n'est pas connu ({said}).",
     "a.folded-names": "{file} : les noms qu'un programme invente à chaque démarrage sont réunis ({said}).",
     "a.recording": "{file} : un stockage est un enregistrement (bag) ; aucun message n'y a été lu ({said}).",
+    "a.own-domains": "{file} : {n} robot(s) sans domaine nommé, chacun supposé dans le sien ; ROS 2 les met tous dans le domaine 0.",
     "a.law": "Seul le RGPD est suivi le long des chemins, tel que l'ontologie du programme le connaît au {date}. Le règlement sur l'intelligence artificielle, le droit des communications électroniques, le droit national et les accords d'entreprise ne sont pas examinés. Les propositions de droit nouveau ne sont pas appliquées.",
     "a.labels": "Les annotations sont la parole d'une personne. Le programme ne peut pas vérifier ce qu'un nœud fait en lui-même, ni ce qui le quitte en dehors de ROS.",
     "t.closed": "Fermé sur la parole de quelqu'un : sans elle, des données iraient plus loin",

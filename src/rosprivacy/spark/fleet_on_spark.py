@@ -21,7 +21,7 @@ from rosprivacy.assumptions import named_files, types_read
 from rosprivacy.clock import judged_on
 from rosprivacy.ingest.fleet.alike_robots import alike
 from rosprivacy.ingest.fleet.fleet_file import read_fleet
-from rosprivacy.ingest.fleet.joins import joins_nothing
+from rosprivacy.ingest.fleet.joins import OF_DOMAINS
 from rosprivacy.ingest.labels.countries import countries
 from rosprivacy.ingest.labels.label_file import read_labels
 from rosprivacy.ontology.vocabulary import load
@@ -123,7 +123,7 @@ def plan_of(task: Task, found: Found, answer: Result, settings: Settings) -> tup
     examples = tuple(unit for unit in units if unit.name in found.examples)
     fleet = replace(task.fleet, robots=(), infrastructure=())
     assumptions = answer.assumptions
-    joins = joins_nothing(task.fleet, task.groups, found.told.met)
+    joins = tuple(said for said in found.told.diagnostics if said.code in OF_DOMAINS)
     plan = Plan(
         fleet, fixed, examples, found.shared, found.leaking, found.lacking, assumptions, settings, task.reader, joins
     )
@@ -161,10 +161,9 @@ def result(task: Task, found: Found, told: Shown, question: Question) -> Result:
         "unknown ends, what is denied, sanitized, derived, taken away, stated of purposes and bases, or not stated, "
         "and what the answer hangs on"
     )
-    joins = joins_nothing(task.fleet, task.groups, found.told.met)
     unlimited = ("message types limit nothing on Spark: in memory there can be fewer findings",)
     notices = (bounds, *(unlimited if found.told.typed and question.type_limits else ()))
-    said = (*found.told.diagnostics, *joins)
+    said = found.told.diagnostics
     said += tuple(Diagnostic(Place("--engine spark", 0), Severity.NOTICE, notice) for notice in notices)
     policies = {policy.file: policy for member in told.members.values() for policy in member.policies}
     labels = {file.file: file for member in told.members.values() for file in member.files}
