@@ -33,12 +33,13 @@ OBSERVATION_GAP = "observation-gap"  # what an observation is known to miss: the
 BAG_GAP = "bag-gap"  # what is not known of a bag that is a storage: the verdict is undetermined at best (S11)
 ACCESS_GAP = "access-gap"  # permissions are not asked, or not read: what is allowed is not known (S6, S11)
 NOTHING_ENFORCED = "nothing-enforced"  # for nodes that were observed, and of which no policy is deployed (rule S6)
+JOINS_NOTHING = "joins-nothing"  # a domain or infrastructure: data that gets there goes no further (rule S11)
+LEAK_JOINS_NOTHING = "leak-joins-nothing"  # one in which data is let out or kept, if it got there
+NO_ROBOT = "no-robot"  # folders beside those that a group of robots matches, in which its policy is not (rule S11)
+OWN_DOMAINS = "own-domains"  # robots of which nobody says in which domain they are (rule S1)
 RECORDING = "recording"  # a bag that is a storage: its size, its time, its topics
 SEEN_ALTHOUGH_DENIED = "seen-although-denied"
 WITHOUT_WARNINGS = "made-without-warnings"  # a text of what runs, without what the tool warned of (rule S16)
-JOINS_NOTHING = "joins-nothing"  # a domain or infrastructure: data that gets there goes no further (rule S11)
-LEAK_JOINS_NOTHING = "leak-joins-nothing"  # one in which data is let out or kept, if it got there
-OWN_DOMAINS = "own-domains"  # robots of which nobody says in which domain they are (rule S1)
 GAPS = (  # doubts that break the verdict (rule S11)
     UNREAD_FILE, OBSERVATION_GAP, BAG_GAP, ACCESS_GAP, LEAK_JOINS_NOTHING,
 )  # fmt: skip

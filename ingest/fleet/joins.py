@@ -11,8 +11,8 @@ from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.model import JOINS_NOTHING, LEAK_JOINS_NOTHING, OWN_DOMAINS, Diagnostic, Severity
-from rosprivacy.analysis.written_names import did_you_mean, nearest
+from rosprivacy.analysis.model import JOINS_NOTHING, LEAK_JOINS_NOTHING, NO_ROBOT, OWN_DOMAINS, Diagnostic, Severity
+from rosprivacy.analysis.written_names import did_you_mean, listed, nearest
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Sequence
@@ -22,8 +22,7 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.fleet.fleet_file import Fleet, Robot
 
 Met = tuple[int, int, str]  # number of a flow of the fleet file; 0 where it begins, 1 where it ends; robot of the graph
-OF_DOMAINS = (JOINS_NOTHING, LEAK_JOINS_NOTHING, OWN_DOMAINS)
-LISTED = 10  # names in a message
+OF_FLEET = (JOINS_NOTHING, LEAK_JOINS_NOTHING, NO_ROBOT, OWN_DOMAINS)
 ALONE = "leave the domain out if it is meant to be alone"
 
 
@@ -39,7 +38,7 @@ def let_out(elements: Iterable[tuple[Element, Iterable[Statement]]]) -> frozense
 def joins_nothing(
     fleet: Fleet, groups: Sequence[Alike], met: Iterable[Met], letting_out: Collection[str]
 ) -> tuple[Diagnostic, ...]:
-    """Return a warning for each domain of one robot and for each infrastructure that nothing joins.
+    """Return what is to be said of the file, and a warning for each domain and infrastructure that joins nothing.
 
     Parameters
     ----------
@@ -50,7 +49,7 @@ def joins_nothing(
     -----
     Linear in the robots, and in the flows times the groups of robots that are alike.
     """
-    return tuple(_Joins(fleet, groups, met, letting_out).told())
+    return (*fleet.diagnostics, *_Joins(fleet, groups, met, letting_out).told())
 
 
 class _Joins:
@@ -81,7 +80,7 @@ class _Joins:
         if robots and len(self._everyone) > 1:
             several = f"{len(robots):,} robots are taken to be in domains of their own"
             who = "1 robot is taken to be in a domain of its own" if len(robots) == 1 else several
-            what = f"{who}; ROS 2 puts all into domain 0: {_listed(sorted(robot.id for robot in robots))}"
+            what = f"{who}; ROS 2 puts all into domain 0: {listed(sorted(robot.id for robot in robots))}"
             yield Diagnostic(min((r.place for r in robots), key=_line), Severity.NOTICE, what, OWN_DOMAINS)
 
     def _joined(self, group: Alike) -> bool:
@@ -100,7 +99,7 @@ class _Joins:
 
     def _infrastructure(self, robot: Robot) -> Diagnostic:
         what = f"infrastructure {shown(robot.id)} joins nothing: it names no domain, so it has one of its own"
-        known = f"; domains here: {_listed(sorted(self._domains))}" if self._domains else ""
+        known = f"; domains here: {listed(sorted(self._domains))}" if self._domains else ""
         return self._nothing(robot, f"{what}, and no flow of the fleet file leads to it or from it{known}")
 
     def _nothing(self, robot: Robot, what: str, *, joined: bool = False) -> Diagnostic:
@@ -108,11 +107,6 @@ class _Joins:
             return Diagnostic(robot.place, Severity.WARNING, what, JOINS_NOTHING)
         what += f"; data of others that got to {shown(robot.id)} would be let out or kept there"
         return Diagnostic(robot.place, Severity.WARNING, what, LEAK_JOINS_NOTHING)
-
-
-def _listed(names: Sequence[str]) -> str:
-    more = f" and {len(names) - LISTED:,} more" if len(names) > LISTED else ""
-    return ", ".join(map(shown, names[:LISTED])) + more
 
 
 def _line(place: Place) -> tuple[str, int]:

@@ -21,7 +21,7 @@ from rosprivacy.assumptions import named_files, types_read
 from rosprivacy.clock import judged_on
 from rosprivacy.ingest.fleet.alike_robots import alike
 from rosprivacy.ingest.fleet.fleet_file import read_fleet
-from rosprivacy.ingest.fleet.joins import OF_DOMAINS
+from rosprivacy.ingest.fleet.joins import OF_FLEET
 from rosprivacy.ingest.labels.countries import countries
 from rosprivacy.ingest.labels.label_file import read_labels
 from rosprivacy.ontology.vocabulary import load
@@ -123,7 +123,7 @@ def plan_of(task: Task, found: Found, answer: Result, settings: Settings) -> tup
     examples = tuple(unit for unit in units if unit.name in found.examples)
     fleet = replace(task.fleet, robots=(), infrastructure=())
     assumptions = answer.assumptions
-    joins = tuple(said for said in found.told.diagnostics if said.code in OF_DOMAINS)
+    joins = tuple(said for said in found.told.diagnostics if said.code in OF_FLEET)
     plan = Plan(
         fleet, fixed, examples, found.shared, found.leaking, found.lacking, assumptions, settings, task.reader, joins
     )

@@ -534,3 +534,18 @@ class TestWhatJoinsNothing:
         assert "fleet.yaml:3" in line
         assert "fleet.yaml:7" in line
         assert analysed(cli, fleet % (one, one)).returncode == 4
+
+    def test_a_folder_of_a_group_without_its_policy_is_told(self, cli: Cli) -> None:
+        """Rule S11: a robot that is not there for the sake of a file's name."""
+        for robot, name in (("a", "policy.xml"), ("b", "policy.XML"), ("c", "other.xml"), (".d", "x.xml")):
+            write(f"v/{robot}/{name}", Path("cam.xml").read_text("utf-8"))
+        write("v/policy.xml", Path("cam.xml").read_text("utf-8"))
+        fleet = "groups: [{policies: 'v/*/policy.xml', labels: cam.yaml}]\n"
+        document = json.loads(analysed(cli, fleet, "-f", "json").stdout)
+        (told,) = document["diagnostics"]
+        assert (told["code"], told["severity"], told["file"], told["line"]) == ("no-robot", "warning", "fleet.yaml", 2)
+        assert told["message"] == "no policy.xml in 2 folders that v/* matches, so no robot: v/b, v/c"
+        assert document["verdict"] == "no-leak-found"
+        assert in_list("fleet.yaml").document()["diagnostics"][0] == told
+        files = json.loads(analysed(cli, fleet.replace("v/*/policy.xml", "v/a/*.xml"), "-f", "json").stdout)
+        assert not files["diagnostics"]
