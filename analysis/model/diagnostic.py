@@ -44,7 +44,8 @@ GAPS = (  # doubts that break the verdict (rule S11)
     UNREAD_FILE, OBSERVATION_GAP, BAG_GAP, ACCESS_GAP, LEAK_JOINS_NOTHING,
 )  # fmt: skip
 RIDES = (  # doubts that ride on it
-    NOTHING_ENFORCED, FALLBACK_TAKEN, EMPTY_GROUP, PATHS_NOT_COUNTED, EMPTY_INCLUDE, WITHOUT_WARNINGS, JOINS_NOTHING, NO_ROBOT,
+    NOTHING_ENFORCED, FALLBACK_TAKEN, EMPTY_GROUP, PATHS_NOT_COUNTED, EMPTY_INCLUDE, WITHOUT_WARNINGS, JOINS_NOTHING,
+    NO_ROBOT,
 )  # fmt: skip
 ASSUMED = (OBSERVED, ENCLAVES_MADE_UP, FOLDED_NAMES, RECORDING, OWN_DOMAINS)  # notices that stand under Assumed
 NO_SOURCE = "no-source"  # what 'no leak found' lacks, so that it says nothing (rules S11, S12)

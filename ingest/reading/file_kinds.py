@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from rosprivacy.analysis.errors import shown
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator, Mapping
 
 MOST = 2**18  # bytes in which a file says what it is: a configuration of Zenoh has its list far behind
 HEAD = 4096  # bytes in which a signed file says that it is
@@ -63,7 +63,7 @@ _GRANT = re.compile(r"""(?:publish|subscribe|request|reply|call|execute)=["'](?:
 _KEY = re.compile(r"""^["']?([A-Za-z_]\w*)["']?[ \t]*:""", re.MULTILINE)
 _NODE = re.compile(r"^/\S+\r?\n  (?:Subscribers|Publishers):", re.MULTILINE)
 _FORMAT = re.compile(r'"format": ?"rosprivacy\.([a-z]+)/')
-_PACKED = {
+_PACKED: Mapping[bytes, Callable[[bytes], bytes]] = {
     b"\x1f\x8b": lambda data: zlib.decompressobj(31).decompress(data, MOST),
     b"BZh": lambda data: bz2.BZ2Decompressor().decompress(data, MOST),
     b"\xfd7zXZ\0": lambda data: lzma.LZMADecompressor(memlimit=2**27).decompress(data, MOST),

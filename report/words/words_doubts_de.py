@@ -20,16 +20,40 @@ DOUBTS = {
         "die Policies des aufgezeichneten Systems nennen oder die Aufzeichnung reparieren (rosprivacy bag sagt, was fehlt)",
     ),
     "empty-group": (
-        "Eine Gruppe von Robotern ohne Regel oder ohne Inhalt",
-        "in einer Gruppe von Robotern ist nichts ({names})",
-        "in {n} Gruppen von Robotern ist nichts ({names})",
-        "die Flottendatei berichtigen",
+        "Zeilen einer Policy, die nichts erlauben",
+        "eine Gruppe von Zeilen in {names} hat keine Regel und erlaubt nichts",
+        "{n} Gruppen von Zeilen haben keine Regel und erlauben nichts ({names})",
+        "dort publish=\"ALLOW\" oder dergleichen schreiben, oder sie entfernen",
+    ),
+    "empty-include": (
+        "Eine Einbindung, die nichts bringt",
+        "eine Einbindung in {names} bringt nichts",
+        "{n} Einbindungen bringen nichts ({names})",
+        "berichtigen, was die Einbindung auswählt, oder sie entfernen",
     ),
     "fallback-taken": (
         "Ein Ersatz wurde genommen",
         "in {names} wurde ein Ersatz (fallback) genommen",
         "{n} Mal wurde ein Ersatz (fallback) genommen ({names})",
         "die eingebundene Datei beilegen oder den Ersatz entfernen",
+    ),
+    "joins-nothing": (
+        "Eine Domain oder Infrastruktur, die nichts verbindet",
+        "eine Domain oder Infrastruktur in {names} ist mit nichts verbunden",
+        "{n} Domains oder Infrastrukturen sind mit nichts verbunden ({names})",
+        "die Domain oder einen Fluss dorthin nennen; die Domain weglassen, wenn sie allein stehen soll",
+    ),
+    "leak-joins-nothing": (
+        "Eine Domain oder Infrastruktur, die Daten hinauslässt und nichts verbindet",
+        "eine Domain oder Infrastruktur in {names}, die Daten hinauslässt oder aufbewahrt, ist mit nichts verbunden",
+        "{n} Domains oder Infrastrukturen, die Daten hinauslassen oder aufbewahren, sind mit nichts verbunden ({names})",
+        "die Domain oder einen Fluss dorthin nennen; die Domain weglassen, wenn sie allein stehen soll",
+    ),
+    "made-without-warnings": (
+        "Ein Text über den Betrieb, der ohne Warnungen entstand",
+        "der Text hinter {names} entstand ohne Warnungen",
+        "{n} Texte über den Betrieb entstanden ohne Warnungen ({names})",
+        "den Text mit -a, --include-hidden und 2>&1 neu machen und noch einmal beobachten",
     ),
     "no-flow": (
         "Ein Element außerhalb von ROS, zu dem kein Fluss führt",
@@ -42,6 +66,12 @@ DOUBTS = {
         "{names} endet bei keinem bekannten Leser",
         "{n} Kanäle enden bei keinem bekannten Leser ({names})",
         "die Policy des Lesers dazugeben oder nachsehen, wer liest (rosprivacy observe)",
+    ),
+    "no-robot": (
+        "Ordner einer Gruppe von Robotern ohne deren Policy",
+        "Ordner einer Gruppe in {names} haben keine Policy und sind keine Roboter",
+        "Ordner von {n} Gruppen haben keine Policy und sind keine Roboter ({names})",
+        "diesen Ordnern die Policy geben oder sie verlegen",
     ),
     "nothing-enforced": (
         "Für das Beobachtete wird nichts durchgesetzt",
@@ -77,7 +107,7 @@ DOUBTS = {
         "Eine Datei mit Rechten, die nicht gelesen wurde",
         "{names} wurde nicht gelesen",
         "{n} Dateien wurden nicht gelesen ({names})",
-        "die Datei nennen oder die Policy, die sie einbindet, oder sie entfernen",
+        "die Datei nennen oder die Policy, die sie einbindet, oder sie aus dem Ordner nehmen",
     ),
 }
 WORDS = {

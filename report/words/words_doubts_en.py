@@ -20,16 +20,40 @@ DOUBTS = {
         "name the policies of the system that was recorded, or repair the bag (rosprivacy bag says what is wrong)",
     ),
     "empty-group": (
-        "A group of robots that no rule covers, or that is empty",
-        "a group of robots has nothing in it ({names})",
-        "{n} groups of robots have nothing in them ({names})",
-        "correct the fleet file",
+        "Lines of a policy that grant nothing",
+        "a group of lines in {names} has no rule and grants nothing",
+        "{n} groups of lines have no rule and grant nothing ({names})",
+        "write publish=\"ALLOW\" or the like there, or remove them",
+    ),
+    "empty-include": (
+        "An include that brings nothing",
+        "an include in {names} brings nothing",
+        "{n} includes bring nothing ({names})",
+        "correct what the include selects, or remove it",
     ),
     "fallback-taken": (
         "A fallback was taken",
         "a fallback was taken in {names}",
         "{n} fallbacks were taken ({names})",
         "give the file that is included, or take the fallback out",
+    ),
+    "joins-nothing": (
+        "A domain or infrastructure that joins nothing",
+        "a domain or infrastructure in {names} joins nothing",
+        "{n} domains or infrastructures join nothing ({names})",
+        "name its domain, or a flow to it; leave the domain out if it is meant to be alone",
+    ),
+    "leak-joins-nothing": (
+        "A domain or infrastructure that lets data out and joins nothing",
+        "a domain or infrastructure in {names} that lets data out or keeps it joins nothing",
+        "{n} domains or infrastructures that let data out or keep it join nothing ({names})",
+        "name its domain, or a flow to it; leave the domain out if it is meant to be alone",
+    ),
+    "made-without-warnings": (
+        "A text of what runs that was made without warnings",
+        "the text behind {names} was made without warnings",
+        "{n} texts of what runs were made without warnings ({names})",
+        "make the text anew with -a, --include-hidden and 2>&1, and observe it again",
     ),
     "no-flow": (
         "An element outside ROS that no flow reaches",
@@ -42,6 +66,12 @@ DOUBTS = {
         "{names} ends at no known reader",
         "{n} channels end at no known reader ({names})",
         "give the policy of whoever reads it, or look who does (rosprivacy observe)",
+    ),
+    "no-robot": (
+        "Folders of a group of robots without its policy",
+        "folders of a group in {names} have no policy and are no robots",
+        "folders of {n} groups have no policy and are no robots ({names})",
+        "give these folders the policy, or move them elsewhere",
     ),
     "nothing-enforced": (
         "Nothing is enforced for what was observed",
@@ -77,7 +107,7 @@ DOUBTS = {
         "A file with grants that was not read",
         "{names} was not read",
         "{n} files were not read ({names})",
-        "name the file, or the policy that includes it, or remove it",
+        "name the file, or the policy that includes it, or move it out of the folder",
     ),
 }
 WORDS = {

@@ -20,16 +20,40 @@ DOUBTS = {
         "nommer les politiques du système enregistré, ou réparer l'enregistrement (rosprivacy bag dit ce qui manque)",
     ),
     "empty-group": (
-        "Un groupe de robots sans règle, ou vide",
-        "un groupe de robots ne contient rien ({names})",
-        "{n} groupes de robots ne contiennent rien ({names})",
-        "corriger le fichier de flotte",
+        "Des lignes d'une politique qui n'autorisent rien",
+        "un groupe de lignes dans {names} n'a pas de règle et n'autorise rien",
+        "{n} groupes de lignes n'ont pas de règle et n'autorisent rien ({names})",
+        "y écrire publish=\"ALLOW\" ou semblable, ou les retirer",
+    ),
+    "empty-include": (
+        "Une inclusion qui n'apporte rien",
+        "une inclusion dans {names} n'apporte rien",
+        "{n} inclusions n'apportent rien ({names})",
+        "corriger ce que l'inclusion choisit, ou la retirer",
     ),
     "fallback-taken": (
         "Un remplacement a été pris",
         "un remplacement (fallback) a été pris dans {names}",
         "{n} remplacements (fallback) ont été pris ({names})",
         "fournir le fichier inclus, ou retirer le remplacement",
+    ),
+    "joins-nothing": (
+        "Un domaine ou une infrastructure qui n'est relié à rien",
+        "un domaine ou une infrastructure dans {names} n'est relié à rien",
+        "{n} domaines ou infrastructures ne sont reliés à rien ({names})",
+        "nommer son domaine, ou un flux qui y mène ; omettre le domaine s'il doit rester seul",
+    ),
+    "leak-joins-nothing": (
+        "Un domaine ou une infrastructure qui laisse sortir des données et n'est relié à rien",
+        "un domaine ou une infrastructure dans {names} qui laisse sortir ou conserve des données n'est relié à rien",
+        "{n} domaines ou infrastructures qui laissent sortir ou conservent des données ne sont reliés à rien ({names})",
+        "nommer son domaine, ou un flux qui y mène ; omettre le domaine s'il doit rester seul",
+    ),
+    "made-without-warnings": (
+        "Un texte sur le fonctionnement, fait sans avertissements",
+        "le texte derrière {names} a été fait sans avertissements",
+        "{n} textes sur le fonctionnement ont été faits sans avertissements ({names})",
+        "refaire le texte avec -a, --include-hidden et 2>&1, et l'observer à nouveau",
     ),
     "no-flow": (
         "Un élément hors de ROS qu'aucun flux n'atteint",
@@ -42,6 +66,12 @@ DOUBTS = {
         "{names} n'a pas de lecteur connu",
         "{n} canaux n'ont pas de lecteur connu ({names})",
         "fournir la politique de qui lit, ou regarder qui lit (rosprivacy observe)",
+    ),
+    "no-robot": (
+        "Des dossiers d'un groupe de robots sans sa politique",
+        "des dossiers d'un groupe dans {names} n'ont pas de politique et ne sont pas des robots",
+        "des dossiers de {n} groupes n'ont pas de politique et ne sont pas des robots ({names})",
+        "donner la politique à ces dossiers, ou les déplacer",
     ),
     "nothing-enforced": (
         "Rien n'est imposé à ce qui a été observé",
@@ -77,7 +107,7 @@ DOUBTS = {
         "Un fichier avec des droits qui n'a pas été lu",
         "{names} n'a pas été lu",
         "{n} fichiers n'ont pas été lus ({names})",
-        "nommer le fichier, ou la politique qui l'inclut, ou le retirer",
+        "nommer le fichier, ou la politique qui l'inclut, ou le retirer du dossier",
     ),
 }
 WORDS = {
