@@ -23,7 +23,7 @@ DOUBTS = {
         "Zeilen einer Policy, die nichts erlauben",
         "eine Gruppe von Zeilen in {names} hat keine Regel und erlaubt nichts",
         "{n} Gruppen von Zeilen haben keine Regel und erlauben nichts ({names})",
-        "dort publish=\"ALLOW\" oder dergleichen schreiben, oder sie entfernen",
+        'dort publish="ALLOW" oder dergleichen schreiben, oder sie entfernen',
     ),
     "empty-include": (
         "Eine Einbindung, die nichts bringt",

@@ -23,7 +23,7 @@ DOUBTS = {
         "Lines of a policy that grant nothing",
         "a group of lines in {names} has no rule and grants nothing",
         "{n} groups of lines have no rule and grant nothing ({names})",
-        "write publish=\"ALLOW\" or the like there, or remove them",
+        'write publish="ALLOW" or the like there, or remove them',
     ),
     "empty-include": (
         "An include that brings nothing",

@@ -23,7 +23,7 @@ DOUBTS = {
         "Des lignes d'une politique qui n'autorisent rien",
         "un groupe de lignes dans {names} n'a pas de règle et n'autorise rien",
         "{n} groupes de lignes n'ont pas de règle et n'autorisent rien ({names})",
-        "y écrire publish=\"ALLOW\" ou semblable, ou les retirer",
+        'y écrire publish="ALLOW" ou semblable, ou les retirer',
     ),
     "empty-include": (
         "Une inclusion qui n'apporte rien",
