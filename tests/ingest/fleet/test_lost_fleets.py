@@ -521,7 +521,7 @@ class TestWhatJoinsNothing:
         breaks = "leak-joins-nothing" in dict(doubts)
         if document["verdict"] != "leak" and "storage" not in fleet:
             assert (document["verdict"], done.returncode) == (("undetermined", 4) if breaks else ("no-leak-found", 0))
-            assert ("lets data out joins nothing" in text) == breaks
+            assert ("lets data out" in text.partition("\n")[0]) == breaks
 
     @pytest.mark.parametrize(("one", "other"), [("Lab", "lab"), ("01", "1"), ("LAB_2", "lab_2")])
     def test_domains_that_look_alike_are_an_error_with_both_lines(self, cli: Cli, one: str, other: str) -> None:
