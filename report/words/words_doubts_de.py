@@ -7,6 +7,12 @@ DOUBTS = {
         "an {n} Stellen ist nicht bekannt, was erlaubt ist ({names})",
         "die Warnungen zu diesen Dateien und die durchgesetzte Sicht ansehen (--view enforced)",
     ),
+    "analysed-in-parts": (
+        "Eine Antwort über eine Flotte in Teilen",
+        "von Robotern, die nicht gezeigt werden, sind keine Zweifel genannt",
+        "von Robotern, die nicht gezeigt werden, sind keine Zweifel genannt",
+        "die ganze Flotte im Speicher analysieren, oder die Roboter, auf die es ankommt",
+    ),
     "backups-not-stated": (
         "Ein Speicher, über dessen Sicherungskopien nichts angegeben ist",
         "Sicherungskopien von {names} sind nicht angegeben, angenommen werden keine",
@@ -18,6 +24,12 @@ DOUBTS = {
         "von der Aufzeichnung {names} ist nicht alles bekannt",
         "von {n} Aufzeichnungen ist nicht alles bekannt ({names})",
         "die Policies des aufgezeichneten Systems nennen oder die Aufzeichnung reparieren (rosprivacy bag sagt, was fehlt)",
+    ),
+    "careful-deny": (
+        "Eine Suche, die eine Schranke abgebrochen hat",
+        "eine Schranke hat abgebrochen, was ein DENY in {names} von Wildcards übrig lässt",
+        "eine Schranke hat abgebrochen, was {n} DENY von Wildcards übrig lassen ({names})",
+        "die Schranke der Vergleiche anheben",
     ),
     "empty-group": (
         "Zeilen einer Policy, die nichts erlauben",
@@ -55,6 +67,12 @@ DOUBTS = {
         "{n} Texte über den Betrieb entstanden ohne Warnungen ({names})",
         "den Text mit -a, --include-hidden und 2>&1 neu machen und noch einmal beobachten",
     ),
+    "mistaken-tilde": (
+        "Ein Name hinter ~ ohne /",
+        "ein Name in {names} hat kein / hinter ~ und ist ein anderer Name",
+        "{n} Namen haben kein / hinter ~ und sind andere Namen ({names})",
+        "~/ davor schreiben",
+    ),
     "no-flow": (
         "Ein Element außerhalb von ROS, zu dem kein Fluss führt",
         "zu {names} führt kein Fluss",
@@ -85,11 +103,23 @@ DOUBTS = {
         "der Beobachtung fehlt bekanntermaßen {n} Mal etwas ({names})",
         "noch einmal beobachten, bis keine Lücke bleibt (rosprivacy observe), oder eine Policy nennen",
     ),
+    "odd-namespace": (
+        "Ein Namensraum, der nicht mit / beginnt",
+        "ein Namensraum in {names} beginnt nicht mit /",
+        "{n} Namensräume beginnen nicht mit / ({names})",
+        "/ davor schreiben",
+    ),
     "paths-not-counted": (
         "Eine Suche, die eine Grenze abbrach",
         "eine Grenze brach die Zählung von Wegen ab",
         "eine Grenze brach {n} Zählungen von Wegen ab",
         "die Grenze anheben oder nach weniger Arten von Daten fragen",
+    ),
+    "refused-name": (
+        "Ein Name, den kein ROS-Knoten haben kann",
+        "ein Name in {names} ist keiner, den ein ROS-Knoten haben kann",
+        "{n} Namen sind keine, die ein ROS-Knoten haben kann ({names})",
+        "den Namen berichtigen: er trifft keinen anderen oder die falschen",
     ),
     "restricted": (
         "Gefragt war nur nach manchen Arten von Daten",
@@ -102,6 +132,12 @@ DOUBTS = {
         "nur der Typ eines Kanals schließt den Weg zu {names}",
         "nur die Typen von Kanälen schließen die Wege zu {n} Ausgängen ({names})",
         "ansehen, was der Kanal trägt, und es angeben",
+    ),
+    "types-of-nothing": (
+        "Beobachtete Typen von etwas, das es hier nicht gibt",
+        "{names} nennt Typen von Kanälen oder Knoten, die es hier nicht gibt",
+        "{n} Dateien nennen Typen von Kanälen oder Knoten, die es hier nicht gibt ({names})",
+        "auch die Policy dessen angeben, was im Betrieb gesehen wurde, oder die Datei dieses Systems",
     ),
     "unread-file": (
         "Eine Datei mit Rechten, die nicht gelesen wurde",

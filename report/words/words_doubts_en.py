@@ -7,6 +7,12 @@ DOUBTS = {
         "what is allowed is not known at {n} places ({names})",
         "look at the warnings about these files, and at the enforced view (--view enforced)",
     ),
+    "analysed-in-parts": (
+        "An answer of a fleet in parts",
+        "of robots that are not shown no doubts are told",
+        "of robots that are not shown no doubts are told",
+        "ask about the whole fleet in memory, or about the robots that matter",
+    ),
     "backups-not-stated": (
         "A storage whose backups nobody states",
         "backups of {names} are not stated and taken as none",
@@ -18,6 +24,12 @@ DOUBTS = {
         "not all is known of the bag {names}",
         "not all is known of {n} bags ({names})",
         "name the policies of the system that was recorded, or repair the bag (rosprivacy bag says what is wrong)",
+    ),
+    "careful-deny": (
+        "A search that a bound cut",
+        "a bound cut what a DENY in {names} leaves of wildcards",
+        "a bound cut what {n} DENYs leave of wildcards ({names})",
+        "raise the bound on comparisons",
     ),
     "empty-group": (
         "Lines of a policy that grant nothing",
@@ -55,6 +67,12 @@ DOUBTS = {
         "{n} texts of what runs were made without warnings ({names})",
         "make the text anew with -a, --include-hidden and 2>&1, and observe it again",
     ),
+    "mistaken-tilde": (
+        "A name behind ~ without /",
+        "a name in {names} has no / behind ~ and is another name",
+        "{n} names have no / behind ~ and are other names ({names})",
+        "write ~/ before it",
+    ),
     "no-flow": (
         "An element outside ROS that no flow reaches",
         "no flow reaches {names}",
@@ -85,11 +103,23 @@ DOUBTS = {
         "the observation is known to miss {n} things ({names})",
         "observe again until no gap is left (rosprivacy observe), or name a policy",
     ),
+    "odd-namespace": (
+        "A namespace that does not begin with /",
+        "a namespace in {names} does not begin with /",
+        "{n} namespaces do not begin with / ({names})",
+        "write / before it",
+    ),
     "paths-not-counted": (
         "A search that a bound cut",
         "a bound cut the count of paths",
         "a bound cut {n} counts of paths",
         "raise the bound, or ask about fewer kinds of data",
+    ),
+    "refused-name": (
+        "A name that no ROS node can have",
+        "a name in {names} is none that a ROS node can have",
+        "{n} names are none that a ROS node can have ({names})",
+        "correct the name: it meets no other, or the wrong ones",
     ),
     "restricted": (
         "Only some kinds of data were asked for",
@@ -102,6 +132,12 @@ DOUBTS = {
         "only the type of a channel closes the way to {names}",
         "only the types of channels close the ways to {n} leaks ({names})",
         "look at what the channel carries, and say so in a label",
+    ),
+    "types-of-nothing": (
+        "Observed types of what nothing is called",
+        "{names} tells types of channels or nodes that are not there",
+        "{n} files tell types of channels or nodes that are not there ({names})",
+        "give the policy of what was seen running too, or the file of this system",
     ),
     "unread-file": (
         "A file with grants that was not read",

@@ -7,6 +7,12 @@ DOUBTS = {
         "ce qui est permis n'est pas connu à {n} endroits ({names})",
         "regarder les avertissements sur ces fichiers et la vue appliquée (--view enforced)",
     ),
+    "analysed-in-parts": (
+        "Une réponse sur une flotte analysée par parties",
+        "des robots qui ne sont pas montrés, aucun doute n'est nommé",
+        "des robots qui ne sont pas montrés, aucun doute n'est nommé",
+        "analyser toute la flotte en mémoire, ou les robots qui importent",
+    ),
     "backups-not-stated": (
         "Un stockage dont les sauvegardes ne sont pas indiquées",
         "les sauvegardes de {names} ne sont pas indiquées, aucune n'est supposée",
@@ -18,6 +24,12 @@ DOUBTS = {
         "l'enregistrement {names} n'est pas entièrement connu",
         "{n} enregistrements ne sont pas entièrement connus ({names})",
         "nommer les politiques du système enregistré, ou réparer l'enregistrement (rosprivacy bag dit ce qui manque)",
+    ),
+    "careful-deny": (
+        "Une recherche qu'une borne a coupée",
+        "une borne a coupé ce qu'un DENY de {names} laisse de jokers",
+        "une borne a coupé ce que {n} DENY laissent de jokers ({names})",
+        "relever la borne des comparaisons",
     ),
     "empty-group": (
         "Des lignes d'une politique qui n'autorisent rien",
@@ -55,6 +67,12 @@ DOUBTS = {
         "{n} textes sur le fonctionnement ont été faits sans avertissements ({names})",
         "refaire le texte avec -a, --include-hidden et 2>&1, et l'observer à nouveau",
     ),
+    "mistaken-tilde": (
+        "Un nom derrière ~ sans /",
+        "un nom dans {names} n'a pas de / derrière ~ et est un autre nom",
+        "{n} noms n'ont pas de / derrière ~ et sont d'autres noms ({names})",
+        "écrire ~/ devant",
+    ),
     "no-flow": (
         "Un élément hors de ROS qu'aucun flux n'atteint",
         "aucun flux n'atteint {names}",
@@ -85,11 +103,23 @@ DOUBTS = {
         "il manque {n} choses à l'observation ({names})",
         "observer de nouveau jusqu'à ce qu'aucune lacune ne reste (rosprivacy observe), ou nommer une politique",
     ),
+    "odd-namespace": (
+        "Un espace de noms qui ne commence pas par /",
+        "un espace de noms dans {names} ne commence pas par /",
+        "{n} espaces de noms ne commencent pas par / ({names})",
+        "écrire / devant",
+    ),
     "paths-not-counted": (
         "Une recherche coupée par une limite",
         "une limite a coupé le compte des chemins",
         "une limite a coupé {n} comptes de chemins",
         "relever la limite, ou demander moins de catégories de données",
+    ),
+    "refused-name": (
+        "Un nom qu'aucun nœud ROS ne peut avoir",
+        "un nom dans {names} n'est pas de ceux qu'un nœud ROS peut avoir",
+        "{n} noms ne sont pas de ceux qu'un nœud ROS peut avoir ({names})",
+        "corriger le nom : il n'en rencontre aucun autre, ou les mauvais",
     ),
     "restricted": (
         "Seules certaines catégories de données ont été demandées",
@@ -102,6 +132,12 @@ DOUBTS = {
         "seul le type d'un canal ferme le chemin vers {names}",
         "seuls les types de canaux ferment les chemins vers {n} points de sortie ({names})",
         "regarder ce que le canal transporte, et le dire dans une annotation",
+    ),
+    "types-of-nothing": (
+        "Des types observés de ce qui n'existe pas ici",
+        "{names} donne des types de canaux ou de nœuds qui n'existent pas ici",
+        "{n} fichiers donnent des types de canaux ou de nœuds qui n'existent pas ici ({names})",
+        "donner aussi la politique de ce qui a été vu en fonctionnement, ou le fichier de ce système",
     ),
     "unread-file": (
         "Un fichier avec des droits qui n'a pas été lu",

@@ -206,7 +206,7 @@ def test_what_a_fleet_must_not_lose(fleet_file: str) -> None:
         text = policy("/camera>/video", "/uplink").replace("</profile></profiles>", f"{INCLUDED}</profiles>")
         Path(robot, "p.xml").write_bytes(text.encode("utf-16"))
     expected, got = answer_fleet(fleet_file, Settings()).document(), run_on_spark(fleet_file, Settings()).document()
-    got["diagnostics"].pop()  # how far an answer in parts goes
+    got["diagnostics"] = [said for said in got["diagnostics"] if said.get("code") != "analysed-in-parts"]
     assert {"r1", "b"} <= {finding["source"]["robot"] for finding in expected["findings"]}
     assert [said["code"] for said in expected["diagnostics"] if "domain" in said["message"]] == [
         "leak-joins-nothing", "leak-joins-nothing", "own-domains",

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import FleetError, InputError, InputErrors, reason
 from rosprivacy.analysis.files_read import note
 from rosprivacy.analysis.findings.findings import Options
-from rosprivacy.analysis.model import Diagnostic, Place, Severity
+from rosprivacy.analysis.model import IN_PARTS, Diagnostic, Place, Severity
 from rosprivacy.answering import concluded
 from rosprivacy.assumptions import named_files, types_read
 from rosprivacy.clock import judged_on
@@ -161,10 +161,12 @@ def result(task: Task, found: Found, told: Shown, question: Question) -> Result:
         "unknown ends, what is denied, sanitized, derived, taken away, stated of purposes and bases, or not stated, "
         "and what the answer hangs on"
     )
-    unlimited = ("message types limit nothing on Spark: in memory there can be fewer findings",)
-    notices = (bounds, *(unlimited if found.told.typed and question.type_limits else ()))
+    engine = Place("--engine spark", 0)
     said = found.told.diagnostics
-    said += tuple(Diagnostic(Place("--engine spark", 0), Severity.NOTICE, notice) for notice in notices)
+    if found.told.typed and question.type_limits:
+        unlimited = "message types limit nothing on Spark: in memory there can be fewer findings"
+        said += (Diagnostic(engine, Severity.NOTICE, unlimited),)
+    said += (Diagnostic(engine, Severity.WARNING, bounds, IN_PARTS),)
     policies = {policy.file: policy for member in told.members.values() for policy in member.policies}
     labels = {file.file: file for member in told.members.values() for file in member.files}
     system = System(
