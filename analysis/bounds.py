@@ -47,6 +47,9 @@ class Bounds:
     comparisons
         Pairs of wildcards times their length, and what DENYs leave of them: the cube of a policy. Of labels by itself:
         globs times names.
+    passed_over
+        A folder may hold anything, and of each file the beginning is read. Where this bound is met, a warning says how
+        many were not looked into, and the verdict is undetermined at best.
     findings
         Sources times leaks times kinds of data: the cube of a label file.
     search_steps
@@ -61,6 +64,7 @@ class Bounds:
     robots: int = _bound(200_000, "robots in the fleet")
     flows: int = _bound(1_000_000, "flows between the elements of a robot or a domain")
     comparisons: int = _bound(60_000_000, "steps of comparing wildcards and globs")
+    passed_over: int = _bound(10_000, "files of a folder that are looked into, to see whether they are policies")
     findings: int = _bound(200_000, "findings")
     search_steps: int = _bound(100_000_000, "elements reached, counted for each source")
     path_steps: int = _bound(300_000_000, "steps of counting paths")

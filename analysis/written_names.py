@@ -12,12 +12,13 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import shown
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable
+    from collections.abc import Collection, Iterable, Sequence
 
 LITERAL = "="
 GLOB_SIGNS = frozenset("*?[")
 LONGEST = 1_000  # signs of a name that is compared: the time grows with the square
 FEW = 3  # names in a hint
+LISTED = 10  # names in a message
 MUCH, ALIKE, A_LITTLE = 0.8, 0.6, 0.5  # of 0 to 1, as ``difflib`` has it
 
 
@@ -46,6 +47,16 @@ def literal(name: str) -> str:
     ('=/cam*', '/camera')
     """
     return name if name.startswith("/") and GLOB_SIGNS.isdisjoint(name) else LITERAL + name
+
+
+def listed(names: Sequence[str]) -> str:
+    """Return some names for a message, the first ``LISTED`` of them.
+
+    >>> listed(["a", "b"]), listed(["a"] * 12)[-10:]
+    ('a, b', 'and 2 more')
+    """
+    more = f" and {len(names) - LISTED:,} more" if len(names) > LISTED else ""
+    return ", ".join(map(shown, names[:LISTED])) + more
 
 
 def nearest(name: str, known: Iterable[str], most: int = 1, like: float = ALIKE) -> list[str]:

@@ -1,4 +1,4 @@
-"""What an answer rests on that was seen and not granted: lines under Assumed, in every language (rule S16).
+"""What an answer rests on that was seen and not granted, or that nobody said: lines under Assumed, in every language.
 
 In: a JSON document of the contract. Out: plain lines; the facts in them (names, numbers) are as the reader said.
 """
@@ -20,7 +20,7 @@ NAMED = 3  # of files that say the same, and of what files of a fleet say of one
 
 
 def observed_lines(report: Mapping[str, Any], words: Words) -> Iterator[str]:
-    """Return from when to when somebody looked, and what was made up or folded in the policies that came of it.
+    """Return from when to when somebody looked, what was made up or folded then, and what else is taken so.
 
     Of a fleet, files that say the same are one line; the diagnostics have all.
     """
@@ -31,10 +31,10 @@ def observed_lines(report: Mapping[str, Any], words: Words) -> Iterator[str]:
     for code, messages in said.items():
         for number, (message, files) in enumerate(messages.items(), 1):
             if number <= NAMED:
-                yield words(f"a.{code}", file=_named(files), said=_told(message, words))
+                yield words(f"a.{code}", file=_named(files), said=_told(message, words), n=message.partition(" ")[0])
         if len(messages) > NAMED:
             others = [file for files in list(messages.values())[NAMED:] for file in files]
-            yield words(f"a.{code}", file=_named(others), said="…")
+            yield words(f"a.{code}", file=_named(others), said="…", n="…")
 
 
 def _told(message: str, words: Words) -> str:

@@ -81,6 +81,7 @@ OF_ITS_OWN = {  # modules that touch files in another way, and why none of these
     "ontology/cache.py": "the cache of categories",
     "src/rosprivacy/running/watching.py": "a policy in a folder of its own, gone at once",
     "report/pictures/graphviz_worker.py": "a process that draws, with pipes only",
+    "ingest/reading/file_kinds.py": "looks how a file begins; nothing of it is in an answer, so it may be written",
     "src/rosprivacy/cli/diff.py": "looks how a file begins; what then reads it notes it",
     "src/rosprivacy/cli/output.py": "the null device, when standard output is gone",
     "src/rosprivacy/spark/session.py": "settings of Spark in a folder of its own, gone at its end",

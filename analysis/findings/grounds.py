@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 SPEAKS_OF_LEAKS = ("leak", "no-leak")
 NO_SOURCE_OF_THESE = "no source emits one of the chosen categories, and nothing makes one: no data was followed"
 GOES_TO_SUCH = (
-    "what the sources bring in goes nowhere but to standard channels and to those whose type cannot carry it: no data "
-    "was followed"
+    "what the sources bring in goes nowhere, or only to standard channels and to those whose type cannot carry it: "
+    "no data was followed"
 )
 WHAT = {
     NO_SOURCE: "no label names a source: no data was followed",
-    GOES_NOWHERE: "what the sources bring in goes nowhere but to standard channels: no data was followed",
+    GOES_NOWHERE: "what the sources bring in goes nowhere, or to standard channels only: no data was followed",
     NO_LEAK_NAMED: "no label says where data gets out: nothing that it gets to could be a leak",
 }
 

@@ -32,12 +32,24 @@ FOLDED_NAMES = "folded-names"
 OBSERVATION_GAP = "observation-gap"  # what an observation is known to miss: the verdict is undetermined at best (S16)
 BAG_GAP = "bag-gap"  # what is not known of a bag that is a storage: the verdict is undetermined at best (S11)
 ACCESS_GAP = "access-gap"  # permissions are not asked, or not read: what is allowed is not known (S6, S11)
-GAPS = (UNREAD_FILE, OBSERVATION_GAP, BAG_GAP, ACCESS_GAP)  # doubts that break the verdict (rule S11)
 NOTHING_ENFORCED = "nothing-enforced"  # for nodes that were observed, and of which no policy is deployed (rule S6)
-RIDES = (NOTHING_ENFORCED, FALLBACK_TAKEN, EMPTY_GROUP, PATHS_NOT_COUNTED)  # doubts that ride on it
+JOINS_NOTHING = "joins-nothing"  # a domain or infrastructure: data that gets there goes no further (rule S11)
+LEAK_JOINS_NOTHING = "leak-joins-nothing"  # one in which data is let out or kept, if it got there
+TYPES_OF_NOTHING = "types-of-nothing"  # seen running, and named by no policy
+IN_PARTS = "analysed-in-parts"  # of robots that are not shown no doubts are told
+NO_ROBOT = "no-robot"  # folders beside those that a group of robots matches, in which its policy is not (rule S11)
+OWN_DOMAINS = "own-domains"  # robots of which nobody says in which domain they are (rule S1)
 RECORDING = "recording"  # a bag that is a storage: its size, its time, its topics
 SEEN_ALTHOUGH_DENIED = "seen-although-denied"
-ASSUMED = (OBSERVED, ENCLAVES_MADE_UP, FOLDED_NAMES, RECORDING)  # notices that stand under Assumed
+WITHOUT_WARNINGS = "made-without-warnings"  # a text of what runs, without what the tool warned of (rule S16)
+GAPS = (  # doubts that break the verdict (rule S11)
+    UNREAD_FILE, OBSERVATION_GAP, BAG_GAP, ACCESS_GAP, LEAK_JOINS_NOTHING,
+)  # fmt: skip
+RIDES = (  # doubts that ride on it
+    NOTHING_ENFORCED, FALLBACK_TAKEN, EMPTY_GROUP, PATHS_NOT_COUNTED, EMPTY_INCLUDE, WITHOUT_WARNINGS, JOINS_NOTHING,
+    NO_ROBOT, REFUSED_NAME, ODD_NAMESPACE, MISTAKEN_TILDE, CAREFUL_DENY, TYPES_OF_NOTHING, IN_PARTS,
+)  # fmt: skip
+ASSUMED = (OBSERVED, ENCLAVES_MADE_UP, FOLDED_NAMES, RECORDING, OWN_DOMAINS)  # notices that stand under Assumed
 NO_SOURCE = "no-source"  # what 'no leak found' lacks, so that it says nothing (rules S11, S12)
 GOES_NOWHERE = "goes-nowhere"
 NO_LEAK_NAMED = "no-leak-named"

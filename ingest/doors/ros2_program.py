@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import MiddlewareError, ObservationError, shown
-from rosprivacy.ingest.observe.node_info import DOOR, read_node_info
+from rosprivacy.ingest.observe.node_info import DOOR, OWN, read_node_info
 from rosprivacy.ingest.observe.observation import (
     Observation,
     Span,
@@ -31,7 +31,6 @@ LIST, INFO = ("node", "list", "--all"), ("node", "info", "--include-hidden")
 PATIENCE = 30.0  # seconds for one call
 PAUSE = 1.0  # seconds between two looks
 LONGEST = 16 * 2**20  # characters of one answer
-OWN = "/_ros2cli"  # nodes of the program that looks
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +90,7 @@ class Ros2Program:
         for node in listed:
             answer, _ = self._run(program, *INFO, node, may_fail=True)
             if answer:
-                several.append(read_node_info(answer, at, f"ros2 node info {node}"))
+                several.append(read_node_info(answer, at, f"ros2 node info {node}", whole=False))
             else:
                 unanswered.append(f"{shown(node)}: listed, and then not found; what it does is not known")
         after, _ = self._nodes(program)

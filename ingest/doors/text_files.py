@@ -15,12 +15,14 @@ from rosprivacy.analysis.errors import InputError, InputErrors, ObservationError
 from rosprivacy.ingest.observe.node_info import HINT, read_node_info
 from rosprivacy.ingest.observe.observation import Observation, added_up, moment
 from rosprivacy.ingest.reading.bounded_file import read_regular
+from rosprivacy.ingest.reading.file_kinds import NODE_INFO, PERMISSIONS, POLICY, kind_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 LONGEST = 64 * 2**20
 STANDARD_INPUT = "-"
+ANALYSE = "nothing need be observed: rosprivacy analyze FILE"
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,6 +77,10 @@ class TextFiles:
         else:
             data = read_regular(file, LONGEST, fail)
             at = self.at or moment(datetime.fromtimestamp(Path(file).stat().st_mtime, UTC))
+        kind = kind_of(data)
+        if kind not in (None, NODE_INFO):
+            instead = ANALYSE if kind in (POLICY, PERMISSIONS) else kind.instead
+            raise fail(1, *kind._replace(instead=instead).refused(NODE_INFO.name, name))
         try:
             text = data.decode("utf-8")
         except UnicodeDecodeError as error:

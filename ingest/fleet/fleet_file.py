@@ -16,7 +16,9 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import FleetError, InputError, InputErrors, shown
-from rosprivacy.analysis.model import UNSTATED, Surroundings
+from rosprivacy.analysis.model import NO_ROBOT, UNSTATED, Diagnostic, Severity, Surroundings
+from rosprivacy.analysis.text import counted
+from rosprivacy.analysis.written_names import listed
 from rosprivacy.ingest.fleet.fleet_reader import GROUP_KEYS, ID, ID_HINT, ROBOT_KEYS, SECTIONS, SPEC, FleetReader, Spec
 from rosprivacy.ingest.labels.entries import OWN
 from rosprivacy.ingest.labels.label_file import OURS
@@ -102,6 +104,8 @@ class Fleet:
         With which it was read, for what its robots make together.
     surroundings
         Where it works as a whole: what is shared works there.
+    diagnostics
+        What a reader has to know of the file.
     """
 
     name: str
@@ -116,6 +120,7 @@ class Fleet:
     bounds: Bounds = BOUNDS
     surroundings: Surroundings = Surroundings()  # noqa: RUF009 - it is frozen
     processing: Processing = UNSTATED
+    diagnostics: tuple[Diagnostic, ...] = ()
 
 
 def read_fleet(
@@ -164,6 +169,8 @@ class _Fleet:
         self._drafts: list[tuple[str, Spec, bool]] = []  # id, what is said, whether it is infrastructure
         self._groups: list[tuple[FleetReader, Spec, Value]] = []
         self._parts: list[FleetReader] = []
+        self._diagnostics: list[Diagnostic] = []
+        self._domains: dict[str, tuple[str, Place]] = {}  # as they are compared -> as one is written first, and where
 
     def read(self, file: str, within: tuple[str, ...]) -> None:
         """Read one file with all that it includes; ``within`` are the files that are being read."""
@@ -265,6 +272,7 @@ class _Fleet:
             self._bounds,
             self._everywhere(),
             united((((0, 0), part.processing) for part in self._parts), self._differ),
+            tuple(self._diagnostics),
         )
 
     def _everywhere(self) -> Surroundings:
@@ -287,6 +295,9 @@ class _Fleet:
         if not (model.policies or spec.policies):
             self._problem(spec.place, f"robot {shown(name)!r} has no policies", "name some, or a model that has some")
             return
+        domain = spec.domain or model.domain
+        if domain:
+            self._one_spelling(domain, self._line(spec if spec.domain else model, "domain"))
         own = bool(spec.strip or spec.add)
         namespace = (spec.strip, spec.add) if own else (model.strip, model.add)
         strip, add = (text.replace(STAR, name) for text in namespace)
@@ -297,13 +308,21 @@ class _Fleet:
             (*model.policies, *spec.policies),
             model.labels,
             spec.labels,
-            spec.domain or model.domain,
+            domain,
             strip,
             add,
             joined((self._everywhere(), model.surroundings, spec.surroundings)),
             tuple(dict.fromkeys((*model.types, *spec.types))),
         )
         (self._infrastructure if shared else self._robots)[name] = robot
+
+    def _one_spelling(self, domain: str, place: Place) -> None:
+        """Refuse a domain that looks like another: ``Lab`` and ``lab``, ``01`` and ``1`` would join nothing (S1)."""
+        alike = str(int(domain)) if domain.isdecimal() else domain.lower()
+        first, where = self._domains.setdefault(alike, (domain, place))
+        if first != domain:
+            what = f"domain {domain!r} is another one than {first!r} (at {where}), and looks like it"
+            self._problem(place, what, "write it in one way, or give them names that differ by more")
 
     def _members(self, part: FleetReader, spec: Spec, item: Value) -> Iterator[tuple[str, Spec]]:
         """The robots of a group: so many, or one for each file that a glob matches."""
@@ -347,6 +366,7 @@ class _Fleet:
             part.problem(line.line, what_leaves(pattern, self._root), WIDEN)
             return
         files = sorted(glob(pattern))  # noqa: PTH207 - absolute patterns too
+        self._passed_over(before, after, line)
         if not files:
             part.problem(line.line, f"{shown(pattern)!r} matches no file", "correct the pattern")
         for file in files if self._bounded(len(files), line) else ():
@@ -355,6 +375,16 @@ class _Fleet:
                 yield name, _of_robot(spec, name)
             else:
                 part.problem(line.line, f"{shown(file)!r}: {shown(name)!r} cannot name a robot", ID_HINT)
+
+    def _passed_over(self, before: str, after: str, place: Place) -> None:
+        """Tell of folders that look like those of robots and lack the policy: ``b`` with ``policy.XML`` is no robot."""
+        within, slash, policy = after.partition("/")
+        folders = sorted(glob(f"{before}{STAR}{within}/")) if slash else []  # noqa: PTH207 - absolute patterns too
+        lacking = [folder for folder in folders if not Path(folder, policy).exists()]
+        if lacking:
+            which = f"{counted(len(lacking), 'folder')} that {shown(f'{before}{STAR}{within}')} matches"
+            what = f"no {shown(policy)} in {which}, so no robot: {listed([one.removesuffix('/') for one in lacking])}"
+            self._diagnostics.append(Diagnostic(place, Severity.WARNING, what, NO_ROBOT))
 
     def _check_files(self, robots: Iterable[Robot]) -> None:
         """Files that are named and are not there, at the line that names them first."""

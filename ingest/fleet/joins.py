@@ -1,7 +1,8 @@
-"""What a fleet file joins to nothing: robots, infrastructure and domains, told by name (rules S1, S11).
+"""What a fleet file joins to nothing: infrastructure and domains, told by name (rules S1, S11).
 
-In: a fleet, its groups, and on which robots its flows begin and end. Out: notices. Data that gets to what joins nothing
-goes no further, and a domain that is misspelt looks like one that is meant.
+In: a fleet, its groups, on which robots its flows begin and end, and which of them let data out. Out: warnings; a
+notice on the robots of which nobody says in which domain they are. Data that gets to what joins nothing goes no
+further, and a domain that is misspelt looks like one that is meant.
 """
 
 from __future__ import annotations
@@ -10,36 +11,54 @@ from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.model import Diagnostic, Severity
-from rosprivacy.analysis.written_names import did_you_mean, nearest
+from rosprivacy.analysis.model import JOINS_NOTHING, LEAK_JOINS_NOTHING, NO_ROBOT, OWN_DOMAINS, Diagnostic, Severity
+from rosprivacy.analysis.written_names import did_you_mean, listed, nearest
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Collection, Iterable, Iterator, Sequence
 
-    from rosprivacy.analysis.model import Place
+    from rosprivacy.analysis.model import Element, Place, Statement
     from rosprivacy.ingest.fleet.alike_robots import Alike
     from rosprivacy.ingest.fleet.fleet_file import Fleet, Robot
 
 Met = tuple[int, int, str]  # number of a flow of the fleet file; 0 where it begins, 1 where it ends; robot of the graph
-JOINS_NOTHING = "joins-nothing"
-LISTED = 10  # names in a message
+OF_FLEET = (JOINS_NOTHING, LEAK_JOINS_NOTHING, NO_ROBOT, OWN_DOMAINS)
+ALONE = "leave the domain out if it is meant to be alone"
 
 
-def joins_nothing(fleet: Fleet, groups: Sequence[Alike], met: Iterable[Met]) -> tuple[Diagnostic, ...]:
-    """Return a notice for each domain of one robot, for each infrastructure and for the robots that nothing joins.
+def let_out(elements: Iterable[tuple[Element, Iterable[Statement]]]) -> frozenset[str]:
+    """Return the robots at which data is let out or kept, if it gets there: at a leak or a storage."""
+    return frozenset(
+        element.robot
+        for element, said in elements
+        if element.kind == "storage" or any(statement.role == "leak" for statement in said)
+    )
+
+
+def joins_nothing(
+    fleet: Fleet, groups: Sequence[Alike], met: Iterable[Met], letting_out: Collection[str]
+) -> tuple[Diagnostic, ...]:
+    """Return what is to be said of the file, and a warning for each domain and infrastructure that joins nothing.
+
+    Parameters
+    ----------
+    letting_out
+        Robots, as of ``let_out``: if nothing joins one of them, that breaks the verdict.
 
     Notes
     -----
     Linear in the robots, and in the flows times the groups of robots that are alike.
     """
-    return tuple(_Joins(fleet, groups, met).told())
+    return (*fleet.diagnostics, *_Joins(fleet, groups, met, letting_out).told())
 
 
 class _Joins:
     """Who is joined to whom."""
 
-    def __init__(self, fleet: Fleet, groups: Sequence[Alike], met: Iterable[Met]) -> None:
+    def __init__(self, fleet: Fleet, groups: Sequence[Alike], met: Iterable[Met], letting_out: Collection[str]) -> None:
         self._groups = groups
+        self._first = {group.robots[0].id: group for group in groups}
+        self._letting_out = letting_out
         self._everyone = [*fleet.robots, *fleet.infrastructure]
         self._domains: dict[str, list[Robot]] = defaultdict(list)
         for robot in self._everyone:
@@ -50,17 +69,19 @@ class _Joins:
             self._ends[number][side].add(name)
 
     def told(self) -> Iterator[Diagnostic]:
-        """Yield the notices."""
+        """Yield what is to be said."""
         for name, members in sorted(self._domains.items()):
             if len(members) == 1 and len(self._everyone) > 1:
                 yield self._domain(name, members[0])
-        alone = [group for group in self._groups if not group.robots[0].domain and not self._joined(group)]
-        for group in alone:
-            if group.fixed:
+        for group in self._groups:
+            if group.fixed and not group.robots[0].domain and not self._joined(group):
                 yield self._infrastructure(group.robots[0])
-        robots = sorted(robot.id for group in alone if not group.fixed for robot in group.robots)
+        robots = [robot for group in self._groups if not group.fixed for robot in group.robots if not robot.domain]
         if robots and len(self._everyone) > 1:
-            yield self._robots(robots, min((r.place for g in alone if not g.fixed for r in g.robots), key=_line))
+            several = f"{len(robots):,} robots are taken to be in domains of their own"
+            who = "1 robot is taken to be in a domain of its own" if len(robots) == 1 else several
+            what = f"{who}; ROS 2 puts all into domain 0: {listed(sorted(robot.id for robot in robots))}"
+            yield Diagnostic(min((r.place for r in robots), key=_line), Severity.NOTICE, what, OWN_DOMAINS)
 
     def _joined(self, group: Alike) -> bool:
         """Whether a flow leads from these robots to something else, or from there to them."""
@@ -73,28 +94,19 @@ class _Joins:
 
     def _domain(self, name: str, robot: Robot) -> Diagnostic:
         what = f"domain {shown(name)} joins nothing: {shown(robot.id)} is alone in it"
-        others = {other.lower(): other for other in sorted(self._domains) if other != name}
-        hint = did_you_mean([others[close] for close in nearest(name.lower(), others)])
-        return _notice(robot.place, f"{what}; {hint}" if hint else what)
+        hint = did_you_mean(nearest(name, [other for other in sorted(self._domains) if other != name]), ALONE)
+        return self._nothing(robot, f"{what}; {hint}", joined=self._joined(self._first[robot.id]))
 
     def _infrastructure(self, robot: Robot) -> Diagnostic:
         what = f"infrastructure {shown(robot.id)} joins nothing: it names no domain, so it has one of its own"
-        known = f"; domains here: {_listed(sorted(self._domains))}" if self._domains else ""
-        return _notice(robot.place, f"{what}, and no flow of the fleet file leads to it or from it{known}")
+        known = f"; domains here: {listed(sorted(self._domains))}" if self._domains else ""
+        return self._nothing(robot, f"{what}, and no flow of the fleet file leads to it or from it{known}")
 
-    def _robots(self, names: Sequence[str], place: Place) -> Diagnostic:
-        who = "1 robot joins nothing: it has" if len(names) == 1 else f"{len(names)} robots join nothing: each has"
-        what = f"{who} a DDS domain of its own, and no flow of the fleet file names it together with anything else"
-        return _notice(place, f"{what}: {_listed(names)}")
-
-
-def _notice(place: Place, message: str) -> Diagnostic:
-    return Diagnostic(place, Severity.NOTICE, message, JOINS_NOTHING)
-
-
-def _listed(names: Sequence[str]) -> str:
-    more = f" and {len(names) - LISTED:,} more" if len(names) > LISTED else ""
-    return ", ".join(map(shown, names[:LISTED])) + more
+    def _nothing(self, robot: Robot, what: str, *, joined: bool = False) -> Diagnostic:
+        if joined or robot.id not in self._letting_out:
+            return Diagnostic(robot.place, Severity.WARNING, what, JOINS_NOTHING)
+        what += f"; data of others that got to {shown(robot.id)} would be let out or kept there"
+        return Diagnostic(robot.place, Severity.WARNING, what, LEAK_JOINS_NOTHING)
 
 
 def _line(place: Place) -> tuple[str, int]:

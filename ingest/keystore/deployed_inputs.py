@@ -40,6 +40,7 @@ def read_deployed(
     *,
     allow_unsigned: bool = False,
     view: str = View.declared,
+    besides: Iterable[str] = (),
 ) -> Read:
     """Read keystores, and permissions and governance files in any order.
 
@@ -54,6 +55,8 @@ def read_deployed(
         may sign it, so it is read in this way only.
     view
         The enforced view has also what the governance leaves to everybody (rule S6).
+    besides
+        Files and folders that somebody else reads.
 
     Raises
     ------
@@ -61,7 +64,7 @@ def read_deployed(
         With every problem, one line each.
     """
     arguments = tuple(arguments)
-    reading = _Reading(domain, today, allow_unsigned, view)
+    reading = _Reading(domain, today, allow_unsigned, view, tuple(besides))
     alone = [argument for argument in arguments if not is_keystore(argument)]
     parts = [partial(reading.keystore, argument) for argument in arguments if is_keystore(argument)]
     policies: list[Policy] = []
@@ -87,10 +90,11 @@ class _Reading(NamedTuple):
     today: str
     allow_unsigned: bool
     view: str
+    besides: tuple[str, ...]
 
     def keystore(self, folder: str) -> _Found:
         """What a keystore grants; each enclave has a governance beside it."""
-        enclaves, told = read_keystore(folder, self.today, allow_unsigned=self.allow_unsigned)
+        enclaves, told = read_keystore(folder, self.today, allow_unsigned=self.allow_unsigned, besides=self.besides)
         policies: list[Policy] = []
         said = list(told)
         for enclave in enclaves:

@@ -10,22 +10,23 @@ folder for each enclave with ``cert.pem``, ``governance.p7s`` and ``permissions.
 from __future__ import annotations
 
 import hashlib
+import os
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputErrors, PolicyError, shown
-from rosprivacy.analysis.model import NOT_READ, Diagnostic, Place, Severity
+from rosprivacy.analysis.model import Diagnostic, Place, Severity
 from rosprivacy.ingest.keystore.certificate import given_by, read_certificate
 from rosprivacy.ingest.keystore.governance_file import read_governance
 from rosprivacy.ingest.keystore.grants import enclave_of
 from rosprivacy.ingest.keystore.permissions_file import read_permissions
 from rosprivacy.ingest.keystore.signed_file import read_signed
-from rosprivacy.ingest.policies.folders import Contents, contents
+from rosprivacy.ingest.policies.folders import Contents, beside_keystore, contents
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
     from rosprivacy.analysis.errors import InputError
     from rosprivacy.ingest.keystore.governance_file import Governance
@@ -47,7 +48,7 @@ class Deployed:
 
 
 def read_keystore(
-    folder: str, today: str, *, allow_unsigned: bool = False
+    folder: str, today: str, *, allow_unsigned: bool = False, besides: Iterable[str] = ()
 ) -> tuple[tuple[Deployed, ...], tuple[Diagnostic, ...]]:
     """Read all enclaves of a keystore.
 
@@ -57,6 +58,8 @@ def read_keystore(
         ISO date on which certificates are valid or not.
     allow_unsigned
         Whether what is unsigned or badly signed is read too; then that is told.
+    besides
+        Files and folders that somebody else reads.
 
     Raises
     ------
@@ -65,17 +68,14 @@ def read_keystore(
     """
     inside = contents(str(Path(folder) / "enclaves")) or Contents()
     unread = {Path(error.file): error for error in inside.problems}
-    paths = (*map(Path, inside.files | inside.others), *unread)
+    paths = (*map(Path, inside.files | (inside.others - inside.hidden)), *unread)
     enclaves = sorted({path.parent for path in paths if path.name in (PERMISSIONS, CERTIFICATE)})
     problems = [error for path, error in unread.items() if path.suffix not in FILES]  # of a file who reads it says it
     if not (enclaves or problems):
         problems.append(PolicyError(folder, 0, f"a keystore without any {PERMISSIONS}", "create an enclave in it"))
     verified: dict[str, SignedText] = {}
     deployed: list[Deployed] = []
-    said: list[Diagnostic] = [
-        Diagnostic(Place(str(file), 0), Severity.NOTICE, "not read: it is no part of the keystore", NOT_READ)
-        for file in sorted(Path(folder).glob("*.xml"))
-    ]
+    said = list(beside_keystore(folder, {*map(os.path.realpath, besides)}))
     for enclave in enclaves:
         reader = _Enclave(folder, enclave, today, allow_unsigned, verified)
         try:

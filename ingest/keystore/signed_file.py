@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import PolicyError, shown
 from rosprivacy.ingest.keystore.openssl import absolute, openssl
-from rosprivacy.ingest.keystore.told_apart import is_signed
 from rosprivacy.ingest.reading.bounded_file import read_regular
+from rosprivacy.ingest.reading.file_kinds import is_signed
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.errors import InputError

@@ -9,12 +9,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosprivacy.ingest.reading.bounded_file import beginning
+from rosprivacy.ingest.reading.file_kinds import HEAD, is_signed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-HEAD = 4096  # bytes in which a file says what it is
-SIGNED = b"multipart/signed"
 PARTS = ("enclaves", "public")  # folders of a keystore
 
 
@@ -41,8 +40,3 @@ def is_keystore(folder: str) -> bool:
         return all((Path(folder) / name).is_dir() for name in PARTS)
     except (OSError, ValueError):
         return False
-
-
-def is_signed(data: bytes) -> bool:
-    """Return whether a file says of itself that it is signed (S/MIME)."""
-    return SIGNED in data[:HEAD].partition(b"<dds")[0]

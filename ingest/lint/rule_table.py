@@ -41,7 +41,7 @@ _RULES = (
         "it brings nothing new, and who removes a line elsewhere may not think of it",
     ),
     LintRule("missing-include", _W, "an include of a file that is not there", "its fallback is read in its place"),
-    LintRule("unused-file", _W, "a fragment in a named folder that nothing includes", "what it grants is not granted"),
+    LintRule("unused-file", _W, "a policy or a part of one that nothing reads", "what it grants is not granted"),
     LintRule("refused-name", _W, "a name that no ROS node can have", "the line meets no other, or the wrong ones"),
     LintRule("shared-enclave", _W, "an enclave that several files state", "sros2 makes permissions of one file"),
     LintRule(

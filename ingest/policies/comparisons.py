@@ -87,10 +87,10 @@ def apart(rules: Iterable[tuple[str, Grant]]) -> tuple[dict[str, list[Grant]], l
     return plain, patterns
 
 
-def careful_notices(places: Iterable[Place]) -> tuple[Diagnostic, ...]:
+def careful_warnings(places: Iterable[Place]) -> tuple[Diagnostic, ...]:
     """Return what is to be said of DENY lines that were too much to follow (rules S4, S11)."""
     what = "takes names out of wildcards, and with the other DENYs there it takes too long to tell whether one is left"
     return tuple(
-        Diagnostic(place, Severity.NOTICE, f"this DENY {what}: it is taken that one is", CAREFUL_DENY)
+        Diagnostic(place, Severity.WARNING, f"this DENY {what}: it is taken that one is", CAREFUL_DENY)
         for place in sorted(places, key=lambda place: (place.file, place.line))
     )

@@ -1,7 +1,7 @@
 """What lies in a folder or behind a glob: the files to read, what is passed over, what cannot be followed (rule S11).
 
 In: a path. Out: names of files. Links are followed, each folder is entered once whatever leads to it, and nothing is
-left out in silence: what does not end in ``.xml`` is counted, and a link to nothing is a problem.
+left out in silence: of what does not end in ``.xml`` the beginning is looked at, and a link to nothing is a problem.
 """
 
 from __future__ import annotations
@@ -12,13 +12,20 @@ from glob import glob, has_magic
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import InputError, PolicyError, reason, shown
-from rosprivacy.analysis.model import ACCESS_GAP, NOT_READ, Diagnostic, Place, Severity
+from rosprivacy.analysis.model import ACCESS_GAP, NOT_READ, UNREAD_FILE, Diagnostic, Place, Severity
+from rosprivacy.ingest.reading.file_kinds import ACCESS_LIST, PERMISSIONS, POLICY, FileKind, kind_of_file
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Collection, Iterable, Iterator
+
+    from rosprivacy.analysis.bounds import Bounds
 
 SIGNED = ".p7s"
+KEYS = (".pem", ".key")  # never opened
+UNREADABLE = FileKind("a file that cannot be read", "check its permissions")
+GRANTING = (POLICY, ACCESS_LIST, PERMISSIONS, UNREADABLE)  # or it may be
 NAMED = 3  # of the files that are passed over
 
 
@@ -31,24 +38,78 @@ class Contents:
     files
         To be read.
     others
-        Passed over, since their names do not end in ``.xml``; hidden ones are not counted.
+        Passed over, since their names do not end in ``.xml``.
+    hidden
+        Those of the others that a person does not see; they are not counted.
     """
 
     files: set[str] = field(default_factory=set)
     others: set[str] = field(default_factory=set)
+    hidden: set[str] = field(default_factory=set)
     problems: list[InputError] = field(default_factory=list)
 
-    def said(self, argument: str) -> Iterator[Diagnostic]:
-        """Yield what is to be said of what is passed over."""
-        signed = {name for name in self.others if name.endswith(SIGNED)}
-        if signed:
-            count = "1 signed file is" if len(signed) == 1 else f"{len(signed):,} signed files are"
-            yield not_read_here(Place(argument, 0), f"{count} ({_named(signed, argument)})")
-        if others := self.others - signed:
+    def said(self, argument: str, read: Collection[str], bounds: Bounds = BOUNDS) -> Iterator[Diagnostic]:
+        """Yield what is to be said of what is passed over: what it is by its content, not by its name (rule S11).
+
+        Parameters
+        ----------
+        read
+            Real paths of files and folders that were read all the same.
+        """
+        left = sorted(self.others, key=lambda name: (name in self.hidden, name))
+        left = [name for name in left if not _within(os.path.realpath(name), read)]
+        looked = left[: bounds.passed_over]
+        kinds = {name: looked_at(name) for name in looked}
+        permissions = {name for name, kind in kinds.items() if kind is PERMISSIONS}
+        if permissions:
+            count = "1 file is" if len(permissions) == 1 else f"{len(permissions):,} files are"
+            yield not_read_here(Place(argument, 0), f"{count} ({_named(permissions, argument)})")
+        yield from _unread((name, kind) for name, kind in kinds.items() if kind is not PERMISSIONS)
+        if len(looked) < len(left):
+            what = "; ".join(bounds.refusal("passed_over", len(left)))
+            yield Diagnostic(Place(argument, 0), Severity.WARNING, f"not all looked into: {what}", UNREAD_FILE)
+        others = {name for name, kind in kinds.items() if kind not in GRANTING and name not in self.hidden}
+        if others:
             count = "1 file is" if len(others) == 1 else f"{len(others):,} files are"
             message = f"{count} not read, as the name does not end in .xml: {_named(others, argument)}"
-            hint = "name a policy among them by itself"
-            yield Diagnostic(Place(argument, 0), Severity.NOTICE, f"{message}; {hint}", NOT_READ)
+            yield Diagnostic(Place(argument, 0), Severity.NOTICE, message, NOT_READ)
+
+
+def beside_keystore(folder: str, read: Collection[str]) -> Iterator[Diagnostic]:
+    """Yield what is to be said of policies and access lists in a keystore: no middleware reads them there."""
+    held = [
+        contents(str(entry)) or Contents({str(entry)})
+        for entry in Path(folder).iterdir()
+        if entry.name not in ("public", "private")
+    ]
+    files = sorted({name for one in held for name in one.files | one.others})
+    kinds = ((name, looked_at(name)) for name in files if not _within(os.path.realpath(name), read))
+    return _unread((name, kind) for name, kind in kinds if kind is not PERMISSIONS)  # beside those that are signed
+
+
+def _unread(kinds: Iterable[tuple[str, FileKind | None]]) -> Iterator[Diagnostic]:
+    """Yield the gap that a file with grants is which nobody reads, whatever its name."""
+    for name, kind in kinds:
+        if kind in GRANTING:
+            what = f"not read: it is {kind.name}, and what it grants is not known"
+            yield Diagnostic(
+                Place(name, 0), Severity.WARNING, f"{what}; {kind.instead}, or move it out of the folder", UNREAD_FILE
+            )
+
+
+def looked_at(name: str) -> FileKind | None:
+    """Return what a file is by its content; of keys and what is signed by its name, since these are not opened."""
+    ending = Path(name).suffix.lower()
+    if ending == SIGNED or ending in KEYS:
+        return PERMISSIONS if ending == SIGNED else None
+    try:
+        return kind_of_file(name)
+    except (OSError, ValueError):
+        return UNREADABLE
+
+
+def _within(file: str, read: Collection[str]) -> bool:
+    return file in read or any(str(folder) in read for folder in Path(file).parents)
 
 
 def _named(files: Iterable[str], argument: str) -> str:
@@ -140,5 +201,7 @@ class _Walk:
             self.contents.problems.append(PolicyError(name, 0, what, "correct the link, or remove it"))
         elif path.is_file() and path.suffix.lower() == ".xml":
             self.contents.files.add(name)
-        elif not any(part.startswith(".") for part in path.parts[self.depth :]):
+        else:
             self.contents.others.add(name)
+            if any(part.startswith(".") for part in path.parts[self.depth :]):
+                self.contents.hidden.add(name)

@@ -9,8 +9,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import Diagnostic, Severity
+from rosprivacy.analysis.written_names import listed
 from rosprivacy.ingest.policies.names import is_pattern, overlaps
 
 if TYPE_CHECKING:
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Grant, Place, Policy
 
 EVERYTHING = "/*"  # means the same under every namespace
-LISTED = 10  # names in a message
 
 
 def pushed(policy: Policy, namespace: str) -> Policy:
@@ -85,20 +84,15 @@ def told(policies: Sequence[Policy], who: str, namespace: str) -> Iterator[Diagn
         if len(names) == 1
         else f"{len(names)} names are written absolute and stay"
     )
-    message = f"{who}: {stay} outside the namespace that is pushed: {_listed(names)}"
+    message = f"{who}: {stay} outside the namespace that is pushed: {listed(names)}"
     yield Diagnostic(_first(absolute), Severity.NOTICE, message)
     if twice := sorted({name for _, name in _twice(grants)}):
         both = [grant for grant in absolute if grant.name in twice]
         message = (
-            f"{who}: {_listed(twice)} written absolute and relative, under the namespace that is pushed two channels "
+            f"{who}: {listed(twice)} written absolute and relative, under the namespace that is pushed two channels "
             "each; labels mean the absolute one, and the other by its full name"
         )
         yield Diagnostic(_first(both), Severity.WARNING, message)
-
-
-def _listed(names: Sequence[str]) -> str:
-    more = f" and {len(names) - LISTED} more" if len(names) > LISTED else ""
-    return ", ".join(map(shown, names[:LISTED])) + more
 
 
 def _first(grants: Iterable[Grant]) -> Place:

@@ -16,6 +16,7 @@ from rosprivacy.analysis.model import (
     FOLDED_NAMES,
     OBSERVATION_GAP,
     OBSERVED,
+    WITHOUT_WARNINGS,
     Diagnostic,
     Seen,
     Severity,
@@ -53,6 +54,10 @@ GAPS = {  # what each means, for people
     STILL_CHANGING: "the system was still changing at the end: look longer",
     UNANSWERED: "nodes of which not all is known: look again",
 }
+UNWARNED = (
+    "made without warnings: the text has no line of standard error and no hidden name, so nodes of one name, nodes "
+    "that did not answer and all that is hidden can be missing; make it anew with -a, --include-hidden and 2>&1"
+)
 NAMED = 3  # of folded names
 
 Key = tuple[str, str, str, str]  # node, kind, role, name
@@ -93,6 +98,9 @@ def diagnostics_of(observed: Observed, place: Place) -> Iterator[Diagnostic]:
         message = f"names made up at each start are folded: {', '.join(named)}{more}"
         yield Diagnostic(place, Severity.NOTICE, message, FOLDED_NAMES)
     for gap, number in observed.gaps:
+        if gap == WITHOUT_WARNINGS:
+            yield Diagnostic(place, Severity.WARNING, UNWARNED, WITHOUT_WARNINGS)
+            continue
         said = f"the observation has a gap ({number:,}): {GAPS.get(gap, gap)}; the verdict is undetermined at best"
         yield Diagnostic(place, Severity.WARNING, said, OBSERVATION_GAP)
 

@@ -17,10 +17,11 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import InputError, InputErrors, PolicyError, reason
 from rosprivacy.analysis.model import NOT_READ, UNREAD_FILE, Diagnostic, Place, Policy, Severity
-from rosprivacy.ingest.policies.folders import contents, not_read_here
+from rosprivacy.ingest.policies.folders import Contents, contents, not_read_here
 from rosprivacy.ingest.policies.policy_xml import NotAPolicyError, read_policy
 from rosprivacy.ingest.policies.xinclude import MAX_BYTES
 from rosprivacy.ingest.reading.confined import WIDEN, leaves, what_leaves
+from rosprivacy.ingest.reading.file_kinds import PERMISSIONS, POLICY, kind_of_file
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
@@ -34,7 +35,7 @@ class _Expanded:
 
     named: set[str] = field(default_factory=set)
     found: dict[str, set[str]] = field(default_factory=dict)
-    notices: list[Diagnostic] = field(default_factory=list)
+    held: dict[str, Contents] = field(default_factory=dict)
     problems: list[InputError] = field(default_factory=list)
 
 
@@ -43,6 +44,7 @@ def read_policies(
     *,
     include_root: str | None = None,
     within: str | None = None,
+    besides: Iterable[str] = (),
     max_bytes: int = MAX_BYTES,
     bounds: Bounds = BOUNDS,
     progress: Callable[[Sequence[str]], Iterable[str]] = lambda files: files,
@@ -55,6 +57,8 @@ def read_policies(
         Files, folders (read with all below them) and glob patterns.
     within
         A folder that no file may lie outside of, its own links followed; for arguments that a file names.
+    besides
+        Files and folders that somebody else reads.
     progress
         Wraps the list of files, to show how far it is.
 
@@ -64,7 +68,7 @@ def read_policies(
         In the order of their paths.
     diagnostics
         For each XML file of a folder that is no policy a notice, or a warning if it has grants that nothing includes;
-        for each folder a notice on how many other files it has.
+        for each other file of a folder that is one by its content a warning, and a notice on how many others there are.
 
     Raises
     ------
@@ -87,17 +91,30 @@ def read_policies(
             if isinstance(first, NotAPolicyError) and file not in named:
                 skipped.append(first)
             else:
-                problems += error.errors
-    passed_over = {error.file for error in skipped}
+                problems += _of_another_kind(file) or error.errors
+    no_policies = {error.file for error in skipped}
     for argument, files in found.items():
-        if files <= passed_over:
+        if files <= no_policies:
             problems.append(PolicyError(argument, 0, "no SROS 2 policy found", "name a file or folder that has one"))
     if not arguments:
         problems.append(PolicyError("nothing", 0, "no SROS 2 policy found", "name a file or folder that has one"))
     if problems:
         raise InputErrors(problems)
-    included = _included(policies) if skipped else {}
-    return tuple(policies), (*(_not_read(error, included) for error in skipped), *expanded.notices)
+    if not expanded.held:
+        return tuple(policies), ()
+    included = _included(policies)
+    read = {*included, *map(os.path.realpath, besides), *map(os.path.realpath, named)}
+    passed_over = (one for argument, held in expanded.held.items() for one in held.said(argument, read, bounds))
+    return tuple(policies), (*(_not_read(error, included) for error in skipped), *passed_over)
+
+
+def _of_another_kind(file: str) -> list[InputError]:
+    """The one thing that is wrong with a file that is something else by its content; none for a policy."""
+    try:
+        kind = kind_of_file(file)
+    except (OSError, ValueError):
+        return []  # who reads it says why not
+    return [PolicyError(file, 1, *kind.refused("a policy", file))] if kind not in (None, POLICY, PERMISSIONS) else []
 
 
 def _included(policies: Iterable[Policy]) -> dict[str, set[tuple[int, str, str]]]:
@@ -145,7 +162,7 @@ def _expand(arguments: Iterable[str]) -> _Expanded:
             expanded.named.add(spelt.setdefault(os.path.abspath(argument), argument))  # noqa: PTH100 - by its text
             continue
         expanded.problems += held.problems
-        expanded.notices += held.said(argument)
+        expanded.held[argument] = held
         if held.files:
             expanded.found[argument] = {
                 spelt.setdefault(os.path.abspath(file), file)  # noqa: PTH100

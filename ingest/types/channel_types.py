@@ -11,7 +11,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.model import Diagnostic, MessageType, Place, Severity
+from rosprivacy.analysis.model import TYPES_OF_NOTHING, Diagnostic, MessageType, Place, Severity
 from rosprivacy.analysis.text import counted
 
 if TYPE_CHECKING:
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     Written = Mapping[Element, Element]
 
 LISTED = 5  # names in a notice
-TYPES_OF_NOTHING = "types-of-nothing"
 
 
 def channel_types(
@@ -52,7 +51,7 @@ def channel_types(
 def matching_nothing(
     graph: FlowGraph, files: Collection[TypesFile], written: Written = MappingProxyType({})
 ) -> tuple[Diagnostic, ...]:
-    """Return a notice for each file with names, of channels or of nodes, that nothing of the system is called."""
+    """Return a warning for each file with names, of channels or of nodes, that nothing of the system is called."""
     if not files:
         return ()
     at = _vertices(graph, written)
@@ -65,7 +64,7 @@ def matching_nothing(
         if lost:
             names = ", ".join(sorted(lost)[:LISTED]) + (f" and {len(lost) - LISTED} more" if len(lost) > LISTED else "")
             what = f"{counted(len(lost), 'name')} of observed types that nothing of the system is called: {names}"
-            said.append(Diagnostic(Place(file.file, 0), Severity.NOTICE, what, TYPES_OF_NOTHING))
+            said.append(Diagnostic(Place(file.file, 0), Severity.WARNING, what, TYPES_OF_NOTHING))
     return tuple(said)
 
 

@@ -25,6 +25,11 @@ def deployment_lines(document: CheckDocument) -> Iterator[str]:
     found = document["differences"]
     if not found:
         yield NOT_KNOWN if document["undetermined"] else SAME
+    if exposed := document["exposed"]:
+        rules = (
+            "1 rule of the governance lets" if len(exposed) == 1 else f"{len(exposed):,} rules of the governance let"
+        )
+        yield f"exposed: {rules} who is on the network read what is sent; the warnings say where"
     for enclave, of_enclave in groupby(found, key=lambda entry: entry["enclave"]):
         yield f"enclave {shown(enclave)}"
         for side, entries in groupby(of_enclave, key=lambda entry: entry["only_in"]):

@@ -28,6 +28,23 @@ class LossEntry(TypedDict):
     line: int
 
 
+class ExposedEntry(TypedDict):
+    """A rule of a governance by which others than the robot's own nodes can read.
+
+    Attributes
+    ----------
+    cause
+        ``not-encrypted`` or ``strangers``: a participant without a certificate may join.
+    dds
+        Expression of DDS topics; ``*`` where it is about all.
+    """
+
+    cause: str
+    dds: str
+    file: str
+    line: int
+
+
 class CheckDocument(TypedDict):
     """What a policy says and what is deployed.
 
@@ -35,9 +52,12 @@ class CheckDocument(TypedDict):
     ----------
     undetermined
         Whether more may be allowed than is compared: somewhere permissions are not asked, or any session is let in.
+    exposed
+        What the deployed governance leaves in the open. It is no difference, since a policy says nothing of it.
     """
 
     format: str
+    exposed: list[ExposedEntry]
     differences: list[DifferenceEntry]
     losses: list[LossEntry]
     undetermined: bool

@@ -127,8 +127,8 @@ NOTHING_FOLLOWED = Rule(
     "no-data-followed",
     "PersonalDataNotFollowed",
     "No data was followed: that nothing is found says nothing about the system.",
-    "No label names a source of the kinds of data that were asked for, or what the sources bring in goes nowhere but "
-    "to standard channels, so there was nothing to follow.",
+    "No label names a source of the kinds of data that were asked for, or what the sources bring in goes nowhere, "
+    "or to standard channels only, so there was nothing to follow.",
     ("Name the nodes that bring personal data in, in a label file: rosprivacy labels --init writes a first one.",),
 )
 NO_LEAK = Rule(

@@ -7,6 +7,12 @@ DOUBTS = {
         "what is allowed is not known at {n} places ({names})",
         "look at the warnings about these files, and at the enforced view (--view enforced)",
     ),
+    "analysed-in-parts": (
+        "An answer of a fleet in parts",
+        "of robots that are not shown no doubts are told",
+        "of robots that are not shown no doubts are told",
+        "ask about the whole fleet in memory, or about the robots that matter",
+    ),
     "backups-not-stated": (
         "A storage whose backups nobody states",
         "backups of {names} are not stated and taken as none",
@@ -19,17 +25,53 @@ DOUBTS = {
         "not all is known of {n} bags ({names})",
         "name the policies of the system that was recorded, or repair the bag (rosprivacy bag says what is wrong)",
     ),
+    "careful-deny": (
+        "A search that a bound cut",
+        "a bound cut what a DENY in {names} leaves of wildcards",
+        "a bound cut what {n} DENYs leave of wildcards ({names})",
+        "raise the bound on comparisons",
+    ),
     "empty-group": (
-        "A group of robots that no rule covers, or that is empty",
-        "a group of robots has nothing in it ({names})",
-        "{n} groups of robots have nothing in them ({names})",
-        "correct the fleet file",
+        "Lines of a policy that grant nothing",
+        "a group of lines in {names} has no rule and grants nothing",
+        "{n} groups of lines have no rule and grant nothing ({names})",
+        'write publish="ALLOW" or the like there, or remove them',
+    ),
+    "empty-include": (
+        "An include that brings nothing",
+        "an include in {names} brings nothing",
+        "{n} includes bring nothing ({names})",
+        "correct what the include selects, or remove it",
     ),
     "fallback-taken": (
         "A fallback was taken",
         "a fallback was taken in {names}",
         "{n} fallbacks were taken ({names})",
         "give the file that is included, or take the fallback out",
+    ),
+    "joins-nothing": (
+        "A domain or infrastructure that joins nothing",
+        "a domain or infrastructure in {names} joins nothing",
+        "{n} domains or infrastructures join nothing ({names})",
+        "name its domain, or a flow to it; leave the domain out if it is meant to be alone",
+    ),
+    "leak-joins-nothing": (
+        "A domain or infrastructure that lets data out and joins nothing",
+        "a domain or infrastructure in {names} that lets data out or keeps it joins nothing",
+        "{n} domains or infrastructures that let data out or keep it join nothing ({names})",
+        "name its domain, or a flow to it; leave the domain out if it is meant to be alone",
+    ),
+    "made-without-warnings": (
+        "A text of what runs that was made without warnings",
+        "the text behind {names} was made without warnings",
+        "{n} texts of what runs were made without warnings ({names})",
+        "make the text anew with -a, --include-hidden and 2>&1, and observe it again",
+    ),
+    "mistaken-tilde": (
+        "A name behind ~ without /",
+        "a name in {names} has no / behind ~ and is another name",
+        "{n} names have no / behind ~ and are other names ({names})",
+        "write ~/ before it",
     ),
     "no-flow": (
         "An element outside ROS that no flow reaches",
@@ -43,6 +85,12 @@ DOUBTS = {
         "{n} channels end at no known reader ({names})",
         "give the policy of whoever reads it, or look who does (rosprivacy observe)",
     ),
+    "no-robot": (
+        "Folders of a group of robots without its policy",
+        "folders of a group in {names} have no policy and are no robots",
+        "folders of {n} groups have no policy and are no robots ({names})",
+        "give these folders the policy, or move them elsewhere",
+    ),
     "nothing-enforced": (
         "Nothing is enforced for what was observed",
         "nothing is enforced for {n} node ({names})",
@@ -55,11 +103,23 @@ DOUBTS = {
         "the observation is known to miss {n} things ({names})",
         "observe again until no gap is left (rosprivacy observe), or name a policy",
     ),
+    "odd-namespace": (
+        "A namespace that does not begin with /",
+        "a namespace in {names} does not begin with /",
+        "{n} namespaces do not begin with / ({names})",
+        "write / before it",
+    ),
     "paths-not-counted": (
         "A search that a bound cut",
         "a bound cut the count of paths",
         "a bound cut {n} counts of paths",
         "raise the bound, or ask about fewer kinds of data",
+    ),
+    "refused-name": (
+        "A name that no ROS node can have",
+        "a name in {names} is none that a ROS node can have",
+        "{n} names are none that a ROS node can have ({names})",
+        "correct the name: it meets no other, or the wrong ones",
     ),
     "restricted": (
         "Only some kinds of data were asked for",
@@ -73,11 +133,17 @@ DOUBTS = {
         "only the types of channels close the ways to {n} leaks ({names})",
         "look at what the channel carries, and say so in a label",
     ),
+    "types-of-nothing": (
+        "Observed types of what nothing is called",
+        "{names} tells types of channels or nodes that are not there",
+        "{n} files tell types of channels or nodes that are not there ({names})",
+        "give the policy of what was seen running too, or the file of this system",
+    ),
     "unread-file": (
         "A file with grants that was not read",
         "{names} was not read",
         "{n} files were not read ({names})",
-        "name the file, or the policy that includes it, or remove it",
+        "name the file, or the policy that includes it, or move it out of the folder",
     ),
 }
 WORDS = {

@@ -7,6 +7,12 @@ DOUBTS = {
         "ce qui est permis n'est pas connu à {n} endroits ({names})",
         "regarder les avertissements sur ces fichiers et la vue appliquée (--view enforced)",
     ),
+    "analysed-in-parts": (
+        "Une réponse sur une flotte analysée par parties",
+        "des robots qui ne sont pas montrés, aucun doute n'est nommé",
+        "des robots qui ne sont pas montrés, aucun doute n'est nommé",
+        "analyser toute la flotte en mémoire, ou les robots qui importent",
+    ),
     "backups-not-stated": (
         "Un stockage dont les sauvegardes ne sont pas indiquées",
         "les sauvegardes de {names} ne sont pas indiquées, aucune n'est supposée",
@@ -19,17 +25,53 @@ DOUBTS = {
         "{n} enregistrements ne sont pas entièrement connus ({names})",
         "nommer les politiques du système enregistré, ou réparer l'enregistrement (rosprivacy bag dit ce qui manque)",
     ),
+    "careful-deny": (
+        "Une recherche qu'une borne a coupée",
+        "une borne a coupé ce qu'un DENY de {names} laisse de jokers",
+        "une borne a coupé ce que {n} DENY laissent de jokers ({names})",
+        "relever la borne des comparaisons",
+    ),
     "empty-group": (
-        "Un groupe de robots sans règle, ou vide",
-        "un groupe de robots ne contient rien ({names})",
-        "{n} groupes de robots ne contiennent rien ({names})",
-        "corriger le fichier de flotte",
+        "Des lignes d'une politique qui n'autorisent rien",
+        "un groupe de lignes dans {names} n'a pas de règle et n'autorise rien",
+        "{n} groupes de lignes n'ont pas de règle et n'autorisent rien ({names})",
+        'y écrire publish="ALLOW" ou semblable, ou les retirer',
+    ),
+    "empty-include": (
+        "Une inclusion qui n'apporte rien",
+        "une inclusion dans {names} n'apporte rien",
+        "{n} inclusions n'apportent rien ({names})",
+        "corriger ce que l'inclusion choisit, ou la retirer",
     ),
     "fallback-taken": (
         "Un remplacement a été pris",
         "un remplacement (fallback) a été pris dans {names}",
         "{n} remplacements (fallback) ont été pris ({names})",
         "fournir le fichier inclus, ou retirer le remplacement",
+    ),
+    "joins-nothing": (
+        "Un domaine ou une infrastructure qui n'est relié à rien",
+        "un domaine ou une infrastructure dans {names} n'est relié à rien",
+        "{n} domaines ou infrastructures ne sont reliés à rien ({names})",
+        "nommer son domaine, ou un flux qui y mène ; omettre le domaine s'il doit rester seul",
+    ),
+    "leak-joins-nothing": (
+        "Un domaine ou une infrastructure qui laisse sortir des données et n'est relié à rien",
+        "un domaine ou une infrastructure dans {names} qui laisse sortir ou conserve des données n'est relié à rien",
+        "{n} domaines ou infrastructures qui laissent sortir ou conservent des données ne sont reliés à rien ({names})",
+        "nommer son domaine, ou un flux qui y mène ; omettre le domaine s'il doit rester seul",
+    ),
+    "made-without-warnings": (
+        "Un texte sur le fonctionnement, fait sans avertissements",
+        "le texte derrière {names} a été fait sans avertissements",
+        "{n} textes sur le fonctionnement ont été faits sans avertissements ({names})",
+        "refaire le texte avec -a, --include-hidden et 2>&1, et l'observer à nouveau",
+    ),
+    "mistaken-tilde": (
+        "Un nom derrière ~ sans /",
+        "un nom dans {names} n'a pas de / derrière ~ et est un autre nom",
+        "{n} noms n'ont pas de / derrière ~ et sont d'autres noms ({names})",
+        "écrire ~/ devant",
     ),
     "no-flow": (
         "Un élément hors de ROS qu'aucun flux n'atteint",
@@ -43,6 +85,12 @@ DOUBTS = {
         "{n} canaux n'ont pas de lecteur connu ({names})",
         "fournir la politique de qui lit, ou regarder qui lit (rosprivacy observe)",
     ),
+    "no-robot": (
+        "Des dossiers d'un groupe de robots sans sa politique",
+        "des dossiers d'un groupe dans {names} n'ont pas de politique et ne sont pas des robots",
+        "des dossiers de {n} groupes n'ont pas de politique et ne sont pas des robots ({names})",
+        "donner la politique à ces dossiers, ou les déplacer",
+    ),
     "nothing-enforced": (
         "Rien n'est imposé à ce qui a été observé",
         "rien n'est imposé à {n} nœud ({names})",
@@ -55,11 +103,23 @@ DOUBTS = {
         "il manque {n} choses à l'observation ({names})",
         "observer de nouveau jusqu'à ce qu'aucune lacune ne reste (rosprivacy observe), ou nommer une politique",
     ),
+    "odd-namespace": (
+        "Un espace de noms qui ne commence pas par /",
+        "un espace de noms dans {names} ne commence pas par /",
+        "{n} espaces de noms ne commencent pas par / ({names})",
+        "écrire / devant",
+    ),
     "paths-not-counted": (
         "Une recherche coupée par une limite",
         "une limite a coupé le compte des chemins",
         "une limite a coupé {n} comptes de chemins",
         "relever la limite, ou demander moins de catégories de données",
+    ),
+    "refused-name": (
+        "Un nom qu'aucun nœud ROS ne peut avoir",
+        "un nom dans {names} n'est pas de ceux qu'un nœud ROS peut avoir",
+        "{n} noms ne sont pas de ceux qu'un nœud ROS peut avoir ({names})",
+        "corriger le nom : il n'en rencontre aucun autre, ou les mauvais",
     ),
     "restricted": (
         "Seules certaines catégories de données ont été demandées",
@@ -73,11 +133,17 @@ DOUBTS = {
         "seuls les types de canaux ferment les chemins vers {n} points de sortie ({names})",
         "regarder ce que le canal transporte, et le dire dans une annotation",
     ),
+    "types-of-nothing": (
+        "Des types observés de ce qui n'existe pas ici",
+        "{names} donne des types de canaux ou de nœuds qui n'existent pas ici",
+        "{n} fichiers donnent des types de canaux ou de nœuds qui n'existent pas ici ({names})",
+        "donner aussi la politique de ce qui a été vu en fonctionnement, ou le fichier de ce système",
+    ),
     "unread-file": (
         "Un fichier avec des droits qui n'a pas été lu",
         "{names} n'a pas été lu",
         "{n} fichiers n'ont pas été lus ({names})",
-        "nommer le fichier, ou la politique qui l'inclut, ou le retirer",
+        "nommer le fichier, ou la politique qui l'inclut, ou le retirer du dossier",
     ),
 }
 WORDS = {

@@ -4,7 +4,7 @@ WORDS = {
     "pic.verdict.leak": "Daten können an einen Ausgang gelangen",
     "pic.verdict.undetermined": "kein Ausgang erreicht, aber nicht alles auf den Wegen ist geprüft",
     "pic.verdict.no-leak-found": "kein Weg zu einem Ausgang gefunden",
-    "pic.lacking.goes-nowhere": "sie gelangen nur zu Standardkanälen, also wurde nichts verfolgt",
+    "pic.lacking.goes-nowhere": "sie gelangen nirgendwohin oder nur zu Standardkanälen, also wurde nichts verfolgt",
     "pic.lacking.no-leak-named": "keine Angabe sagt, wo sie hinausgelangen",
     "pic.nothing": "Es wurden keine Daten verfolgt: Keine Angabe nennt eine Quelle. Das Bild sagt also nichts über das System.",
     "pic.longer": "Nicht gezeichnet: Wege von mehr als {steps}",

@@ -4,7 +4,7 @@ WORDS = {
     "pic.verdict.leak": "data can reach a leak",
     "pic.verdict.undetermined": "no leak reached, but not everything on the way is reviewed",
     "pic.verdict.no-leak-found": "no path to a leak found",
-    "pic.lacking.goes-nowhere": "it goes nowhere but to standard channels, so nothing was followed",
+    "pic.lacking.goes-nowhere": "it goes nowhere, or to standard channels only, so nothing was followed",
     "pic.lacking.no-leak-named": "no label says where it gets out",
     "pic.nothing": "No data was followed: no label names a source. So this says nothing about the system.",
     "pic.longer": "Not drawn: paths of more than {steps}",

@@ -6,7 +6,7 @@ _TYPED = {
     "pic.verdict.leak": "des données peuvent atteindre un point de sortie",
     "pic.verdict.undetermined": "aucun point de sortie atteint, mais tout n'est pas examiné sur les chemins",
     "pic.verdict.no-leak-found": "aucun chemin vers un point de sortie trouvé",
-    "pic.lacking.goes-nowhere": "elles ne vont qu'à des canaux standard, rien n'a donc été suivi",
+    "pic.lacking.goes-nowhere": "elles ne vont nulle part, ou à des canaux standard seulement, rien n'a donc été suivi",
     "pic.lacking.no-leak-named": "aucune annotation ne dit où elles sortent",
     "pic.nothing": "Aucune donnée n'a été suivie : aucune annotation ne nomme de source. L'image ne dit donc rien du système.",
     "pic.longer": "Non dessinés : chemins de plus de {steps}",

@@ -21,7 +21,7 @@ WORDS = {
     "tty.enforced.deny": "fällt auch weg mit {lines}: durch eine neue Analyse nachgewiesen",
     "tty.enforced.line": "einem DENY für {role} {channel} in {enclave} ({file})",
     "tty.enforced.loses": "ein DENY gilt aber für die ganze Enklave; damit ginge nicht mehr, was eigene Profile erlauben: {rights}",
-    "tty.verdict.goes-nowhere": "es wurden keine Daten verfolgt, sie gelangen nur zu Standardkanälen",
+    "tty.verdict.goes-nowhere": "es wurden keine Daten verfolgt, sie gelangen nirgendwohin oder nur zu Standardkanälen",
     "tty.verdict.no-leak-named": "keine Angabe sagt, wo Daten das System verlassen, also konnte nichts ein Ausgang sein",
     "tty.verdict.nothing": "es wurden keine Daten verfolgt",
     "tty.finding.one": "{n} Befund",

@@ -21,7 +21,7 @@ WORDS = {
     "tty.enforced.deny": "gone, too, with {lines}: proven by a new analysis",
     "tty.enforced.line": "a DENY to {role} {channel} in {enclave} ({file})",
     "tty.enforced.loses": "but a DENY holds for its whole enclave: with it these could no longer do what their own profiles allow: {rights}",
-    "tty.verdict.goes-nowhere": "no data was followed, it goes nowhere but to standard channels",
+    "tty.verdict.goes-nowhere": "no data was followed, it goes nowhere, or to standard channels only",
     "tty.verdict.no-leak-named": "no label says where data gets out, so nothing that it gets to could be a leak",
     "tty.verdict.nothing": "no data was followed",
     "tty.finding.one": "{n} finding",

@@ -23,7 +23,7 @@ _TYPED = {
     "tty.enforced.deny": "disparaît aussi avec {lines} : prouvé par une nouvelle analyse",
     "tty.enforced.line": "un DENY pour {role} {channel} dans {enclave} ({file})",
     "tty.enforced.loses": "mais un DENY vaut pour toute l'enclave ; ne pourraient alors plus, bien que leur propre profil le permette : {rights}",
-    "tty.verdict.goes-nowhere": "aucune donnée n'a été suivie, elles ne vont qu'à des canaux standard",
+    "tty.verdict.goes-nowhere": "aucune donnée n'a été suivie, elles ne vont nulle part, ou à des canaux standard seulement",
     "tty.verdict.no-leak-named": "aucune annotation ne dit où des données sortent, rien ne pouvait donc être un point de sortie",
     "tty.verdict.nothing": "aucune donnée n'a été suivie",
     "tty.finding.one": "{n} constat",

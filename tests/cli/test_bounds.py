@@ -154,7 +154,7 @@ def test_the_default_is_refused_above_as_well(
 
 
 def test_every_bound_has_its_rows() -> None:
-    assert {*(name for name, *_ in ROWS), "search_steps", "path_steps"} == set(WHAT)
+    assert {*(name for name, *_ in ROWS), "search_steps", "path_steps", "passed_over"} == set(WHAT)
 
 
 def test_sources_are_followed_up_to_a_bound(cli: Cli, tmp_path: Path) -> None:
@@ -178,6 +178,19 @@ def test_paths_that_are_not_counted_are_told(cli: Cli, tmp_path: Path) -> None:
     assert not [said for said in whole["diagnostics"] if said.get("code") == "paths-not-counted"]
     text = cli(*given.arguments, "--bound", "path_steps=1", cwd=tmp_path).stdout
     assert "how many paths share no flow is not counted" in " ".join(text.split())
+
+
+def test_files_that_are_not_looked_into_are_told(cli: Cli, tmp_path: Path) -> None:
+    """Rule S11: what lies behind a bound may be a policy; hidden files are looked into last."""
+    (tmp_path / "d").mkdir()
+    (tmp_path / "d/p.xml").write_text(policy(topics("t")))
+    for name in (".a", "b.txt", "c.txt"):
+        (tmp_path / "d" / name).write_text("text")
+    for bound, number in ((2, 1), (3, 0)):
+        some = document(cli, "d", "--bound", f"passed_over={bound}", cwd=tmp_path)
+        told = [said["message"] for said in some["diagnostics"] if said.get("code") == "unread-file"]
+        assert len(told) == number
+        assert all("raise it with --bound passed_over=N" in one for one in told)
 
 
 def test_a_wrong_bound_is_refused(cli: Cli, tmp_path: Path) -> None:

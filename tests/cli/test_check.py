@@ -105,3 +105,34 @@ def test_where_permissions_may_not_be_asked_no_difference_is_not_told_as_none(
     (folder / "p.policy.xml").write_text(POLICY.replace("/video", "/audio"))
     done = cli("check", "p.policy.xml", *files, "--allow-unsigned", "-f", "json", cwd=folder)
     assert (done.returncode, json.loads(done.stdout)["undetermined"]) == (1, True)
+
+
+@pytest.mark.parametrize(
+    ("given", "exposed"),
+    [
+        (governance(), []),
+        (
+            governance(topic_rule("rt/open", data="NONE", metadata="SIGN"), topic_rule(), rtps="NONE"),
+            [("not-encrypted", "rt/open")],
+        ),
+        (governance(unauthenticated="true"), [("strangers", "*")]),
+    ],
+    ids=["closed", "not encrypted", "strangers"],
+)  # fmt: skip
+def test_what_the_governance_leaves_in_the_open_is_no_difference_and_is_seen(
+    cli: Cli, folder: Path, given: str, exposed: list[tuple[str, str]]
+) -> None:
+    """A policy says nothing of it, so the rights are the same; a gate can ask for it."""
+    keystore = Keystore(folder / "k")
+    keystore.enclave("/camera", permissions(grant("/camera", *REPLY)))
+    keystore.governance(given)
+    done = cli("check", "p.policy.xml", "k", cwd=folder)
+    assert done.returncode == 0
+    assert done.stdout.startswith("what is deployed is what the policy says\n")
+    assert ("\nexposed: 1 rule of the governance lets" in done.stdout) == bool(exposed)
+    done = cli("check", "p.policy.xml", "k", "--fail-on", "exposure", "-f", "json", cwd=folder)
+    document = json.loads(done.stdout)
+    jsonschema.validate(document, json.loads((ROOT / "docs/check.schema.json").read_text("utf-8")))
+    assert [(one["cause"], one["dds"]) for one in document["exposed"]] == exposed
+    assert all(one["file"].endswith("governance.p7s") and one["line"] for one in document["exposed"])
+    assert done.returncode == bool(exposed)

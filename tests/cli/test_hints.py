@@ -13,6 +13,7 @@ import pytest
 
 from tests.helpers.command import Cli, refused
 from tests.helpers.factory import BEFORE
+from tests.helpers.observed import node_info
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -44,6 +45,34 @@ def test_the_nearest_is_named(cli: Cli, tmp_path: Path, words: tuple[str, ...], 
     assert hint in " ".join(done.stderr.replace("│", "").split())
     assert ":0:" not in done.stderr
     assert "Value error" not in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "what"),
+    [
+        ("l.yaml", "# ours\nlabels: 1\nnodes: {}\n", r"a label file, .*; give it with --labels"),
+        ("l.json", '{"labels": 1, "nodes": {}}', r"a label file, .*; give it with --labels"),
+        ("f.yaml", "fleet: 1\n", r"a fleet file, .*; give it with --fleet"),
+        ("t.yaml", "types: 1\n", r"a file of message types, .*; give it with --types"),
+        ("d.yaml", "decisions: 1\n", r"a file of decisions, .*; give it with --decisions"),
+        ("g.json", '{"format": "rosprivacy.graph/1"}', r"a saved graph, .*; give it with --add"),
+        ("graph.txt", node_info("/cam"), r"the output of `ros2 node info`, .*: rosprivacy observe --text graph.txt"),
+        ("graph.txt", f"WARNING: Be aware\n/cam\n{node_info('/cam')}", r".*: rosprivacy observe --text graph.txt"),
+        ("x.launch.py", "def generate_launch_description():\n    pass\n", r"a launch file, .*rosprivacy observe"),
+        ("x.launch.yaml", "launch:\n- node: {pkg: a}\n", r"a launch file, .*rosprivacy observe"),
+        ("x.launch.xml", "<launch/>", r"a launch file, .*rosprivacy observe"),
+        ("up.json", "{access_control: {enabled: true}}", r"an access list of Zenoh, .*\.json5"),
+    ],
+)  # fmt: skip
+def test_a_file_of_another_kind_is_told_once_with_where_it_belongs(
+    cli: Cli, tmp_path: Path, name: str, text: str, what: str
+) -> None:
+    (tmp_path / name).write_text(text)
+    (line,) = refused(cli("analyze", name, cwd=tmp_path))
+    assert re.match(rf"{re.escape(name)}:1: this is {what}", line)
+    if not what.endswith("graph.txt"):
+        (line,) = refused(cli("observe", "--text", name, "-o", "p.xml", cwd=tmp_path))
+        assert re.match(rf"{re.escape(name)}:1: this is {what}", line)
 
 
 def test_a_missing_file_has_no_line(cli: Cli, tmp_path: Path) -> None:

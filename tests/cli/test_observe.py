@@ -99,9 +99,60 @@ def test_a_gap_makes_the_verdict_undetermined_at_best(cli: Cli, robot: Path) -> 
     done = cli("analyze", "robot.policy.xml", "-l", "labels.yaml", cwd=robot)
     assert done.returncode == 4, done.stdout
     assert done.stdout.startswith("undetermined: ")
-    whole = (robot / "robot.policy.xml").read_text("utf-8").replace(' gaps="unanswered:1"', "")
+    whole = (robot / "robot.policy.xml").read_text("utf-8").replace(" unanswered:1", "")
     (robot / "whole.xml").write_text(whole, "utf-8")
     assert cli("analyze", "whole.xml", "-l", "labels.yaml", cwd=robot).returncode == 0
+
+
+TWO = node_info("/n") + node_info("/n", subscribers="/image: sensor_msgs/msg/Image")  # as ROS may tell one of two twice
+ONE, C = node_info("/n"), node_info("/c")
+KNOWN = 'There are 3 nodes in the graph with the exact name "/n". You are seeing information about only one of them.\n'
+UNWARNED = {"made-without-warnings": 1}
+
+
+@pytest.mark.parametrize(
+    ("text", "gaps"),
+    [
+        (CAMERA + ONE + C, UNWARNED),
+        (CAMERA + TWO + C, {**UNWARNED, "same-name": 1}),
+        ("/cam\n/n\n/n\n/c\n" + CAMERA + TWO + C, {**UNWARNED, "same-name": 1}),
+        ("/cam\n/n\n/n\n/c\n" + CAMERA + ONE + C, {**UNWARNED, "same-name": 1}),
+        ("/cam\n/n\n/c\n/d\n" + CAMERA + ONE + C, {**UNWARNED, "unanswered": 1}),
+        ("/cam\n/n\n/c\n/_ros2cli_7\n" + CAMERA + ONE + C + "Unable to find node '/_ros2cli_7'\n", {}),
+        (CAMERA + node_info("/n", publishers="/n/_action/status: a/msg/S") + C, {}),
+        ("[WARN] [1.2] [rcl]: something\n" + CAMERA + ONE + C, {}),
+        (KNOWN + CAMERA + TWO + C + "Unable to find node '/d'\n", {"same-name": 2, "unanswered": 1}),
+    ],
+)
+def test_what_a_text_lacks_is_seen_with_and_without_standard_error(
+    cli: Cli, robot: Path, text: str, gaps: dict[str, int]
+) -> None:
+    """Rule S16: nodes of one name, nodes that did not answer, and whether the tool's warnings were kept at all."""
+    (robot / "graph.txt").write_text(text, "utf-8")
+    said = observe(cli, robot)
+    assert ("made without warnings" in said) == ("made-without-warnings" in gaps)
+    (robot / "labels.yaml").write_text(
+        "labels: 1\nnodes: {/cam: {source: [Video], leak: none}, /n: conduit, /c: conduit}\n"
+        'channels: {"/*": sensitive}\n',
+        "utf-8",
+    )
+    done = cli("analyze", "robot.policy.xml", "-l", "labels.yaml", "-f", "json", cwd=robot)
+    codes = dict.fromkeys(("same-name", "unanswered"), "observation-gap")
+    told = [one["doubt"] for one in json.loads(done.stdout)["doubts"]]
+    expected = sorted(codes.get(gap, gap) for gap in gaps)
+    assert sorted(name for name in told if name in ("observation-gap", "made-without-warnings")) == expected
+    assert (done.returncode == 4) == bool({"same-name", "unanswered"} & set(gaps))
+    for gap, number in gaps.items():
+        assert f"{gap}:{number}" in (robot / "robot.policy.xml").read_text("utf-8")
+
+
+def test_a_text_that_has_no_node_is_refused_in_one_line(cli: Cli, robot: Path) -> None:
+    observe(cli, robot)
+    (robot / "graph.txt").write_text((robot / "robot.policy.xml").read_text("utf-8"), "utf-8")
+    done = cli("observe", "--text", "graph.txt", "-o", "again.policy.xml", cwd=robot)
+    assert done.returncode == 2
+    assert len(done.stderr.splitlines()) == 1
+    assert "analyze" in done.stderr
 
 
 def test_metadata_that_cannot_be_read_are_a_gap_too(cli: Cli, robot: Path) -> None:
@@ -262,10 +313,13 @@ def test_sarif_has_a_result_where_only_a_gap_is_left(cli: Cli, robot: Path) -> N
     observe(cli, robot)
     done = cli("analyze", "robot.policy.xml", "-l", "labels.yaml", "-f", "sarif", cwd=robot)
     assert done.returncode == 4
-    assert [one["ruleId"] for one in json.loads(done.stdout)["runs"][0]["results"]] == ["observation-gaps"]
+    assert [one["ruleId"] for one in json.loads(done.stdout)["runs"][0]["results"]] == [
+        "doubt-observation-gap", "doubt-made-without-warnings", "doubt-nothing-enforced",
+    ]  # fmt: skip
     text = cli("analyze", "robot.policy.xml", "-l", "labels.yaml", cwd=robot).stdout
-    assert text.startswith("undetermined: no leak reached, but the observation is known to miss something")
-    assert "Next: observe again until no gap is left" in text
+    meaning = "undetermined: no leak reached, but not all is known; the observation is known to miss something"
+    assert text.startswith(meaning)
+    assert "observe again until no gap is left" in text
 
 
 def test_the_types_come_back_from_the_file_beside_the_policy(cli: Cli, robot: Path) -> None:
@@ -336,7 +390,7 @@ def test_a_fleet_of_observed_robots_is_told_in_few_lines_and_one_gap_counts(cli:
         "utf-8",
     )
     whole = (robot / "robot.policy.xml").read_text("utf-8")
-    gap = whole.replace(' enclave="made-up"', ' enclave="made-up" gaps="same-name:1"')
+    gap = whole.replace("made-without-warnings:1", "same-name:1")
     for number in range(8):
         (robot / f"r{number}.xml").write_text(gap if number == 7 else whole, "utf-8")
 

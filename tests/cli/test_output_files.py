@@ -30,6 +30,31 @@ def test_output_replaces_a_file_and_keeps_its_rights(cli: Cli, before: Path, tmp
     assert (tmp_path / "r.txt").stat().st_mode & 0o777 == 0o640
 
 
+@pytest.mark.parametrize(
+    ("file", "begins"),
+    [
+        ("r.docx", b"PK\x03\x04"),
+        ("r.DOCX", b"PK\x03\x04"),
+        ("r.html", b"<!doctype html>"),
+        ("r", b"<!doctype html>"),
+        ("r.md", b"# "),
+        ("r.csv", b"\xef\xbb\xbf"),
+        ("r.pdf", b""),
+    ],
+)
+def test_a_report_is_what_its_name_ends_in(cli: Cli, before: Path, tmp_path: Path, file: str, begins: bytes) -> None:
+    """A page in r.docx is opened by nothing. What is asked for by name is written under any name."""
+    done = cli("report", before, "-o", file, cwd=tmp_path)
+    assert done.returncode == (0 if begins else 2)
+    if begins:
+        assert (tmp_path / file).read_bytes().startswith(begins)
+    else:
+        assert "--format" in done.stderr
+        assert not (tmp_path / file).exists()
+    assert cli("report", before, "-f", "markdown", "-o", file, cwd=tmp_path).returncode == 0
+    assert (tmp_path / file).read_bytes().startswith(b"# ")
+
+
 def test_output_of_a_refused_run_is_not_written(cli: Cli, before: Path, tmp_path: Path) -> None:
     (tmp_path / "r.txt").write_text("old")
     for options in (["-o", "r.txt"], ["-o", "new.txt"], ["-o", "new.txt", "--save-graph", "g.json"]):

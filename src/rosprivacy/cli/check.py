@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from enum import StrEnum
 from typing import Annotated
 
 import typer
@@ -10,6 +11,13 @@ from rosprivacy.cli.exit_code import LEAK, UNDETERMINED
 from rosprivacy.cli.inputs import Inputs, reads_system
 from rosprivacy.cli.options import Output, TextOrJson
 from rosprivacy.cli.output import emit
+
+
+class FailOnCheck(StrEnum):
+    """What ends with exit code 1."""
+
+    difference = "difference"
+    exposure = "exposure"
 
 
 @reads_system(
@@ -31,6 +39,12 @@ def check(
     ],
     inputs: Inputs,
     format: Annotated[TextOrJson, typer.Option("--format", "-f", help="Of the answer.")] = TextOrJson.text,  # noqa: A002 - the option's name
+    fail_on: Annotated[
+        FailOnCheck,
+        typer.Option(
+            "--fail-on", help="End with 1 on a difference; with exposure also if the governance leaves anything open."
+        ),
+    ] = FailOnCheck.difference,
     output: Output = None,
 ) -> None:
     """Compare a policy with what is deployed: which rights only one of them has, by enclave, each with its line.
@@ -44,7 +58,7 @@ def check(
     document = check_document(policy, tuple(deployed), inputs.settings)
     lines = "".join(f"{line}\n" for line in deployment_lines(document))
     emit(as_text(document) if format is TextOrJson.json else lines, output)
-    if document["differences"]:
+    if document["differences"] or (fail_on is FailOnCheck.exposure and document["exposed"]):
         raise typer.Exit(LEAK)
     if document["undetermined"]:
         raise typer.Exit(UNDETERMINED)

@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from rosprivacy.analysis.errors import shown
 from rosprivacy.cli.inputs import Inputs, reads_system
 from rosprivacy.cli.options import Language, Output, ViewOrBoth, ViewOrBothChosen
 from rosprivacy.cli.output import emit, not_for_a_terminal
@@ -27,15 +28,16 @@ class ReportFormat(StrEnum):
 def report(
     inputs: Inputs,
     view: ViewOrBothChosen = ViewOrBoth.declared,
-    format: Annotated[  # noqa: A002 - the option's name
-        ReportFormat,
+    chosen: Annotated[
+        ReportFormat | None,
         typer.Option(
             "--format",
             "-f",
+            show_default="as the output's name ends, else html",
             help="A page, a text, a Word document, rows for the record of processing (Article 30 GDPR), "
             "or one page for works councils.",
         ),
-    ] = ReportFormat.html,
+    ] = None,
     output: Output = None,
     lang: Annotated[Language, typer.Option(help="Language of the report.")] = Language.en,
     title: Annotated[
@@ -68,6 +70,7 @@ def report(
     """
     from rosprivacy.formats import Style, written
 
+    format = chosen or _by_ending(output)  # noqa: A001 - the option's name
     if format in (ReportFormat.html, ReportFormat.works_council):
         not_for_a_terminal("a page", output)
     if format is ReportFormat.docx:
@@ -86,3 +89,15 @@ def report(
     )
     report = written(result, format.value, style)
     emit(report.encode() if isinstance(report, str) else report, output)  # it says of itself that it is UTF-8
+
+
+def _by_ending(output: Path | None) -> ReportFormat:
+    """The format that a file's name asks for; of those that end alike the first."""
+    from rosprivacy.formats import FORMATS
+
+    ending = output.suffix.lower() if output else ""
+    known = {FORMATS[one].suffix: one for one in reversed(ReportFormat)} | {"": ReportFormat.html}
+    if ending not in known:
+        endings = ", ".join(sorted(filter(None, known)))
+        raise typer.BadParameter(f"no report ends in {shown(ending)}; write one of {endings}, or --format")
+    return known[ending]

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.model import ACCESS_GAP
+from rosprivacy.analysis.model import ACCESS_GAP, UNREAD_FILE
+from rosprivacy.analysis.model.reason import NOT_ENCRYPTED, STRANGERS
 from rosprivacy.ingest.keystore.deployed_rights import differences
 from rosprivacy.ingest.keystore.generator_losses import generator_losses
 from rosprivacy.reading.granted import ZENOH, read_granted
@@ -16,7 +17,7 @@ from rosprivacy.version import __version__
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from rosprivacy.analysis.model import Diagnostic, Grant, Policy
+    from rosprivacy.analysis.model import Diagnostic, Grant, Place, Policy
     from rosprivacy.ingest.keystore.deployed_rights import Difference
     from rosprivacy.ingest.keystore.generator_losses import Loss
     from rosprivacy.report.contract.deployment import CheckDocument, DifferenceEntry
@@ -58,7 +59,11 @@ def check_document(policy: str, deployed: tuple[str, ...], settings: Settings) -
             {"loss": one.fault, "message": one.message, "file": one.place.file, "line": one.place.line}
             for one in losses
         ],
-        "undetermined": any(one.code == ACCESS_GAP for one in told),
+        "exposed": [
+            {"cause": cause, "dds": dds, "file": place.file, "line": place.line}
+            for cause, dds, place in sorted({one for policy in read for one in _exposed(policy)})
+        ],
+        "undetermined": any(one.code in (ACCESS_GAP, UNREAD_FILE) for one in told),
         "diagnostics": list(_diagnostics(told)),
         "policies": [
             {"file": file, "sha256": digest} for file, digest in sorted({one for some in read for one in some.sources})
@@ -73,6 +78,14 @@ def _enclave(grant: Grant) -> str:
 
 def _base_name(grant: Grant) -> str:
     return f"/{grant.node.rpartition('/')[2]}"
+
+
+def _exposed(policy: Policy) -> Iterable[tuple[str, str, Place]]:
+    """What a governance leaves in the open: (cause, expression of DDS topics, line)."""
+    for protection in policy.protections:
+        if protection.strangers:
+            yield STRANGERS, "*", protection.strangers
+        yield from ((NOT_ENCRYPTED, one.expression, one.place) for one in protection.topics if not one.encrypted)
 
 
 def _entry(difference: Difference) -> DifferenceEntry:

@@ -16,7 +16,7 @@ from rosprivacy.ingest.database.fleet_rows import FleetRows
 from rosprivacy.ingest.fleet.alike_robots import Alike, alike
 from rosprivacy.ingest.fleet.fleet_file import Fleet, read_fleet
 from rosprivacy.ingest.fleet.fleet_graph import Placed, place
-from rosprivacy.ingest.fleet.joins import joins_nothing
+from rosprivacy.ingest.fleet.joins import joins_nothing, let_out
 from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, Change
 from rosprivacy.question import question_of
 from rosprivacy.reading.robot_reader import Reader, Tried
@@ -186,7 +186,9 @@ def _made(
     placed = place(fleet, groups, members, settings.view)
     there = {key: reader.labels[key] for group in groups for key in reader.wanted(group.robots[0])}
     labels = tuple(sorted(there.values(), key=lambda labels: (labels.file, labels.own)))
-    joins = joins_nothing(fleet, groups, placed.met)
+    elements = placed.graph.elements
+    letting_out = let_out((one, placed.bound.elements.get(vertex, ())) for vertex, one in enumerate(elements))
+    joins = joins_nothing(fleet, groups, placed.met, letting_out)
     diagnostics = dict.fromkeys((*(d for member in members.values() for d in member.diagnostics), *joins))
     policies = [policy for member in members.values() for policy in member.policies]
     files = [{"file": name, "sha256": digest} for name, digest in fleet.sources]
@@ -216,7 +218,8 @@ def rows_of_fleet(system: FleetSystem, question: Question, result: Result) -> Fl
         more[name] = remembered(said, member.diagnostics)
     everything = {**result.assumptions, "policies": [], "labels": [], "types": []}
     more[system.fleet.name] = remembered(everything, system.joins)
-    not_read = [name for name, member in system.members.items() if unread(member.diagnostics)]
+    said = {**{name: member.diagnostics for name, member in system.members.items()}, system.fleet.name: system.joins}
+    not_read = [name for name, diagnostics in said.items() if unread(diagnostics)]
     return FleetRows(
         system.placed, result.analysis, system.vocabulary, more, not_read=not_read, beyond=beyond_of(result)
     )

@@ -50,12 +50,13 @@ def read_granted(names: Iterable[str], settings: Settings, within: str | None = 
             stated,
             include_root=settings.include_root,
             within=within,
+            besides=(*access, *granted),
             max_bytes=settings.max_bytes,
             bounds=settings.bounds,
             progress=settings.progress,
         )
     if granted:
-        policies = (*policies, *_deployed(granted, settings, within))
+        policies = (*policies, *_deployed(granted, settings, within, (*stated, *access)))
     if access:
         policies = (*policies, *_zenoh(access, settings, within))
     return policies, said
@@ -68,13 +69,13 @@ def _zenoh(names: list[str], settings: Settings, within: str | None) -> tuple[Po
     return read_zenoh(names, settings.domain, view=settings.view)
 
 
-def _deployed(names: list[str], settings: Settings, within: str | None) -> Iterator[Policy]:
+def _deployed(names: list[str], settings: Settings, within: str | None, besides: Iterable[str]) -> Iterator[Policy]:
     from rosprivacy.ingest.keystore.deployed_inputs import read_deployed  # noqa: PLC0415 - light start
 
     _confined(names, within)
     on = settings.today or today(os.environ)
     policies, said = read_deployed(
-        names, settings.domain, on, allow_unsigned=settings.allow_unsigned, view=settings.view
+        names, settings.domain, on, allow_unsigned=settings.allow_unsigned, view=settings.view, besides=besides
     )
     _confined([file for policy in policies for file, _ in policy.sources], within)
     return _with_said(policies, said)

@@ -19,7 +19,7 @@ from rosprivacy.ingest.labels.binding import join, remarks
 from rosprivacy.ingest.labels.label_file import OURS, read_labels
 from rosprivacy.ingest.mitigation.deny_lines import with_denied
 from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, Change, changed
-from rosprivacy.ingest.policies.comparisons import careful_notices
+from rosprivacy.ingest.policies.comparisons import careful_warnings
 from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.ingest.policies.joint_policies import joint_warnings
 from rosprivacy.ingest.policies.merged_policies import OF_ONE_ROBOT, merging_notices
@@ -141,7 +141,7 @@ class Reader:
         graph, full = stripped(build(run, settings.view, settings.bounds), robot.strip or robot.add)
         whole, missing = extended(graph, files)
         self._refuse(missing)
-        diagnostics += (*remarks(whole, files), *careful_notices(whole.careful))
+        diagnostics += (*remarks(whole, files), *careful_warnings(whole.careful))
         diagnostics += told_of_bags(whole, (stated for labels in files for stated in labels.elements))
         self.types |= read_types_files((name for name in robot.types if name not in self.types), settings)
         types = tuple(self.types[name] for name in sorted(set(robot.types)))

@@ -23,7 +23,7 @@ from rosprivacy.ingest.labels.graph_names import GraphNames
 from rosprivacy.ingest.labels.label_file import Labels, read_labels, unknown_categories
 from rosprivacy.ingest.labels.stated_types import in_order
 from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, Change, changed
-from rosprivacy.ingest.policies.comparisons import careful_notices
+from rosprivacy.ingest.policies.comparisons import careful_warnings
 from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.ingest.policies.joint_policies import joint_warnings
 from rosprivacy.ingest.policies.merged_policies import merging_notices
@@ -137,7 +137,7 @@ def _joined(
         + tuple(remarks(graph, files, names))
         + tuple(told_of_bags(graph, (stated for file in files for stated in file.elements)))
     )
-    said += careful_notices(graph.careful)
+    said += careful_warnings(graph.careful)
     rests_on = {**files_read(policies, files, settings), **types_read(types)}
     bound = with_exposed(graph, with_types(graph, bound, types), policies)
     said += tuple(outdated_reasons(graph, bound))

@@ -13,6 +13,7 @@ from itertools import chain, count
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors, shown
+from rosprivacy.analysis.model import WITHOUT_WARNINGS
 from rosprivacy.analysis.text import counted
 from rosprivacy.clock import source_date
 from rosprivacy.ingest.doors.doors import seen_by
@@ -21,7 +22,7 @@ from rosprivacy.ingest.observe.declared_labels import declared_labels
 from rosprivacy.ingest.observe.observation import Observation, added_up, moment
 from rosprivacy.ingest.observe.observed_policy import policy_xml, prepared
 from rosprivacy.ingest.observe.observed_types import types_yaml
-from rosprivacy.ingest.policies.observed_metadata import GAPS
+from rosprivacy.ingest.policies.observed_metadata import GAPS, UNWARNED
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -181,5 +182,6 @@ def _remarks(ready: Prepared) -> Iterator[str]:
     for one in ready.folded:
         yield f"folded by the rule {one.rule}: {shown(', '.join(one.names))} -> {one.name}"
     for gap, number in whole.all_gaps.items():
-        yield f"known gap ({number:,}): {GAPS[gap]}; the verdict is undetermined at best"
+        known = f"known gap ({number:,}): {GAPS.get(gap, gap)}; the verdict is undetermined at best"
+        yield UNWARNED if gap == WITHOUT_WARNINGS else known
     yield "what was not seen proves nothing"

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.analysis.kernel.spreading import emitted
 from rosprivacy.ingest.fleet.fleet_graph import Some, likeness, place_some
+from rosprivacy.ingest.fleet.joins import let_out
 from rosprivacy.spark.units import Lines, crossing_lines, named
 
 if TYPE_CHECKING:
@@ -68,6 +69,8 @@ class Told:
         Files of observed message types, without what they say of channels.
     typed
         Whether the message type of any channel is known.
+    letting_out
+        Robots at which data is let out or kept, if it gets there.
     contexts
         (kind, name, context) of its elements: a pattern stands for robots that are not shown, too.
     """
@@ -86,6 +89,7 @@ class Told:
     contexts: frozenset[tuple[str, str, str]] = frozenset()
     types: frozenset[TypesFile] = frozenset()
     typed: bool = False
+    letting_out: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,6 +150,7 @@ def told_of(one: Some, members: Sequence[Member]) -> Told:
         ),
         types=frozenset(replace(file, channels=()) for member in members for file in member.types),
         typed=any(one.part.types.values()),
+        letting_out=let_out(one.part.elements.items()),
     )
 
 
@@ -174,6 +179,7 @@ def joined(one: Told, other: Told) -> Told:
         contexts=one.contexts | other.contexts,
         types=one.types | other.types,
         typed=one.typed or other.typed,
+        letting_out=one.letting_out | other.letting_out,
     )
 
 

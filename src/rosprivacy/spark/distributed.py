@@ -29,6 +29,7 @@ from rosprivacy.analysis.parts.border import Core
 from rosprivacy.analysis.parts.part_patterns import Crossed
 from rosprivacy.ingest.fleet.alike_robots import COLON, chosen, known_to_flows
 from rosprivacy.ingest.fleet.fleet_graph import likeness, no_robot, nowhere, place_some
+from rosprivacy.ingest.fleet.joins import joins_nothing
 from rosprivacy.spark import building, workers
 from rosprivacy.spark.classes import Classes, first_of
 from rosprivacy.spark.units import GATE, HUB, border, core_piece, crossing_lines, split, unit_of, with_limits
@@ -169,6 +170,8 @@ class _Run:
         )
         told = _together([building.told_of(core, members), *built.map(building.told).collect()])
         self._check(told, core, built)
+        joins = joins_nothing(fleet, task.groups, told.met, told.letting_out)
+        told = replace(told, diagnostics=(*told.diagnostics, *joins))
         at = border(core, (lines for lines, side in told.named if side == 0))
         categories = sorted(told.emitted | emitted(core.part.elements.values()))
         piece, gates = core_piece(core, at, task.view)

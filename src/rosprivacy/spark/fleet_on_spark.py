@@ -15,13 +15,13 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import FleetError, InputError, InputErrors, reason
 from rosprivacy.analysis.files_read import note
 from rosprivacy.analysis.findings.findings import Options
-from rosprivacy.analysis.model import Diagnostic, Place, Severity
+from rosprivacy.analysis.model import IN_PARTS, Diagnostic, Place, Severity
 from rosprivacy.answering import concluded
 from rosprivacy.assumptions import named_files, types_read
 from rosprivacy.clock import judged_on
 from rosprivacy.ingest.fleet.alike_robots import alike
 from rosprivacy.ingest.fleet.fleet_file import read_fleet
-from rosprivacy.ingest.fleet.joins import joins_nothing
+from rosprivacy.ingest.fleet.joins import OF_FLEET
 from rosprivacy.ingest.labels.countries import countries
 from rosprivacy.ingest.labels.label_file import read_labels
 from rosprivacy.ontology.vocabulary import load
@@ -123,7 +123,7 @@ def plan_of(task: Task, found: Found, answer: Result, settings: Settings) -> tup
     examples = tuple(unit for unit in units if unit.name in found.examples)
     fleet = replace(task.fleet, robots=(), infrastructure=())
     assumptions = answer.assumptions
-    joins = joins_nothing(task.fleet, task.groups, found.told.met)
+    joins = tuple(said for said in found.told.diagnostics if said.code in OF_FLEET)
     plan = Plan(
         fleet, fixed, examples, found.shared, found.leaking, found.lacking, assumptions, settings, task.reader, joins
     )
@@ -161,11 +161,12 @@ def result(task: Task, found: Found, told: Shown, question: Question) -> Result:
         "unknown ends, what is denied, sanitized, derived, taken away, stated of purposes and bases, or not stated, "
         "and what the answer hangs on"
     )
-    joins = joins_nothing(task.fleet, task.groups, found.told.met)
-    unlimited = ("message types limit nothing on Spark: in memory there can be fewer findings",)
-    notices = (bounds, *(unlimited if found.told.typed and question.type_limits else ()))
-    said = (*found.told.diagnostics, *joins)
-    said += tuple(Diagnostic(Place("--engine spark", 0), Severity.NOTICE, notice) for notice in notices)
+    engine = Place("--engine spark", 0)
+    said = found.told.diagnostics
+    if found.told.typed and question.type_limits:
+        unlimited = "message types limit nothing on Spark: in memory there can be fewer findings"
+        said += (Diagnostic(engine, Severity.NOTICE, unlimited),)
+    said += (Diagnostic(engine, Severity.WARNING, bounds, IN_PARTS),)
     policies = {policy.file: policy for member in told.members.values() for policy in member.policies}
     labels = {file.file: file for member in told.members.values() for file in member.files}
     system = System(

@@ -173,6 +173,7 @@ def _fleet_rows(placed: Placed, members: Mapping[str, Member], plan: Plan, mine:
     said = {name: _more(member, analysis, plan, vocabulary) for name, member in members.items()}
     said[plan.fleet.name] = remembered({**plan.assumptions, "policies": [], "labels": [], "types": []}, plan.joins)
     not_read = [name for name, member in members.items() if unread(member.diagnostics)]
+    not_read += [plan.fleet.name] if unread(plan.joins) else []
     analysis = replace(analysis, lacking=plan.lacking)
     verdicts = robot_verdicts(analysis, said, lambda element: element.robot, not_read, plan.leaking)
     more = {name: {**some, "verdict": str(verdicts[name])} for name, some in said.items()}

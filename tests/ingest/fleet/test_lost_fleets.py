@@ -19,6 +19,7 @@ import rosprivacy
 from rosprivacy.ingest.labels.label_file import read_labels
 from rosprivacy.ingest.policies.names import covers
 from rosprivacy.ontology.vocabulary import load
+from tests.helpers.command import refused
 from tests.helpers.fleet_files import policy, write
 from tests.helpers.parts import in_list
 
@@ -421,74 +422,130 @@ def test_a_pushed_namespace_is_as_if_each_profile_had_it(
 
 
 class TestWhatJoinsNothing:
-    """Case 10 (c), rule S11: a domain or an infrastructure that joins nothing is told by name, and counted."""
+    """Rule S11: a domain or an infrastructure that joins nothing is told by name; one that lets data out breaks."""
 
     ROBOT = "robots: {a: {policies: [cam.xml], labels: [cam.yaml]%s}}\n"
-    BASE_ALONE = (
+    BASE = "infrastructure: {base: {policies: [up.xml], labels: [%s]%s}}\n"
+    ALONE = (
         "infrastructure base joins nothing: it names no domain, so it has one of its own, and no flow of the fleet "
         "file leads to it or from it"
     )
-    OWN = "a DDS domain of its own, and no flow of the fleet file names it together with anything else"
-    BASE = "infrastructure: {base: {policies: [up.xml], labels: [up.yaml]%s}}\n"
+    BEHIND = "; data of others that got to base would be let out or kept there"
+    LEAVE = "; leave the domain out if it is meant to be alone"
+    LAB = ("joins-nothing", f"domain lab joins nothing: a is alone in it{LEAVE}")
+    ZERO = "ROS 2 puts all into domain 0: "
+    A = ("own-domains", f"1 robot is taken to be in a domain of its own; {ZERO}a")
+
+    @pytest.fixture(autouse=True)
+    def reviewed(self, folder: None) -> None:
+        """A camera whose data all gets to what is reviewed, so that nothing is open."""
+        del folder
+        write("cam.xml", policy("/camera>/video", "/view</video"))
+        text = "nodes: {/camera: {source: [Video]}, /view: {conduit: [Video], leak: none}}"
+        write("cam.yaml", f"labels: 1\n{text}\nchannels: {{/video: sensitive}}\n")
+        write("none.yaml", "labels: 1\nnodes: {/uplink: conduit}\n")
+        write("kept.yaml", "labels: 1\nelements: {disk: {kind: storage}}\nflows: [{from: /uplink, to: disk}]\n")
+        write("shown.yaml", "labels: 1\nelements: {lcd: {kind: display}}\nflows: [{from: /uplink, to: lcd}]\n")
 
     @pytest.mark.parametrize(
-        ("fleet", "notices"),
+        ("fleet", "doubts"),
         [
             (
-                ROBOT % ", domain: lab" + BASE % "",
-                [
-                    "domain lab joins nothing: a is alone in it",
-                    f"{BASE_ALONE}; domains here: lab",
-                ],
+                ROBOT % ", domain: lab" + BASE % ("up.yaml", ""),
+                [LAB, ("leak-joins-nothing", f"{ALONE}; domains here: lab{BEHIND}")],
             ),
             (
-                ROBOT % ", domain: lab" + BASE % ", domain: Lab",
+                ROBOT % ", domain: lab" + BASE % ("kept.yaml", ""),
+                [LAB, ("leak-joins-nothing", f"{ALONE}; domains here: lab{BEHIND}")],
+            ),
+            (
+                ROBOT % ", domain: lab" + BASE % ("shown.yaml", ""),
+                [LAB, ("leak-joins-nothing", f"{ALONE}; domains here: lab{BEHIND}")],
+            ),
+            (
+                ROBOT % ", domain: lab" + BASE % ("none.yaml", ""),
+                [LAB, ("joins-nothing", f"{ALONE}; domains here: lab")],
+            ),
+            (
+                ROBOT % ", domain: lab" + BASE % ("up.yaml", ", domain: lav"),
                 [
-                    "domain Lab joins nothing: base is alone in it; did you mean lab?",
-                    "domain lab joins nothing: a is alone in it; did you mean Lab?",
+                    ("joins-nothing", "domain lab joins nothing: a is alone in it; did you mean lav?"),
+                    ("leak-joins-nothing", f"domain lav joins nothing: base is alone in it; did you mean lab?{BEHIND}"),
                 ],
             ),
             (
                 "robots: {a: {policies: cam.xml, labels: cam.yaml}, b: {policies: up.xml, labels: up.yaml}}\n",
-                [f"2 robots join nothing: each has {OWN}: a, b"],
+                [("own-domains", f"2 robots are taken to be in domains of their own; {ZERO}a, b")],
             ),
             (
                 "models: {m: {policies: cam.xml, labels: cam.yaml}}\ngroups: [{robots: 12, model: m, id: r*}]\n",
                 [
-                    f"12 robots join nothing: each has {OWN}: "
-                    + ", ".join(f"r{n:02}" for n in range(1, 11))
-                    + " and 2 more"
+                    (
+                        "own-domains",
+                        f"12 robots are taken to be in domains of their own; {ZERO}"
+                        + ", ".join(f"r{n:02}" for n in range(1, 11))
+                        + " and 2 more",
+                    )
                 ],
             ),
             (
-                ROBOT % "" + BASE % "" + "flows: [{from: 'a:/camera', to: 'a:/camera'}]\n",  # within one robot
-                [
-                    BASE_ALONE,
-                    f"1 robot joins nothing: it has {OWN}: a",
-                ],
+                ROBOT % "" + BASE % ("up.yaml", "") + "flows: [{from: 'a:/view', to: 'a:/view'}]\n",  # within one robot
+                [("leak-joins-nothing", f"{ALONE}{BEHIND}"), A],
             ),
             (
-                ROBOT % "" + BASE % "" + "elements: {s: {kind: storage}}\nflows: [{from: '*:/camera', to: s}]\n",
-                [  # the glob means base too, which has no such node
-                    BASE_ALONE
-                ],
+                ROBOT % "" + BASE % ("none.yaml", "") + "elements: {s: {kind: storage}}\n"
+                "flows: [{from: '*:/camera', to: s}]\n",  # the glob means base too, which has no such node
+                [("joins-nothing", ALONE), A],
             ),
-            (ROBOT % ", domain: lab" + BASE % ", domain: lab", []),
-            (ROBOT % "" + BASE % "" + "flows: [{from: 'a:/camera', to: 'base:/uplink'}]\n", []),
+            (
+                ROBOT % ", domain: lab" + BASE % ("up.yaml", "") + "flows: [{from: 'a:/view', to: 'base:/uplink'}]\n",
+                [LAB],
+            ),
+            (ROBOT % ", domain: lab" + BASE % ("up.yaml", ", domain: lab"), []),
             (ROBOT % "", []),  # a fleet of one
         ],
-    )
-    def test_each_is_a_notice_in_memory_and_in_parts(self, cli: Cli, fleet: str, notices: list[str]) -> None:
+    )  # fmt: skip
+    def test_each_is_told_in_memory_and_in_parts(self, cli: Cli, fleet: str, doubts: list[tuple[str, str]]) -> None:
         done = analysed(cli, fleet, "-f", "json")
         document = json.loads(done.stdout)
-        ours = [d for d in document["diagnostics"] if "join" in d["message"]]
-        assert [d["message"] for d in ours] == notices
-        assert {(d["severity"], d["file"]) for d in ours} <= {("notice", "fleet.yaml")}
+        ours = [d for d in document["diagnostics"] if "domain" in d["message"]]
+        assert [(d["code"], d["message"]) for d in ours] == doubts
+        for one in ours:
+            assert one["file"] == "fleet.yaml"
+            assert one["severity"] == ("notice" if one["code"] == "own-domains" else "warning")
         in_parts = in_list("fleet.yaml").document()
-        assert [d for d in in_parts["diagnostics"] if "join" in d["message"]] == ours
+        assert [d for d in in_parts["diagnostics"] if "domain" in d["message"]] == ours
         assert in_parts["verdict"] == document["verdict"]
-        text = analysed(cli, fleet, "-v").stdout
-        assert all(notice in text for notice in notices)
-        count = len(notices)
-        told = f"{count} notice{'s' * (count > 1)} (-v shows them)"
-        assert (told in analysed(cli, fleet).stdout) is bool(count)
+        text = analysed(cli, fleet).stdout
+        assert all(message in text for _, message in doubts)
+        breaks = "leak-joins-nothing" in dict(doubts)
+        if document["verdict"] != "leak" and "storage" not in fleet:
+            assert (document["verdict"], done.returncode) == (("undetermined", 4) if breaks else ("no-leak-found", 0))
+            assert ("lets data out" in text.partition("\n")[0]) == breaks
+
+    @pytest.mark.parametrize(("one", "other"), [("Lab", "lab"), ("01", "1"), ("LAB_2", "lab_2")])
+    def test_domains_that_look_alike_are_an_error_with_both_lines(self, cli: Cli, one: str, other: str) -> None:
+        """Data would go from neither to the other, and nobody sees why."""
+        fleet = "infrastructure:\n  base: {policies: up.xml, domain: %s}\nrobots:\n  a:\n    policies: cam.xml\n"
+        fleet += "    domain: %s\n"
+        (line,) = refused(analysed(cli, fleet % (one, other)))
+        assert line.startswith("fleet.yaml:")
+        assert f"domain {other!r}" in line or f"domain {one!r}" in line
+        assert "fleet.yaml:3" in line
+        assert "fleet.yaml:7" in line
+        assert analysed(cli, fleet % (one, one)).returncode == 4
+
+    def test_a_folder_of_a_group_without_its_policy_is_told(self, cli: Cli) -> None:
+        """Rule S11: a robot that is not there for the sake of a file's name."""
+        for robot, name in (("a", "policy.xml"), ("b", "policy.XML"), ("c", "other.xml"), (".d", "x.xml")):
+            write(f"v/{robot}/{name}", Path("cam.xml").read_text("utf-8"))
+        write("v/policy.xml", Path("cam.xml").read_text("utf-8"))
+        fleet = "groups: [{policies: 'v/*/policy.xml', labels: cam.yaml}]\n"
+        document = json.loads(analysed(cli, fleet, "-f", "json").stdout)
+        (told,) = document["diagnostics"]
+        assert (told["code"], told["severity"], told["file"], told["line"]) == ("no-robot", "warning", "fleet.yaml", 2)
+        assert told["message"] == "no policy.xml in 2 folders that v/* matches, so no robot: v/b, v/c"
+        assert document["verdict"] == "no-leak-found"
+        assert in_list("fleet.yaml").document()["diagnostics"][0] == told
+        files = json.loads(analysed(cli, fleet.replace("v/*/policy.xml", "v/a/*.xml"), "-f", "json").stdout)
+        assert not files["diagnostics"]

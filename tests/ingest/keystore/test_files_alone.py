@@ -206,7 +206,9 @@ def test_the_library_a_fleet_and_check_take_them(cli: Cli, folder: Path) -> None
     ]
 
 
-@pytest.mark.parametrize(("name", "what"), [("x.xml", "it is"), ("x.p7s", "1 signed file is (x.p7s)")])
+@pytest.mark.parametrize(
+    ("name", "what"), [("x.xml", "it is"), ("x.p7s", "1 file is (x.p7s)"), ("x.bak", "1 file is (x.bak)")]
+)
 def test_such_a_file_in_a_folder_of_policies_is_a_gap(cli: Cli, folder: Path, name: str, what: str) -> None:
     mixed = folder / "mixed"
     mixed.mkdir()
@@ -218,7 +220,7 @@ def test_such_a_file_in_a_folder_of_policies_is_a_gap(cli: Cli, folder: Path, na
     done = cli("analyze", "mixed", "-l", "camera.yaml", "--save-graph", "g.json", cwd=folder)
     assert done.returncode == 4
     where = "mixed/x.xml:2" if name == "x.xml" else "mixed"
-    said = f"warning: {where}: not read: {what} permissions or governance, and what that grants is not known; name it"
+    said = f"{where}: not read: {what} permissions or governance, and what that grants is not known; name it"
     assert said in done.stdout
     (mixed / name).unlink()
     assert said in cli("analyze", "--add", "g.json", "-l", "camera.yaml", cwd=folder).stdout

@@ -137,8 +137,16 @@ def test_permissions_that_are_missing_are_an_error(keystore: Keystore) -> None:
 
 
 def test_a_policy_that_lies_in_a_keystore_is_told(keystore: Keystore) -> None:
-    (keystore.folder / "robot.policy.xml").write_text("<policy/>")
-    assert [d.message for d in read(keystore)[1]] == ["not read: it is no part of the keystore"]
+    """Rule S11: no middleware reads it there, but who put it there may mean it."""
+    (keystore.folder / "package.xml").write_text("<package/>")
+    assert not read(keystore)[1]
+    (keystore.folder / "policies").mkdir()
+    for file in ("robot.policy.xml", "policies/robot.policy"):
+        (keystore.folder / file).write_text("<policy/>")
+    told = read(keystore)[1]
+    assert [(d.place.file.removeprefix(f"{keystore.folder}/"), d.code) for d in told] == [
+        ("policies/robot.policy", "unread-file"), ("robot.policy.xml", "unread-file"),
+    ]  # fmt: skip
 
 
 def test_an_enclave_behind_a_link_is_one_of_the_keystore(keystore: Keystore) -> None:

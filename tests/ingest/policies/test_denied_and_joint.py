@@ -201,7 +201,7 @@ def test_xml_counts_in_any_case_and_other_files_are_counted(here: Path, cli: Cli
     write(here, "d/r.policy", "")
     done = cli("analyze", "d", "-l", "open.yaml", "-v", *STRICT)
     assert (done.returncode, "/uplink  (node; 2 steps" in done.stdout) == (4, True)
-    assert "notice: d: 1 file is not read, as the name does not end in .xml: r.policy; name" in done.stdout
+    assert "notice: d: 1 file is not read, as the name does not end in .xml: r.policy" in done.stdout
 
 
 def test_a_linked_folder_is_read_once_whatever_leads_to_it(here: Path, cli: Cli) -> None:
@@ -241,12 +241,10 @@ def test_a_fragment_with_grants_that_nothing_includes_leaves_it_undetermined(her
     write(here, "d/q.xml", UPLINK)
     done = cli("analyze", "d", "-l", "rev.yaml", *STRICT)
     assert done.returncode == 4
-    assert done.stdout.startswith("undetermined: no leak reached, but policy files with grants were not read")
-    assert (
-        "warning: d/q.xml:1: not read: the root element is <enclave>, not <policy>, and no policy read" in done.stdout
-    )
+    assert done.stdout.startswith("undetermined: no leak reached, but not all is known; d/q.xml was not read")
+    assert "d/q.xml:1: not read: the root element is <enclave>, not <policy>, and no policy read" in done.stdout
     log = json.loads(cli("analyze", "d", "-l", "rev.yaml", "-f", "sarif").stdout)
-    assert [result["ruleId"] for result in log["runs"][0]["results"]] == ["files-not-read"]
+    assert [result["ruleId"] for result in log["runs"][0]["results"]] == ["doubt-unread-file"]
     assert "so no data was followed" not in cli("report", "d", "-l", "rev.yaml").stdout
     write(here, "d/p.xml", policy(CAMERA, MONITOR, '<xi:include href="q.xml"/>'))
     assert cli("analyze", "d", "-l", "l.yaml").returncode == 1
@@ -259,7 +257,7 @@ def test_a_fleet_with_a_fragment_that_nothing_includes_is_undetermined(here: Pat
     assert cli("analyze", "--fleet", "fleet.yaml").returncode == 0
     write(here, "d/q.xml", UPLINK)
     done = cli("analyze", "--fleet", "fleet.yaml", *STRICT)
-    assert (done.returncode, "warning: d/q.xml:1: not read" in done.stdout.replace(f"{here}/", "")) == (4, True)
+    assert (done.returncode, "d/q.xml:1: not read" in done.stdout.replace(f"{here}/", "")) == (4, True)
 
 
 # ---------------------------------------------------------------- case 12: what brings nothing
@@ -269,14 +267,14 @@ def test_a_fallback_that_is_taken_is_a_warning(here: Path, cli: Cli) -> None:
     include = '<xi:include href="gone.xml"><xi:fallback/></xi:include>'
     write(here, "p.xml", policy(CAMERA, enclave("/up", profile("uplink", include))))
     done = cli("analyze", "p.xml", "-l", "l.yaml")
-    line = "warning: p.xml:8: included file 'gone.xml' not found: what stands in <fallback> is read in its place"
+    line = "p.xml:8: included file 'gone.xml' not found: what stands in <fallback> is read in its place"
     assert line in done.stdout
 
 
 def test_a_group_without_a_rule_is_a_warning(here: Path, cli: Cli) -> None:
     write(here, "p.xml", policy(CAMERA, enclave("/up", profile("uplink", topics("", "/video")))))
     done = cli("analyze", "p.xml", "-l", "l.yaml")
-    line = "warning: p.xml:8: <topics> without publish or subscribe grants nothing; write publish="
+    line = "p.xml:8: <topics> without publish or subscribe grants nothing; write publish="
     assert line in done.stdout
 
 
@@ -287,9 +285,10 @@ def test_a_group_without_a_rule_is_a_warning(here: Path, cli: Cli) -> None:
 def test_a_name_that_no_node_can_have_is_a_warning_with_the_nearest(here: Path, cli: Cli, name: str) -> None:
     write(here, "p.xml", policy(CAMERA, enclave("/up", profile("uplink", *[topics('subscribe="ALLOW"', name)] * 2))))
     done = cli("analyze", "p.xml", "-l", "l.yaml")
-    (line,) = (line for line in done.stdout.splitlines() if line.startswith("warning"))
-    assert line.startswith(f"warning: p.xml:8: no ROS node can use the topic {name!r}: it ")
-    assert line.endswith("; did you mean /video?")
+    assert "a name in p.xml is none that a ROS node can have" in done.stdout.splitlines()[0]  # rule S11: it rides
+    (line,) = (line for line in done.stdout.splitlines() if "no ROS node can use" in line)
+    assert line.strip().startswith(f"p.xml:8: no ROS node can use the topic {name!r}: it ")
+    assert "; did you mean /video?" in line
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from io import StringIO
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import pytest
 from rich.console import Console
@@ -11,9 +12,6 @@ from rich.console import Console
 import rosprivacy
 from rosprivacy.report.terminal.analysis import print_report
 from tests.helpers.paths import ROOT
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 
 def report(document: dict[str, Any], **options: Any) -> list[str]:
@@ -94,14 +92,15 @@ def test_what_was_assumed_is_said(care_home: dict[str, Any]) -> None:
     assert "labels are a person's word; this is no legal verdict" in text
 
 
-def test_names_cannot_break_the_report(tmp_path: Path) -> None:
+def test_names_cannot_break_the_report(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Control characters, rich's markup, line ends, right-to-left marks, 4,000 characters."""
     name = "/[bold]x[/bold]&#10;leak: &#x202E;" + "a" * 4000
     profile = f'<profile ns="/" node="a"><topics publish="ALLOW"><topic>{name}</topic></topics></profile>'
-    policy = tmp_path / "p.xml"
+    monkeypatch.chdir(tmp_path)  # files have short names
+    policy = Path("p.xml")
     enclave = f'<enclave path="/"><profiles>{profile}</profiles></enclave>'
     policy.write_text(f'<policy version="0.2.0"><enclaves>{enclave}</enclaves></policy>')
-    labels = tmp_path / "l.yaml"
+    labels = Path("l.yaml")
     labels.write_text("labels: 1\nnodes: {/a: {source: [Video]}}\n")
     lines = report(rosprivacy.analyze([str(policy)], [str(labels)]).document(), verbose=True)
     named = [line for line in lines if "[bold]" in line]
