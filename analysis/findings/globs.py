@@ -137,7 +137,7 @@ def _decided(analysis: Analysis, bound: Bound, beside: Collection[str]) -> dict[
 def _stated(said: Iterable[Statement], facts: Mapping[str, Facts], spread: Spread) -> Iterator[tuple[Statement, bool]]:
     """What globs of a user say of an element or a flow, and whether it holds there."""
     for statement in filter(_of_a_user, said):
-        holds = any(statement in fact.accepted for fact in facts.values())
+        holds = any(statement.line in fact.accepted for fact in facts.values())
         yield statement, holds or not spread.categories
 
 

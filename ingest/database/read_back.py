@@ -346,12 +346,24 @@ class _Reader:
                 raise InputErrors([_problem(what, "see docs/database.md for what a role has")]) from None
             alone = () if role in ("only", "never") or said.get("every") else (category,)
             together[(*facts, *alone)].append(category)
-        for (role, rank, place, method, stated, to, through, every, naming, why, author, *_), categories in sorted(
-            together.items(), key=lambda item: str(item[0])
-        ):
+        for (
+            role,
+            rank,
+            place,
+            method,
+            stated,
+            to,
+            through,
+            every,
+            naming,
+            why,
+            author,
+            pinned,
+            *_,
+        ), categories in sorted(together.items(), key=lambda item: str(item[0])):
             names = () if every else tuple(sorted(categories))
             if role == "derivation":
                 names = (to,)
                 to = categories[0]  # noqa: PLW2901 - it is stored the other way round: the target is what is made
             shipped = role == "mundane" and rank[0] <= STANDARD
-            yield Statement(role, names, rank, place, method, stated, to, through, shipped, naming, why, author)
+            yield Statement(role, names, rank, place, method, stated, to, through, shipped, naming, why, author, pinned)
