@@ -96,7 +96,7 @@ def decided(name: str, said: Sequence[Statement], category: str, hierarchy: Hier
 
 
 def _seen(accepted: Iterable[Statement], category: str) -> tuple[Statement, ...]:
-    """What holds, but for what nobody has seen: that reviews nothing, and has only let through what lower ranks close."""
+    """What holds, but for what nobody has seen: that reviews nothing, and only let through what lower ranks close."""
     return tuple(statement.line for statement in accepted if statement.seen(category))
 
 

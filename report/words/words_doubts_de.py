@@ -19,6 +19,12 @@ DOUBTS = {
         "von {n} Aufzeichnungen ist nicht alles bekannt ({names})",
         "die Policies des aufgezeichneten Systems nennen oder die Aufzeichnung reparieren (rosprivacy bag sagt, was fehlt)",
     ),
+    "by-globs": (
+        "Nur ein Muster spricht für ein Element",
+        "nur ein Muster spricht für {names}",
+        "nur Muster sprechen für {n} Elemente ({names})",
+        "jedes ansehen, dann festhalten, was gesehen wurde: rosprivacy labels --pin",
+    ),
     "empty-group": (
         "Eine Gruppe von Robotern ohne Regel oder ohne Inhalt",
         "in einer Gruppe von Robotern ist nichts ({names})",

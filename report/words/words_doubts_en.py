@@ -19,6 +19,12 @@ DOUBTS = {
         "not all is known of {n} bags ({names})",
         "name the policies of the system that was recorded, or repair the bag (rosprivacy bag says what is wrong)",
     ),
+    "by-globs": (
+        "Only a glob answers for an element",
+        "only a glob answers for {names}",
+        "only globs answer for {n} elements ({names})",
+        "look at each, then keep what was seen: rosprivacy labels --pin",
+    ),
     "empty-group": (
         "A group of robots that no rule covers, or that is empty",
         "a group of robots has nothing in it ({names})",
