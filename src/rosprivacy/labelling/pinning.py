@@ -22,7 +22,7 @@ from rosprivacy.ingest.fleet.dds_domains import called_in_fleet
 from rosprivacy.ingest.labels.edited_entries import Said
 from rosprivacy.ingest.labels.entry_writer import with_entries
 from rosprivacy.ingest.labels.label_file import OURS, Labels, parse_labels
-from rosprivacy.ingest.labels.label_writer import facts_of, without_places
+from rosprivacy.ingest.labels.label_writer import without_places
 from rosprivacy.ingest.labels.pins import PINS, Pin, as_section, spot
 from rosprivacy.ingest.reading import yaml_values
 from rosprivacy.ingest.reading.bounded_file import read_utf8
@@ -142,21 +142,26 @@ def _with_pins(labels: Labels, name: str, pins: tuple[Pin, ...] | None, vocabula
         raise LabelError(name, 0, "was changed while it was read", "run the command again")
     if pins is None or _facts(pins) != _facts(labels.pins or ()) or labels.pins is None:
         new = with_entries(name, text, [Said(PINS, PINS, None if pins is None else as_section(pins))])
-        _check(labels, new.text, name, pins, vocabulary)
+        _check(name, text, new.text, pins, vocabulary)
         return Written(name, new.text, new.lines, new.remarks)
     return Written(name, text, 0)
 
 
-def _check(labels: Labels, text: str, name: str, pins: tuple[Pin, ...] | None, vocabulary: Vocabulary) -> None:
+def _check(name: str, text: str, new: str, pins: tuple[Pin, ...] | None, vocabulary: Vocabulary) -> None:
     """Hold the new text against what it should mean."""
+    before = parse_labels(text, vocabulary, name=name)
     try:
-        after: Labels | None = parse_labels(text, vocabulary, name=name)
+        after = parse_labels(new, vocabulary, name=name)
+        there = None if after.pins is None else _facts(after.pins)
+        same = all(_facts(old) == _facts(now) for old, now in zip(*map(_said, (before, after)), strict=True))
     except InputErrors:  # the paper's six lists
-        after = None
-    there = _facts(after.pins) if after and after.pins is not None else None
-    same = after and (facts_of(after.entries), _facts(after.flows)) == (facts_of(labels.entries), _facts(labels.flows))
+        there, same = None, False
     if not same or there != (None if pins is None else _facts(pins)):
         raise LabelError(name, 0, "has no place for pins", "begin it with 'labels: 1', a line for each section")
+
+
+def _said(labels: Labels) -> tuple[Iterable[object], ...]:
+    return labels.entries, labels.flows, labels.elements, labels.limits
 
 
 def _facts(facts: Iterable[object]) -> set[object]:
