@@ -64,8 +64,8 @@ def test_a_models_file_has_what_reached_any_of_its_robots(cli: Cli) -> None:
     assert cli("labels", "--pin", "--fleet", "f.yaml").stderr == "eye.yaml: 0 lines changed\n"
 
 
-def test_robots_of_one_domain_and_a_namespace(cli: Cli) -> None:
-    """What is shared is called by each file as its robot calls it, and what another robot sends is pinned, too."""
+def test_robots_of_one_domain(cli: Cli) -> None:
+    """What is shared is in the file of each robot, and what another robot sends is pinned, too."""
     write("eye.xml", policy("/camera>/image", "/show</image"))
     write("ear.xml", policy("/mic>/sound", "/listen</image,/sound"))
     write("eye.yaml", EYE.replace("  /uplink: {leak: [Video, Voice]}\n", ""))
@@ -100,3 +100,16 @@ def test_a_new_node_of_one_robot_is_open_there(cli: Cli) -> None:
     assert cli("labels", "--pin", "--fleet", "f.yaml").returncode == 0
     result = analysed("fleet: 1\nrobots:\n" + robot.format("a", "eye") + robot.format("b", "more"))
     assert questions(result) == {("b", "/new", ("Video",))}
+
+
+def test_names_in_pins_are_without_the_robots_namespace(cli: Cli) -> None:
+    write("eye.xml", policy("/camera>image", "/show<image", "/up>/all<image"))
+    write("eye.yaml", EYE.replace("  /uplink: {leak: [Video, Voice]}\n", ""))
+    robot = "  {0}: {{policies: eye.xml, labels: eye.yaml, domain: hall, namespace: {{add: /{0}}}}}\n"
+    before = analysed("fleet: 1\nrobots:\n" + robot.format("a") + robot.format("b"))
+    assert cli("labels", "--pin", "--fleet", "f.yaml").returncode == 0
+    assert pins_in("eye.yaml") == {
+        "nodes": {"/show": ["Video"], "/up": ["Video"]},
+        "topics": {"/all": ["Video"], "/image": ["Video"]},
+    }
+    assert answer(rosprivacy.analyze_fleet("f.yaml")) == answer(before)
