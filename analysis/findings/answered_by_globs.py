@@ -80,9 +80,11 @@ def answered_by_globs(spread: Spread, bound: Bound, hierarchy: Hierarchy) -> tup
         flow = spread.graph.flows[index]
         for category in spread.names(spread.sent.get(flow.source, 0) | spread.flow_emits.get(index, 0)):
             if places := decided.by(bound.flows[index], category, known=True):
-                ends_of = (first.setdefault(elements[v].identity, elements[v]) for v in (flow.source, flow.target))
-                rows[*ends_of, places].add(category)
-    return tuple(ByGlobs(*key[:2], tuple(sorted(kinds)), key[2]) for key, kinds in rows.items())
+                source, target = (
+                    first.setdefault(elements[v].identity, elements[v]) for v in (flow.source, flow.target)
+                )
+                rows[source, target, places].add(category)
+    return tuple(ByGlobs(one, to, tuple(sorted(kinds)), places) for (one, to, places), kinds in rows.items())
 
 
 def _unseen(statement: Statement) -> bool:

@@ -10,9 +10,12 @@ import yaml
 
 import rosprivacy
 from rosprivacy.analysis.errors import InputErrors
+from rosprivacy.analysis.model import BY_GLOBS
 from rosprivacy.ingest.labels.pins import PIN_OF_NOTHING
+from tests.helpers.docs import blocks
 from tests.helpers.fleet_files import policy
 from tests.helpers.label_files import read, validator
+from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -230,3 +233,41 @@ class TestCommand:
         assert pins in text
         assert cli("labels", "--pin", "g2.xml", "-l", "l.yaml", cwd=tmp_path).returncode == 0
         assert pins_in(tmp_path / "l.yaml") == {"nodes": {"/planner": ["Video"]}}  # a name answers for the other now
+
+
+def test_the_example_of_the_documentation(cli: Cli, tmp_path: Path) -> None:
+    """docs/labels.md: what ``--pin`` writes is what is shown, and the new node is open."""
+    (shown,) = [block for block in blocks(ROOT / "docs" / "labels.md", "yaml") if "pins:" in block]
+    (tmp_path / "robot.labels.yaml").write_text(shown[: shown.index("pins:")])
+    (tmp_path / "robot.policy.xml").write_text(SEEN)
+    (command,) = [one for one in blocks(ROOT / "docs" / "labels.md", "console") if "--pin" in one]
+    assert cli(*command.split()[1:], cwd=tmp_path).returncode == 0
+    assert (tmp_path / "robot.labels.yaml").read_text() == shown
+    assert questions(analysed(tmp_path, shown, MORE)) == {"/uploader": ("Video",)}
+
+
+def test_what_only_a_glob_answers_for_is_in_doubt_until_it_is_pinned(cli: Cli, tmp_path: Path) -> None:
+    """Rules S11 and S12: ``diff`` ends with 1 where data gets to an element that was neither open nor doubted."""
+    pins = "pins: {nodes: {/planner: [Video]}}\n"
+    for name, text in (("g.xml", SEEN), ("g2.xml", MORE), ("l.yaml", LABELS), ("seen.yaml", LABELS + pins)):
+        (tmp_path / name).write_text(text)
+
+    def ends(*words: str) -> int:
+        return cli(*words, cwd=tmp_path).returncode
+
+    result = rosprivacy.analyze([str(tmp_path / "g2.xml")], [str(tmp_path / "l.yaml")])
+    about = [(d.element.name, d.categories, d.rank) for d in result.doubts if d.name == BY_GLOBS and d.element]
+    assert about == [("/planner", ("Video",), "rides"), ("/uploader", ("Video",), "rides")]
+    assert "/uploader" in cli("analyze", "-q", "g2.xml", "-l", "l.yaml", cwd=tmp_path).stdout
+    assert (ends("diff", "g.xml", "g2.xml", "-l", "l.yaml"), ends("diff", "g.xml", "g.xml", "-l", "l.yaml")) == (1, 0)
+    for labels, code in (("l.yaml", 4), ("seen.yaml", 0)):
+        assert ends("analyze", "g.xml", "-l", labels, "--fail-on", "doubt") == code
+        assert ends("analyze", "g.xml", "-l", labels) == 0
+    assert ends("diff", "g.xml", "g2.xml", "-l", "seen.yaml") == 1  # the verdict is worse
+
+
+def test_a_leak_is_suggested_although_a_glob_calls_it_a_conduit(cli: Cli, tmp_path: Path) -> None:
+    (tmp_path / "g2.xml").write_text(MORE)
+    (tmp_path / "l.yaml").write_text(LABELS)
+    suggested = json.loads(cli("suggest", "g2.xml", "-l", "l.yaml", "-f", "json", cwd=tmp_path).stdout)["suggestions"]
+    assert ("/uploader", "leak") in {(one["name"], one["role"]) for one in suggested}
