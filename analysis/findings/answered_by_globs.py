@@ -16,7 +16,7 @@ from rosprivacy.analysis.kernel.roles import facts
 from rosprivacy.analysis.model import STANDARD
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.kernel.roles import Facts
@@ -55,41 +55,35 @@ def answered_by_globs(spread: Spread, bound: Bound, hierarchy: Hierarchy) -> tup
     >>> [(row.element.name, row.categories, *map(str, row.places)) for row in rows]
     [('/faces', ('FaceTemplate', 'Video'), 'labels.yaml:5')]
     """
-    vertices = {vertex for vertex, said in bound.elements.items() if any(map(_unseen, said))}
-    flows = {index for index, said in bound.flows.items() if any(map(_unseen, said))}
+    answers = _Answers(spread, hierarchy)
+    vertices = {vertex for vertex, said in bound.elements.items() if answers.asked(spread.facts[vertex], said)}
+    flows = {index for index, said in bound.flows.items() if answers.asked(spread.flow_facts[index], said)}
     if not vertices and not flows:
         return ()
     ends: dict[int, int] = defaultdict(int)
-    for closure in closures(spread):
+    for closure in closures(spread) if vertices else ():
         if closure.to < 0:
             ends[closure.vertex] |= closure.bits
     elements = spread.graph.elements
     rows: dict[tuple[Element, Element | None, tuple[Place, ...]], set[str]] = defaultdict(set)
     first: dict[tuple[str, str, str], Element] = {}
-    decided = _Decided(hierarchy)
     for vertex in sorted(vertices):
-        element = first.setdefault(elements[vertex].identity, elements[vertex])
-        makes = {made for fact in spread.facts[vertex].values() for made in fact.derives}  # who makes it knows of it
-        for category in spread.names(spread.present(vertex) | ends[vertex] | _taken_back(spread, vertex)):
-            said = bound.elements[vertex]
-            if spread.named.get(vertex, 0) & spread.both(category):
-                said = tuple(s for s in said if s.by_name or not closes(s, category, hierarchy))
-            if places := decided.by(said, category, known=category in makes):
-                rows[element, None, places].add(category)
+        here = spread.present(vertex) | ends[vertex] | _taken_back(spread, vertex)
+        named = spread.named.get(vertex, 0)
+        for places, kinds in answers.of(spread.facts[vertex], bound.elements[vertex], here, named).items():
+            rows[first.setdefault(elements[vertex].identity, elements[vertex]), None, places].update(kinds)
     for index in sorted(flows):
         flow = spread.graph.flows[index]
-        for category in spread.names(spread.sent.get(flow.source, 0) | spread.flow_emits.get(index, 0)):
-            if places := decided.by(bound.flows[index], category, known=True):
-                source, target = (
-                    first.setdefault(elements[v].identity, elements[v]) for v in (flow.source, flow.target)
-                )
-                rows[source, target, places].add(category)
+        sent = spread.sent.get(flow.source, 0) | spread.flow_emits.get(index, 0)
+        source, target = (first.setdefault(elements[v].identity, elements[v]) for v in (flow.source, flow.target))
+        for places, kinds in answers.of(spread.flow_facts[index], bound.flows[index], sent, flow=True).items():
+            rows[source, target, places].update(kinds)
     return tuple(ByGlobs(one, to, tuple(sorted(kinds)), places) for (one, to, places), kinds in rows.items())
 
 
 def _unseen(statement: Statement) -> bool:
     """Whether a user's file without pins says by a glob what a person has to have seen."""
-    return statement.to_be_seen and statement.rank[0] > STANDARD and statement.pinned is None
+    return statement.rank[0] > STANDARD and statement.pinned is None and statement.to_be_seen
 
 
 def _taken_back(spread: Spread, vertex: int) -> int:
@@ -98,34 +92,53 @@ def _taken_back(spread: Spread, vertex: int) -> int:
     return sum(map(spread.both, lost))
 
 
-class _Decided:
-    """What globs decide, each set of statements once: globs say the same of many elements."""
+class _Answers:
+    """What globs answer for, once for all elements of which the same is said: these share what is decided."""
 
-    def __init__(self, hierarchy: Hierarchy) -> None:
-        self._hierarchy = hierarchy
-        self._known: dict[tuple[tuple[int, ...], str, bool], tuple[Place, ...]] = {}
+    def __init__(self, spread: Spread, hierarchy: Hierarchy) -> None:
+        self._spread, self._hierarchy = spread, hierarchy
+        self._asked: dict[int, bool] = {}
+        self._known: dict[tuple[int, int, int], Mapping[tuple[Place, ...], set[str]]] = {}
 
-    def by(self, said: Sequence[Statement], category: str, *, known: bool) -> tuple[Place, ...]:
-        """The lines of globs that answer for a category; none where all would be the same without them.
+    def asked(self, decided: Mapping[str, Facts], said: Sequence[Statement]) -> bool:
+        """Whether a glob says there what nobody need have seen."""
+        if id(decided) not in self._asked:
+            self._asked[id(decided)] = any(map(_unseen, said))
+        return self._asked[id(decided)]
+
+    def of(
+        self, decided: Mapping[str, Facts], said: Sequence[Statement], here: int, named: int = 0, *, flow: bool = False
+    ) -> Mapping[tuple[Place, ...], set[str]]:
+        """Lines of globs -> the kinds of what is there for which they answer.
 
         Parameters
         ----------
-        known
-            Whether it is no question there, whatever labels say.
+        named
+            Bits for which sources name a channel: there no glob takes anything away (rule S7).
+        flow
+            Whether it is one: nobody is asked to review it.
         """
-        key = tuple(map(id, said)), category, known
+        key = id(decided), here, named
         if key not in self._known:
-            self._known[key] = self._by(said, category, known=known)
+            found: dict[tuple[Place, ...], set[str]] = defaultdict(set)
+            makes = {made for fact in decided.values() for made in fact.derives}  # who makes it knows of it
+            for category in self._spread.names(here):
+                some = said
+                if named & self._spread.both(category):
+                    some = [s for s in said if s.by_name or not closes(s, category, self._hierarchy)]
+                if places := self._by(some, category, known=flow or category in makes):
+                    found[places].add(category)
+            self._known[key] = found
         return self._known[key]
 
     def _by(self, said: Sequence[Statement], category: str, *, known: bool) -> tuple[Place, ...]:
+        """The lines of globs without which something else would be done with a category; none if nothing would."""
         without = tuple(s._replace(pinned=()) if _unseen(s) else s for s in said)
-        now, then = (_does(facts("", some, category, self._hierarchy), known=known) for some in (said, without))
-        if now == then:
+        now, then = (facts("", some, category, self._hierarchy) for some in (tuple(said), without))
+        if _does(now, known=known) == _does(then, known=known):
             return ()
         globs = [s for s in said if _unseen(s)]
-        holding = facts("", said, category, self._hierarchy).accepted
-        return _places([s for s in globs if s in holding] or globs)
+        return _places([s for s in globs if s in now.accepted] or globs)
 
 
 def _does(fact: Facts, *, known: bool) -> tuple[object, ...]:

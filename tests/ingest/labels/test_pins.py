@@ -192,7 +192,7 @@ class TestCommand:
     def test_names_with_glob_signs_and_flows(self, cli: Cli, tmp_path: Path) -> None:
         (tmp_path / "p.xml").write_text(policy("/camera>/image/*", "/planner>/cmd</image/*"))
         labels = 'labels: 1\nnodes: {/camera: {source: [Video]}, "/p*": conduit}\ntopics: {"/image/*": sensitive}\n'
-        labels += 'flows: [{from: /planner, to: "/c*", never: [Video]}]\n'
+        labels += 'flows: [{from: /planner, to: "/c*", never: [Video]}, {from: /camera, to: "/im*", only: [Video]}]\n'
         (tmp_path / "l.yaml").write_text(labels)
         assert cli("labels", "--pin", "p.xml", "-l", "l.yaml", cwd=tmp_path).returncode == 0
         assert pins_in(tmp_path / "l.yaml") == {
