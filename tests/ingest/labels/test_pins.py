@@ -11,6 +11,7 @@ import yaml
 import rosprivacy
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.model import BY_GLOBS
+from rosprivacy.explorer.session import Session
 from rosprivacy.ingest.labels.pins import PIN_OF_NOTHING
 from tests.helpers.docs import blocks
 from tests.helpers.fleet_files import policy
@@ -233,6 +234,19 @@ class TestCommand:
         assert pins in text
         assert cli("labels", "--pin", "g2.xml", "-l", "l.yaml", cwd=tmp_path).returncode == 0
         assert pins_in(tmp_path / "l.yaml") == {"nodes": {"/planner": ["Video"]}}  # a name answers for the other now
+
+
+def test_a_session_of_the_explorer_keeps_them(tmp_path: Path) -> None:
+    """In what it answers before it saves, and in the file."""
+    pins = "pins:\n  nodes:\n    /planner: [Video]\n"
+    (tmp_path / "g2.xml").write_text(MORE)
+    (tmp_path / "l.yaml").write_text(LABELS + pins)
+    session = Session.open([str(tmp_path / "g2.xml")], [str(tmp_path / "l.yaml")])
+    session.label("/recorder", conduit=True)
+    assert questions(session.result) == {"/uploader": ("Video",)}
+    session.save()
+    assert (tmp_path / "l.yaml").read_text() == LABELS.replace("{leak: [Video]}", "conduit") + pins
+    assert questions(session.result) == {"/uploader": ("Video",)}
 
 
 def test_the_example_of_the_documentation(cli: Cli, tmp_path: Path) -> None:
