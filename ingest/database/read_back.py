@@ -57,6 +57,7 @@ if TYPE_CHECKING:
 _FLOW_ROLES = {"publish", "subscribe", "request", "reply", "call", "execute", MATCHES}
 _KIND_OF = {label: kind for kind, label in KIND_LABELS.items()}
 _ROLE_OF = {kind.type: role for role, kind in ROLES.items()}
+FACTS = 12  # of a role, as ``role_facts_of`` returns them
 
 ROBOTS = "MATCH (r:Robot) RETURN properties(r) AS robot ORDER BY r.name"
 ELEMENTS = (
@@ -346,21 +347,8 @@ class _Reader:
                 raise InputErrors([_problem(what, "see docs/database.md for what a role has")]) from None
             alone = () if role in ("only", "never") or said.get("every") else (category,)
             together[(*facts, *alone)].append(category)
-        for (
-            role,
-            rank,
-            place,
-            method,
-            stated,
-            to,
-            through,
-            every,
-            naming,
-            why,
-            author,
-            pinned,
-            *_,
-        ), categories in sorted(together.items(), key=lambda item: str(item[0])):
+        for facts, categories in sorted(together.items(), key=lambda item: str(item[0])):
+            role, rank, place, method, stated, to, through, every, naming, why, author, pinned = facts[:FACTS]
             names = () if every else tuple(sorted(categories))
             if role == "derivation":
                 names = (to,)
