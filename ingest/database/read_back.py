@@ -352,6 +352,6 @@ class _Reader:
             names = () if every else tuple(sorted(categories))
             if role == "derivation":
                 names = (to,)
-                to = categories[0]  # noqa: PLW2901 - it is stored the other way round: the target is what is made
+                to = categories[0]  # it is stored the other way round: the target is what is made
             shipped = role == "mundane" and rank[0] <= STANDARD
             yield Statement(role, names, rank, place, method, stated, to, through, shipped, naming, why, author, pinned)
