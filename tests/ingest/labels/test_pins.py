@@ -278,10 +278,3 @@ def test_what_only_a_glob_answers_for_is_in_doubt_until_it_is_pinned(cli: Cli, t
         assert ends("analyze", "g.xml", "-l", labels, "--fail-on", "doubt") == code
         assert ends("analyze", "g.xml", "-l", labels) == 0
     assert ends("diff", "g.xml", "g2.xml", "-l", "seen.yaml") == 1  # the verdict is worse
-
-
-def test_a_leak_is_suggested_although_a_glob_calls_it_a_conduit(cli: Cli, tmp_path: Path) -> None:
-    (tmp_path / "g2.xml").write_text(MORE)
-    (tmp_path / "l.yaml").write_text(LABELS)
-    suggested = json.loads(cli("suggest", "g2.xml", "-l", "l.yaml", "-f", "json", cwd=tmp_path).stdout)["suggestions"]
-    assert ("/uploader", "leak") in {(one["name"], one["role"]) for one in suggested}
