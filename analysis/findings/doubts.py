@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.answer import Verdict
 from rosprivacy.analysis.model import (
     BACKUPS_NOT_STATED,
+    BY_GLOBS,
     GAPS,
     NO_FLOW,
     NO_READER,
@@ -25,8 +26,10 @@ from rosprivacy.analysis.policy_lines import first_lines
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
+    from collections.abc import Set as AbstractSet
 
     from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.analysis.findings.answered_by_globs import ByGlobs
     from rosprivacy.analysis.model import Diagnostic, Element, Place
 
 ENDS = {"reader": NO_READER, "flow": NO_FLOW}
@@ -38,6 +41,7 @@ def doubts(
     weight: Callable[[str], int] = lambda _: 1,
     *,
     restricted: bool = False,
+    by_globs: Iterable[ByGlobs] = (),
 ) -> tuple[Doubt, ...]:
     """Return the list of doubts of an answer: by rank, name, element and file.
 
@@ -49,6 +53,8 @@ def doubts(
         Robot of an element -> for how many robots it stands; 0 if another one does.
     restricted
         Whether the answer is about some kinds of data only.
+    by_globs
+        What only globs answer for.
 
     Notes
     -----
@@ -69,6 +75,7 @@ def doubts(
         *_ends(analysis),
         *_closed(analysis),
         *_backups(analysis),
+        *_by_globs(by_globs, {*analysis.emitted}),
     ]
     listed += [Doubt(RESTRICTED, Rank.RIDES)] if restricted else []
     lines = first_lines(analysis.graph, {doubt.element.shown_as for doubt in listed if doubt.element})
@@ -124,3 +131,15 @@ def _backups(analysis: Analysis) -> Iterator[Doubt]:
     for element, facts in analysis.outside.items():
         if element.kind == "storage" and facts.backups is None and element.identity in holding:
             yield Doubt(BACKUPS_NOT_STATED, Rank.RIDES, element, categories=holding[element.identity])
+
+
+def _by_globs(rows: Iterable[ByGlobs], asked: AbstractSet[str]) -> Iterator[Doubt]:
+    """Elements that only globs answer for; of a flow its start."""
+    seen: dict[Element, tuple[set[str], list[Place]]] = {}
+    for row in rows:
+        kinds, places = seen.setdefault(row.element, (set(), []))
+        kinds.update(asked & {*row.categories})
+        places += row.places
+    for element, (kinds, places) in seen.items():
+        if kinds:
+            yield Doubt(BY_GLOBS, Rank.RIDES, element, places[0], tuple(sorted(kinds)))

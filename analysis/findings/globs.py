@@ -1,4 +1,4 @@
-"""What each glob of a user's label files decides and closes, and which of them decides too much to go unseen.
+"""What each glob of a user's label files decides and closes, and on which of them the verdict hangs.
 
 In: an ``Analysis`` with its labels and its ledger. Out: ``GlobUse`` rows, for what is assumed. A person who writes a
 glob sees one line; what it answers for can be most of a system.
@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, NamedTuple
 from rosprivacy.analysis.answer import Verdict
 from rosprivacy.analysis.findings.closures import ABSENT
 from rosprivacy.analysis.findings.ledger import REVIEW
-from rosprivacy.analysis.many_flows import one_by_one
 from rosprivacy.analysis.model import STANDARD
 
 if TYPE_CHECKING:
@@ -27,7 +26,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Bound, Element, FlowGraph, Place, Statement
 
-HALF, LAST = "half", "last-path"
+LAST = "last-path"
 WATCHED = frozenset({"mundane", "conduit", "sanitizer"})  # what one word too much turns into a wrong 'nothing found'
 CLOSERS = frozenset({"mundane", "only", "never", "sanitizer", ABSENT})
 Identity = tuple[str, str, str]
@@ -50,8 +49,6 @@ class GlobUse(NamedTuple):
     leak, open
         A leak, and an open element, behind what it closes; None where there is none.
     warning
-        ``HALF`` if it closes, or answers for, more than half of the nodes or of the channels that data gets to, or
-        closes more than half of the flows along which data would go;
         ``LAST`` if without it the answer would not be that no leak was found; else empty.
     """
 
@@ -98,9 +95,8 @@ def globs(
         if row.glob and (row.by in CLOSERS or row.by == REVIEW):
             for place in row.places:
                 rows[place].append(row)
-    reached = _reached(analysis, along=any(row.element and row.to for some in rows.values() for row in some))
     return tuple(
-        _use(place, decided[place], rows[place], reached, analysis.verdict)
+        _use(place, decided[place], rows[place], analysis.verdict)
         for place in sorted(decided, key=lambda place: (place.file, place.line))
     )
 
@@ -137,7 +133,7 @@ def _decided(analysis: Analysis, bound: Bound, beside: Collection[str]) -> dict[
 def _stated(said: Iterable[Statement], facts: Mapping[str, Facts], spread: Spread) -> Iterator[tuple[Statement, bool]]:
     """What globs of a user say of an element or a flow, and whether it holds there."""
     for statement in filter(_of_a_user, said):
-        holds = any(statement in fact.accepted for fact in facts.values())
+        holds = any(statement.line in fact.accepted for fact in facts.values())
         yield statement, holds or not spread.categories
 
 
@@ -150,43 +146,13 @@ def _of_a_user(statement: Statement) -> bool:
     return statement.glob and statement.rank[0] > STANDARD
 
 
-def _reached(analysis: Analysis, *, along: bool) -> dict[str, int]:
-    """How many channels, and how many other elements, data gets to, and if asked for, along how many flows."""
-    spread = analysis.spread
-    there = {spread.graph.elements[vertex] for vertex in {*spread.arrives, *spread.leaves}}
-    return {
-        "channels": len({e.identity for e in there if e.is_channel}),
-        "others": len({e.identity for e in there if not e.is_channel}),
-        "flows": _with_data(spread) if along else 0,
-    }
-
-
-def _with_data(spread: Spread) -> int:
-    sent = (
-        _ends(spread.graph, index)
-        for index, flow in enumerate(one_by_one(spread.graph.flows))
-        if spread.sent.get(flow.source, 0) | spread.flow_emits.get(index, 0)
-    )
-    return len({(source.identity, target.identity) for source, target in sent})
-
-
-def _use(
-    place: Place, decided: _Decided, rows: list[TakenAway], reached: Mapping[str, int], verdict: Verdict
-) -> GlobUse:
+def _use(place: Place, decided: _Decided, rows: list[TakenAway], verdict: Verdict) -> GlobUse:
     at = [row for row in rows if row.element and not row.to]
     closed = {row.element for row in at if row.element and row.by in CLOSERS}
     reviewed = {row.element for row in at if row.element and row.by == REVIEW}
     flows = {(row.element.identity, row.to.identity) for row in rows if row.element and row.to}
-    warning = ""
-    if decided.flows or WATCHED.intersection(decided.says):
-        touched = {e.identity: e.is_channel for e in closed | reviewed}
-        most = {
-            "channels": sum(touched.values()),
-            "others": len(touched) - sum(touched.values()),
-            "flows": len(flows),
-        }
-        last = verdict is Verdict.NO_LEAK_FOUND and any(row.closes or row.itself for row in rows)
-        warning = LAST if last else HALF if any(2 * most[what] > reached[what] > 1 for what in most) else ""
+    watched = decided.flows or WATCHED.intersection(decided.says)
+    last = watched and verdict is Verdict.NO_LEAK_FOUND and any(row.closes or row.itself for row in rows)
     return GlobUse(
         place,
         tuple(sorted(decided.says)),
@@ -195,7 +161,7 @@ def _use(
         len({element.identity for element in reviewed}),
         next((row.leak for row in rows if row.leak), None),
         next((row.open for row in rows if row.open), None),
-        warning,
+        LAST if last else "",
         len(decided.flows),
         len(flows),
     )

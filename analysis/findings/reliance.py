@@ -175,7 +175,7 @@ def _spots(spread: Spread, bound: Bound) -> dict[One, _Spots]:
 def _one(statement: Statement, *ends: Element) -> One:
     """What is one statement: a glob with all that it is about, a name on all robots; by hand, of one robot."""
     if statement.glob:
-        return statement, ()
+        return statement.line, ()
     robots = () if statement.place.line else tuple(end.robot for end in ends)
     return statement, (*(end.name for end in ends), *robots)
 
@@ -346,7 +346,7 @@ def _without(bound: Bound, statement: Statement, spots: _Spots) -> Bound:
 
 
 def _less(said: tuple[Statement, ...], statement: Statement) -> tuple[Statement, ...]:
-    return tuple(one for one in said if one.categories != statement.categories or one != statement)
+    return tuple(one for one in said if one.categories != statement.categories or one.line != statement)
 
 
 def _distinct(elements: Iterable[Element]) -> tuple[Element, ...]:

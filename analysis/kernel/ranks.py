@@ -17,12 +17,13 @@ from rosprivacy.analysis.model import CANNOT, GLOB, STANDARD, Method
 from rosprivacy.analysis.text import printable
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.model import Statement
 
 MAY = frozenset({"leak", "derivation", "only"})
+LETS_THROUGH = frozenset({"conduit", "sensitive", "only"})
 FARTHEST = 1_000_000  # the distance of a statement about every category
 OF_CHANNELS = frozenset({"mundane", "sensitive", "only", "never", CANNOT})
 OF_EVERY_KIND = frozenset({"mundane", "sensitive", "only"})  # two of these at one rank contradict for every category
@@ -73,9 +74,10 @@ def decided(name: str, said: Sequence[Statement], category: str, hierarchy: Hier
         ((*statement.rank, -distance), statement)
         for statement in said
         if (distance := _distance(statement, category, hierarchy)) is not None
+        and (statement.seen(category) or _lets_through(statement, category, hierarchy))
     ]
     if len(ranked) < 2:  # noqa: PLR2004 - nothing to weigh
-        return Decided(tuple(statement for _, statement in ranked), ())
+        return Decided(_seen((statement for _, statement in ranked), category), ())
     ranked.sort(key=lambda pair: (pair[0], str(pair[1].place)), reverse=True)
     accepted: list[Statement] = []
     outdone: list[tuple[Statement, Statement]] = []
@@ -90,7 +92,16 @@ def decided(name: str, said: Sequence[Statement], category: str, hierarchy: Hier
         elif statement.role in NONE_OF:
             outdone.append((statement, _decisive(statement, winners)))
     _check_derivations(name, category, accepted)
-    return Decided(tuple(accepted), tuple(sorted(outdone, key=lambda pair: by_line(pair[0]))))
+    return Decided(_seen(accepted, category), tuple(sorted(outdone, key=lambda pair: by_line(pair[0]))))
+
+
+def _seen(accepted: Iterable[Statement], category: str) -> tuple[Statement, ...]:
+    """What holds, but for what nobody has seen: that reviews nothing, and only let through what lower ranks close."""
+    return tuple(statement.line for statement in accepted if statement.seen(category))
+
+
+def _lets_through(statement: Statement, category: str, hierarchy: Hierarchy) -> bool:
+    return statement.role in LETS_THROUGH and not closes(statement, category, hierarchy)
 
 
 def applies(statement: Statement, category: str, hierarchy: Hierarchy) -> bool:

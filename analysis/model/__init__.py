@@ -75,6 +75,7 @@ from rosprivacy.analysis.model.diagnostic import (
 )
 from rosprivacy.analysis.model.doubt import (
     BACKUPS_NOT_STATED,
+    BY_GLOBS,
     NO_FLOW,
     NO_PLACE,
     NO_READER,
@@ -131,6 +132,7 @@ __all__ = [
     "ASSUMED",
     "BACKUPS_NOT_STATED",
     "BAG_GAP",
+    "BY_GLOBS",
     "CANNOT",
     "CAREFUL_DENY",
     "CHANGED",

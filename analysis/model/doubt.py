@@ -26,6 +26,7 @@ NO_READER = "no-reader"  # a channel with data that nobody known reads
 NO_FLOW = "no-flow"  # an element outside ROS that no flow reaches
 BACKUPS_NOT_STATED = "backups-not-stated"
 RESTRICTED = "restricted"  # the answer is about some kinds of data only
+BY_GLOBS = "by-globs"  # only a glob answers for what gets to an element, in a file without pins
 TYPE_CLOSES = "type-closes"  # only what a message type cannot carry closes a path to a leak
 
 

@@ -73,6 +73,9 @@ class Statement(NamedTuple):
         A person's reason: the note beside it, or why a node is not on the robot.
     author
         Who says it, and answers for it; empty where nobody is named.
+    pinned
+        Of what has to be ``seen``, in a file with pins: the kinds, as they are emitted, that a person has seen at this
+        element or flow; None in a file without.
     """
 
     role: str
@@ -87,6 +90,7 @@ class Statement(NamedTuple):
     naming: str = NAME
     why: str = ""
     author: str = ""
+    pinned: tuple[str, ...] | None = None
 
     @property
     def by_name(self) -> bool:
@@ -97,6 +101,20 @@ class Statement(NamedTuple):
     def glob(self) -> bool:
         """Whether a glob names what it is about."""
         return self.naming != NAME
+
+    @property
+    def to_be_seen(self) -> bool:
+        """Whether a glob takes away or reviews: a person has to have seen what gets there (rule S11)."""
+        return self.glob and self.role not in ("source", "leak", "derivation")
+
+    def seen(self, category: str) -> bool:
+        """Return whether it holds for a kind that gets there, as far as pins say (rule S11)."""
+        return self.pinned is None or category in self.pinned
+
+    @property
+    def line(self) -> Statement:
+        """What the label file says, which is the same wherever it holds, whatever is pinned there."""
+        return self if self.pinned is None else self._replace(pinned=None)
 
 
 NOWHERE = Place("", 0)

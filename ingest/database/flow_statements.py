@@ -76,6 +76,7 @@ def _as_json(statement: Statement) -> dict[str, Any]:
         "file": statement.place.file,
         "line": statement.place.line,
         **{key: text for key, text in (("why", statement.why), ("author", statement.author)) if text},
+        **({} if statement.pinned is None else {"pinned": statement.pinned}),
     }
 
 
@@ -84,11 +85,9 @@ def _stated(properties: Mapping[str, Any]) -> list[Statement]:
     for said in map(json.loads, properties.get("statements") or ()):
         rank, place = (int(said["tier"]), int(said["specificity"])), Place(str(said["file"]), int(said["line"]))
         why, author = (str(said.get(key) or "") for key in ("why", "author"))
-        stated.append(
-            Statement(
-                said["role"], tuple(said["categories"]), rank, place, naming=said["naming"], why=why, author=author
-            )
-        )
+        pinned = tuple(said["pinned"]) if "pinned" in said else None
+        more = {"naming": said["naming"], "why": why, "author": author, "pinned": pinned}
+        stated.append(Statement(said["role"], tuple(said["categories"]), rank, place, **more))
     return stated
 
 

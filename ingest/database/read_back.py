@@ -57,6 +57,7 @@ if TYPE_CHECKING:
 _FLOW_ROLES = {"publish", "subscribe", "request", "reply", "call", "execute", MATCHES}
 _KIND_OF = {label: kind for kind, label in KIND_LABELS.items()}
 _ROLE_OF = {kind.type: role for role, kind in ROLES.items()}
+FACTS = 12  # of a role, as ``role_facts_of`` returns them
 
 ROBOTS = "MATCH (r:Robot) RETURN properties(r) AS robot ORDER BY r.name"
 ELEMENTS = (
@@ -346,12 +347,11 @@ class _Reader:
                 raise InputErrors([_problem(what, "see docs/database.md for what a role has")]) from None
             alone = () if role in ("only", "never") or said.get("every") else (category,)
             together[(*facts, *alone)].append(category)
-        for (role, rank, place, method, stated, to, through, every, naming, why, author, *_), categories in sorted(
-            together.items(), key=lambda item: str(item[0])
-        ):
+        for facts, categories in sorted(together.items(), key=lambda item: str(item[0])):
+            role, rank, place, method, stated, to, through, every, naming, why, author, pinned = facts[:FACTS]
             names = () if every else tuple(sorted(categories))
             if role == "derivation":
                 names = (to,)
-                to = categories[0]  # noqa: PLW2901 - it is stored the other way round: the target is what is made
+                to = categories[0]  # it is stored the other way round: the target is what is made
             shipped = role == "mundane" and rank[0] <= STANDARD
-            yield Statement(role, names, rank, place, method, stated, to, through, shipped, naming, why, author)
+            yield Statement(role, names, rank, place, method, stated, to, through, shipped, naming, why, author, pinned)

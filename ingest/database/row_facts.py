@@ -78,7 +78,7 @@ def subjects_of(properties: Mapping[str, Any]) -> tuple[str, ...]:
 def role_facts_of(role: str, category: str, said: Mapping[str, Any]) -> tuple[Any, ...]:
     """Return what a relationship says.
 
-    (role, rank, place, method, stated, what it is made of, through, every, naming, why, author)
+    (role, rank, place, method, stated, what it is made of, through, every, naming, why, author, pinned)
     """
     tier, specificity = said.get("tier", HAND), said.get("specificity", EXACT)
     place = Place(str(said.get("file") or DATABASE), int(said.get("line") or 0))
@@ -102,6 +102,7 @@ def role_facts_of(role: str, category: str, said: Mapping[str, Any]) -> tuple[An
         str(said.get("naming") or (NAME if int(specificity) >= EXACT else SEGMENT)),  # absent in earlier versions
         str(said.get("why") or ""),
         str(said.get("author") or ""),
+        None if said.get("pinned") is None else tuple(str(name) for name in said["pinned"]),
     )
 
 

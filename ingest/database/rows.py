@@ -314,6 +314,7 @@ def add_roles(
             "robot": robot,
             "why": statement.why or None,
             "author": statement.author or None,
+            "pinned": None if statement.pinned is None else list(statement.pinned),
             **_particulars(statement),
         }
         top = [category.name for category in vocabulary.categories.values() if not category.broader]

@@ -87,6 +87,7 @@ _PLACE = (
     Property("every", BOOLEAN, "the label names no category: it holds for every one"),
     Property("why", STRING, "the label's note; of method absent: why the node is not on the robot"),
     Property("author", STRING, "who says it, as the label file names them"),
+    Property("pinned", STRINGS, "of a glob in a file with pins: kinds that a person has seen here, for which it holds"),
     _OURS,
 )
 _PROCESSING = (

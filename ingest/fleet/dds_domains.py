@@ -7,8 +7,9 @@ others write and read (rule S4); a DENY holds for the enclaves of its own robot 
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import Counter, defaultdict
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.bounds import BOUNDS
@@ -18,7 +19,7 @@ from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.ingest.policies.namespaces import as_written, pushed
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.bounds import Bounds
     from rosprivacy.analysis.model import Diagnostic, Flow, Grant, Policy, Profile
@@ -123,6 +124,19 @@ def alone(member: Member) -> Part:
 def pseudo_robot(domain: str) -> str:
     """Return the name under which a domain's own channels are filed; no robot can have it."""
     return f"domain {domain}"
+
+
+def called_in_fleet(members: Sequence[Member]) -> Iterator[tuple[Member, Callable[[Element], Element]]]:
+    """Yield robots with what gives elements of their own graph the names that they have in the fleet."""
+    domains: dict[str, list[Member]] = defaultdict(list)
+    for member in members:
+        if member.robot.domain:
+            domains[member.robot.domain].append(member)
+        else:
+            yield member, partial(replace, robot=member.robot.id)
+    for domain, some in domains.items():
+        names = _Names(domain, some)
+        yield from ((member, names.of_member(member)) for member in some)
 
 
 def shared(domain: str, members: Sequence[Member], view: str, bounds: Bounds = BOUNDS) -> Part:

@@ -20,6 +20,7 @@ from rosprivacy.analysis.written_names import A_LITTLE, FEW, did_you_mean, is_gl
 from rosprivacy.ingest.labels.bag_storages import recorded_types
 from rosprivacy.ingest.labels.graph_names import GraphNames, Unmatched
 from rosprivacy.ingest.labels.label_file import OURS
+from rosprivacy.ingest.labels.pins import Pinned, of_nothing, spot
 from rosprivacy.ingest.labels.stated_processing import two_of_one, united
 from rosprivacy.ingest.labels.stated_types import in_order, of_no_channel, stated_at
 from rosprivacy.ingest.labels.surroundings import everywhere, joined
@@ -80,12 +81,13 @@ def join(
     flows_of = leaving(graph.flows)
     problems: list[InputError] = []
     for file in labels:
+        pinned = Pinned(file.pins)
         for entry in file.entries:
             vertices = names.matching(entry.name, entry.kinds)
             if not vertices and not file.shipped:
                 problems.append(unmatched.of_entry(entry))
             for vertex in vertices:
-                elements[vertex] += entry.statements
+                elements[vertex] += pinned.at(entry.statements, graph.elements[vertex])
                 if entry.subjects:
                     subjects[vertex].update(entry.subjects)
                 if entry.contexts:
@@ -101,7 +103,8 @@ def join(
             if not indices:
                 problems.append(unmatched.of_flow(flow))
             for index in indices if flow.statements else ():
-                flows[index] += flow.statements
+                ends = (graph.elements[end] for end in (graph.flows[index].source, graph.flows[index].target))
+                flows[index] += pinned.at(flow.statements, *ends)
     outside = _outside(graph, labels)
     for vertex in (v for v in outside if by_kind(graph.elements[v])):
         elements[vertex] += by_kind(graph.elements[vertex])
@@ -144,7 +147,7 @@ def remarks(graph: FlowGraph, labels: Iterable[Labels], names: GraphNames | None
     """Yield what a person has to know of names in label files, though they are no errors.
 
     A name in a user's own file of standard channels that matches nothing (rule S13); a glob that is written like the
-    name of a wildcard, which means more than this one element.
+    name of a wildcard, which means more than this one element; a pin that no glob speaks of (rule S11).
 
     Parameters
     ----------
@@ -157,6 +160,7 @@ def remarks(graph: FlowGraph, labels: Iterable[Labels], names: GraphNames | None
             yield from _unused(names, file)
         elif not file.shipped:
             yield from _like_a_wildcard(names, graph, file)
+            yield from of_nothing(file.pins or (), _decided_by_globs(names, graph, file) if file.pins else ())
 
 
 def _unused(names: GraphNames, file: Labels) -> Iterator[Diagnostic]:
@@ -165,6 +169,19 @@ def _unused(names: GraphNames, file: Labels) -> Iterator[Diagnostic]:
         if not names.matching(entry.name, entry.kinds):
             error = unmatched.of_entry(entry)
             yield Diagnostic(entry.place, Severity.NOTICE, f"{error.problem}; {error.hint}")
+
+
+def _decided_by_globs(names: GraphNames, graph: FlowGraph, file: Labels) -> Iterator[tuple[tuple[str, str], ...]]:
+    """Elements and flows of which a glob says what a person has to have seen (rule S11)."""
+    spots = list(map(spot, graph.elements))
+    for entry in file.entries:
+        if any(said.to_be_seen for said in entry.statements):
+            yield from ((spots[vertex],) for vertex in names.matching(entry.name, entry.kinds))
+    flows_of = leaving(graph.flows)
+    for flow in file.flows:
+        if any(said.to_be_seen for said in flow.statements):
+            for index in _flows(graph, flows_of, names, flow):
+                yield spots[graph.flows[index].source], spots[graph.flows[index].target]
 
 
 def _like_a_wildcard(names: GraphNames, graph: FlowGraph, file: Labels) -> Iterator[Diagnostic]:

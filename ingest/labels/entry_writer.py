@@ -21,6 +21,7 @@ from rosprivacy.analysis.errors import LabelError, shown
 from rosprivacy.analysis.text import counted
 from rosprivacy.ingest.labels.edited_entries import same_name
 from rosprivacy.ingest.labels.label_writer import NewLine, add_line
+from rosprivacy.ingest.labels.pins import PINS
 from rosprivacy.ingest.reading.kept_yaml import FAILURES, changed, comments
 
 if TYPE_CHECKING:
@@ -58,7 +59,7 @@ def with_entries(file: str, text: str, said: Sequence[Said]) -> NewText:
     file
         For messages.
     said
-        Of one name and section at most one.
+        Of one name and section at most one; that of ``PINS`` is the whole section.
 
     Raises
     ------
@@ -130,6 +131,9 @@ def _names(line: str, name: str) -> bool:
 
 
 def _put(top: Any, said: Said) -> None:
+    if said.section == PINS:
+        _put_pins(top, said.value)
+        return
     section, key = _place(top, said)
     if said.value is None:
         if key is None:
@@ -144,6 +148,19 @@ def _put(top: Any, said: Said) -> None:
         _change(section[key], said.value)
     else:
         section[key] = on_one_line(said.value)
+
+
+def _put_pins(top: Any, value: dict[str, Any] | None) -> None:
+    """The section that ``labels --pin`` writes, whole: a line for each element and flow."""
+    if value is None:
+        top.pop(PINS, None)
+        return
+    top[PINS] = section = CommentedMap()
+    for key, some in value.items():
+        if isinstance(some, list):
+            section[key] = CommentedSeq(map(on_one_line, some))
+        else:
+            section[key] = CommentedMap((on_one_line(name), on_one_line(kinds)) for name, kinds in some.items())
 
 
 def _in_flow(value: Any) -> bool:
@@ -193,6 +210,10 @@ def _json(text: str) -> Any:
 
 def _as_json(text: str, top: Any, said: Sequence[Said]) -> str:
     for one in said:
+        if one.section == PINS:
+            top.pop(PINS, None)
+            top |= {} if one.value is None else {PINS: one.value}
+            continue
         section, key = _place(top, one)
         if one.value is not None:
             if not section:

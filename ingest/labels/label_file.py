@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Diagnostic, Processing
     from rosprivacy.ingest.labels.entries import Entry, FlowEntry
     from rosprivacy.ingest.labels.non_ros_reader import Limit, Stated
+    from rosprivacy.ingest.labels.pins import Pin
     from rosprivacy.ingest.reading.yaml_values import Value
     from rosprivacy.ontology.vocabulary import Vocabulary
 
@@ -56,6 +57,8 @@ class Labels:
         Where the system works, as the top of the file states it.
     processing
         Who is responsible for the whole system, what it is for, on which basis.
+    pins
+        What a person has seen where globs decide (rule S11); None of a file without.
     """
 
     file: str
@@ -69,6 +72,7 @@ class Labels:
     own: bool = False
     surroundings: Surroundings = Surroundings()  # noqa: RUF009 - it is frozen
     processing: Processing = UNSTATED
+    pins: tuple[Pin, ...] | None = None
 
 
 def read_labels(
@@ -159,6 +163,7 @@ def _labels(reader: LabelReader, top: Value, data: bytes, *, shipped: bool = Fal
         own,
         reader.surroundings,
         reader.processing,
+        reader.pins,
     )
 
 
@@ -171,6 +176,7 @@ def unknown_categories(labels: Labels, vocabulary: Vocabulary) -> Iterator[Label
     named |= {(name, Place(labels.file, 0)) for name, _ in labels.limits}
     processing = [labels.processing, *(entry.processing for entry in labels.entries)]
     named |= {(name, one.place) for one in processing for name, _ in (*one.purposes, *one.bases)}
+    named |= {(name, pin.place) for pin in labels.pins or () for name in pin.categories}
     for name, place in named:
         if name != EVERY and name not in vocabulary.categories:
             hint = "give parse_labels the ontologies that analyze gets"

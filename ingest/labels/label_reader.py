@@ -30,6 +30,7 @@ from rosprivacy.ingest.labels.bag_storages import bags_of
 from rosprivacy.ingest.labels.entries import EXACT, SHIPPED, Entry, FlowEntry, naming, specificity
 from rosprivacy.ingest.labels.name_reader import NameReader
 from rosprivacy.ingest.labels.non_ros_reader import is_non_ros, read_element, read_limits
+from rosprivacy.ingest.labels.pins import PINS, Pin, read_pins
 from rosprivacy.ingest.labels.stated_processing import (
     OF_ELEMENT,
     OF_SYSTEM,
@@ -93,6 +94,7 @@ class LabelReader(NameReader):
     surroundings: Surroundings = field(default_factory=Surroundings)
     processing: Processing = UNSTATED
     root: str = ""
+    pins: tuple[Pin, ...] | None = None
 
     def bags_at(self, value: Value) -> tuple[Bag, ...]:
         """Return the bags that a storage names, relative to this file; none, and a problem, if they cannot be read."""
@@ -119,13 +121,15 @@ class LabelReader(NameReader):
         self.version(top, "labels", "label")
         self.system(top)
         self.author = self._author(top)
-        for key, line, value in self.entries_of(top, ("labels", "author", *SYSTEM, *SECTIONS, *OUTSIDE, "flows")):
+        for key, line, value in self.entries_of(top, ("labels", "author", *SYSTEM, *SECTIONS, *OUTSIDE, "flows", PINS)):
             if key in SURROUNDINGS:
                 self.surroundings = self.surrounded(self.surroundings, key, value)
             elif key in ("flows", *OUTSIDE):
                 self.outside(key, line, value)
             elif key in SECTIONS:
                 self._section(key, line, value)
+            elif key == PINS:
+                self.pins = read_pins(self, value)
 
     def surrounded(self, known: Surroundings, key: str, value: Value) -> Surroundings:
         """Return where a system works with what one more key says of it."""
@@ -384,7 +388,7 @@ def check_mundane(reader: LabelReader, top: Value) -> None:
     """Refuse what a file of standard channels says beside that channels are mundane (rule S13)."""
     hint = "write channels: {/name: mundane} only; other labels go into a file for --labels"
     for key, line, _ in top.entries if top.kind == "map" else ():
-        if key in ("nodes", "flows", *OF_SYSTEM, *OUTSIDE, *SIX_LISTS):
+        if key in ("nodes", "flows", *OF_SYSTEM, *OUTSIDE, *SIX_LISTS, PINS):
             reader.problem(line, f"{key} in a file of standard channels", hint)
     for entry in reader.entries:
         for statement in entry.statements if "node" not in entry.kinds else ():

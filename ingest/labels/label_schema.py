@@ -12,6 +12,7 @@ from rosprivacy.analysis.non_ros import RECIPIENTS, TRANSFERS
 from rosprivacy.ingest.labels.label_reader import LONGEST_GROUP, NONE, SAYS_NOTHING
 from rosprivacy.ingest.labels.name_reader import END_KINDS
 from rosprivacy.ingest.labels.non_ros_reader import BAG, CARRIERS
+from rosprivacy.ingest.labels.pins import PINS, SECTION_OF
 from rosprivacy.ingest.labels.stated_processing import LONGEST
 
 if TYPE_CHECKING:
@@ -48,6 +49,7 @@ SURROUNDINGS = {
     "country": {"type": "string", "pattern": "^[A-Z]{2}$", "description": "Where it runs, ISO 3166-1; quote NO."},
 }
 OUTSIDE_NAME = {"type": "string", "pattern": r"^[^/=*?\[:][^:]*$", "maxLength": 200}
+FULL_NAME = {"type": "string", "pattern": r"^(=|/[^*?\[]*$)", "description": "A name in full; = before glob signs."}
 NAME = {"type": "string", "pattern": r"^[/=*?\[]", "description": "A name, a glob, or = and a name with glob signs."}
 
 
@@ -77,6 +79,7 @@ def label_schema(categories: Iterable[Category]) -> dict[str, Any]:
             "actions": _section("channel", "As channels, for actions only."),
             **SURROUNDINGS,
             **non_ros_sections(),
+            PINS: _pins(),
         },
         "$defs": _definitions(list(categories)),
     }
@@ -118,6 +121,23 @@ def non_ros_sections() -> dict[str, Any]:
             "description": "How long kinds of data may be kept at most.",
         },
         "flows": {"type": ["array", "null"], "items": {"$ref": "#/$defs/flow"}},
+    }
+
+
+def _pins() -> dict[str, Any]:
+    """What a person has seen where globs decide: names in full, and kinds as they are emitted."""
+    kinds = {"type": "array", "minItems": 1, "items": {"$ref": "#/$defs/category"}}
+    end = {"anyOf": [OUTSIDE_NAME, {**END_OF_KIND, "properties": dict.fromkeys(END_KINDS, FULL_NAME)}]}
+    ends = {"from": end, "to": end, "kinds": kinds}
+    of_kind = {"type": ["object", "null"], "propertyNames": FULL_NAME, "additionalProperties": kinds}
+    return {
+        "type": ["object", "null"],
+        "description": "Written by 'labels --pin': which kinds reached the elements that globs of this file decide.",
+        "additionalProperties": False,
+        "properties": {
+            **dict.fromkeys(SECTION_OF.values(), of_kind),
+            "flows": {"type": ["array", "null"], "items": {**_object(ends), "required": [*ends]}},
+        },
     }
 
 

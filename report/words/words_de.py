@@ -320,7 +320,6 @@ WORDS = {
     "a.absent": "{element} hat ein Profil und ist nicht auf dem Roboter: {why}. Also gelangt nichts dorthin, und nichts kommt von dort.",
     "a.hangs": "Dass kein Weg gefunden wurde, hängt an Angaben, bei denen Daten enden: {labels}. Zu prüfen ist, ob jede stimmt.",
     "a.glob": "Die Angabe mit Platzhaltern in {place} ({says}) entscheidet über {elements}; an {closed} davon enden Daten deshalb, und {reviewed} gelten deshalb als geprüft.",
-    "a.glob.half": "Warnung: Das ist mehr als die Hälfte der Knoten, Kanäle oder Flüsse, zu denen Daten gelangen; zu prüfen ist, ob das gemeint ist.",
     "a.glob.flows": "Die Angabe mit Platzhaltern in {place} ({says}) entscheidet über {flows}; entlang {closed} davon enden Daten deshalb.",
     "a.glob.last-path": "Warnung: Ohne sie wäre die Antwort nicht, dass kein Weg zu einem Ausgang gefunden wurde; zu prüfen ist, ob das gemeint ist.",
     "a.overruled.source": "{elements}: keine Quelle ({data}), denn die Angabe in {by} hebt die in {lost} auf.",

@@ -25,6 +25,12 @@ DOUBTS = {
         "von {n} Aufzeichnungen ist nicht alles bekannt ({names})",
         "die Policies des aufgezeichneten Systems nennen oder die Aufzeichnung reparieren (rosprivacy bag sagt, was fehlt)",
     ),
+    "by-globs": (
+        "Nur ein Muster spricht für ein Element",
+        "nur ein Muster spricht für {names}",
+        "nur Muster sprechen für {n} Elemente ({names})",
+        "jedes ansehen, dann festhalten, was gesehen wurde: rosprivacy labels --pin",
+    ),
     "careful-deny": (
         "Eine Suche, die eine Schranke abgebrochen hat",
         "eine Schranke hat abgebrochen, was ein DENY in {names} von Wildcards übrig lässt",

@@ -25,6 +25,12 @@ DOUBTS = {
         "not all is known of {n} bags ({names})",
         "name the policies of the system that was recorded, or repair the bag (rosprivacy bag says what is wrong)",
     ),
+    "by-globs": (
+        "Only a glob answers for an element",
+        "only a glob answers for {names}",
+        "only globs answer for {n} elements ({names})",
+        "look at each, then keep what was seen: rosprivacy labels --pin",
+    ),
     "careful-deny": (
         "A search that a bound cut",
         "a bound cut what a DENY in {names} leaves of wildcards",

@@ -25,6 +25,12 @@ DOUBTS = {
         "{n} enregistrements ne sont pas entièrement connus ({names})",
         "nommer les politiques du système enregistré, ou réparer l'enregistrement (rosprivacy bag dit ce qui manque)",
     ),
+    "by-globs": (
+        "Seul un motif répond d'un élément",
+        "seul un motif répond de {names}",
+        "seuls des motifs répondent de {n} éléments ({names})",
+        "regarder chacun, puis garder ce qui a été vu : rosprivacy labels --pin",
+    ),
     "careful-deny": (
         "Une recherche qu'une borne a coupée",
         "une borne a coupé ce qu'un DENY de {names} laisse de jokers",

@@ -362,9 +362,6 @@ WORDS = {
         "The glob at {place} ({says}) decides {elements}; data ends for it at {closed} of them, and {reviewed} count as "
         "reviewed for it."
     ),
-    "a.glob.half": (
-        "Warning: that is more than half of the nodes, channels or flows that data gets to; check that it is meant."
-    ),
     "a.glob.flows": "The glob at {place} ({says}) decides {flows}; data ends for it along {closed} of them.",
     "a.glob.last-path": "Warning: without it the answer would not be that no leak was found; check that it is meant.",
     "a.overruled.source": "{elements}: no source of {data}, since the label at {by} takes away that at {lost}.",

@@ -325,7 +325,6 @@ _TYPED = {
     "a.absent": "{element} a un profil et n'est pas sur le robot : {why}. Rien n'y arrive donc, et rien n'en vient.",
     "a.hangs": "Qu'aucun chemin n'ait été trouvé dépend d'annotations où des données s'arrêtent : {labels}. Vérifiez que chacune est exacte.",
     "a.glob": "L'annotation à caractères génériques dans {place} ({says}) décide pour {elements} ; à {closed} d'entre eux des données s'arrêtent à cause d'elle, et {reviewed} comptent comme examinés à cause d'elle.",
-    "a.glob.half": "Avertissement : c'est plus de la moitié des nœuds, canaux ou flux que des données atteignent ; vérifiez que c'est voulu.",
     "a.glob.flows": "L'annotation à caractères génériques dans {place} ({says}) décide pour {flows} ; le long de {closed} d'entre eux des données s'arrêtent à cause d'elle.",
     "a.glob.last-path": "Avertissement : sans elle, la réponse ne serait pas qu'aucun point de sortie n'a été trouvé ; vérifiez que c'est voulu.",
     "a.overruled.source": "{elements} : pas une source ({data}), car l'annotation dans {by} annule celle dans {lost}.",

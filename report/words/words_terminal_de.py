@@ -189,7 +189,6 @@ WORDS = {
     "tty.not.worked.out": "was dahinter liegt, wurde nicht ermittelt",
     "tty.globs": "Angaben mit Platzhaltern: {n}",
     "tty.glob.warning": "Warnung: {row}; {why}",
-    "tty.glob.half": "das ist mehr als die Hälfte der Knoten, Kanäle oder Flüsse, zu denen Daten gelangen: prüfen, ob das gemeint ist",
     "tty.glob.last-path": "ohne sie wäre das Ergebnis nicht no-leak-found: prüfen, ob das gemeint ist",
     "tty.glob": "das Muster in {place} ({says}) {parts}{behind}",
     "tty.glob.decides": "entscheidet über {what}",

@@ -189,7 +189,6 @@ WORDS = {
     "tty.not.worked.out": "what lies behind was not worked out",
     "tty.globs": "Globs of label files: {n}",
     "tty.glob.warning": "warning: {row}; {why}",
-    "tty.glob.half": "that is more than half of the nodes, channels or flows that data gets to: check that it is meant",
     "tty.glob.last-path": "without it the verdict would not be no-leak-found: check that it is meant",
     "tty.glob": "the glob at {place} ({says}) {parts}{behind}",
     "tty.glob.decides": "decides {what}",

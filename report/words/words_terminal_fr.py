@@ -191,7 +191,6 @@ _TYPED = {
     "tty.not.worked.out": "ce qu'il y a derrière n'a pas été calculé",
     "tty.globs": "Annotations à motifs : {n}",
     "tty.glob.warning": "avertissement : {row} ; {why}",
-    "tty.glob.half": "c'est plus de la moitié des nœuds, canaux ou flux que des données atteignent : vérifier que c'est voulu",
     "tty.glob.last-path": "sans elle, le résultat ne serait pas no-leak-found : vérifier que c'est voulu",
     "tty.glob": "le motif dans {place} ({says}) {parts}{behind}",
     "tty.glob.decides": "décide pour {what}",

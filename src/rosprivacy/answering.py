@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.answer import ClosedByTypes
 from rosprivacy.analysis.contexts import Contexts
+from rosprivacy.analysis.findings.answered_by_globs import answered_by_globs
 from rosprivacy.analysis.findings.doubts import doubts, judged
 from rosprivacy.analysis.findings.findings import Options, analyse
 from rosprivacy.analysis.findings.processed import lacks, processed
@@ -139,7 +140,10 @@ def concluded(
     at_sources = Contexts.of(system.graph, system.bound, system.vocabulary.categories, together=system.is_fleet)
     law = law_of(system.vocabulary, analysis.emitted, at_sources.everywhere)
     analysis = replace(analysis, diagnostics=(*analysis.diagnostics, *lacks(rows, law)))
-    listed = doubts(analysis, system.diagnostics, system.likeness.weight, restricted=question.asked is not None)
+    listed = doubts(
+        analysis, system.diagnostics, system.likeness.weight, restricted=question.asked is not None,
+        by_globs=answered_by_globs(analysis.spread, system.bound, system.vocabulary.hierarchy),
+    )  # fmt: skip
     listed, remarks = doubts_decided(question.decisions, listed, everything=question.asked is None)
     analysis = judged(analysis, listed)
     joined = joined_to(question.decisions, analysis, law, question.asked, system.likeness, view)

@@ -67,7 +67,21 @@ def labels(choices: Choices) -> dict[str, str]:
         top |= _non_ros(choices, NODES)
     elif choices.once_in(3):
         top["flows"] = [{"from": "/n0", "to": choices.pick(("/a", "/b")), **_restriction(choices)}]
+    if choices.once_in(3):
+        top["pins"] = _pins(choices)
     return {"labels.yaml": written(choices, top)}
+
+
+def _pins(choices: Choices) -> dict[str, Any]:
+    """What a person has seen: names in full, and now and then one that is not."""
+    kinds = ("Video", "Voice", "FaceTemplate")
+    nodes = _keyed(choices, (*NODES, "=/n0", "/*"), lambda c: c.some(kinds, 1))
+    ends = {"from": choices.pick(({"node": "/n0"}, "disk")), "to": choices.pick(({"topic": "/a"}, "/b"))}
+    return {
+        "nodes": nodes,
+        "topics": _keyed(choices, (*TOPICS, "=/a/*"), lambda c: c.some(kinds, 1)),
+        **({"flows": [{**ends, "kinds": ["Video"]}]} if choices.once_in(3) else {}),
+    }
 
 
 def journal(choices: Choices) -> dict[str, str]:

@@ -33,6 +33,7 @@ PAIRS = [
 ]
 OF_CHANNELS = {"mundane", "sensitive", "only", "never"}  # S7: statements of one kind
 OF_EVERY_KIND = {"mundane", "sensitive", "only"}
+PASSING = {"conduit", "sensitive", "only"}
 ENDS = {"anonymise", "aggregate", "drop"}
 ABSENT = "absent"  # the word of a node that is not there: it does nothing, so it is opposed to all that it might do
 CONDUIT = Statement("conduit", (), (-1, 0), Place("", 0))
@@ -131,6 +132,8 @@ class Brute:
         """What is said of it; what a source names a channel for, only a user's full name can take away."""
         said = [*self.said.get(vertex, []), *BY_KIND.get(self.outside.get(vertex, ("",))[0], [])]
         said = [s for s in said if self.nearness(s, category) is not None]
+        # S11: what a glob of a pinned file takes away is not there for what nobody has seen; what lets through is
+        said = [s for s in said if s.seen(category) or (s.role in PASSING and not self.closes(s, category))]
         if vertex not in self.nodes and self.named(vertex, category):
             return [s for s in said if by_a_users_name(s) or not self.closes(s, category)]
         return said
@@ -170,7 +173,8 @@ class Brute:
         return [
             s
             for s in applying
-            if not any(self.opposed(s, t, category) and self.beats(t, s, category) for t in applying)
+            if s.seen(category)  # S11: … and what lets through reviews nothing
+            and not any(self.opposed(s, t, category) and self.beats(t, s, category) for t in applying)
         ]
 
     def kinds_emitted(self) -> set[str]:

@@ -17,7 +17,7 @@ from rosprivacy.cli.output import emit
 
 @reads_system(
     "the policies of one robot",
-    without=("fleet", "from_database", "neo4j", "categories", "category", "decisions", "types"),
+    without=("from_database", "neo4j", "categories", "category", "decisions"),
 )
 def labels(
     inputs: Inputs,
@@ -32,6 +32,14 @@ def labels(
     ] = False,
     next_round: Annotated[
         bool, typer.Option("--next", help="Add lines for what to review next to the file of --labels.")
+    ] = False,
+    pin: Annotated[
+        bool,
+        typer.Option(
+            "--pin",
+            help="Keep in the label files which kinds of data reach the elements that their globs decide: what else "
+            "gets there is open then; of a robot or a --fleet.",
+        ),
     ] = False,
     accept: Annotated[
         list[str] | None,
@@ -59,9 +67,14 @@ def labels(
     ] = None,
 ) -> None:
     """Make a label file or add to one, or print the schema or the files that come with the program."""
-    if [init, schema, standard, infrastructure, update, next_round, bool(accept)].count(True) != 1:
-        hint = "name one of --init, --update, --next, --accept, --schema, --standard, --infrastructure"
+    if [init, schema, standard, infrastructure, update, next_round, pin, bool(accept)].count(True) != 1:
+        hint = "name one of --init, --update, --next, --pin, --accept, --schema, --standard, --infrastructure"
         raise typer.BadParameter(hint)
+    if pin:
+        refuse("labels --pin", "what it reads, and writes into it", ["--by"] if by else [])
+        _pin(inputs, output)
+        return
+    refuse("labels", "the policies of one robot, but with --pin", inputs.given("fleet", "types"))
     if accept:
         _accept(inputs, accept, by, output)
         return
@@ -69,7 +82,7 @@ def labels(
     if update or next_round:
         _add(inputs, output, update=update)
         return
-    refuse("labels", "label files with --update, --next and --accept only", inputs.given("labels"))
+    refuse("labels", "label files with --update, --next, --pin and --accept only", inputs.given("labels"))
     if init:
         _begin(inputs, output)
     else:
@@ -91,6 +104,29 @@ def _add(inputs: Inputs, output: Path | None, *, update: bool) -> None:
         if written.added or output:
             emit(written.text, None if output == PRINTED else file, edited=Path(written.file))
     typer.echo(f"{file}: {counted(written.added, 'line')} added", err=True)
+
+
+def _pin(inputs: Inputs, output: Path | None) -> None:
+    """Pins into every label file with globs, those that need none left as they are; remarks go to the terminal."""
+    from rosprivacy.labelling.pinning import pinned, pinned_in_fleet
+    from rosprivacy.report.editing import editing
+
+    if inputs.fleet:
+        files = list(pinned_in_fleet(inputs.fleet, inputs.settings))
+    else:
+        files = list(pinned(inputs.named, tuple(inputs.labels or ()), inputs.settings))
+    if output and len(files) != 1:
+        raise InputError(
+            "--output", 0, f"one file for the pins of {len(files)}", "leave it out, or name one label file"
+        )
+    for written in files:
+        for remark in written.remarks:
+            typer.echo(remark, err=True)
+        file = output if output and output != PRINTED else Path(written.file)
+        if written.added or output:
+            with editing(file):
+                emit(written.text, None if output == PRINTED else file, edited=Path(written.file))
+        typer.echo(f"{file}: {counted(written.added, 'line')} changed", err=True)
 
 
 def _accept(inputs: Inputs, accepted: list[str], by: str | None, output: Path | None) -> None:

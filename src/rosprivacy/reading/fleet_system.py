@@ -5,6 +5,7 @@ In: a fleet file. Out: ``FleetSystem``. Robots that are alike are read once.
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -17,6 +18,7 @@ from rosprivacy.ingest.fleet.alike_robots import Alike, alike
 from rosprivacy.ingest.fleet.fleet_file import Fleet, read_fleet
 from rosprivacy.ingest.fleet.fleet_graph import Placed, place
 from rosprivacy.ingest.fleet.joins import joins_nothing, let_out
+from rosprivacy.ingest.labels.pins import PIN_OF_NOTHING
 from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, Change
 from rosprivacy.question import question_of
 from rosprivacy.reading.robot_reader import Reader, Tried
@@ -189,7 +191,10 @@ def _made(
     elements = placed.graph.elements
     letting_out = let_out((one, placed.bound.elements.get(vertex, ())) for vertex, one in enumerate(elements))
     joins = joins_nothing(fleet, groups, placed.met, letting_out)
-    diagnostics = dict.fromkeys((*(d for member in members.values() for d in member.diagnostics), *joins))
+    told = Counter(d for member in members.values() for d in member.diagnostics)
+    read = Counter(file.file for member in members.values() for file in member.files)
+    said = (d for d, count in told.items() if d.code != PIN_OF_NOTHING or count == read[d.place.file])
+    diagnostics = dict.fromkeys((*said, *joins))
     policies = [policy for member in members.values() for policy in member.policies]
     files = [{"file": name, "sha256": digest} for name, digest in fleet.sources]
     seen = {one.file: one for member in members.values() for one in member.types}

@@ -21,6 +21,7 @@ from rosprivacy.ingest.labels.bag_storages import told_of_bags
 from rosprivacy.ingest.labels.binding import bind, join, remarks
 from rosprivacy.ingest.labels.graph_names import GraphNames
 from rosprivacy.ingest.labels.label_file import Labels, read_labels, unknown_categories
+from rosprivacy.ingest.labels.pins import PIN_OF_NOTHING
 from rosprivacy.ingest.labels.stated_types import in_order
 from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, Change, changed
 from rosprivacy.ingest.policies.comparisons import careful_warnings
@@ -189,7 +190,9 @@ def lenient_system(
     settings = question.settings
     graph, missing = extended(build(read[0], settings.view, settings.bounds), files)
     bound, more = join(graph, files, settings.bounds)
-    return _joined(graph, bound, read, files, types, settings, question.vocabulary), [*missing, *more]
+    system = _joined(graph, bound, read, files, types, settings, question.vocabulary)
+    told = tuple(said for said in system.diagnostics if said.code != PIN_OF_NOTHING)  # it may be of another policy
+    return replace(system, diagnostics=told), [*missing, *more]
 
 
 def robot_of(name: str, result: Result) -> RobotRows:

@@ -12,6 +12,7 @@ from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.analysis.kernel.spreading import emitted
 from rosprivacy.ingest.fleet.fleet_graph import Some, likeness, place_some
 from rosprivacy.ingest.fleet.joins import let_out
+from rosprivacy.ingest.labels.pins import PIN_OF_NOTHING
 from rosprivacy.spark.units import Lines, crossing_lines, named
 
 if TYPE_CHECKING:
@@ -131,13 +132,15 @@ def _with(told: Told, fleet: Fleet, name: str, one: Some, members: Sequence[Memb
 
 
 def told_of(one: Some, members: Sequence[Member]) -> Told:
-    """Return what robots tell that were placed together."""
+    """Return what robots tell that were placed together; a pin of nothing may be one of a robot in another part."""
     files = [labels for member in members for labels in member.files]
     return Told(
         emitted=frozenset(emitted(one.part.elements.values())),
         sources=frozenset(s for member in members for policy in member.policies for s in policy.sources),
         labels=frozenset((file.file, file.sha256, file.shipped) for file in files),
-        diagnostics=tuple(dict.fromkeys(d for member in members for d in member.diagnostics)),
+        diagnostics=tuple(
+            dict.fromkeys(d for member in members for d in member.diagnostics if d.code != PIN_OF_NOTHING)
+        ),
         limits=frozenset(limit for file in files for limit in file.limits),
         countries=any(facts.country for facts in one.part.outside.values()),
         found=tuple((bool(sources), bool(targets)) for sources, targets in one.ends),

@@ -74,6 +74,26 @@ def test_the_document_is_that_of_the_files(
     assert dump(driver, without=("digest", "version")) == before
 
 
+@pytest.mark.parametrize(
+    "pins", ["{}", "{nodes: {/filter: [Video]}}", "{nodes: {/filter: [Video]}, topics: {/b: [Video]}}"]
+)
+def test_what_is_pinned_comes_back(driver: Driver, tmp_path: Path, pins: str) -> None:
+    """Rule S11: of nodes, channels and flows; and a leak that a glob may take back only where it was seen."""
+    (tmp_path / "p.xml").write_text(policy("/camera>/a", "/filter>/b</a", "/out</b"))
+    labels = 'labels: 1\nnodes: {/camera: {source: [Video]}, "/f*": {sanitizer: {Video: pseudonymise}}, '
+    labels += '"/*": {leak: [Video]}, "/o*": {leak: none}}\ntopics: {/a: sensitive, "/b*": mundane}\n'
+    labels += f'flows: [{{from: "/fil*", to: /b, never: [Voice]}}]\npins: {pins}\n'
+    (tmp_path / "l.yaml").write_text(labels)
+    result = rosprivacy.analyze([str(tmp_path / "p.xml")], [str(tmp_path / "l.yaml")])
+    load(driver, [robot_of("r", result)], VOCABULARY)
+    stored = answer_stored(driver, Settings())
+    assert {s.pinned for said in stored.bound.elements.values() for s in said} >= {None, ()}
+    assert [s.pinned for said in stored.bound.flows.values() for s in said] == [()]
+    document = stored.document()
+    assert document["assumptions"].pop("database") == {"robots": 1}
+    assert document == result.document()
+
+
 def verdicts(driver: Driver) -> dict[str, str]:
     return dict(record.values() for record in driver.execute_query("MATCH (r:Robot) RETURN r.name, r.verdict").records)
 

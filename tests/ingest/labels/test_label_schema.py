@@ -51,6 +51,12 @@ FULL: dict[str, Any] = {
         {"from": "/a", "to": "/b", "only": ["Video"], "never": ["Voice"], "note": "x"},
         {"from": "/a", "to": "bucket"},
     ],
+    "pins": {
+        "nodes": {"/a": ["Video"], "=/*": ["Voice", "Video"]},
+        "topics": {},
+        "flows": [{"from": {"node": "/a"}, "to": {"topic": "/t"}, "kinds": ["Video"]},
+                  {"from": {"node": "/a"}, "to": "bucket", "kinds": ["Voice"]}],
+    },
 }  # fmt: skip
 
 
@@ -101,7 +107,9 @@ def test_the_reader_and_the_schema_agree_on_a_wrong_type_anywhere(tmp_path: Path
             assert not validator().is_valid(document), f"valid, but not read: {shown}"
 
 
-@pytest.mark.parametrize("key", ["labels", "nodes", "channels", "topics", "services", "actions", "limits", "flows"])
+@pytest.mark.parametrize(
+    "key", ["labels", "nodes", "channels", "topics", "services", "actions", "limits", "flows", "pins"]
+)
 def test_only_the_version_is_required(tmp_path: Path, key: str) -> None:
     document = {name: value for name, value in FULL.items() if name != key}
     assert validator().is_valid(document) == (key != "labels")

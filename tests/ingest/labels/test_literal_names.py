@@ -10,6 +10,7 @@ from jsonschema import Draft202012Validator
 
 import rosprivacy
 from rosprivacy.analysis.errors import InputErrors
+from rosprivacy.analysis.model import BY_GLOBS
 from rosprivacy.ingest.labels.binding import bind
 from rosprivacy.ingest.labels.label_file import parse_labels
 from rosprivacy.ingest.labels.label_schema import label_schema
@@ -206,19 +207,30 @@ def test_each_glob_says_what_it_decides_and_closes() -> None:
 
 
 @pytest.mark.parametrize(
-    ("labels", "warning"),
+    ("labels", "warning", "doubted"),
     [
-        ('channels: {"/*": mundane}', "last-path"),  # the verdict hangs on it
-        ('channels: {"/*": sensitive}\nnodes:\n  /camera: {source: [Video], leak: none}\n  "*": conduit', "last-path"),
-        ('nodes:\n  /camera: {source: [Video]}\n  "/[!c]*": conduit', "half"),  # channels are open
-        ('nodes:\n  /camera: {source: [Video]}\n  /uplink: {leak: [Video]}\n  "/rel*": conduit', ""),
-        ('nodes:\n  /camera: {source: [Video]}\n  "/r*": {sanitizer: {Video: drop}}', "half"),
-        ('topics: {"/*": sensitive}', ""),  # it closes nothing
+        ('channels: {"/*": mundane}', "last-path", {"/image"}),  # the verdict hangs on it
+        (
+            'channels: {"/*": sensitive}\nnodes:\n  /camera: {source: [Video], leak: none}\n  "*": conduit',
+            "last-path",
+            {"/*", "/copy", "/image", "/relay", "/root", "/uplink"},
+        ),
+        (
+            'nodes:\n  /camera: {source: [Video]}\n  "/[!c]*": conduit',
+            "",
+            {"/relay", "/root", "/uplink"},
+        ),  # channels are open
+        ('nodes:\n  /camera: {source: [Video]}\n  /uplink: {leak: [Video]}\n  "/rel*": conduit', "", {"/relay"}),
+        ('nodes:\n  /camera: {source: [Video]}\n  "/r*": {sanitizer: {Video: drop}}', "", {"/relay", "/root"}),
+        ('topics: {"/*": sensitive}', "", {"/*", "/copy", "/image"}),  # it closes nothing
     ],
 )
 @pytest.mark.usefixtures("robot")
-def test_a_glob_that_decides_most_or_the_last_path_is_a_warning(labels: str, warning: str) -> None:
+def test_what_only_a_glob_answers_for_is_in_doubt_and_the_last_path_a_warning(
+    labels: str, warning: str, doubted: set[str]
+) -> None:
     result = analyze(labels if "nodes" in labels else f"{ENDS}{labels}")
+    assert {doubt.element.name for doubt in result.doubts if doubt.name == BY_GLOBS and doubt.element} == doubted
     rows = result.document()["assumptions"]["globs"]
     assert warning in {row["warning"] for row in rows}
     assumed = result.to("text").partition("\nAssumed\n")[2]
@@ -247,7 +259,7 @@ def test_a_line_about_flows_with_a_glob_says_what_it_decides_and_closes(robot: P
     assert (row["flows"], row["flows_closed"], row["leak"], row["warning"]) == (0, 0, None, "")  # a name outranks it
     (robot / "p.xml").write_text(policy({**three, "logger": ("", "image")}))
     (row,) = globs(labels)
-    assert (row["flows"], row["flows_closed"], row["warning"]) == (2, 2, "half")  # of three
+    assert (row["flows"], row["flows_closed"], row["warning"]) == (2, 2, "")
 
 
 @pytest.mark.usefixtures("robot")

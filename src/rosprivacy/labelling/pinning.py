@@ -1,0 +1,168 @@
+"""Pins into label files: for each element that globs decided, the kinds that reached it while a person looks (S11).
+
+In: what a command reads, a robot or a fleet. Out: the new texts of its label files. What is pinned is what globs decide
+without any pins, so that nothing of the answer changes under the new ones; a file that several robots read has what
+reached any of them.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections import defaultdict
+from dataclasses import replace
+from functools import partial
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.errors import InputErrors, LabelError
+from rosprivacy.analysis.findings.answered_by_globs import answered_by_globs
+from rosprivacy.analysis.model import Place
+from rosprivacy.answering import answer
+from rosprivacy.ingest.fleet.dds_domains import called_in_fleet
+from rosprivacy.ingest.labels.edited_entries import Said
+from rosprivacy.ingest.labels.entry_writer import with_entries
+from rosprivacy.ingest.labels.label_file import OURS, Labels, parse_labels
+from rosprivacy.ingest.labels.label_writer import without_places
+from rosprivacy.ingest.labels.pins import PINS, Pin, as_section, spot
+from rosprivacy.ingest.reading import yaml_values
+from rosprivacy.ingest.reading.bounded_file import read_utf8
+from rosprivacy.labelling.label_lines import Written, own_file
+from rosprivacy.question import question_of
+from rosprivacy.reading.fleet_system import read_once
+from rosprivacy.reading.robot_reader import files_of
+from rosprivacy.reading.robot_system import answer_robot, read_label_files
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from rosprivacy.analysis.findings.answered_by_globs import ByGlobs
+    from rosprivacy.ingest.labels.pins import Spot
+    from rosprivacy.ontology.vocabulary import Vocabulary
+    from rosprivacy.reading.fleet_system import FleetSystem
+    from rosprivacy.result import Result
+    from rosprivacy.settings import Settings
+
+    Ends = tuple[Spot, ...]
+    Seen = Mapping[str, Mapping[Ends, set[str]]]  # file -> element or flow -> kinds
+
+
+def pinned(policies: tuple[str, ...], labels: tuple[str, ...], settings: Settings) -> Iterator[Written]:
+    """Yield the label files of a robot that have globs, or pins, with the pins that they need now.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of the input.
+    LabelError
+        If a file has no place for them.
+    """
+    own_file(labels)
+    vocabulary = question_of(settings).vocabulary
+    files = read_label_files(labels, vocabulary, settings)
+    result = answer_robot(policies, tuple(_bare(file) for file in files), settings)
+    seen: dict[str, dict[Ends, set[str]]] = defaultdict(lambda: defaultdict(set))
+    for row in _rows(result):
+        ends = tuple(spot(element) for element in (row.element, row.to) if element)
+        for place in row.places:
+            seen[place.file][ends].update(row.categories)
+    yield from _written({file.file: file for file in files if not file.shipped}, seen, vocabulary)
+
+
+def pinned_in_fleet(fleet: str, settings: Settings) -> Iterator[Written]:
+    """Yield the same of the label files that a fleet file leads to; see ``pinned``."""
+    question = question_of(settings)
+    read = read_once(fleet, question)
+    read.system()  # reads the label files
+    files = {key: labels for key, labels in read.reader.labels.items() if not key[0].startswith(OURS)}
+    system = read.under({key: _bare(labels) for key, labels in files.items()}, ())
+    seen: dict[str, dict[Ends, set[str]]] = defaultdict(lambda: defaultdict(set))
+    called, copies = _called(system), _copies(system)
+    for row in _rows(answer(system, question, count_paths=False)):
+        sides = [called[element.identity] for element in (row.element, row.to) if element]
+        for member in set(sides[0]).intersection(*sides[1:]):
+            ends = tuple(side[member] for side in sides)
+            for file in {name for place in row.places for name in copies.get((member, place.file), ())}:
+                seen[file][ends].update(row.categories)
+    first = {name: labels for (name, _), labels in files.items()}
+    every = {name: first[file] for (_, file), names in copies.items() for name in names if file in first}
+    yield from _written(every, seen, question.vocabulary)
+
+
+def _bare(labels: Labels) -> Labels:
+    return replace(labels, pins=None)
+
+
+def _rows(result: Result) -> tuple[ByGlobs, ...]:
+    return answered_by_globs(result.analysis.spread, result.bound, result.vocabulary.hierarchy)
+
+
+def _called(system: FleetSystem) -> Mapping[tuple[str, str, str], Mapping[str, Spot]]:
+    """Identity of an element of the fleet -> robot -> what its label files call it."""
+    placed = [replace(system.members[g.robots[0].id], robot=robot) for g in system.groups for robot in g.placed]
+    called: dict[tuple[str, str, str], dict[str, Spot]] = defaultdict(dict)
+    for member, name in called_in_fleet(placed):
+        for element in member.graph.elements:
+            called[name(element).identity][member.robot.id] = spot(element)
+    return called
+
+
+def _copies(system: FleetSystem) -> Mapping[tuple[str, str], tuple[str, ...]]:
+    """(robot that stands for others, a label file of it) -> that file, with those of the others that hold the same."""
+    copies: dict[tuple[str, str], dict[str, None]] = defaultdict(dict)
+    for group in system.groups:
+        first = files_of(group.robots[0])
+        for robot in group.robots:
+            for (file, _), (name, _) in zip(first, files_of(robot), strict=True):
+                for member in group.placed:
+                    copies[member.id, file][name] = None
+    return {key: tuple(names) for key, names in copies.items()}
+
+
+def _written(files: Mapping[str, Labels], seen: Seen, vocabulary: Vocabulary) -> Iterator[Written]:
+    """The texts, each file once, whatever the names that lead to it."""
+    pins: dict[str, dict[Ends, set[str]]] = defaultdict(lambda: defaultdict(set))
+    names: dict[str, str] = {}
+    for name in sorted(files):
+        at = os.path.realpath(name)
+        names.setdefault(at, name)
+        for ends, kinds in seen.get(name, {}).items():
+            pins[at][ends].update(kinds)
+    for at, name in names.items():
+        labels = files[name]
+        says = (*(entry.statements for entry in labels.entries), *(flow.statements for flow in labels.flows))
+        by_globs = any(said.to_be_seen for statements in says for said in statements)
+        if by_globs or labels.pins is not None:
+            now = [Pin(ends, tuple(sorted(kinds)), Place(name, 0)) for ends, kinds in pins[at].items()]
+            yield _with_pins(labels, name, tuple(now) if by_globs else None, vocabulary)
+
+
+def _with_pins(labels: Labels, name: str, pins: tuple[Pin, ...] | None, vocabulary: Vocabulary) -> Written:
+    text, data = read_utf8(name, yaml_values.MAX_BYTES, partial(LabelError, name))
+    if hashlib.sha256(data).hexdigest() != labels.sha256:
+        raise LabelError(name, 0, "was changed while it was read", "run the command again")
+    if pins is None or _facts(pins) != _facts(labels.pins or ()) or labels.pins is None:
+        new = with_entries(name, text, [Said(PINS, PINS, None if pins is None else as_section(pins))])
+        _check(name, text, new.text, pins, vocabulary)
+        return Written(name, new.text, new.lines, new.remarks)
+    return Written(name, text, 0)
+
+
+def _check(name: str, text: str, new: str, pins: tuple[Pin, ...] | None, vocabulary: Vocabulary) -> None:
+    """Hold the new text against what it should mean."""
+    before = parse_labels(text, vocabulary, name=name)
+    try:
+        after = parse_labels(new, vocabulary, name=name)
+        there = None if after.pins is None else _facts(after.pins)
+        same = all(_facts(old) == _facts(now) for old, now in zip(*map(_said, (before, after)), strict=True))
+    except InputErrors:  # the paper's six lists
+        there, same = None, False
+    if not same or there != (None if pins is None else _facts(pins)):
+        raise LabelError(name, 0, "has no place for pins", "begin it with 'labels: 1', a line for each section")
+
+
+def _said(labels: Labels) -> tuple[Iterable[object], ...]:
+    return labels.entries, labels.flows, labels.elements, labels.limits
+
+
+def _facts(facts: Iterable[object]) -> set[object]:
+    return {without_places(fact) for fact in facts}
