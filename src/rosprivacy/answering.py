@@ -155,6 +155,7 @@ def concluded(
         infrastructure_of((question.element for question in analysis.open), system.vocabulary),
         accepts=options.accepts,
         doubts=listed,
+        hangs_on_asked=question.settings.hangs_on or not system.is_fleet,
         policies=system.policies,
         labels=system.labels,
         types=system.types,
