@@ -249,7 +249,7 @@ def finding_row(
             "leak": finding.leak.name,
             "pseudonymised": finding.pseudonymised,
             "dismissed": finding.dismissed,
-            "disjoint_paths": finding.disjoint_paths,
+            "disjoint_paths": finding.number_of_paths,
             "article9": contexts.article9(finding),
             "in_context": [f"{legal.context}: {legal.name}" for legal in contexts.revealed(finding)] or None,
             "special_from": turned.name if (turned := turned_special(finding, vocabulary.categories)) else None,

@@ -348,7 +348,7 @@ def finding_entry(finding: Finding, contexts: Contexts) -> FindingEntry:
         "leak": element_dict(finding.leak),
         "witness": [element_dict(element) for element in finding.witness],
         "steps": [_step(step) for step in finding.steps],
-        "disjoint_paths": finding.disjoint_paths,
+        "disjoint_paths": finding.number_of_paths,
         "through": [element_dict(element) for element in finding.through],
         "dismissed": finding.dismissed,
         "article9": contexts.article9(finding),

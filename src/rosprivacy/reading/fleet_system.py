@@ -207,7 +207,7 @@ def rows_of_fleet(system: FleetSystem, question: Question, result: Result) -> Fl
     Parameters
     ----------
     result
-        With every finding, about all categories.
+        With every finding, or those of ``most_across``, about all categories.
     """
     more = {}
     for name, member in system.members.items():
@@ -217,6 +217,15 @@ def rows_of_fleet(system: FleetSystem, question: Question, result: Result) -> Fl
     everything = {**result.assumptions, "policies": [], "labels": [], "types": []}
     more[system.fleet.name] = remembered(everything, system.joins)
     not_read = [name for name, member in system.members.items() if unread(member.diagnostics)]
+    assert result.fleet is not None, "the answer about a fleet"
+    across = {pattern.id: pattern.count for pattern in result.fleet.patterns if pattern.across}
     return FleetRows(
-        system.placed, result.analysis, system.vocabulary, more, not_read=not_read, beyond=beyond_of(result)
+        system.placed,
+        result.analysis,
+        system.vocabulary,
+        more,
+        not_read=not_read,
+        beyond=beyond_of(result),
+        most_across=question.most_across,
+        counts=None if question.most_across is None else across,
     )
