@@ -67,8 +67,8 @@ def _beside(made: Callable[[int], tuple[str, int]], form: str, sizes: tuple[int,
     (other, other_space), (ours, space) = (_each(few, many) for few, many in pairwise(costs))
     memory = f"{space * 1e3:.1f} kB / {other_space * 1e3:.1f} kB"
     note = f"{'calls' if quick else 'time'} {ours / other:.2f}; memory {space / other_space:.2f}, {memory}"
-    shown = [f"{one:,.0f} calls" if quick else f"{one * 1e6:,.0f} us" for one in (ours, other)]
-    return Measured(*shown, max(ours / other, space / other_space), note)
+    first, second = (f"{one:,.0f} calls" if quick else f"{one * 1e6:,.0f} us" for one in (ours, other))
+    return Measured(first, second, max(ours / other, space / other_space), note)
 
 
 def _each(few: Cost, many: Cost) -> tuple[float, float]:

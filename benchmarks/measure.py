@@ -188,8 +188,8 @@ def per_robot(seconds: Sequence[Sequence[float]], robots: tuple[int, int], note:
 def calls_per_robot(large: Callable[[], object], small: Callable[[], object], robots: tuple[int, int]) -> Measured:
     """Compare how many calls one robot costs in a large fleet and in a small one."""
     large(), small()
-    each = [calls(work) / count for work, count in zip((large, small), robots, strict=True)]
-    return Measured(*(f"{one:,.0f} calls" for one in each), each[0] / each[1])
+    ours, other = (calls(work) / count for work, count in zip((large, small), robots, strict=True))
+    return Measured(f"{ours:,.0f} calls", f"{other:,.0f} calls", ours / other)
 
 
 def shown(seconds: Sequence[float]) -> str:
