@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
     Robot = tuple[tuple[str], tuple[str]]  # its policies and its label files
 BOUND = 1.0  # suggesting costs less than analysing (issue 21)
+CALLS = 1.25  # another Python makes other calls of one comprehension
 ELEMENTS = 10_000
 PARTS = (  # of a chain: the node, what it publishes, its type; each reads what the one before it publishes
     ("camera_driver", "camera/image_raw", "sensor_msgs/msg/Image"),
@@ -69,7 +70,13 @@ def rows(*, quick: bool) -> Iterator[Row]:
     rounds = 5 if quick else 9
     for typed in (False, True):
         what = f"suggest, {ELEMENTS:,} elements, {'types known' if typed else 'names only'}"
-        yield Row(what, "reading, analysing", partial(measured, rounds, typed=typed, quick=quick), BOUND, counts=quick)
+        yield Row(
+            what,
+            "reading, analysing",
+            partial(measured, rounds, typed=typed, quick=quick),
+            CALLS if quick else BOUND,
+            counts=quick,
+        )
 
 
 def measured(rounds: int, *, typed: bool, quick: bool) -> Measured:
