@@ -264,13 +264,13 @@ class FleetRows:
         for finding in self._analysis.findings:
             if finding.source.robot != owner or not self._likeness.count(finding):
                 continue
-            pattern = pattern_id(finding, self._likeness)
+            pattern, apart = pattern_id(finding, self._likeness), self._likeness.across(finding)
             leaks = ids.expanded(finding.leak.robot)
             for robot in self._some(owner, name, leaks) if self._across_too_often(finding) else leaks:
                 placed = _Moved(finding, name, robot, self._likeness)
                 keys = {element: ids.of(element, placed.robot(element)) for element in placed.elements}
                 robots = {element: placed.robot(element) for element in placed.elements}
-                row, steps = finding_row(finding, pattern, self._vocabulary, keys, robots, contexts)
+                row, steps = finding_row(finding, pattern, self._vocabulary, keys, robots, contexts, across=apart)
                 rows.append(row)
                 across += steps
         return rows, across
@@ -283,13 +283,13 @@ class FleetRows:
         for one, finding in all_added:
             if finding.source.robot != owner:
                 continue
-            leaks = ids.expanded(finding.leak.robot)
-            for robot in leaks[:1] if self._likeness.across(finding) else leaks:
+            leaks, apart = ids.expanded(finding.leak.robot), self._likeness.across(finding)
+            for robot in leaks[:1] if apart else leaks:
                 placed = _Moved(finding, name, robot, self._likeness)
                 keys = {element: ids.of(element, placed.robot(element)) for element in placed.elements}
                 robots = {element: placed.robot(element) for element in placed.elements}
                 pattern = pattern_id(finding, self._likeness)
-                row, _ = finding_row(finding, pattern, self._vocabulary, keys, robots, contexts)
+                row, _ = finding_row(finding, pattern, self._vocabulary, keys, robots, contexts, across=apart)
                 add_beyond(rows, row, one, finding, keys, robots, beyond.declared)
         return rows
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections import Counter
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -70,8 +69,7 @@ def test_ways_are_counted_on_a_robot_and_not_from_robot_to_robot(fleet: str) -> 
     assert rows.left_out == 0
     assert len(found) == PAIRS + len(ROBOTS)
     assert None not in {found[robot, robot] for robot in ROBOTS}
-    numbers = Counter(number for (one, other), number in found.items() if one != other)
-    assert numbers in (Counter({None: PAIRS - 1, 1: 1}), Counter({1: PAIRS}))  # the one that a report shows, of all
+    assert {number for (one, other), number in found.items() if one != other} == {None}
 
 
 def test_of_many_pairs_each_robot_has_one_that_begins_and_one_that_ends_there(fleet: str) -> None:
