@@ -14,15 +14,13 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 import vehicle
-from measure import NotMeasured, Row, calls_of, corpus, counted, run, timed
+from measure import Measured, NotMeasured, Row, corpus, run, timed
 from turtlebot import MANY, POLICY, chosen_categories, labels_of
 
 from rosprivacy.api import analyze
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-
-    from measure import Measured
 
     from rosprivacy.analysis.model import FlowGraph
 
@@ -36,17 +34,17 @@ OFFICE_LABELS = {
     },
 }
 BOUND = 3.0
-ROUNDS = 9
 
 
 def rows(*, quick: bool) -> Iterator[Row]:
     """Declare what is measured."""
+    rounds = 3 if quick else 9
     kinds = chosen_categories(MANY)[0]
     with TemporaryDirectory() as name:
         for what, policy, labels in _systems(Path(name), kinds, (MANY,) if quick else (1, MANY)):
             for view in ("enforced", "both"):
-                measure = partial(measured, policy, labels, view, 0 if quick else ROUNDS)
-                yield Row(f"the command, view {view}, {what}", "view declared", measure, BOUND, counts=quick)
+                measure = partial(measured, policy, labels, view, rounds)
+                yield Row(f"the command, view {view}, {what}", "view declared", measure, bound=BOUND)
 
 
 def _systems(folder: Path, kinds: list[str], some: tuple[int, ...]) -> Iterator[tuple[str, Path, Path]]:
@@ -68,8 +66,11 @@ def _systems(folder: Path, kinds: list[str], some: tuple[int, ...]) -> Iterator[
 
 
 def measured(policy: Path, labels: Path, view: str, rounds: int) -> Measured:
-    """Compare the command under a view with the declared one; without rounds by its calls."""
+    """Time the command under a view against the declared one."""
     command: list[str | Path] = [
+        sys.executable,
+        "-m",
+        "rosprivacy",
         "analyze",
         policy,
         "-l",
@@ -78,10 +79,7 @@ def measured(policy: Path, labels: Path, view: str, rounds: int) -> Measured:
         "never",
         "--view",
     ]
-    if not rounds:
-        return counted(calls_of(*command, view), calls_of(*command, "declared"), told(policy, labels))
-    program = partial(run, sys.executable, "-m", "rosprivacy", *command)
-    return timed(rounds, partial(program, view), partial(program, "declared"), note=told(policy, labels))
+    return timed(rounds, partial(run, *command, view), partial(run, *command, "declared"), note=told(policy, labels))
 
 
 def told(policy: Path, labels: Path) -> str:
