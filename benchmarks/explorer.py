@@ -48,7 +48,7 @@ ANSWERS, PICTURES, EDITS = 10, 40, 5  # of a round
 FIFTH = 0.2  # of a whole analysis (issue 22)
 EDGE = 0.25  # of an answer that ends data: a fifth on some machines, and on others a little more
 EARLY, LATE = 10, 200  # answers of one session after which its memory is looked at
-GROWN = 1.3
+GROWN = 1.5  # a count of bytes; in several runs it was 1.2
 FIELDS = re.compile(r'name="element" value="(\w+)"|class="answer" name="role" value="(\w+)"')
 
 
@@ -132,7 +132,7 @@ def rows(*, quick: bool) -> Iterator[Row]:
         )
         # first: what other rows have left in the process would hide what a session takes
         held = partial(_memory, usual)
-        yield Row(f"memory after {LATE} answers, {usual.name}", f"after {EARLY}", held, GROWN)
+        yield Row(f"memory after {LATE} answers, {usual.name}", f"after {EARLY}", held, GROWN, counts=True)
         for one in systems:
             everywhere = one is systems[-1]
             ends = Deed(Browser.end, after=Browser.undo)

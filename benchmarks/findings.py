@@ -3,13 +3,15 @@
 1,000, 10,000 and 100,000 findings (1,000, 4,000 and 16,000 in the quick form), by the command itself, in a fresh
 process. Two shapes: all sources and leaks around one topic, and islands of 25 findings each. What the findings from
 10,000 to 100,000 take in processor time and in peak memory, for each, is compared with what those from 1,000 to 10,000
-take: the start of the program, which has memory to spare, is in neither.
+take: the start of the program, which has memory to spare, is in neither. In the quick form calls of functions stand in
+place of the time.
 """
 
 from __future__ import annotations
 
 import os
 import sys
+from contextlib import chdir
 from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
@@ -20,7 +22,7 @@ from subprocess import DEVNULL, Popen
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
-from measure import Measured, Row
+from measure import Measured, Row, calls_of
 from worst_case import node, policy, topics
 
 if TYPE_CHECKING:
@@ -37,10 +39,10 @@ EXITS = {"analyze": 1, "report": 0}
 
 @dataclass(frozen=True, slots=True)
 class Cost:
-    """Of a run: findings, CPU seconds, MB at the most."""
+    """Of a run: findings, CPU seconds or calls, MB at the most."""
 
     findings: int
-    seconds: float
+    work: float
     megabytes: float
 
 
@@ -50,23 +52,29 @@ def rows(*, quick: bool) -> Iterator[Row]:
     for shape, (made, formats) in SHAPES.items():
         for form in formats[: 2 if quick else None]:
             ours = f"each from {sizes[1]:,} to {sizes[2]:,} findings {shape}, {form}"
-            yield Row(ours, f"from {sizes[0]:,} on", partial(_beside, made, form, sizes), bound=BOUND)
+            yield Row(
+                ours, f"from {sizes[0]:,} on", partial(_beside, made, form, sizes, quick=quick), BOUND, counts=quick
+            )
 
 
-def _beside(made: Callable[[int], tuple[str, int]], form: str, sizes: tuple[int, ...]) -> Measured:
-    """Compare what each further finding costs with what each before did; the worse of time and memory counts."""
+def _beside(made: Callable[[int], tuple[str, int]], form: str, sizes: tuple[int, ...], *, quick: bool) -> Measured:
+    """Compare what each further finding costs with what each before did; the worse of work and memory counts."""
     with TemporaryDirectory() as folder:
-        costs = [_cost(Path(folder), made(size), form, 1 if size == sizes[-1] else ROUNDS) for size in sizes]
+        rounds = 0 if quick else ROUNDS
+        costs = [
+            _cost(Path(folder), made(size), form, min(rounds, 1) if size == sizes[-1] else rounds) for size in sizes
+        ]
     (other, other_space), (ours, space) = (_each(few, many) for few, many in pairwise(costs))
     memory = f"{space * 1e3:.1f} kB / {other_space * 1e3:.1f} kB"
-    note = f"time {ours / other:.2f}; memory {space / other_space:.2f}, {memory}"
-    return Measured(f"{ours * 1e6:,.0f} us", f"{other * 1e6:,.0f} us", max(ours / other, space / other_space), note)
+    note = f"{'calls' if quick else 'time'} {ours / other:.2f}; memory {space / other_space:.2f}, {memory}"
+    first, second = (f"{one:,.0f} calls" if quick else f"{one * 1e6:,.0f} us" for one in (ours, other))
+    return Measured(first, second, max(ours / other, space / other_space), note)
 
 
 def _each(few: Cost, many: Cost) -> tuple[float, float]:
-    """Seconds and MB for each further finding."""
+    """Work and MB for each further finding."""
     more = many.findings - few.findings
-    return (many.seconds - few.seconds) / more, (many.megabytes - few.megabytes) / more
+    return (many.work - few.work) / more, (many.megabytes - few.megabytes) / more
 
 
 def hub(findings: int) -> tuple[str, int]:
@@ -93,7 +101,7 @@ SHAPES: dict[str, tuple[Callable[[int], tuple[str, int]], tuple[str, ...]]] = {
 
 
 def _cost(folder: Path, system: tuple[str, int], form: str, rounds: int) -> Cost:
-    """Return what an answer costs, the median of some rounds.
+    """Return what an answer costs, the median of some rounds; without any its calls in place of seconds.
 
     Raises
     ------
@@ -106,11 +114,15 @@ def _cost(folder: Path, system: tuple[str, int], form: str, rounds: int) -> Cost
     name = COMMANDS[form]
     command = [sys.executable, "-m", "rosprivacy", name, "p.xml", "-l", "l.yaml", "-f", form, "-o", f"answer.{form}"]
     costs = []
-    for _ in range(rounds):
+    for _ in range(max(rounds, 1)):
         with Popen(command, cwd=folder, stdout=DEVNULL) as process:
             _, status, used = os.wait4(process.pid, 0)
             process.returncode = os.waitstatus_to_exitcode(status)
         if process.returncode != EXITS[name]:
             sys.exit(f"{' '.join(command)} ended with {process.returncode}")
         costs.append((used.ru_utime + used.ru_stime, used.ru_maxrss / 1024))
-    return Cost(findings, *map(median, zip(*costs, strict=True)))
+    seconds, megabytes = map(median, zip(*costs, strict=True))
+    if rounds:
+        return Cost(findings, seconds, megabytes)
+    with chdir(folder):
+        return Cost(findings, calls_of(*command[3:]), megabytes)

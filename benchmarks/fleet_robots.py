@@ -14,7 +14,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from lxml import etree
-from measure import Measured, Row, corpus, per_robot, side_by_side, timed
+from measure import Measured, Row, calls_per_robot, corpus, per_robot, side_by_side, timed, timed_or_counted
 from turtlebot import MANY, POLICY, STEP_5, chosen_categories, label_file, six_lists
 
 from rosprivacy.analysis.findings.concerns import concerns
@@ -135,14 +135,20 @@ def rows(*, quick: bool) -> Iterator[Row]:
         folder = Path(name)
         robots = ROBOTS // 10 if quick else ROBOTS
         yield Row(
-            f"{robots:,} equal TurtleBot3, fleet file to report", "one", lambda: _equal(folder, known, robots), bound=20
+            f"{robots:,} equal TurtleBot3, fleet file to report",
+            "one",
+            lambda: _equal(folder, known, robots, quick=quick),
+            bound=20,
+            counts=quick,
         )
         sizes = (10_000 if quick else 100_000, 1_000)
         what = f"per robot, fleet file to report: {sizes[0]:,} equal small ones"
-        yield Row(what, f"{sizes[1]:,}", lambda: _small(folder, known, sizes), bound=1.5)
+        yield Row(what, f"{sizes[1]:,}", lambda: _small(folder, known, sizes, quick=quick), 1.5, counts=quick)
         different = (200, 50) if quick else (1_000, 100)
         what = f"per robot, fleet file to report: {different[0]:,} different small ones"
-        yield Row(what, f"{different[1]:,}", lambda: _different(folder, known, different), bound=1.5)
+        yield Row(
+            what, f"{different[1]:,}", lambda: _different(folder, known, different, quick=quick), 1.5, counts=quick
+        )
         what = f"{different[0]:,} different small robots, fleet file to report"
         yield Row(what, "bare lxml", lambda: _bare(folder, known, different[0]), bound=90)
         if quick:
@@ -157,8 +163,8 @@ def rows(*, quick: bool) -> Iterator[Row]:
         yield Row(what, "", lambda: _memory(folder, large))
 
 
-def _equal(folder: Path, known: Vocabulary, robots: int) -> Measured:
-    """Time a fleet of equal robots against one of them.
+def _equal(folder: Path, known: Vocabulary, robots: int, *, quick: bool) -> Measured:
+    """Compare a fleet of equal robots with one of them.
 
     Raises
     ------
@@ -170,19 +176,26 @@ def _equal(folder: Path, known: Vocabulary, robots: int) -> Measured:
     across = [p for p in told["fleet"]["patterns"] if p["across"]]
     assert across[0]["findings"] == robots * (robots - 1), "everything is connected"
     size = f"{told['elements']:,} elements, {told['flows']:,} flows, {MANY} kinds; read and analysed once, two for all"
-    return timed(5, lambda: answered(many, known), lambda: answered(one, known), note=size)
+    return timed_or_counted(5, lambda: answered(many, known), lambda: answered(one, known), quick=quick, note=size)
 
 
-def _small(folder: Path, known: Vocabulary, sizes: tuple[int, int]) -> Measured:
+def _small(folder: Path, known: Vocabulary, sizes: tuple[int, int], *, quick: bool) -> Measured:
     large, small = (small_robots(folder, robots) for robots in sizes)
-    seconds = side_by_side(3, lambda: answered(large, known), lambda: answered(small, known))
-    return per_robot(seconds, sizes, "there is little to do for each, so the cost of each falls")
+    note = "there is little to do for each, so the cost of each falls"
+    return each_of((large, small), known, sizes, note, quick=quick)
 
 
-def _different(folder: Path, known: Vocabulary, sizes: tuple[int, int]) -> Measured:
+def _different(folder: Path, known: Vocabulary, sizes: tuple[int, int], *, quick: bool) -> Measured:
     large, small = (different_robots(folder, robots) for robots in sizes)
-    seconds = side_by_side(3, lambda: answered(large, known), lambda: answered(small, known))
-    return per_robot(seconds, sizes, "80 elements each, and a cloud that joins all")
+    return each_of((large, small), known, sizes, "80 elements each, and a cloud that joins all", quick=quick)
+
+
+def each_of(fleets: tuple[str, str], known: Vocabulary, sizes: tuple[int, int], note: str, *, quick: bool) -> Measured:
+    """Compare what one robot costs in a large fleet and in a small one, in the quick form by calls."""
+    works = (lambda: answered(fleets[0], known)), (lambda: answered(fleets[1], known))
+    if quick:
+        return replace(calls_per_robot(*works, sizes), note=note)
+    return per_robot(side_by_side(3, *works), sizes, note)
 
 
 def _bare(folder: Path, known: Vocabulary, robots: int) -> Measured:

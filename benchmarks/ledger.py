@@ -10,7 +10,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
-from measure import Row, corpus, timed
+from measure import Row, corpus, timed_or_counted
 from turtlebot import POLICY, labels_of
 
 from rosprivacy.analysis.findings.findings import analyse
@@ -36,20 +36,29 @@ def rows(*, quick: bool) -> Iterator[Row]:
         for count in (1, len(KINDS)):
             labels = str(labels_of(KINDS[:count], Path(folder)))
             what = f"TurtleBot3, {count} kinds of data"
-            yield Row(f"ledger, {what}", "analysis", partial(measured, policy, labels, rounds), bound=BOUND)
+            yield Row(
+                f"ledger, {what}",
+                "analysis",
+                partial(measured, policy, labels, rounds, quick=quick),
+                BOUND,
+                counts=quick,
+            )
     policy, labels = (str(EXAMPLES / "care-home" / f"care-home.{what}") for what in ("policy.xml", "labels.yaml"))
-    yield Row("ledger, care home", "analysis", partial(measured, policy, labels, rounds), bound=BOUND)
+    yield Row(
+        "ledger, care home", "analysis", partial(measured, policy, labels, rounds, quick=quick), BOUND, counts=quick
+    )
 
 
-def measured(policy: str, labels: str, rounds: int) -> Measured:
-    """Time the ledger of one system against its analysis, both from the graph on."""
+def measured(policy: str, labels: str, rounds: int, *, quick: bool) -> Measured:
+    """Compare the ledger of one system with its analysis, both from the graph on."""
     result = answer_robot((policy,), (labels,), Settings())
     graph, bound, hierarchy = result.analysis.graph, result.bound, result.vocabulary.hierarchy
     told = ledger(result.analysis, bound, hierarchy)
     note = f"{len(told)} rows, {sum(row.closes for row in told)} close a path"
-    return timed(
+    return timed_or_counted(
         rounds,
         lambda: ledger(result.analysis, bound, hierarchy),
         lambda: analyse(graph, bound, hierarchy),
+        quick=quick,
         note=note,
     )

@@ -12,7 +12,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from ledger import EXAMPLES, KINDS
-from measure import Row, corpus, timed
+from measure import Row, corpus, timed_or_counted
 from turtlebot import POLICY, chosen_categories, labels_of
 
 from rosprivacy.analysis.findings.findings import analyse
@@ -36,20 +36,21 @@ def rows(*, quick: bool) -> Iterator[Row]:
         for names in (KINDS[:1], KINDS, chosen_categories(24)[0]):
             labels = str(labels_of(names, Path(folder)))
             what = f"what it hangs on, TurtleBot3, {len(names)} kinds of data"
-            yield Row(what, "analysis", partial(measured, policy, labels, rounds), bound=BOUND)
+            yield Row(what, "analysis", partial(measured, policy, labels, rounds, quick=quick), BOUND, counts=quick)
     policy, labels = (str(EXAMPLES / "care-home" / f"care-home.{what}") for what in ("policy.xml", "labels.yaml"))
-    yield Row("what it hangs on, care home", "analysis", partial(measured, policy, labels, rounds))
+    yield Row("what it hangs on, care home", "analysis", partial(measured, policy, labels, rounds, quick=quick))
 
 
-def measured(policy: str, labels: str, rounds: int) -> Measured:
-    """Time what one answer hangs on against its analysis, both from the graph on."""
+def measured(policy: str, labels: str, rounds: int, *, quick: bool) -> Measured:
+    """Compare what one answer hangs on with its analysis, both from the graph on."""
     result = answer_robot((policy,), (labels,), Settings())
     graph, bound, hierarchy = result.analysis.graph, result.bound, result.vocabulary.hierarchy
     told = reliances(result.analysis, bound, hierarchy)
     found = sum(bool(row.findings) for row in told)
-    return timed(
+    return timed_or_counted(
         rounds,
         lambda: reliances(result.analysis, bound, hierarchy),
         lambda: analyse(graph, bound, hierarchy),
+        quick=quick,
         note=f"{len(told)} statements on which something hangs, {found} of them findings",
     )

@@ -15,7 +15,7 @@ from statistics import median
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
-from measure import REPOSITORY, Measured, NotMeasured, Row, shown, timed
+from measure import REPOSITORY, Measured, NotMeasured, Row, shown, timed_or_counted
 
 import rosprivacy
 from rosprivacy.report.page.figures import figures
@@ -83,7 +83,7 @@ def rows(*, quick: bool) -> Iterator[Row]:
         for before, after in ((0, 1), (1, 2)):
             ours = f"making a report of {sizes[after]} findings"
             some = results[after], results[before]
-            yield Row(ours, f"of {sizes[before]}", partial(_made, *some, 3 if quick else 5), bound=GROWTH)
+            yield Row(ours, f"of {sizes[before]}", partial(_made, *some, quick=quick), GROWTH, counts=quick)
         if quick:
             return
         page = folder / "report.html"
@@ -100,8 +100,8 @@ def _analysed(folder: Path, size: int) -> Result:
     return result
 
 
-def _made(large: Result, small: Result, rounds: int) -> Measured:
-    return timed(rounds, lambda: made(large), lambda: made(small))
+def _made(large: Result, small: Result, *, quick: bool) -> Measured:
+    return timed_or_counted(5, lambda: made(large), lambda: made(small), quick=quick)
 
 
 def _size(page: Path) -> Measured:

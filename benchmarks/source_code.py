@@ -13,7 +13,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
-from measure import Row, timed
+from measure import Row, timed, timed_or_counted
 
 from rosprivacy.ingest.annotations.source_files import read_sources
 from rosprivacy.labelling.code_said import code_said
@@ -50,7 +50,7 @@ def rows(*, quick: bool) -> Iterator[Row]:
     with TemporaryDirectory() as folder:
         few, many = (workspace(Path(folder) / str(count), count) for count in (FEW, FEW * TIMES))
         what = f"reading {FEW * TIMES} packages of source code"
-        yield Row(what, f"{TIMES} times {FEW}", partial(grown, many, few, rounds), bound=LINEAR)
+        yield Row(what, f"{TIMES} times {FEW}", partial(grown, many, few, rounds, quick=quick), LINEAR, counts=quick)
         yield Row(what, "parsing them", partial(beside_parsing, many, rounds), bound=TIMES_PARSING)
 
 
@@ -70,9 +70,9 @@ def workspace(folder: Path, packages: int) -> str:
     return str(folder)
 
 
-def grown(many: str, few: str, rounds: int) -> Measured:
-    """Time a large workspace against a small one, as often as it is larger."""
-    return timed(rounds, lambda: told(many), lambda: [told(few) for _ in range(TIMES)])
+def grown(many: str, few: str, rounds: int, *, quick: bool) -> Measured:
+    """Compare a large workspace against a small one that is read as often as it is larger."""
+    return timed_or_counted(rounds, lambda: told(many), lambda: [told(few) for _ in range(TIMES)], quick=quick)
 
 
 def beside_parsing(many: str, rounds: int) -> Measured:

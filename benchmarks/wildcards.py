@@ -12,7 +12,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
-from measure import Measured, Row, timed
+from measure import Measured, Row, timed_or_counted
 
 from rosprivacy.analysis.bounds import Bounds
 from rosprivacy.api import analyze
@@ -59,16 +59,18 @@ def rows(*, quick: bool) -> Iterator[Row]:
     most = 4_000 if quick else 10_000
     for shape in SHAPES:
         ours = f"{most:,} names: {shape}"
-        yield Row(ours, "half of them", partial(twice, most, shape), bound=BOUND)
-    yield Row(f"{most:,} names: {OVERLAP}: size", "half of them", partial(size_of_twice, most), bound=BOUND)
-    yield Row(f"{most:,} names: {OVERLAP}: analysis", "half of them", partial(analysis_of_twice, most), bound=BOUND)
+        yield Row(ours, "half of them", partial(twice, most, shape, quick=quick), BOUND, counts=quick)
+    yield Row(f"{most:,} names: {OVERLAP}: size", "half of them", partial(size_of_twice, most), BOUND, counts=True)
+    analysis = partial(analysis_of_twice, most, quick=quick)
+    yield Row(f"{most:,} names: {OVERLAP}: analysis", "half of them", analysis, BOUND, counts=quick)
 
 
-def twice(most: int, shape: str) -> Measured:
-    """Time the graph of so many names against that of half of them."""
+def twice(most: int, shape: str, *, quick: bool) -> Measured:
+    """Compare the graph of so many names with that of half of them."""
     with TemporaryDirectory() as folder:
         large, small = (policy(names, shape, Path(folder)) for names in (most, most // 2))
-    return timed(3, lambda: build([large], bounds=BOUNDS), lambda: build([small], bounds=BOUNDS))
+    graphs = (lambda: build([large], bounds=BOUNDS)), (lambda: build([small], bounds=BOUNDS))
+    return timed_or_counted(3, *graphs, quick=quick)
 
 
 def size_of_twice(most: int) -> Measured:
@@ -79,8 +81,8 @@ def size_of_twice(most: int) -> Measured:
     return Measured(f"{large / 1e6:.1f} MB", f"{small / 1e6:.1f} MB", large / small)
 
 
-def analysis_of_twice(most: int) -> Measured:
-    """Time files to findings, with the number of paths, of names of which each meets each, against half of them."""
+def analysis_of_twice(most: int, *, quick: bool) -> Measured:
+    """Compare files to findings, with the number of paths, of names of which each meets each, against half of them."""
     with TemporaryDirectory() as large, TemporaryDirectory() as small:
         for names, folder in ((most, Path(large)), (most // 2, Path(small))):
             policy(names, OVERLAP, folder)
@@ -88,4 +90,4 @@ def analysis_of_twice(most: int) -> Measured:
         analyses = (
             partial(analyze, Path(folder, "policy.xml"), Path(folder, "labels.yaml")) for folder in (large, small)
         )
-        return timed(3, *analyses)
+        return timed_or_counted(3, *analyses, quick=quick)

@@ -76,6 +76,8 @@ class Answer:
         What the enforced view adds to this one; None where nobody asked.
     doubts
         What is not known, or rests on more than a person's word (rule S11); the verdict takes them into account.
+    hangs_on_asked
+        Whether ``hangs_on`` is asked for: of a fleet it takes more than the analysis.
     """
 
     analysis: Analysis
@@ -90,6 +92,7 @@ class Answer:
     accepts: Callable[[Case], bool] | None = field(default=None, repr=False, compare=False)
     enforced: Enforced | None = field(default=None, repr=False, compare=False)
     doubts: tuple[Doubt, ...] = ()
+    hangs_on_asked: bool = field(default=True, repr=False, compare=False)
 
     @property
     def shown(self) -> Analysis:
@@ -112,8 +115,10 @@ class Answer:
         return tuple(row for row in rows if row.element is None or row.element.robot not in self._beside)
 
     @cached_property
-    def hangs_on(self) -> tuple[Reliance, ...]:
-        """What the answer hangs on, statement by statement; of robots that are alike of one."""
+    def hangs_on(self) -> tuple[Reliance, ...] | None:
+        """What the answer hangs on, statement by statement; of robots that are alike of one. None where not asked."""
+        if not self.hangs_on_asked:
+            return None
         rows = reliances(self.analysis, self.bound, self.vocabulary.hierarchy, self.accepts)
         return tuple(row for row in map(self._of_shown_robots, rows) if row.hangs)
 

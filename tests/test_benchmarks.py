@@ -1,4 +1,7 @@
-"""The benchmarks guard: every script is run by the one command, and a bound missed twice in a row fails it."""
+"""The benchmarks guard: every script is run by the one command, and a bound missed twice in a row fails it.
+
+In the form for CI only a bound on a count does: a busy machine makes no number of calls larger.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +9,8 @@ import ast
 import os
 import subprocess
 import sys
+from functools import partial
+from importlib import import_module
 from typing import TYPE_CHECKING
 
 import pytest
@@ -33,7 +38,8 @@ RATIOS = iter({ratios})
 
 def rows(*, quick):
     yield Row("good", "a bound", lambda: Measured("1 s", "1 s", 1.0), bound=1)
-    yield Row("ours", "theirs", lambda: Measured("1 s", "1 s", next(RATIOS), "a note"), bound={bound}, goal={goal})
+    measure = lambda: Measured("1 s", "1 s", next(RATIOS), "a note")
+    yield Row("ours", "theirs", measure, bound={bound}, goal={goal}, counts={counts})
     yield Row("no bound", "theirs", lambda: Measured("1 s", "1 s", 1.0))
     raise NotMeasured("no corpus here")
 """
@@ -46,11 +52,16 @@ def run(*arguments: str, modules: Path | None = None) -> subprocess.CompletedPro
 
 
 def made_up(
-    folder: Path, *ratios: float, bound: float | None = 1, goal: bool = False
+    folder: Path,
+    *ratios: float,
+    bound: float | None = 1,
+    goal: bool = False,
+    counts: bool = True,
+    form: str = "--quick",
 ) -> subprocess.CompletedProcess[str]:
     """Run rows of which the second has these ratios, one measurement after the other."""
-    (folder / "made_up.py").write_text(MADE_UP.format(ratios=ratios, bound=bound, goal=goal), "utf-8")
-    return run("--quick", "made_up", modules=folder)
+    (folder / "made_up.py").write_text(MADE_UP.format(ratios=ratios, bound=bound, goal=goal, counts=counts), "utf-8")
+    return run(*filter(None, [form]), "made_up", modules=folder)
 
 
 def test_every_script_is_run_or_is_part_of_one() -> None:
@@ -87,6 +98,39 @@ def test_a_goal_is_told_and_not_demanded(tmp_path: Path) -> None:
     done = made_up(tmp_path, 1.5, goal=True)
     assert done.returncode == 0, done.stdout + done.stderr
     assert "not reached" in done.stdout
+
+
+def test_a_time_is_told_in_the_quick_form_and_demanded_in_the_full_one(tmp_path: Path) -> None:
+    quick, full = (made_up(tmp_path, 2.5, 2.5, counts=False, form=form) for form in ("--quick", ""))
+    assert quick.returncode == 0, quick.stdout + quick.stderr
+    (line,) = (line for line in quick.stdout.splitlines() if "ours / theirs" in line)
+    assert line.split()[-5:] == ["2.5", "told", "1", "not", "reached"]
+    assert full.returncode == 1, full.stdout + full.stderr
+
+
+def test_calls_are_the_same_each_time_and_grow_with_the_work() -> None:
+    """Of a fresh process, and here; what two processes remember of each other is no part."""
+    sys.path.insert(0, str(FOLDER))
+    try:
+        measure = import_module("measure")
+    finally:
+        sys.path.remove(str(FOLDER))
+    few, again, many = (measure.calls(partial(list, map(abs, range(number)))) for number in (100, 100, 1_000))
+    assert (many - few, again) == (0, few)  # what is called within C is not seen
+    few, again, many = (measure.calls(lambda n=n: [abs(-one) for one in range(n)]) for n in (100, 100, 1_000))
+    assert (many - few, again) == (900, few)
+    assert measure.calls_of("categories") == measure.calls_of("categories") > 1_000
+
+
+def test_the_tests_run_whatever_the_benchmarks_say(tmp_path: Path) -> None:
+    """The end of .ci/run, from where it waits for them: with what fails in their place."""
+    script = (ROOT / ".ci" / "run").read_text("utf-8")
+    end = script[script.index("missed=0") :].replace("make test", "echo the tests ran #")
+    for code in (0, 1):
+        text = f"set -euo pipefail\n(exit {code}) & speed=$!\n{end}"
+        done = subprocess.run(["bash", "-c", text], cwd=tmp_path, capture_output=True, text=True, check=False)
+        assert "the tests ran" in done.stdout
+        assert done.returncode == code
 
 
 def test_what_cannot_be_measured_is_told(tmp_path: Path) -> None:

@@ -65,6 +65,8 @@ class Options(NamedTuple):
     count_paths
         Whether paths that share no flow are counted: most of the work in a large system. If not, no further ones are
         listed either, and all else is the same.
+    uncounted
+        Of which pairs of source and leak they are not, where those of others are.
     accepts
         Whether a person has accepted that a category of a source reaches a leak, in one form; such a leak hides
         nothing that lies behind it (rule S10).
@@ -81,6 +83,7 @@ class Options(NamedTuple):
     paths: str = Paths.witness
     max_paths: int = MAX_PATHS
     count_paths: bool = True
+    uncounted: Callable[[Element, Element], bool] | None = None
     accepts: Callable[[Case], bool] | None = None
     choose: Callable[[Spread, Sequence[Concern], int], Mapping[int, AbstractSet[Chosen]]] | None = None
     today: str = ""
@@ -157,7 +160,7 @@ def analyse(
 def chosen_findings(
     net: Net, bound: Bound, hierarchy: Hierarchy, options: Options, chosen: Mapping[int, AbstractSet[Chosen]]
 ) -> tuple[Finding, ...]:
-    """Return some findings of a net, if they are there; their paths are not counted, and nothing else is worked out.
+    """Return some findings of a net, if they are there; nothing else is worked out.
 
     >>> from rosprivacy.analysis.example import ARCHIVE, CAMERA, factory
     >>> graph, bound, hierarchy = factory()
@@ -168,9 +171,7 @@ def chosen_findings(
     """
     spread = net.spread
     bound = replace(bound, outside=on_day(bound.outside, options.today))
-    options = options._replace(
-        choose=lambda *_: chosen, paths=Paths.witness, bounds=replace(options.bounds, path_steps=0)
-    )
+    options = options._replace(choose=lambda *_: chosen)
     leaks = {leak for some in chosen.values() for _, leak, _, _ in some}
     kinds = tuple(
         concern._replace(bits={leak: concern.bits[leak] for leak in leaks & concern.bits.keys()})
@@ -289,7 +290,7 @@ def _findings_of(
                 dismissed = chosen is whole and concern.kind == DISCLOSURE
                 finding = _finding(net, chosen, source, leak, bit, concern, accepted, dismissed=dismissed)
                 finding = _beside(finding, options) if beside else finding
-                if not options.count_paths:
+                if not options.count_paths or (options.uncounted and options.uncounted(finding.source, finding.leak)):
                     finding = replace(finding, number_of_paths=None)
                 elif len(finding.witness) > 1 and work.paths.met:
                     work.left_out += 1

@@ -6,7 +6,7 @@ categories that nothing is made into: each step is looked at once, with the cate
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import OrderedDict, defaultdict
 from functools import cache
 from itertools import chain
 from typing import TYPE_CHECKING, NamedTuple
@@ -156,7 +156,7 @@ class NumberOfPaths:
     def _leading_to(self, leak: int, last: Mapping[int, int]) -> _Led:
         """The steps from which a leak can be reached, by the categories that do."""
         led = {leak: -1}  # vertex -> categories that get on to the leak
-        waiting = {leak: -1}
+        waiting = OrderedDict({leak: -1})  # the first key of a dict is found past all that were taken out
         met: dict[int, int] = defaultdict(int)  # group -> categories of which all that send them are found
 
         def found(befores: Mapping[int, int], new: int) -> None:
@@ -166,8 +166,7 @@ class NumberOfPaths:
                     waiting[before] = waiting.get(before, 0) | more
 
         while waiting:
-            vertex = next(iter(waiting))
-            new = waiting.pop(vertex)
+            vertex, new = waiting.popitem(last=False)
             found(last if vertex == leak else self._into.get(vertex, {}), new)
             for number in self._groups.get(vertex, ()) if vertex != leak else ():
                 more = new & self._taken(vertex) & ~met[number]

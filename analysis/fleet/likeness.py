@@ -39,6 +39,11 @@ class Likeness(NamedTuple):
         """Return for how many the robot of an element stands; what is no robot stands for itself."""
         return 0 if name in self.second else len(self.members.get(name, ("",)))
 
+    @property
+    def robots(self) -> int:
+        """How many robots the fleet has; none where it is no fleet."""
+        return sum(map(len, self.members.values()))
+
     def alike(self, element: Element) -> Element:
         """Return the element as it would be on any robot."""
         e = element

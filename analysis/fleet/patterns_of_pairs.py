@@ -71,11 +71,17 @@ class Groups:
     """Puts the pairs of a fleet together.
 
     Call it with a spread, the kinds of findings and the bits of the categories that the answer is about; it returns
-    the findings to make. Then ``view`` gives the rest.
+    the findings to make: one of each pattern. Then ``view`` gives the rest.
+
+    Parameters
+    ----------
+    most_across
+        With it, all findings are made; but of a pattern with more that go from robot to robot only one for each robot
+        where they begin, and one for each where they end, of those that stand most.
     """
 
-    def __init__(self, likeness: Likeness) -> None:
-        self._likeness = likeness
+    def __init__(self, likeness: Likeness, most_across: int | None = None) -> None:
+        self._likeness, self._most_across = likeness, most_across
         self._tallies = Tallies(likeness)
 
     def __call__(self, spread: Spread, kinds: Sequence[Concern], mask: int) -> Wanted:
@@ -89,7 +95,7 @@ class Groups:
         return dict(wanted)
 
     def _take(self, spread: Spread, part: Pairs, table: _Table, *, beside: bool) -> Iterator[tuple[int, int]]:
-        """Group the pairs of one kind and category; return one of each."""
+        """Group the pairs of one kind and category; return those to make."""
         counts = table.counts(table.robot[part.sources], table.robot[part.leaks])
         chosen = np.flatnonzero(counts)
         sources, leaks, counts = part.sources[chosen], part.leaks[chosen], counts[chosen]
@@ -114,6 +120,11 @@ class Groups:
             where = np.unique(np.where(table.is_robot[a[rows]], a[rows], table.first[b[rows]]))
             ids[int(keys[rows[0]])] = self._tallies.add(pair, form, count, [table.names[i] for i in where.tolist()])
             yield source, leak
+            if self._most_across is not None:
+                if across[rows[0]] and count.all > self._most_across:
+                    ends = (np.unique(robots[rows], return_index=True)[1] for robots in (a, table.first[b]))
+                    rows = rows[np.concatenate([*ends])]
+                yield from zip(sources[rows].tolist(), leaks[rows].tolist(), strict=True)
         no = np.zeros(len(keys), bool)
         for robots_at, ends_here in ((a, no), (table.first[b], across)):
             rows = np.unique(np.column_stack([robots_at, keys, ends_here, dismissed, hidden]), axis=0)

@@ -6,7 +6,7 @@ flows let more pass: only what is new is followed, so a small change costs what 
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import OrderedDict, defaultdict
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
@@ -278,9 +278,9 @@ class Flood:
         """First in, first out: what comes to one element along several flows goes on together."""
         ahead, moves, meetings = self.doing.ahead, self.doing.moves, self.doing.meetings
         met: dict[int, int] = defaultdict(int)  # what has come to all that a meeting reads
+        pending = OrderedDict(pending)  # the first key of a dict is found past all that were taken out
         while pending:
-            vertex = next(iter(pending))
-            bits = pending.pop(vertex)
+            vertex, bits = pending.popitem(last=False)
             self._arrive(ahead.get(vertex, ()), bits, pending)
             for index, target in moves.get(vertex, ()):
                 self._arrive((target,), self.doing.along(index, bits), pending)

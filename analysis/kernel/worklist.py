@@ -6,7 +6,7 @@ large graphs; a test holds each to the other, bit for bit.
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import OrderedDict, defaultdict
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -35,10 +35,9 @@ def worklist(graph: LabelledGraph) -> tuple[dict[int, int], dict[int, int]]:
     keep, everything = graph.keep, graph.all_bits
     arrives: dict[int, int] = {}
     leaves = {vertex: bits for vertex, bits in graph.emitted.items() if bits}
-    waiting = dict(leaves)
+    waiting = OrderedDict(leaves)  # the first key of a dict is found past all that were taken out
     while waiting:
-        vertex = next(iter(waiting))
-        bits = waiting.pop(vertex)
+        vertex, bits = waiting.popitem(last=False)
         for target in ahead.get(vertex, ()):
             known = arrives.get(target, 0)
             new = bits & ~known

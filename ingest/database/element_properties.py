@@ -217,7 +217,8 @@ def finding_rows(
     rows, across = [], []
     contexts = Contexts.of(analysis.graph, bound, vocabulary.categories)
     for finding in analysis.findings:
-        row, steps = finding_row(finding, pattern_id(finding, likeness), vocabulary, ids, robots, contexts)
+        pattern, across_robots = pattern_id(finding, likeness), likeness.across(finding)
+        row, steps = finding_row(finding, pattern, vocabulary, ids, robots, contexts, across=across_robots)
         rows.append(row)
         across += steps
     return rows, across
@@ -230,8 +231,16 @@ def finding_row(
     ids: Mapping[Element, str],
     robots: Mapping[Element, str],
     contexts: Contexts,
+    *,
+    across: bool,
 ) -> tuple[Row, list[Row]]:
-    """Return the row of a finding, and those of the elements that it goes across."""
+    """Return the row of a finding, and those of the elements that it goes across.
+
+    Parameters
+    ----------
+    across
+        Whether it goes from one robot to another: then no number of paths is written, as it is counted of few.
+    """
     robot = robots[finding.source]
     key = f"{robot}|{pattern}" if robots[finding.leak] == robot else f"{robot}|{pattern}|{ids[finding.leak]}"
     row = {
@@ -249,7 +258,7 @@ def finding_row(
             "leak": finding.leak.name,
             "pseudonymised": finding.pseudonymised,
             "dismissed": finding.dismissed,
-            "disjoint_paths": finding.disjoint_paths,
+            "disjoint_paths": None if across else finding.number_of_paths,
             "article9": contexts.article9(finding),
             "in_context": [f"{legal.context}: {legal.name}" for legal in contexts.revealed(finding)] or None,
             "special_from": turned.name if (turned := turned_special(finding, vocabulary.categories)) else None,

@@ -64,6 +64,9 @@ class FleetRows:
         Further properties of each ``Robot``, by the robot of the graph.
     most_across
         See ``left_out``.
+    counts
+        How many findings each pattern has that goes from robot to robot, by id, where not all of them are given: those
+        that are, as ``Groups`` chooses them, are written for robots at either end.
     not_read
         Robots of the graph of which grants were not read (rule S11).
     beyond
@@ -73,7 +76,7 @@ class FleetRows:
     ----------
     left_out
         How many findings from one robot to another are not written: of a pattern with more than ``most_across`` one
-        is written for each robot from which data comes.
+        is written for each robot from which data comes; with ``counts`` also for each to which it gets.
     """
 
     def __init__(
@@ -85,6 +88,7 @@ class FleetRows:
         most_across: int | None = None,
         not_read: Iterable[str] = (),
         beyond: Beyond | None = None,
+        counts: Mapping[str, int] | None = None,
     ) -> None:
         most_across = MOST_ACROSS if most_across is None else most_across
         self._more, self._beyond = more, beyond
@@ -95,15 +99,18 @@ class FleetRows:
         self._likeness = placed.likeness
         self._graph = analysis.graph
         self._origins = origins(analysis.spread)
-        counts: dict[str, int] = defaultdict(int)
-        for finding in analysis.findings:
-            if self._likeness.across(finding):
+        across = [one for one in analysis.findings if self._likeness.across(one) and self._likeness.count(one)]
+        self._at_either_end = counts is not None
+        if counts is None:
+            counts = defaultdict(int)
+            for finding in across:
                 counts[pattern_id(finding, self._likeness)] += self._likeness.count(finding)
         self._too_many = {pattern for pattern, count in counts.items() if count > most_across}
-        self.left_out = sum(
-            self._likeness.count(finding) - self._likeness.weight(finding.source.robot)
-            for finding in analysis.findings
-            if self._likeness.count(finding) and self._across_too_often(finding)
+        placed_on = self._likeness.placed
+        self.left_out = sum(counts[pattern] for pattern in self._too_many) - sum(
+            max(len(placed_on(end.robot)) for end in ((one.source, one.leak) if self._at_either_end else (one.source,)))
+            for one in across
+            if self._across_too_often(one)
         )
 
     def __iter__(self) -> Iterator[RobotRows]:
@@ -257,13 +264,13 @@ class FleetRows:
         for finding in self._analysis.findings:
             if finding.source.robot != owner or not self._likeness.count(finding):
                 continue
-            pattern = pattern_id(finding, self._likeness)
+            pattern, apart = pattern_id(finding, self._likeness), self._likeness.across(finding)
             leaks = ids.expanded(finding.leak.robot)
-            for robot in leaks[:1] if self._across_too_often(finding) else leaks:
+            for robot in self._some(owner, name, leaks) if self._across_too_often(finding) else leaks:
                 placed = _Moved(finding, name, robot, self._likeness)
                 keys = {element: ids.of(element, placed.robot(element)) for element in placed.elements}
                 robots = {element: placed.robot(element) for element in placed.elements}
-                row, steps = finding_row(finding, pattern, self._vocabulary, keys, robots, contexts)
+                row, steps = finding_row(finding, pattern, self._vocabulary, keys, robots, contexts, across=apart)
                 rows.append(row)
                 across += steps
         return rows, across
@@ -276,15 +283,22 @@ class FleetRows:
         for one, finding in all_added:
             if finding.source.robot != owner:
                 continue
-            leaks = ids.expanded(finding.leak.robot)
-            for robot in leaks[:1] if self._likeness.across(finding) else leaks:
+            leaks, apart = ids.expanded(finding.leak.robot), self._likeness.across(finding)
+            for robot in leaks[:1] if apart else leaks:
                 placed = _Moved(finding, name, robot, self._likeness)
                 keys = {element: ids.of(element, placed.robot(element)) for element in placed.elements}
                 robots = {element: placed.robot(element) for element in placed.elements}
                 pattern = pattern_id(finding, self._likeness)
-                row, _ = finding_row(finding, pattern, self._vocabulary, keys, robots, contexts)
+                row, _ = finding_row(finding, pattern, self._vocabulary, keys, robots, contexts, across=apart)
                 add_beyond(rows, row, one, finding, keys, robots, beyond.declared)
         return rows
+
+    def _some(self, owner: str, name: str, leaks: list[str]) -> list[str]:
+        """Some of the robots where data of one robot ends: one, or so that each of them has data of some robot."""
+        if not self._at_either_end:
+            return leaks[:1]
+        alike = self._likeness.members[owner]
+        return leaks[alike.index(name) :: len(alike)] or [leaks[alike.index(name) % len(leaks)]]
 
     def _across_too_often(self, finding: Finding) -> bool:
         return bool(self._too_many) and pattern_id(finding, self._likeness) in self._too_many

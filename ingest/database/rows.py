@@ -172,7 +172,7 @@ def _beyond(robot: str, beyond: Beyond, analysis: Analysis, bound: Bound, vocabu
     for one in beyond.added:
         ids = {element: element_id(robot, element) for element in (*one.finding.witness, one.finding.source)}
         robots = dict.fromkeys(ids, robot)
-        row, _ = finding_row(one.finding, one.finding.id, vocabulary, ids, robots, contexts)
+        row, _ = finding_row(one.finding, one.finding.id, vocabulary, ids, robots, contexts, across=False)
         add_beyond(rows, row, one, one.finding, ids, robots, beyond.declared)
     return rows
 

@@ -236,7 +236,7 @@ FINDING = NodeKind(
         Property("leak", STRING, "name of the leak"),
         Property("pseudonymised", BOOLEAN, "it arrives in pseudonymised form only"),
         Property("dismissed", BOOLEAN, "every path goes through another leak of the category"),
-        Property("disjoint_paths", INTEGER, "paths that share no flow"),
+        Property("disjoint_paths", INTEGER, "paths that share no flow; absent from one robot to another"),
         Property("article9", STRING, "strongest verdict under Art. 9(1) where its source works"),
         Property(
             "in_context",

@@ -113,7 +113,8 @@ def _different(old: Mapping[str, Any], new: Mapping[str, Any], were: Identity, a
     """What differs for a reader; lines that moved in a file are no change, nor are names that are made up."""
     if same(list(map(were.element, old["witness"]))) != same(list(map(are.element, new["witness"]))):
         yield "witness"
-    yield from (what for what in COMPARED if (old.get(what) or False) != (new.get(what) or False))
+    told = [what for what in COMPARED if what != "disjoint_paths" or (old.get(what) and new.get(what))]
+    yield from (what for what in told if (old.get(what) or False) != (new.get(what) or False))
     if _reason(old) != _reason(new):
         yield "reason"
     if _robots(old, were) != _robots(new, are):

@@ -195,7 +195,21 @@ class EnforcedEntry(TypedDict):
     added: list[AddedEntry]
 
 
-class AnalysisDocument(TypedDict):
+class NotAsked(TypedDict):
+    """A key that is not there because nobody asked for it, and the option that asks."""
+
+    key: str
+    option: str
+
+
+class HangsOn(TypedDict):
+    """What the answer hangs on, or that it was not asked for."""
+
+    hangs_on: NotRequired[list[RelianceEntry]]
+    not_asked: NotRequired[list[NotAsked]]
+
+
+class AnalysisDocument(HangsOn):
     """``rosprivacy.analysis/1``."""
 
     format: str
@@ -208,7 +222,6 @@ class AnalysisDocument(TypedDict):
     doubts: NotRequired[list[DoubtEntry]]
     sentence: NotRequired[str]
     taken_away: NotRequired[list[LedgerRow]]
-    hangs_on: NotRequired[list[RelianceEntry]]
     carries: list[Carried]
     roles: NotRequired[list[RolesEntry]]
     outside: list[NonRosEntry]

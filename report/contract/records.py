@@ -135,7 +135,7 @@ class FindingEntry(FindingMore):
     leak: ElementEntry
     witness: list[ElementEntry]
     steps: NotRequired[list[StepEntry]]
-    disjoint_paths: int
+    disjoint_paths: int | None
     through: list[ElementEntry]
     dismissed: bool
     article9: str

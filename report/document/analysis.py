@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.kernel.overruled import Overruled
     from rosprivacy.analysis.model import Category, Diagnostic, Element, Flow, FlowGraph, Grant, Legal, Reason
     from rosprivacy.report.answer import Answer
-    from rosprivacy.report.contract.analysis import AnalysisDocument, Given
+    from rosprivacy.report.contract.analysis import AnalysisDocument, Given, HangsOn
     from rosprivacy.report.contract.records import (
         DeniedEntry,
         DiagnosticEntry,
@@ -56,6 +56,7 @@ if TYPE_CHECKING:
     )
 
 FORMAT = "rosprivacy.analysis/1"
+HANGS_ON = "--hangs-on"  # what asks for it
 SECTIONS = {"node": "nodes", "topic": "topics", "service": "services", "action": "actions"}  # of label files
 _KEYS = {"name": "provision"}  # what the contract calls otherwise than the model
 
@@ -83,7 +84,7 @@ def analysis_document(answer: Answer) -> AnalysisDocument:
         ],
         "doubts": [doubt_entry(doubt) for doubt in answer.doubts],
         "taken_away": ledger.rows(taken, element_dict),
-        "hangs_on": reliance.rows(answer.hangs_on, element_dict),
+        **_hangs_on(answer),
         "carries": [
             {
                 "element": element_dict(carried.element),
@@ -138,6 +139,14 @@ def analysis_document(answer: Answer) -> AnalysisDocument:
             "globs": ledger.globs(answer.globs(taken), element_dict),
         },
     }
+
+
+def _hangs_on(answer: Answer) -> HangsOn:
+    """What the answer hangs on; or that nobody asked, so that nobody takes it for 'nothing'."""
+    rows = answer.hangs_on
+    if rows is None:
+        return {"not_asked": [{"key": "hangs_on", "option": HANGS_ON}]}
+    return {"hangs_on": reliance.rows(rows, element_dict)}
 
 
 def label_key(element: Element) -> LabelKey:
@@ -339,7 +348,7 @@ def finding_entry(finding: Finding, contexts: Contexts) -> FindingEntry:
         "leak": element_dict(finding.leak),
         "witness": [element_dict(element) for element in finding.witness],
         "steps": [_step(step) for step in finding.steps],
-        "disjoint_paths": finding.disjoint_paths,
+        "disjoint_paths": finding.number_of_paths,
         "through": [element_dict(element) for element in finding.through],
         "dismissed": finding.dismissed,
         "article9": contexts.article9(finding),

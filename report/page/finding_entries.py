@@ -279,7 +279,7 @@ def _notes(finding: Mapping[str, Any], index: Index) -> Iterator[str]:
         yield words("f.beside")
     if finding["pseudonymised"]:
         yield words("f.pseudonymised")
-    if finding["disjoint_paths"] > 1:
+    if (finding["disjoint_paths"] or 1) > 1:
         yield words("f.ways", n=finding["disjoint_paths"])
     if finding.get("paths_bounded"):
         yield words("f.bounded", n=len(finding["paths"]))

@@ -137,7 +137,7 @@ class Outline:
     beyond: tuple[Beyond, ...]
     beyond_said: tuple[str, ...]
     orphans: tuple[Decision, ...]
-    hanging: tuple[Hanging, ...]
+    hanging: tuple[Hanging, ...] | None
     look_at: tuple[tuple[str, tuple[LookAt, ...]], ...]
     contexts: tuple[str, ...]
     at_work: tuple[LookAt, ...]

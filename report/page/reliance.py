@@ -44,9 +44,10 @@ class Hanging:
     shipped: bool
 
 
-def hanging(index: Index) -> tuple[Hanging, ...]:
-    """Return the statements on which something hangs; older documents have none."""
-    return tuple(_hanging(row, index) for row in index.document.get("hangs_on", ()))
+def hanging(index: Index) -> tuple[Hanging, ...] | None:
+    """Return the statements on which something hangs; None where it was not worked out."""
+    rows = index.document.get("hangs_on")
+    return None if rows is None else tuple(_hanging(row, index) for row in rows)
 
 
 def _hanging(row: Mapping[str, Any], index: Index) -> Hanging:

@@ -233,8 +233,8 @@ class FindingViews:
         if finding.dismissed:
             through = listed((element.name for element in finding.through), longest=60, words=words)
             notes.append(words("pic.through", names=through))
-        if finding.disjoint_paths > 1:
-            notes.append(words("pic.disjoint", n=finding.disjoint_paths))
+        if (n := finding.number_of_paths or 1) > 1:
+            notes.append(words("pic.disjoint", n=n))
         if not found.complete:
             notes.append(words("pic.longer", steps=words.count(max(lengths.values()), "step")))
         ways = (in_words(finding, self._say),)

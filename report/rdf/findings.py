@@ -158,7 +158,7 @@ class _Findings:
             (RP.dismissed, [Literal(finding.dismissed)]),
             (RP.through, [things.element(element) for element in finding.through]),
             (RP.accepted, [text(self.accepted[finding.id])] if finding.id in self.accepted else []),
-            (RP.disjointPaths, [Literal(finding.disjoint_paths)]),
+            (RP.disjointPaths, [Literal(number)] if (number := finding.number_of_paths) else []),
             (RP.concerns, [self.names.process(finding)]),
             (RP.derivedAt, {things.element(change.element) for change in changed if change.derives}),
             (PROV.wasDerivedFrom, {things.line(grant) for step in finding.steps for grant in step.grants}),

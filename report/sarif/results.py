@@ -150,7 +150,7 @@ class Results:
             "category": shown(finding.category),
             "pseudonymised": finding.pseudonymised,
             "dismissed": finding.dismissed,
-            "disjointPaths": finding.disjoint_paths,
+            "disjointPaths": finding.number_of_paths,
             "article9": self.contexts.article9(finding),
             "law": [{"provision": legal.name, "verdict": legal.verdict, "condition": legal.condition} for legal in law],
         }
@@ -260,8 +260,8 @@ def _message(finding: Finding, law: Sequence[Legal], turned: Element | None, pla
     if finding.dismissed:
         through = ", ".join(named(element) for element in finding.through)
         said.append(f"Every path there goes through {through}, which has a finding of its own.")
-    if finding.disjoint_paths > 1:
-        said.append(f"{finding.disjoint_paths} paths share no step.")
+    if (number := finding.number_of_paths or 1) > 1:
+        said.append(f"{number} paths share no step.")
     said += _to_check(law)
     if place == NOWHERE:
         said.append("No file says so: it stands in the database.")

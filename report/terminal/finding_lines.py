@@ -256,7 +256,7 @@ def _within(folder: str, file: str) -> str:
 
 
 def _paths(finding: Mapping[str, Any], words: Words) -> Iterator[Line]:
-    if finding["disjoint_paths"] > 1:
+    if (finding["disjoint_paths"] or 1) > 1:
         yield f"   {words('tty.disjoint', n=finding['disjoint_paths'])}", ""
     for path in finding.get("paths", ()):
         yield f"   {words('tty.path', path=' -> '.join(shown_name(element) for element in path))}", ""

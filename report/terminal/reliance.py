@@ -24,6 +24,9 @@ FEW = 3  # findings, questions and elements that are named in a line
 def reliance_lines(report: Mapping[str, Any], words: Words, *, verbose: bool) -> Iterator[Line]:
     """Return what the answer hangs on: a part of the report by itself."""
     rows = report.get("hangs_on", ())
+    for one in report.get("not_asked", ()):
+        yield "", ""
+        yield words("tty.hangs.not.asked", option=one["option"]), ""
     if not rows:
         return
     own = sum(not row["shipped"] for row in rows)

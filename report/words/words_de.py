@@ -855,6 +855,7 @@ WORDS = {
     "c.asks": "Wäre nicht geprüft",
     "u.intro": "Jede Zeile ist eine Angabe einer Label-Datei, die Daten oder eine Frage wegnimmt. Sie ist das Wort einer Person, und das Programm kann sie nicht prüfen. Die Zeile sagt, was gälte, wenn diese eine Angabe falsch wäre: die Analyse ohne sie. Zuerst ist zu prüfen, woran ein Weg hängt. Das JSON-Dokument nennt jedes Element.",
     "u.none": "Keine Angabe nimmt einen Weg oder eine Frage weg: Es hängt an keiner.",
+    "u.not.asked": "Das wurde nicht ermittelt. Für eine Flotte muss man danach fragen, mit der Option --hangs-on. Es heißt nicht, dass es an keiner Angabe hängt.",
     "u.nobody": "niemand ist genannt",
     "u.noreason": "kein Grund ist angegeben",
     "u.shipped": "eine Datei, die mit dem Programm kommt oder an deren Stelle steht",

@@ -978,6 +978,7 @@ WORDS = {
     "c.asks": "Would not be reviewed",
     "u.intro": "Each row is one statement of a label file that takes data or a question away. It is a person's word, and the program cannot check it. The row says what there would be if that one statement were wrong: the analysis without it. Check those first on which a path hangs. The JSON document names every element.",
     "u.none": "No statement takes away a path or a question: nothing hangs on one.",
+    "u.not.asked": "This was not worked out. For a fleet it has to be asked for, with the option --hangs-on. It does not mean that nothing hangs on a statement.",
     "u.nobody": "nobody is named",
     "u.noreason": "no reason is given",
     "u.shipped": "a file that comes with the program, or in place of one",

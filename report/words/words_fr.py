@@ -860,6 +860,7 @@ _TYPED = {
     "c.asks": "Ne serait pas examiné",
     "u.intro": "Chaque ligne est une déclaration d'un fichier d'annotations qui écarte des données ou une question. C'est la parole d'une personne, et le programme ne peut pas la vérifier. La ligne dit ce qu'il y aurait si cette seule déclaration était fausse : l'analyse sans elle. Vérifiez d'abord celles auxquelles tient un chemin. Le document JSON nomme chaque élément.",
     "u.none": "Aucune déclaration n'écarte un chemin ou une question : rien ne tient à l'une d'elles.",
+    "u.not.asked": "Cela n'a pas été établi. Pour une flotte, il faut le demander, avec l'option --hangs-on. Cela ne veut pas dire que rien ne tient à une déclaration.",
     "u.nobody": "personne n'est nommé",
     "u.noreason": "aucune raison n'est donnée",
     "u.shipped": "un fichier fourni avec le programme, ou mis à sa place",

@@ -276,6 +276,7 @@ WORDS = {
     "tty.leg.response": "Antwort",
     "tty.wildcard": "Platzhalter",
     "tty.hangs": "Woran das Ergebnis hängt: {what}",
+    "tty.hangs.not.asked": "Woran das Ergebnis hängt, wurde nicht ermittelt: Für eine Flotte muss man danach fragen ({option})",
     "tty.hangs.own.one": "{n} Angabe Ihrer Label-Dateien",
     "tty.hangs.own.many": "{n} Angaben Ihrer Label-Dateien",
     "tty.hangs.shipped.one": "{n} mitgelieferter Dateien",

@@ -276,6 +276,7 @@ WORDS = {
     "tty.leg.response": "response",
     "tty.wildcard": "wildcard",
     "tty.hangs": "What the answer hangs on: {what}",
+    "tty.hangs.not.asked": "What the answer hangs on was not worked out: for a fleet it has to be asked for ({option})",
     "tty.hangs.own.one": "{n} statement of your labels",
     "tty.hangs.own.many": "{n} statements of your labels",
     "tty.hangs.shipped.one": "{n} of shipped files",

@@ -278,6 +278,7 @@ _TYPED = {
     "tty.leg.response": "réponse",
     "tty.wildcard": "caractère générique",
     "tty.hangs": "À quoi tient le résultat : {what}",
+    "tty.hangs.not.asked": "À quoi tient le résultat n'a pas été établi : pour une flotte, il faut le demander ({option})",
     "tty.hangs.own.one": "{n} déclaration de vos annotations",
     "tty.hangs.own.many": "{n} déclarations de vos annotations",
     "tty.hangs.shipped.one": "{n} de fichiers fournis",

@@ -5,6 +5,7 @@ In: ``System`` and ``Question``. Out: ``Result``. Who computes the analysis else
 
 from __future__ import annotations
 
+from collections import defaultdict
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -13,9 +14,10 @@ from rosprivacy.analysis.answer import ClosedByTypes
 from rosprivacy.analysis.contexts import Contexts
 from rosprivacy.analysis.findings.answered_by_globs import answered_by_globs
 from rosprivacy.analysis.findings.doubts import doubts, judged
-from rosprivacy.analysis.findings.findings import Options, analyse
+from rosprivacy.analysis.findings.findings import Options, analyse, chosen_findings
 from rosprivacy.analysis.findings.processed import lacks, processed
 from rosprivacy.analysis.fleet.likeness import pattern_id
+from rosprivacy.analysis.kernel.states import Net
 from rosprivacy.analysis.modes import Paths, View
 from rosprivacy.assumptions import assumptions_of
 from rosprivacy.decided import accepts, doubts_decided, joined_to, law_of
@@ -27,6 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from rosprivacy.analysis.answer import Analysis, Finding
+    from rosprivacy.analysis.findings.findings import Chosen
     from rosprivacy.analysis.fleet.counts import Counts
     from rosprivacy.analysis.fleet.patterns import FleetView
     from rosprivacy.analysis.fleet.patterns_of_pairs import Closed, Groups
@@ -53,12 +56,13 @@ def answer(system: System, question: Question, *, count_paths: bool = True, befo
     """
     at_sources = Contexts.of(system.graph, system.bound, system.vocabulary.categories, together=system.is_fleet)
     question = in_contexts(question, at_sources.everywhere)
-    groups = _groups(system) if system.is_fleet and not question.every_finding else None
+    groups = _groups(system, question) if system.is_fleet else None
     options = Options(
         categories=question.asked,
         paths=question.settings.paths,
         max_paths=question.settings.max_paths,
         count_paths=count_paths or question.decisions is not None,
+        uncounted=system.likeness.apart if system.is_fleet and question.every_finding else None,
         accepts=accepts(question.decisions, system.likeness),
         choose=groups,
         today=question.today,
@@ -77,6 +81,8 @@ def answer(system: System, question: Question, *, count_paths: bool = True, befo
     elif limits and system.graph.view == View.declared:
         analysis = replace(analysis, closed=ClosedByTypes())
     view = _view(system, analysis, groups) if system.is_fleet else None
+    if view and options.uncounted and options.count_paths:
+        analysis, view = _counted(replace(system, bound=bound), options, analysis, view)
     return concluded(replace(system, bound=bound), question, analysis, view, options)
 
 
@@ -107,16 +113,34 @@ def _closed(system: System, under: Analysis) -> Closed:
     return Closed(system.likeness, under.spread)
 
 
-def _groups(system: System) -> Groups:
+def _groups(system: System, question: Question) -> Groups | None:
+    """What chooses findings; None where all are made: decisions are about single robots, too."""
+    if question.decisions is not None or (question.every and question.most_across is None):
+        return None
     from rosprivacy.analysis.fleet.patterns_of_pairs import Groups  # noqa: PLC0415 - numpy, for fleets only
 
-    return Groups(system.likeness)
+    return Groups(system.likeness, question.most_across)
 
 
 def _view(system: System, analysis: Analysis, groups: Groups | None) -> FleetView:
     from rosprivacy.analysis.fleet.patterns import FleetView  # noqa: PLC0415 - for fleets only
 
     return groups.view(analysis) if groups else FleetView.of(analysis, system.likeness)
+
+
+def _counted(system: System, options: Options, analysis: Analysis, view: FleetView) -> tuple[Analysis, FleetView]:
+    """Count the paths of what is shown of the patterns from robot to robot, of whose findings none are counted."""
+    elements = {element: vertex for vertex, element in enumerate(analysis.graph.elements)}
+    chosen: dict[int, set[Chosen]] = defaultdict(set)
+    for one in (pattern.finding for pattern in view.patterns if pattern.across):
+        category = analysis.spread.categories.index(one.category)
+        chosen[elements[one.source]].add((one.kind, elements[one.leak], category, one.beside))
+    options, net = options._replace(uncounted=None), Net.kept(analysis.spread)
+    some = chosen_findings(net, system.bound, system.vocabulary.hierarchy, options, chosen)
+    counted = {finding.id: finding for finding in some}
+    findings = tuple(counted.get(finding.id, finding) for finding in analysis.findings)
+    patterns = (replace(one, finding=counted.get(one.finding.id, one.finding)) for one in view.patterns)
+    return replace(analysis, findings=findings), replace(view, patterns=tuple(patterns))
 
 
 def concluded(
@@ -159,6 +183,7 @@ def concluded(
         infrastructure_of((question.element for question in analysis.open), system.vocabulary),
         accepts=options.accepts,
         doubts=listed,
+        hangs_on_asked=question.settings.hangs_on or system.likeness.robots <= 1,
         policies=system.policies,
         labels=system.labels,
         types=system.types,

@@ -175,6 +175,7 @@ def analyze_fleet(
     type_limits: Path | None = TABLE,
     paths: Literal["witness", "disjoint", "all"] = "witness",
     max_paths: int = MAX_PATHS,
+    hangs_on: bool = False,
     decisions: Path | None = None,
     today: str | None = None,
     domain: int | None = None,
@@ -193,6 +194,8 @@ def analyze_fleet(
     view, categories, article9, article9_level, data_types, identity_factors, ontologies, category, standard_channels,
     type_limits, paths, max_paths, decisions, today
         As in ``analyze``.
+    hangs_on
+        Whether to work out what the answer hangs on, which takes longer; else ``Result.hangs_on`` is None.
     domain, allow_unsigned, include_root, max_bytes, bounds, progress
         As in ``analyze``.
 
@@ -226,6 +229,7 @@ def analyze_fleet(
         type_limits=_path(type_limits),
         paths=paths,
         max_paths=max_paths,
+        hangs_on=hangs_on,
         domain=domain,
         allow_unsigned=allow_unsigned,
         include_root=_path(include_root),

@@ -93,7 +93,7 @@ def about_today(analysis: Analysis, view: FleetView | None) -> dict[str, About]:
 
     def about(finding: Finding, robots: Iterable[str] = ()) -> About:
         path = tuple(element.name for element in finding.witness)
-        return About(analysis.graph.view, path, finding.disjoint_paths, frozenset(robots))
+        return About(analysis.graph.view, path, finding.number_of_paths or 0, frozenset(robots))
 
     found = {finding.id: about(finding) for finding in analysis.findings}
     if view is None:

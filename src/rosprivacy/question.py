@@ -47,6 +47,8 @@ class Question(NamedTuple):
         carry everything.
     every
         Make every finding of a fleet, not one of each pattern.
+    most_across
+        As of ``Groups``, where nobody decided anything.
     contexts
         Where the system works that is asked, as far as it matters for what is asked.
     """
@@ -57,6 +59,7 @@ class Question(NamedTuple):
     decisions: Decisions | None
     today: str
     every: bool = False
+    most_across: int | None = None
     contexts: frozenset[str] = frozenset()
     type_limits: Callable[[], TypeLimits] | None = None
 

@@ -59,6 +59,8 @@ class Settings:
         How much of what is read or made at most.
     progress
         Wraps the list of files, to show how far it is.
+    hangs_on
+        Of a fleet: whether it is worked out what the answer hangs on. Of a single robot it always is.
     decisions
         A decisions file.
     today
@@ -79,6 +81,7 @@ class Settings:
     type_limits: str | None = TABLE
     paths: str = Paths.witness
     max_paths: int = MAX_PATHS
+    hangs_on: bool = False
     include_root: str | None = None
     max_bytes: int = MAX_BYTES
     domain: int | None = None

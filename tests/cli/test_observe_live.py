@@ -34,7 +34,7 @@ LABELS = "labels: 1\nnodes:\n  /head/camera: {source: [Video]}\n  /uplink: {leak
 IMAGE = "sensor_msgs::msg::dds_::Image_"
 DOMAINS = iter(range(30 + os.getpid() % 30, 100))
 SLACK = 30.0  # seconds; a loaded machine may take some
-PROCESS_SECONDS = 4.0  # for the first analysis of a process beside others, and a bare look that takes next to no time
+PROCESS_SECONDS = 20.0  # for the first analysis of a process beside others on a loaded machine; alone it takes one
 
 
 @pytest.fixture

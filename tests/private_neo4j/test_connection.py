@@ -225,7 +225,7 @@ def test_a_killed_server_is_seen_and_started_again(private_neo4j: Connection, mo
     begin = time.monotonic()
     with pytest.raises(DatabaseError) as error:
         lose_it()
-    assert time.monotonic() - begin < 10  # the driver tries again, but not for its half minute
+    assert time.monotonic() - begin < 25  # the driver tries again, but not for its half minute
     assert "the server is lost: " in one_line(error)
     end = time.monotonic() + 10
     while connection.status().running and time.monotonic() < end:

@@ -31,7 +31,7 @@ from tests.helpers.command import XI
 from tests.helpers.fleet_files import policy, write
 from tests.helpers.fleet_rows import rows as rows_in_memory
 from tests.helpers.graphs import dump
-from tests.helpers.parts import FLEET, documents, fleet_file, same
+from tests.helpers.parts import ASKED, FLEET, documents, fleet_file, same
 from tests.helpers.paths import ROOT
 from tests.helpers.random_fleets import Case, fleets
 from tests.helpers.written_systems import Written, written
@@ -67,7 +67,7 @@ def on_spark(file: str) -> object:
 
 def test_the_example(session: SparkSession, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(ROOT / "examples" / "fleet")
-    documents("fleet.yaml", partial(run_on_spark, settings=Settings()))
+    documents("fleet.yaml", partial(run_on_spark, settings=ASKED))
     assert session.sparkContext.defaultParallelism == 2
 
 
@@ -112,7 +112,7 @@ def test_the_document_of_random_fleets(tmp_path: Path, monkeypatch: pytest.Monke
             answer_fleet("f.yaml", Settings())
         except InputErrors:
             return
-        documents("f.yaml", partial(run_on_spark, settings=Settings()))
+        documents("f.yaml", partial(run_on_spark, settings=ASKED))
         seen += 1
 
     check()

@@ -11,7 +11,7 @@ import typer
 from rosprivacy.analysis.modes import Article9Level, Paths
 from rosprivacy.cli.exit_code import FailOn, exit_code
 from rosprivacy.cli.inputs import Inputs, reads_system, refuse
-from rosprivacy.cli.options import ASKED, Engine, Format, Language, Output, ViewOrBoth, ViewOrBothChosen
+from rosprivacy.cli.options import ASKED, Engine, Format, HangsOn, Language, Output, ViewOrBoth, ViewOrBothChosen
 from rosprivacy.cli.output import emit
 
 if TYPE_CHECKING:
@@ -122,6 +122,7 @@ def analyze(
     max_paths: Annotated[
         int, typer.Option(min=1, metavar="N", help="Bound on the listed ways of a finding.", rich_help_panel=ASKED)
     ] = 100,
+    hangs_on: HangsOn = False,
     fail_on: Annotated[
         list[FailOn] | None,
         typer.Option(
@@ -149,6 +150,7 @@ def analyze(
         identity_factors=tuple(identity_factor or ()),
         paths=paths.value,
         max_paths=max_paths,
+        hangs_on=hangs_on,
     )
     _check(inputs, engine, save_graph=bool(save_graph), per_policy=per_policy, of_spark=bool(master or results))
     if base is not None and format not in LINKED_DATA:

@@ -236,7 +236,7 @@ def _made_about(findings: dict[str, dict[str, Any]] | None, target: dict[str, An
         return {}
     path = tuple(element["name"] for element in finding["witness"])
     robots = frozenset(finding.get("robots", ()))
-    return {"made_about": as_written(About(finding["view"], path, finding["disjoint_paths"], robots))}
+    return {"made_about": as_written(About(finding["view"], path, finding["disjoint_paths"] or 0, robots))}
 
 
 def _chosen(findings: dict[str, dict[str, Any]], written: str, report: str) -> dict[str, Any]:

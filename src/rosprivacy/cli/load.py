@@ -125,7 +125,7 @@ def _load_fleet(file: str, settings: Settings, neo4j: str | None, *, both: bool)
     from rosprivacy.question import question_of
     from rosprivacy.reading.fleet_system import fleet_system, rows_of_fleet
 
-    question = question_of(settings)._replace(every=True)
+    question = question_of(settings)._replace(every=True, most_across=MOST_ACROSS)
     system = fleet_system(file, question)
     result = answer(system, question)
     if both:
@@ -143,7 +143,10 @@ def _load_fleet(file: str, settings: Settings, neo4j: str | None, *, both: bool)
     )
     if rows.left_out:
         message = f"{rows.left_out:,} findings from one robot to another are not written one by one: of each pattern"
-        print(f"{message} with more than {MOST_ACROSS:,} only one for each robot that data comes from", file=sys.stderr)
+        print(
+            f"{message} with more than {MOST_ACROSS:,} only one for each robot that data comes from or gets to",
+            file=sys.stderr,
+        )
 
 
 def _load_results(folder: str, ontologies: tuple[str, ...], neo4j: str | None) -> None:

@@ -234,6 +234,14 @@ ViewOrBothChosen = Annotated[
         rich_help_panel=ASKED,
     ),
 ]
+HangsOn = Annotated[
+    bool,
+    typer.Option(
+        "--hangs-on",
+        help="Of a fleet too: work out what the answer hangs on, statement by statement. Of one robot it always is.",
+        rich_help_panel=ASKED,
+    ),
+]
 DecisionsFile = Annotated[
     Path | None,
     typer.Option(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
@@ -10,7 +11,7 @@ import typer
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.cli.inputs import Inputs, reads_system
-from rosprivacy.cli.options import Language, Output, ViewOrBoth, ViewOrBothChosen
+from rosprivacy.cli.options import HangsOn, Language, Output, ViewOrBoth, ViewOrBothChosen
 from rosprivacy.cli.output import emit, not_for_a_terminal
 
 
@@ -59,6 +60,7 @@ def report(
             help="Fill in the answers that the page of an earlier report saved.",
         ),
     ] = None,
+    hangs_on: HangsOn = False,
     redact: Annotated[
         bool,
         typer.Option("--redact", help="Replace names of elements, files, robots and persons, to show it to others."),
@@ -79,7 +81,7 @@ def report(
     if both and format in (ReportFormat.article30, ReportFormat.works_council):
         raise typer.BadParameter("--view both is for html, markdown and docx: the others tell what is declared")
     inputs = inputs.viewed(view)
-    result = inputs.result(inputs.settings, both=both)
+    result = inputs.result(replace(inputs.settings, hangs_on=hangs_on), both=both)
     style = Style(
         language=lang.value,
         title=title,

@@ -95,7 +95,7 @@ def _row(finding: Finding) -> dict[str, Any]:
         "leak": finding.leak.full_name,
         "path": [element.full_name for element in finding.witness],
         "lines": [str(grant.place) for step in finding.steps for grant in step.grants],
-        "disjoint_paths": finding.disjoint_paths,
+        "disjoint_paths": finding.number_of_paths,
         "through": [element.full_name for element in finding.through],
         "dismissed": finding.dismissed,
         "accepted": finding.accepted,

@@ -214,7 +214,7 @@ def rows_of_fleet(system: FleetSystem, question: Question, result: Result) -> Fl
     Parameters
     ----------
     result
-        With every finding, about all categories.
+        With every finding, or those of ``most_across``, about all categories.
     """
     more = {}
     for name, member in system.members.items():
@@ -225,6 +225,15 @@ def rows_of_fleet(system: FleetSystem, question: Question, result: Result) -> Fl
     more[system.fleet.name] = remembered(everything, system.joins)
     said = {**{name: member.diagnostics for name, member in system.members.items()}, system.fleet.name: system.joins}
     not_read = [name for name, diagnostics in said.items() if unread(diagnostics)]
+    assert result.fleet is not None, "the answer about a fleet"
+    across = {pattern.id: pattern.count for pattern in result.fleet.patterns if pattern.across}
     return FleetRows(
-        system.placed, result.analysis, system.vocabulary, more, not_read=not_read, beyond=beyond_of(result)
+        system.placed,
+        result.analysis,
+        system.vocabulary,
+        more,
+        not_read=not_read,
+        beyond=beyond_of(result),
+        most_across=question.most_across,
+        counts=None if question.most_across is None else across,
     )

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.answering import answer
 from rosprivacy.assumptions import put_together
+from rosprivacy.ingest.database.fleet_rows import MOST_ACROSS
 from rosprivacy.ingest.database.read_back import Stored, read_stored
 from rosprivacy.ingest.database.write_back import write_back
 from rosprivacy.question import question_of
@@ -62,7 +63,7 @@ def answer_stored(driver: Driver, settings: Settings) -> Result:
     DatabaseError
         If the server refuses, or a robot was loaded meanwhile.
     """
-    question = question_of(settings)._replace(every=True)
+    question = question_of(settings)._replace(every=True, most_across=MOST_ACROSS)
     system = stored_system(driver, question.vocabulary)
     everything = question._replace(asked=None, decisions=None)
     result = answer(system, everything)

@@ -129,6 +129,7 @@ class Trials:
                 chosen[vertices[one.source]].add((one.kind, vertices[one.leak], number, one.beside))
         options = self.result.options
         assert options is not None, "an answer that was worked out here"
+        options = options._replace(count_paths=False)
         found = chosen_findings(net, bound, self.system.vocabulary.hierarchy, options, chosen)
         return {one.id: one for one in found if not one.dismissed}
 

@@ -16,6 +16,9 @@ from tests.helpers.random_fleets import Case, fleets, found_in
 from tests.helpers.systems import HIERARCHY
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from rosprivacy.analysis.answer import Finding
     from rosprivacy.analysis.model import Element
 
 Vertex = tuple[str, str]  # robot (or the fleet), name
@@ -130,3 +133,29 @@ def test_names_of_robots_change_nothing_but_names(case: Case) -> None:
 def _moved(end: str, moved: dict[str, str]) -> str:
     robots, colon, name = end.partition(":")
     return f"{moved.get(robots, robots)}:{name}" if colon else end
+
+
+@given(fleets())
+def test_of_many_pairs_of_robots_each_robot_has_one_at_either_end(case: Case) -> None:
+    """What is loaded of a large fleet (S10): every finding but those between robots, and of these none is made up."""
+    result = found_in(case)
+    if result is None:
+        return
+    analysis, placed = result
+    likeness, groups = placed.likeness, Groups(placed.likeness, most_across=1)
+    some = analyse(placed.graph, placed.bound, HIERARCHY, Options(choose=groups))
+    assert groups.view(some).patterns == FleetView.of(analysis, likeness).patterns
+    assert {one.id for one in some.findings} <= {one.id for one in analysis.findings}
+
+    def ends(findings: Iterable[Finding]) -> dict[tuple[object, ...], bool]:
+        """Robots and patterns: at least one that is not dismissed."""
+        found: dict[tuple[object, ...], bool] = defaultdict(bool)
+        for one in findings:
+            first = likeness.second.get(one.leak.robot, one.leak.robot)
+            for end in (("from", one.source.robot), ("to", first)) if likeness.count(one) else ():
+                found[pattern_id(one, likeness), *end] |= one.stands
+            if likeness.count(one) and not likeness.across(one):
+                found[one.id, one.disjoint_paths] = one.stands
+        return found
+
+    assert ends(some.findings) == ends(analysis.findings)

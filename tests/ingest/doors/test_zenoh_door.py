@@ -162,7 +162,7 @@ def test_who_comes_and_who_leaves_is_told_and_late_comers_make_it_still_changing
         kept.undeclare()
         begun = time.monotonic()
         _until(looks, lambda seen: not seen.nodes)
-        assert time.monotonic() - begun < 5
+        assert time.monotonic() - begun < 20  # and not when the looks end; a loaded machine may take some
         short = ZenohDoor(now, DOMAIN, where).looks(0.6)
         kept = one.liveliness().declare_token(node(DOMAIN, "late"))
         *_, last = short
