@@ -21,7 +21,11 @@ OURS = "rosprivacy:"  # label files that come with the program have no path
 
 
 def in_a_file(place: Place) -> bool:
-    """Whether a place is a line of a file that a person can open."""
+    """Whether a place is a line of a file that a person can open.
+
+    >>> in_a_file(Place("p.xml", 2)), in_a_file(Place("rosprivacy:standard", 2)), in_a_file(Place("p.xml", 0))
+    (True, False, False)
+    """
     return place.line > 0 and bool(place.file) and not place.file.startswith(OURS)
 
 

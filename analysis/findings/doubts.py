@@ -22,7 +22,7 @@ from rosprivacy.analysis.model import (
     Doubt,
     Rank,
 )
-from rosprivacy.analysis.policy_lines import first_lines
+from rosprivacy.analysis.policy_lines import first_lines, in_a_file
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -79,12 +79,21 @@ def doubts(
     ]
     listed += [Doubt(RESTRICTED, Rank.RIDES)] if restricted else []
     lines = first_lines(analysis.graph, {doubt.element.shown_as for doubt in listed if doubt.element})
+    lines |= {e.shown_as: facts.place for e, facts in analysis.outside.items() if in_a_file(facts.place)}
     distinct = {doubt.id: doubt for doubt in (_counted(doubt, lines, weight) for doubt in listed) if doubt.count}
     return tuple(sorted(distinct.values(), key=_order))
 
 
 def judged(analysis: Analysis, listed: Iterable[Doubt]) -> Analysis:
-    """Return an analysis with the verdict that its doubts leave: undetermined at best with one that breaks (S11)."""
+    """Return an analysis with the verdict that its doubts leave: undetermined at best with one that breaks (S11).
+
+    >>> from rosprivacy.analysis.model import UNREAD_FILE, Place
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.findings.findings import analyse
+    >>> analysis = replace(analyse(*factory()), verdict=Verdict.NO_LEAK_FOUND)
+    >>> str(judged(analysis, [Doubt(UNREAD_FILE, Rank.BREAKS, place=Place("a.xml", 1))]).verdict)
+    'undetermined'
+    """
     broken = analysis.verdict is Verdict.NO_LEAK_FOUND and any(doubt.breaks for doubt in listed)
     return replace(analysis, verdict=Verdict.UNDETERMINED) if broken else analysis
 

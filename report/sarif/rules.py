@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.model import ACCESS_GAP, BAG_GAP, OBSERVATION_GAP, UNREAD_FILE
 from rosprivacy.report.words.words import IN_ENGLISH
 
 if TYPE_CHECKING:
@@ -140,6 +141,14 @@ NO_LEAK = Rule(
 )
 
 
+EARLIER = {  # rules that had an id before there was one list of doubts: viewers know results by it
+    UNREAD_FILE: "files-not-read",
+    OBSERVATION_GAP: "observation-gaps",
+    BAG_GAP: "bag-gaps",
+    ACCESS_GAP: "access-gaps",
+}
+
+
 def rule_of_doubt(name: str, *, breaks: bool) -> Rule:
     """Return the rule of a sort of doubts: a warning where it breaks the verdict, a note where it rides on it.
 
@@ -150,7 +159,7 @@ def rule_of_doubt(name: str, *, breaks: bool) -> Rule:
     camel = "Doubt" + "".join(part.capitalize() for part in name.split("-"))
     full = f"{short}: that nothing is found does not say that there is nothing."
     steps = (f"{remedy[:1].upper()}{remedy[1:]}.",)
-    return Rule(f"doubt-{name}", camel, f"{short}.", full, steps, WARNING if breaks else "note")
+    return Rule(EARLIER.get(name, f"doubt-{name}"), camel, f"{short}.", full, steps, WARNING if breaks else "note")
 
 
 def rule_of(kind: str) -> Rule:

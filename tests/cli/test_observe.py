@@ -314,7 +314,7 @@ def test_sarif_has_a_result_where_only_a_gap_is_left(cli: Cli, robot: Path) -> N
     done = cli("analyze", "robot.policy.xml", "-l", "labels.yaml", "-f", "sarif", cwd=robot)
     assert done.returncode == 4
     assert [one["ruleId"] for one in json.loads(done.stdout)["runs"][0]["results"]] == [
-        "doubt-observation-gap", "doubt-made-without-warnings", "doubt-nothing-enforced",
+        "observation-gaps", "doubt-made-without-warnings", "doubt-nothing-enforced",
     ]  # fmt: skip
     text = cli("analyze", "robot.policy.xml", "-l", "labels.yaml", cwd=robot).stdout
     meaning = "undetermined: no leak reached, but not all is known; the observation is known to miss something"

@@ -93,7 +93,9 @@ def written(draw: st.DrawFn) -> Written:
 
 def told(result: Result) -> dict[str, Any]:
     """The document, without which robot it is about and how it was read."""
-    document = result.document()
+    document = json.loads(json.dumps(result.document()).replace("robot:", ""))  # in sentences
+    for doubt in document["doubts"]:
+        doubt.pop("id")  # which holds the robot's name
     patterns = {row["finding"]: row["id"] for row in (document.pop("fleet", None) or {}).get("patterns", ())}
     assumptions = document["assumptions"]
     for way in ("fleet", "database"):

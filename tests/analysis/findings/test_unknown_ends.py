@@ -249,11 +249,11 @@ class TestWhatIsTaken:
         labels(STORED % ("DE", ""))
         done = cli("analyze", "p.xml", "-l", "l.yaml")
         assert done.returncode == 0
-        assert "   backups are not stated, taken to have none: disk" in done.stdout.splitlines()
+        assert "; backups of disk are not stated and taken as none" in done.stdout.splitlines()[0]
         disk = {"robot": "", "kind": "storage", "name": "disk"}
         assert analysis(cli)["assumptions"]["backups_taken_as_none"] == [disk]
         labels(STORED % ("DE", ", backups: false"))
-        assert "backups are not stated" not in cli("analyze", "p.xml", "-l", "l.yaml").stdout
+        assert "backups of disk" not in cli("analyze", "p.xml", "-l", "l.yaml").stdout
 
     @pytest.mark.parametrize(
         ("more", "reason"),
@@ -290,10 +290,10 @@ class TestUnknownEnds:
         assert done.returncode == 0
         first, *_ = done.stdout.splitlines()
         assert first.startswith("no-leak-found: ")
-        assert first.endswith("; 1 channel ends at no known reader")
-        assert "   /video  (topic; Video)" in done.stdout.splitlines()
+        assert first.endswith("; /video ends at no known reader")
+        assert "      /video (topic; Video), p.xml:" in done.stdout
         assert (
-            cli("analyze", "p.xml", "-l", "l.yaml", "-q").stdout.rstrip().endswith("1 channel ends at no known reader")
+            cli("analyze", "p.xml", "-l", "l.yaml", "-q").stdout.rstrip().endswith("; /video ends at no known reader")
         )
         assert ends(cli) == [
             {
@@ -308,8 +308,8 @@ class TestUnknownEnds:
         labels("nodes: {/camera: {source: [Video]}, /uplink: {leak: [Video]}}\nchannels: {/store: sensitive}\n")
         done = cli("analyze", "p.xml", "-l", "l.yaml")
         assert done.returncode == 0
-        assert "; 1 channel ends at no known reader" in done.stdout
-        assert "   /store  (service request; Video)" in done.stdout.splitlines()
+        assert "; /store ends at no known reader" in done.stdout
+        assert "      /store (service request; Video), p.xml:" in done.stdout
 
     def test_a_reply_that_no_client_reads(self, cli: Cli) -> None:
         policy(profile("camera", ("execute", "action", "/film")))
@@ -350,8 +350,8 @@ class TestUnknownEnds:
         )
         done = cli("analyze", "p.xml", "-l", "l.yaml")
         assert done.returncode == 0
-        assert done.stdout.splitlines()[0].endswith("; 1 element outside ROS is reached by no flow")
-        assert "   cloud  (external-system)" in done.stdout.splitlines()
+        assert done.stdout.splitlines()[0].endswith("; no flow reaches cloud")
+        assert "      cloud (external-system), l.yaml:4" in done.stdout
 
     def test_a_device_that_data_begins_at_is_none(self, cli: Cli) -> None:
         policy(CAM, UP.format(topic="/video"))
@@ -367,8 +367,8 @@ class TestUnknownEnds:
         labels("nodes: {/camera: {source: [Video]}}\nchannels: {/video: sensitive}\n")
         done = cli("report", "p.xml", "-l", "l.yaml", "--format", form)
         assert done.returncode == 0
-        assert "Unknown ends (1 element): it is not known who reads or what flows in" in done.stdout
-        assert "Channels with data that nobody known reads" in done.stdout
+        assert "In doubt: /video ends at no known reader." in done.stdout
+        assert "Data that nobody known reads" in done.stdout
 
     def test_on_a_fleet_with_the_robot(self, cli: Cli) -> None:
         policy(CAM)
@@ -379,5 +379,5 @@ class TestUnknownEnds:
         Path("f.yaml").write_text(fleet, "utf-8")
         done = cli("analyze", "--fleet", "f.yaml")
         assert done.returncode == 0
-        assert done.stdout.splitlines()[0].endswith("; 2 channels end at no known reader")
-        assert "   a:/video  (topic; Video)" in done.stdout.splitlines()
+        assert done.stdout.splitlines()[0].endswith("; 2 channels end at no known reader (a:/video)")
+        assert "      a:/video (topic; Video), p.xml:" in done.stdout

@@ -147,9 +147,9 @@ def test_no_answer_rests_on_half_a_bag(robot: Path, cli: Cli, harm: str) -> None
         (robot / "bags" / "b.db3").write_bytes(b"no database")
     verdict = rosprivacy.analyze(robot / "a.policy.xml", robot / "l.yaml").analysis.verdict
     assert verdict == "undetermined"
-    assert "not all is known of a bag" in cli("analyze", robot / "a.policy.xml", "-l", robot / "l.yaml").stdout
+    assert "not all is known of the bag" in cli("analyze", robot / "a.policy.xml", "-l", robot / "l.yaml").stdout
     sarif = json.loads(cli("analyze", robot / "a.policy.xml", "-l", robot / "l.yaml", "-f", "sarif").stdout)
-    assert [one["ruleId"] for one in sarif["runs"][0]["results"]] == ["bag-gaps"]
+    assert [one["ruleId"] for one in sarif["runs"][0]["results"]] == ["bag-gaps", "doubt-backups-not-stated"]
     for file in (robot / "bags").iterdir():
         file.unlink()
     mcap(robot / "bags" / "a.mcap")
