@@ -125,6 +125,11 @@ def pseudo_robot(domain: str) -> str:
     return f"domain {domain}"
 
 
+def is_domain(name: str) -> bool:
+    """Return whether channels of a domain are filed under a name."""
+    return name.startswith(pseudo_robot(""))
+
+
 def shared(domain: str, members: Sequence[Member], view: str, bounds: Bounds = BOUNDS) -> Part:
     """The part of robots that share a domain."""
     names = _Names(domain, members)
