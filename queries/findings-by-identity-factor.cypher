@@ -8,8 +8,8 @@
 // returns category: string, the kind of data that arrives
 // returns source: string, where the data comes in
 // returns leak: string, where it gets out
-// returns leak_robot: string, name of the robot of the leak, which may be another one
 // returns article9: string, strongest verdict under Article 9(1) GDPR
+// returns leak_robot: string, name of the robot of the leak, which may be another one
 // returns may_be: boolean, whether the data only may tell of the factor asked for: a narrower kind does
 // order: factor, robot, category, source, leak, leak_robot
 MATCH (c:DataCategory)
@@ -21,6 +21,6 @@ UNWIND CASE WHEN unknown THEN ['not stated'] WHEN may_be THEN [$factor] ELSE c.i
 WITH c, factor, may_be WHERE $factor = '' OR factor IN [$factor, 'not stated']
 MATCH (c)<-[:OF_CATEGORY]-(f:Finding {dismissed: false})
 WHERE $robot = '' OR f.robot = $robot OR f.leak_robot = $robot
-RETURN factor, f.robot AS robot, f.category AS category, f.source AS source, f.leak AS leak, f.leak_robot AS leak_robot,
-       c.article9 AS article9, may_be
+RETURN factor, f.robot AS robot, f.category AS category, f.source AS source, f.leak AS leak,
+       c.article9 AS article9, f.leak_robot AS leak_robot, may_be
 ORDER BY factor, robot, category, source, leak, leak_robot

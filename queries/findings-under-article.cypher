@@ -13,8 +13,8 @@
 // returns source: string, where the data comes in
 // returns special_from: string, where other data is made into such data on the way; absent if nowhere
 // returns leak: string, where it gets out
-// returns leak_robot: string, name of the robot of the leak, which may be another one
 // returns pseudonymised: boolean, whether it arrives in pseudonymised form only
+// returns leak_robot: string, name of the robot of the leak, which may be another one
 // returns may_be: boolean, whether a narrower kind, which the data may be, falls under it always or on a condition
 // order: provision, robot, category, source, leak, leak_robot, verdict
 WITH 'GDPR Art. ' + $article AS start
@@ -30,5 +30,5 @@ MATCH (c)<-[:OF_CATEGORY]-(f:Finding {dismissed: false})
 WHERE $robot = '' OR f.robot = $robot OR f.leak_robot = $robot
 RETURN p.name AS provision, u.verdict AS verdict, u.condition AS condition, u.stated_of AS stated_of, f.robot AS robot,
        f.category AS category, f.source AS source, f.special_from AS special_from, f.leak AS leak,
-       f.leak_robot AS leak_robot, f.pseudonymised AS pseudonymised, may_be
+       f.pseudonymised AS pseudonymised, f.leak_robot AS leak_robot, may_be
 ORDER BY provision, robot, category, source, leak, leak_robot, verdict

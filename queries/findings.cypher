@@ -9,11 +9,11 @@
 // returns category: string, the kind of data that arrives
 // returns source: string, where the data comes in
 // returns leak: string, where it gets out
-// returns leak_robot: string, name of the robot of the leak, which may be another one
 // returns pseudonymised: boolean, whether it arrives in pseudonymised form only
 // returns dismissed: boolean, whether every path goes through another leak of the category
 // returns disjoint_paths: integer, how many paths share no flow
 // returns pattern: string, the same on every robot that has this finding
+// returns leak_robot: string, name of the robot of the leak, which may be another one
 // returns may_be: boolean, whether the data only may be of the category asked for: its own is broader, or overlaps with it
 // order: robot, category, source, leak, leak_robot, kind
 MATCH (c:DataCategory)
@@ -23,6 +23,6 @@ MATCH (c)<-[:OF_CATEGORY]-(f:Finding)
 WHERE $robot = '' OR f.robot = $robot OR f.leak_robot = $robot
 OPTIONAL MATCH (r:Robot {name: f.robot})
 RETURN f.robot AS robot, r.verdict AS verdict, f.kind AS kind, f.category AS category, f.source AS source,
-       f.leak AS leak, f.leak_robot AS leak_robot, f.pseudonymised AS pseudonymised, f.dismissed AS dismissed,
-       f.disjoint_paths AS disjoint_paths, f.pattern AS pattern, may_be
+       f.leak AS leak, f.pseudonymised AS pseudonymised, f.dismissed AS dismissed,
+       f.disjoint_paths AS disjoint_paths, f.pattern AS pattern, f.leak_robot AS leak_robot, may_be
 ORDER BY robot, category, source, leak, leak_robot, kind

@@ -6,9 +6,9 @@
 // returns category: string, the kind of data that arrives
 // returns source: string, where the data comes in
 // returns leak: string, where it gets out
-// returns leak_robot: string, name of the robot of the leak, which may be another one
 // returns path: list of string, names in the order of the flow, source first
 // returns policy: list of string, file:line of the policy line behind each step
+// returns leak_robot: string, name of the robot of the leak, which may be another one
 // returns may_be: boolean, whether the data only may be of the category asked for: its own is broader, or overlaps with it
 // order: robot, category, source, leak, leak_robot
 MATCH (c:DataCategory)
@@ -47,6 +47,6 @@ UNION
 WITH kind, may_be, source, leak, path, policy ORDER BY size(path), path
 WITH kind, may_be, source, leak, collect({path: path, policy: policy})[0] AS way
 RETURN source.robot AS robot, kind AS category, source.name AS source, leak.name AS leak,
-       leak.robot AS leak_robot, way.path AS path,
-       [line IN way.policy | CASE line WHEN '' THEN 'wildcard' ELSE line END] AS policy, may_be
+       way.path AS path, [line IN way.policy | CASE line WHEN '' THEN 'wildcard' ELSE line END] AS policy,
+       leak.robot AS leak_robot, may_be
 ORDER BY robot, category, source, leak, leak_robot

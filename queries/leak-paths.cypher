@@ -7,9 +7,9 @@
 // returns category: string, the kind of data that arrives
 // returns source: string, where the data comes in
 // returns leak: string, where it gets out
-// returns leak_robot: string, name of the robot of the leak, which may be another one
 // returns path: list of string, names in the order of the flow, source first
 // returns policy: list of string, file:line of the policy line behind each step
+// returns leak_robot: string, name of the robot of the leak, which may be another one
 // returns may_be: boolean, whether the data only may be of the category asked for: its own is broader, or overlaps with it
 // order: robot, category, source, leak, leak_robot
 MATCH (c:DataCategory)
@@ -21,6 +21,6 @@ MATCH (f)-[a:ACROSS]->(n:Element)
 WITH f, may_be, a, n ORDER BY a.step
 WITH f, may_be, collect(n.name) AS path,
      collect(CASE WHEN a.step = 0 THEN null WHEN a.file IS NULL THEN 'wildcard' ELSE a.file + ':' + a.line END) AS policy
-RETURN f.robot AS robot, f.category AS category, f.source AS source, f.leak AS leak, f.leak_robot AS leak_robot, path,
-       policy, may_be
+RETURN f.robot AS robot, f.category AS category, f.source AS source, f.leak AS leak, path, policy,
+       f.leak_robot AS leak_robot, may_be
 ORDER BY robot, category, source, leak, leak_robot

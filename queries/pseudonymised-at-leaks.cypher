@@ -6,14 +6,15 @@
 // returns category: string, the kind of data that arrives
 // returns source: string, where the data comes in
 // returns leak: string, where it gets out
-// returns leak_robot: string, name of the robot of the leak, which may be another one
 // returns by: list of string, who pseudonymises it on the shortest path
 // returns path: list of string, names in the order of the flow, source first
+// returns leak_robot: string, name of the robot of the leak, which may be another one
 // order: robot, category, source, leak, leak_robot
 MATCH (f:Finding {kind: 'disclosure', pseudonymised: true, dismissed: false})-[a:ACROSS]->(e:Element)
 WHERE $robot = '' OR f.robot = $robot OR f.leak_robot = $robot
 WITH f, a, e ORDER BY a.step
 WITH f, collect(e.name) AS path, collect(a.pseudonymised) AS after
-RETURN f.robot AS robot, f.category AS category, f.source AS source, f.leak AS leak, f.leak_robot AS leak_robot,
-       [i IN range(1, size(path) - 1) WHERE after[i] AND NOT after[i - 1] | path[i - 1]] AS by, path
+RETURN f.robot AS robot, f.category AS category, f.source AS source, f.leak AS leak,
+       [i IN range(1, size(path) - 1) WHERE after[i] AND NOT after[i - 1] | path[i - 1]] AS by, path,
+       f.leak_robot AS leak_robot
 ORDER BY robot, category, source, leak, leak_robot

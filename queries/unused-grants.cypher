@@ -12,7 +12,7 @@
 // returns further: integer, how many further lines allow the same, so that this one alone changes nothing
 // order: robot, enclave, node, role, policy
 MATCH (a:Element)-[f:FLOWS_TO]->(b:Element)
-WHERE f.file IS NOT NULL AND coalesce(f.decision, 'allow') <> 'deny'
+WHERE f.file IS NOT NULL AND f.role <> 'flow' AND coalesce(f.decision, 'allow') <> 'deny'
 WITH f, a, b, CASE WHEN a:Topic|Service|Action THEN b.robot ELSE a.robot END AS robot
 WHERE $robot = '' OR robot = $robot
 WITH robot, f.file AS file, f.line AS line, f.enclave AS enclave, f.profile AS node, f.role AS role,
