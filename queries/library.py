@@ -39,8 +39,10 @@ NAMES = {
     "data type": ("(n:DataCategory) UNWIND n.data_types AS name WITH name", "name"),
     "identity factor": ("(n:DataCategory) UNWIND n.identity_factors AS name WITH name", "name"),
     "article": (  # of 'GDPR Art. 9(1) health': 9 and 9(1)
-        "(n:LegalProvision)<-[:FALLS_UNDER]-() WHERE n.name STARTS WITH 'GDPR Art. ' "
-        "WITH split(n.name, ' ')[2] AS whole UNWIND [whole, split(whole, '(')[0]] AS name WITH name",
+        (
+            "(n:LegalProvision)<-[:FALLS_UNDER]-() WHERE n.name STARTS WITH 'GDPR Art. ' "
+            "WITH split(n.name, ' ')[2] AS whole UNWIND [whole, split(whole, '(')[0]] AS name WITH name"
+        ),
         "name",
     ),
 }

@@ -16,10 +16,10 @@ from rosprivacy.analysis.kernel.roles import facts
 from rosprivacy.analysis.legal import turned_special
 from rosprivacy.analysis.model import UNSTATED
 from rosprivacy.analysis.non_ros import BY_KIND
+from rosprivacy.ingest.database.by_hand import seal_of
 from rosprivacy.ingest.database.carrying import moving
 from rosprivacy.ingest.database.exposure_properties import exposure_properties
 from rosprivacy.ingest.database.processing_properties import processing_properties
-from rosprivacy.ingest.database.by_hand import seal_of
 from rosprivacy.ingest.database.type_properties import type_properties
 
 if TYPE_CHECKING:
@@ -76,8 +76,8 @@ class Names:
 class Roles:
     """Statements about an element -> the kinds that it lets out, cleans, and makes of others, if they come (rule S7).
 
-    All kinds of the vocabulary are asked for, not only those that a source brings in. The labels of leaks say less: of a
-    display, which lets out whatever comes, those of all kinds would say nothing.
+    All kinds of the vocabulary are asked for, not only those that a source brings in. The labels of leaks say less: of
+    a display, which lets out whatever comes, those of all kinds would say nothing.
     """
 
     def __init__(self, vocabulary: Vocabulary, labels: Mapping[str, str]) -> None:

@@ -124,7 +124,9 @@ ELEMENT = NodeKind(
         Property("leaks", STRINGS, "kinds that it lets out, if they come"),
         Property("sanitizes", STRINGS, "kinds that it cleans, if they come"),
         Property("stops", STRINGS, "kinds that some source brings in and that do not go on from here"),
-        Property("seal", STRING, "of what the analysis wrote of it: a change of that by hand says nothing, and is told"),
+        Property(
+            "seal", STRING, "of what the analysis wrote of it: a change of that by hand says nothing, and is told"
+        ),
         Property("open", STRINGS, "kinds that get here and that no label covers"),
         Property("frontier", BOOLEAN, "open, and reached before any other open node: to be reviewed first"),
         Property("distance", INTEGER, "of an open element: flows from the nearest source"),

@@ -27,7 +27,7 @@ def fleet(number: int, folder: Path, *, apart: bool) -> str:
     models = {model: _system(random, folder, f"{name}{model}") for model in ("x", "y", "z")[: random.randint(1, 3)]}
     joined = random.random() < 0.8
     lines = ["fleet: 1", f"name: {name}", "robots:"]
-    robots = []
+    robots: list[str] = []
     for model, files in models.items():
         for i in range(random.choice((1, 1, 2, 3))):
             robot = f"{name}{model}{i}"
@@ -68,7 +68,9 @@ def _system(random: Random, folder: Path, name: str) -> str:
     enclaves = [text.replace('path="/e"', f'path="/e{min(i, 2)}"') for i, text in enumerate(enclaves)]
     both = enclaves[2].replace("</profiles></enclave>", enclaves[3].partition("<profiles>")[2])  # one for two nodes
     text = f'<policy version="0.2.0"><enclaves>{"".join((*enclaves[:2], both))}</enclaves></policy>'
-    (folder / f"{name}.xml").write_text(text.replace("<profile ", "\n<profile ").replace("<topics", "\n<topics"), "utf-8")
+    (folder / f"{name}.xml").write_text(
+        text.replace("<profile ", "\n<profile ").replace("<topics", "\n<topics"), "utf-8"
+    )
     roles = {NODES[0]: f"{{source: [{random.choice(KINDS)}]}}"}
     for node in random.sample(NODES[1:], 3):
         made, of = random.choice(DERIVED)[::-1]

@@ -1,4 +1,4 @@
-"""What a question must not lose: what ends at a robot, what may be of a kind, infrastructure, a misspelt word (S11, S12).
+"""What a question must not lose: what ends at a robot, what may be of a kind, infrastructure, a slip (S11, S12).
 
 From policies, labels and fleet files to rows.
 """
@@ -99,9 +99,7 @@ class TestVerdicts:
     def test_infrastructure_has_a_row_and_a_domain_none(self, driver: Driver, tmp_path: Path) -> None:
         both = "labels: 1\nnodes: {/camera: {source: [Video]}, /uplink: {leak: [Video]}}\n"
         write(tmp_path, c_yaml="labels: 1\nnodes: {/camera: conduit}\nchannels: {/video: sensitive}\n")
-        load_fleet(
-            driver, tmp_path, BASE.replace("l.yaml", "c.yaml"), policy("/camera>/video", "/uplink</video"), both
-        )
+        load_fleet(driver, tmp_path, BASE.replace("l.yaml", "c.yaml"), policy("/camera>/video", "/uplink</video"), both)
         shown = {(row["part"], row["verdict"], *row["some_robots"]) for row in ask(driver, "verdicts")}
         assert ("infrastructure", "leak", "base") in shown
         assert len(shown) == 2  # the robot's own, and no row of the domain
@@ -148,7 +146,10 @@ class TestKinds:
         ]  # fmt: skip
 
 
-CLEAN = "labels: 1\nnodes: {/camera: {source: [Video]}, /uplink: {leak: none, conduit: [Video]}}\nchannels: {/video: sensitive}\n"
+CLEAN = (
+    "labels: 1\nnodes: {/camera: {source: [Video]}, /uplink: {leak: none, conduit: [Video]}}\n"
+    "channels: {/video: sensitive}\n"
+)
 THESE = "MATCH (n {name: '/uplink'}), (m {name: '/camera'}), (c:DataCategory {name: 'Video'}) "
 MEANINGLESS = [  # what is written by hand, and what the error has to name
     ("MERGE (n)-[:LEAK]->(c)", "LEAK' .*did you mean LEAKS"),
@@ -180,7 +181,8 @@ class TestByHand:
 
     def test_all_at_once(self, driver: Driver, tmp_path: Path) -> None:
         load_robot(driver, tmp_path, CLEAN)
-        driver.execute_query(f"{THESE} MERGE (n)-[:LEAK]->(c) SET n:VideoLeak MERGE (n)-[:SANITIZES {{method: 'x'}}]->(c)")
+        wrong = "MERGE (n)-[:LEAK]->(c) SET n:VideoLeak MERGE (n)-[:SANITIZES {method: 'x'}]->(c)"
+        driver.execute_query(THESE + wrong)
         with pytest.raises(InputErrors) as error:
             answer_stored(driver, Settings())
         assert len(str(error.value).splitlines()) == 3
@@ -237,7 +239,8 @@ def test_labels_of_leaks_stand_for_what_arrives_or_is_named(driver: Driver, tmp_
 
 
 @pytest.mark.slow
-def test_what_a_program_reads_is_whole_or_says_that_it_is_not(driver: Driver, cli: Cli) -> None:
+@pytest.mark.usefixtures("driver")
+def test_what_a_program_reads_is_whole_or_says_that_it_is_not(cli: Cli) -> None:
     many = "UNWIND range(1, 1500) AS i RETURN i"
     whole = cli("query", "--cypher", many, "-f", "json")
     assert (whole.returncode, len(json.loads(whole.stdout)), whole.stderr) == (0, 1500, "")
