@@ -17,8 +17,8 @@
 // order: robot, category, start, end, end_robot, leak, leak_robot
 MATCH (c:DataCategory)<-[:SOURCE_OF|DERIVES]-(:Element)
 WITH collect(DISTINCT c.name) AS emitted
-MATCH (:DataCategory)<-[:LEAKS]-(leak:Element)
-WITH DISTINCT leak, emitted
+MATCH (leak:Element) WHERE size(leak.leaks) > 0  // by a label, or since it is a display or another system
+WITH leak, emitted
 UNWIND [k IN leak.leaks WHERE k IN emitted] AS category
 WITH leak, category, EXISTS { (leak)<-[:TO]-(:Finding {kind: 'disclosure', category: category}) } AS reached
 WHERE $otherwise OR NOT reached

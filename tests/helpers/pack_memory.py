@@ -123,6 +123,27 @@ class Fleet:
             for vertex, (category, _) in self.brute.spread([source])
         ]
 
+    @cached_property
+    def enclaves(self) -> dict[tuple[str, str], set[int]]:
+        """(robot, path) -> nodes."""
+        number = {e.identity: v for v, e in enumerate(self.elements) if e.is_node}
+        enclaves: dict[tuple[str, str], set[int]] = {}
+        for name, profiles in self.system.placed.profiles.items():
+            for one in profiles:
+                enclaves.setdefault((name, one.enclave), set()).add(number[name, "node", one.node])
+        return enclaves
+
+    def stops(self, vertex: int) -> set[str]:
+        """Kinds that do not go on from there."""
+        spread = self.spread
+        return set(
+            spread.names(spread.all_bits & ~spread.bits.in_both_forms(spread.keeps.get(vertex, spread.all_bits)))
+        )
+
+    def takes(self, index: int, kind: str) -> bool:
+        """Whether a kind may go along a flow."""
+        return kind in self.spread.names(self.spread.passing(index))
+
     def leaks_from(self, kind: str) -> dict[int, set[int]]:
         """Where a kind begins, at a source or where it is made -> the leaks that it gets to past no other."""
         names = self.spread.names
@@ -522,16 +543,7 @@ class Memory:
     def mixed_enclaves(self, robot: str = "") -> Rows:
         rows = []
         for one in self.fleets:
-            enclaves: dict[tuple[str, str], set[int]] = {}
-            for name, profiles in one.system.placed.profiles.items():
-                for profile in profiles:
-                    nodes = {
-                        v
-                        for v, e in enumerate(one.elements)
-                        if (e.robot, e.kind, e.name) == (name, "node", profile.node)
-                    }
-                    enclaves.setdefault((name, profile.enclave), set()).update(nodes)
-            for (name, path), nodes in enclaves.items():
+            for (name, path), nodes in one.enclaves.items():
                 for kind in VOCABULARY.categories if robot in ("", name) else ():
                     brings = {v for v in nodes if kind in one.brings(v)}
                     leaks, cleans = (
@@ -561,6 +573,69 @@ class Memory:
                 used |= set(lines) if one.along(index) else set()
             rows |= {line for line in first - used if robot in ("", line[0])}
         return sorted(rows)
+
+    def denied_grants_that_cut(self, otherwise: str, robot: str = "") -> Rows:
+        """Where a kind that leaves the start of a denied flow would go on to a leak, past no other."""
+        rows: set[tuple[Any, ...]] = set()
+        for one in self.fleets:
+            names, reached = (
+                one.spread.names,
+                {(f.leak, f.category) for f in one.analysis.findings if f.kind == DISCLOSURE},
+            )
+            for flow in one.graph.taken_back if otherwise else ():
+                a, b = one.elements[flow.source], one.elements[flow.target]
+                leaving = one.gets.get(flow.source, set()) - one.stops(flow.source)
+                leaving |= set(names(one.spread.begins(flow.source) | passed_and_made(one.spread, flow.source)[1]))
+                for kind in leaving:
+                    leaks = {v for v, bits in one.spread.leaks.items() if kind in names(bits)}
+                    there, new = set[int](), {flow.target}
+                    while new:
+                        there |= new
+                        ends = {v for v in new - leaks if kind not in one.stops(v)}
+                        new = {
+                            f.target for i, f in enumerate(one.graph.flows) if f.source in ends and one.takes(i, kind)
+                        }
+                        new -= there
+                    for leak in (one.elements[v] for v in there & leaks):
+                        if robot in ("", a.robot, b.robot, leak.robot):
+                            known = (leak, kind) in reached
+                            rows.add((a.robot, kind, a.name, b.name, leak.name, known, b.robot, leak.robot))
+        return sorted(rows)
+
+    def enclave_neighbours_of_sanitizers(self, robot: str = "") -> Rows:
+        """Who could take what a sanitizer reads, and write it on, since its enclave may."""
+        rows = []
+        for one in self.fleets:
+            elements, moved = one.elements, list(zip(one.graph.flows, moving(one.analysis), strict=True))
+            for (name, path), nodes in one.enclaves.items():
+                ours = [(f, some) for f, some in moved if any(g.enclave == path for g in f.grants)]
+                for e in nodes if robot in ("", name) else ():
+                    if not any(s.role == "sanitizer" for s in one.bound.elements.get(e, ())):
+                        continue
+                    for kind in one.spread.categories:
+                        reads = {
+                            elements[f.source].name for f, some in ours
+                            if f.target == e and elements[f.source].is_channel and kind in one.spread.names(some.passed)
+                        }  # fmt: skip
+                        writes = {
+                            elements[f.target].name for f, _ in ours
+                            if f.source in nodes and elements[f.target].is_channel and kind not in one.stops(f.target)
+                        }  # fmt: skip
+                        beside = {n for n in nodes if n != e and kind not in one.stops(n)}
+                        already = {
+                            f.target
+                            for f, some in moved
+                            if f.target in beside and kind in one.spread.names(some.passed)
+                        }
+                        if reads and writes and beside and one.brute.has(e, "sanitizer", kind):
+                            some = (
+                                {elements[n].name for n in beside},
+                                {elements[n].name for n in already},
+                                reads,
+                                writes,
+                            )
+                            rows.append((name, path, elements[e].name, kind, *(tuple(sorted(x)) for x in some)))
+        return rows
 
     def beyond_profiles(self, robot: str = "") -> Rows:
         """Nobody asked for both views."""
