@@ -7,7 +7,8 @@
 // returns some_robots: list of string, the first five of them
 // returns part: string, robot, infrastructure, or fleet for what the fleet file states outside ROS
 // order: verdict, view, part
-MATCH (r:Robot) WHERE coalesce(r.part, 'robot') <> 'domain'  // data passes there, it is nobody's verdict
+MATCH (r:Robot)
+WHERE coalesce(r.part, 'robot') <> 'domain'  // data passes there, it is nobody's verdict
 WITH r ORDER BY r.name
 WITH r.verdict AS verdict, r.view AS view, coalesce(r.part, 'robot') AS part, collect(r.name) AS names
 RETURN verdict, view, size(names) AS robots, names[..5] AS some_robots, part
