@@ -7,7 +7,7 @@ from enum import StrEnum
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Mapping
+    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Diagnostic, Element, FlowGraph, Grant, NonRosFacts, Reason, UnknownEnd
@@ -233,6 +233,18 @@ class Analysis:
     types: Mapping[Element, tuple[str, ...]] = field(default_factory=dict)
 
 
+def _beside_open_channels(analysis: Analysis) -> Iterator[Element]:
+    """Who writes or reads a channel that is open."""
+    channels = {question.element.shown_as for question in analysis.open if question.element.is_channel}
+    elements = analysis.graph.elements
+    those = {vertex for vertex, element in enumerate(elements) if channels and element.shown_as in channels}
+    for flow in analysis.graph.flows if those else ():
+        if flow.source in those:
+            yield elements[flow.target]
+        elif flow.target in those:
+            yield elements[flow.source]
+
+
 def robot_verdicts(
     analysis: Analysis,
     robots: Iterable[str],
@@ -241,6 +253,8 @@ def robot_verdicts(
     leaking: Collection[str] | None = None,
 ) -> dict[str, Verdict]:
     """Return the verdict on each robot (rule S12): what comes from it, gets out at it or is open on it counts.
+
+    An open channel that robots share counts for each of them that writes or reads it.
 
     Parameters
     ----------
@@ -265,6 +279,7 @@ def robot_verdicts(
             robot_of(e) for finding in analysis.findings if finding.stands for e in (finding.source, finding.leak)
         }
     open_at = {robot_of(question.element) for question in analysis.open}
+    open_at |= {robot_of(element) for element in _beside_open_channels(analysis)}
     carrying = () if analysis.lacking else analysis.carried
     known = {robot_of(carried.element) for carried in carrying}.difference(not_read)
     return {

@@ -1,11 +1,11 @@
 // name: category-overview
 // kind: count
 // description: For each kind of data that comes in, how many sources, sanitizers, leaks, findings and open elements?
-// param robot: robot, only this robot; all of them if it is empty, default ""
+// param robot: robot, only elements of this robot and findings that begin or end there; all if it is empty, default ""
 // returns category: string, name of the category; what is said of narrower ones counts too
 // returns sources: integer, elements that bring it in or make it of other data
-// returns sanitizers: integer, elements that clean it
-// returns leaks: integer, elements that let it out
+// returns sanitizers: integer, elements that clean it, if it comes
+// returns leaks: integer, elements that let it out, where it gets to them or a label names it
 // returns elements: integer, elements that it gets to; the two sides of a wildcard count as two
 // returns findings: integer, pairs of source and leak, without dismissed ones
 // returns open: integer, elements that it gets to and that no label covers
@@ -41,7 +41,7 @@ CALL (c) {
   MATCH (c)<-[:BROADER*0..]-(k:DataCategory)
   WITH DISTINCT k
   MATCH (k)<-[:OF_CATEGORY]-(f:Finding {dismissed: false})
-  WHERE $robot = '' OR f.robot = $robot
+  WHERE $robot = '' OR f.robot = $robot OR f.leak_robot = $robot
   RETURN count(f) AS findings
 }
 RETURN category, sources, sanitizers, leaks, elements, findings, open

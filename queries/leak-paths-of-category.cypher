@@ -1,6 +1,6 @@
 // name: leak-paths-of-category
 // kind: path
-// description: Which sources of a category, or of a narrower one, reach which leaks, and along which shortest path?
+// description: Which sources of a category, of a narrower one or of data that may be of it, reach which leaks, and along which shortest path?
 // param category: category, a category's name, such as Biometric
 // returns robot: string, name of the source's robot
 // returns category: string, the kind of data that arrives
@@ -8,9 +8,14 @@
 // returns leak: string, where it gets out
 // returns path: list of string, names in the order of the flow, source first
 // returns policy: list of string, file:line of the policy line behind each step
-// order: robot, category, source, leak
-MATCH (:DataCategory {name: $category})<-[:BROADER*0..]-(c:DataCategory)<-[:SOURCE_OF|DERIVES]-(start:Element)
-WITH DISTINCT c.name AS kind, start
+// returns leak_robot: string, name of the robot of the leak, which may be another one
+// returns may_be: boolean, whether the data only may be of the category asked for: its own is broader, or overlaps with it
+// order: robot, category, source, leak, leak_robot
+MATCH (c:DataCategory)
+WHERE EXISTS { (c)<-[:BROADER*0..]-()-[:BROADER*0..]->(:DataCategory {name: $category}) }
+WITH c, NOT EXISTS { (c)-[:BROADER*0..]->(:DataCategory {name: $category}) } AS may_be
+MATCH (c)<-[:SOURCE_OF|DERIVES]-(start:Element)
+WITH DISTINCT c.name AS kind, may_be, start
 CALL (kind, start) {
   WITH * WHERE kind IN start.begins AND kind IN start.leaks
   RETURN start AS source, start AS leak, [start.name] AS path, [] AS policy
@@ -39,8 +44,9 @@ UNION
          d.policy + [r IN steps | coalesce(r.file + ':' + r.line,
                                            CASE r.role WHEN 'matches' THEN 'wildcard' ELSE 'by hand' END)] AS policy
 }
-WITH kind, source, leak, path, policy ORDER BY size(path), path
-WITH kind, source, leak, collect({path: path, policy: policy})[0] AS way
+WITH kind, may_be, source, leak, path, policy ORDER BY size(path), path
+WITH kind, may_be, source, leak, collect({path: path, policy: policy})[0] AS way
 RETURN source.robot AS robot, kind AS category, source.name AS source, leak.name AS leak,
-       way.path AS path, [line IN way.policy | CASE line WHEN '' THEN 'wildcard' ELSE line END] AS policy
-ORDER BY robot, category, source, leak
+       way.path AS path, [line IN way.policy | CASE line WHEN '' THEN 'wildcard' ELSE line END] AS policy,
+       leak.robot AS leak_robot, may_be
+ORDER BY robot, category, source, leak, leak_robot

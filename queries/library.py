@@ -32,7 +32,20 @@ KEYS = ("name", "kind", "description", "order")
 VALUE_TYPES = {"string": str, "integer": int, "boolean": bool, "list of string": list}
 COLUMN_TYPES = {**VALUE_TYPES, "graph path": Path}
 # Of parameters: a name that must be in the database, with where it stands there (rule S11: never silence).
-NAMES = {"category": ("DataCategory", "name"), "robot": ("Robot", "name"), "element": ("Element", "name")}
+NAMES = {
+    "category": ("(n:DataCategory)", "n.name"),
+    "robot": ("(n:Robot)", "n.name"),
+    "element": ("(n:Element)", "n.name"),
+    "data type": ("(n:DataCategory) UNWIND n.data_types AS name WITH name", "name"),
+    "identity factor": ("(n:DataCategory) UNWIND n.identity_factors AS name WITH name", "name"),
+    "article": (  # of 'GDPR Art. 9(1) health': 9 and 9(1)
+        (
+            "(n:LegalProvision)<-[:FALLS_UNDER]-() WHERE n.name STARTS WITH 'GDPR Art. ' "
+            "WITH split(n.name, ' ')[2] AS whole UNWIND [whole, split(whole, '(')[0]] AS name WITH name"
+        ),
+        "name",
+    ),
+}
 TYPES = {**VALUE_TYPES, **dict.fromkeys(NAMES, str)}
 LARGEST = 2**63 - 1  # integers of Cypher have 64 bits
 _LINE = re.compile(r"// (?:(name|kind|description|order)|(param|returns) ([a-z][a-z_0-9]*)): (.+)")

@@ -2,16 +2,16 @@
 // kind: path
 // description: Where does the data of one source get to, and as which kind of data?
 // param source: element, name of the source, such as /camera
-// param robot: robot, only this robot; all of them if it is empty, default ""
+// param robot: robot, only what begins or ends at this robot; all robots if it is empty, default ""
 // returns robot: string, name of the source's robot
 // returns category: string, the kind of data that gets there, from the source or made of its data on the way
 // returns steps: integer, flows on the way there; 0 for the source itself
 // returns kind: string, kind of the element
 // returns element: string, name of the element
 // returns path: list of string, names in the order of the flow, source first
-// order: robot, category, steps, kind, element
+// returns element_robot: string, name of the robot of the element, which may be another one
+// order: robot, category, steps, kind, element, element_robot
 MATCH (start:Element {name: $source})
-WHERE $robot = '' OR start.robot = $robot
 CALL (start) {
   UNWIND start.begins AS category
   RETURN category, start AS origin, [start.name] AS way, false AS made
@@ -30,7 +30,8 @@ UNION
                          | endNode(r).name] AS path
 }
 WITH start.robot AS robot, category, element.kind + coalesce(' ' + element.leg, '') AS kind, element.name AS element,
-     path ORDER BY size(path), path
-WITH robot, category, kind, element, collect(path)[0] AS path
-RETURN robot, category, size(path) - 1 AS steps, kind, element, path
-ORDER BY robot, category, steps, kind, element
+     element.robot AS element_robot, path ORDER BY size(path), path
+WHERE $robot = '' OR robot = $robot OR element_robot = $robot
+WITH robot, category, kind, element, element_robot, collect(path)[0] AS path
+RETURN robot, category, size(path) - 1 AS steps, kind, element, path, element_robot
+ORDER BY robot, category, steps, kind, element, element_robot

@@ -3,17 +3,18 @@
 // description: Which robots have other findings, or other open elements, than most robots of their model have?
 // returns robot: string, name of the robot
 // returns model: string, its model; empty for robots without one, which are compared with each other
-// returns more_findings: list of string, what it has and most robots do not, without dismissed findings
+// returns more_findings: list of string, what it has and most robots do not, without dismissed findings; 'elsewhere' stands behind a source that is not on it
 // returns fewer_findings: list of string, what most robots have and it does not
 // returns more_open: list of string, elements that are open on it and not on most robots
 // returns fewer_open: list of string, elements that are open on most robots and not on it
 // order: robot
 MATCH (r:Robot) WHERE r.shared IS NULL
 CALL (r) {
-  MATCH (f:Finding {robot: r.name, dismissed: false})
+  MATCH (f:Finding {dismissed: false}) WHERE f.robot = r.name OR f.leak_robot = r.name
   WITH DISTINCT CASE WHEN f.kind = 'disclosure' THEN '' ELSE f.kind + ' ' END
                 + CASE WHEN f.pseudonymised THEN 'pseudonymised ' ELSE '' END
-                + f.category + ': ' + f.source + ' -> ' + f.leak AS finding ORDER BY finding
+                + f.category + ': ' + f.source + CASE f.robot WHEN r.name THEN '' ELSE ' elsewhere' END
+                + ' -> ' + f.leak AS finding ORDER BY finding
   RETURN collect(finding) AS findings
 }
 CALL (r) {

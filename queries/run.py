@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from rosprivacy.queries.unknown_names import Known
 
 LIMIT = 1000
+LISTED = 30  # names of a hint, where none is near
 FETCHED = 100  # rows at once; the server keeps them in memory until they are read
 TIMEOUT = 60.0  # seconds
 LARGEST = 100 * 2**20  # of all rows, as `_size` counts; what is held here while it is turned into text
@@ -138,14 +139,15 @@ def check_names(driver: Driver, query: Query, values: Mapping[str, Any]) -> None
     problems = []
     for field in query.parameters:
         asked = values[field.name]
-        if field.type not in NAMES or not asked:
+        if field.type not in NAMES or asked == field.default:
             continue
-        label, key = NAMES[field.type]
-        known = f"MATCH (n:{label} {{{key}: $name}}) RETURN n.{key} LIMIT 1"
-        if not run(driver, known, {"name": asked}).rows:
-            rows = run(driver, f"MATCH (n:{label}) RETURN DISTINCT n.{key}", limit=None).rows
+        where, name = NAMES[field.type]
+        if not run(driver, f"MATCH {where} WHERE {name} = $name RETURN 1 LIMIT 1", {"name": asked}).rows:
+            rows = run(driver, f"MATCH {where} RETURN DISTINCT {name}", limit=None).rows
             names = sorted(str(name) for (name,) in rows)
-            hint = did_you_mean(nearest(asked, names, FEW, A_LITTLE), f"{len(names):,} others are there")
+            every = f"it is one of {', '.join(map(shown, names))}" if names else "load a robot first"
+            others = every if len(names) <= LISTED else f"{len(names):,} others are there"
+            hint = did_you_mean(nearest(asked, names, FEW, A_LITTLE), others)
             problems.append(f"{query.name}: no {field.type} {shown(asked)!r} is in the database; {hint}")
     if problems:
         raise QueryError("\n".join(problems))

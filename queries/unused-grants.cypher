@@ -3,7 +3,7 @@
 // description: Which policy lines allow something along which no personal data goes, candidates for a person to remove?
 // param mundane: boolean, also lines about channels that a label calls mundane, default false
 // param robot: robot, only this robot; all of them if it is empty, default ""
-// returns robot: string, name of the robot
+// returns robot: string, name of the robot of the node
 // returns enclave: string, enclave that the line is for
 // returns node: string, node that the line is for
 // returns role: string, what it allows: publish, subscribe, request, reply, call or execute
@@ -12,8 +12,10 @@
 // returns further: integer, how many further lines allow the same, so that this one alone changes nothing
 // order: robot, enclave, node, role, policy
 MATCH (a:Element)-[f:FLOWS_TO]->(b:Element)
-WHERE f.file IS NOT NULL AND coalesce(f.decision, 'allow') <> 'deny' AND ($robot = '' OR f.robot = $robot)
-WITH f.robot AS robot, f.file AS file, f.line AS line, f.enclave AS enclave, f.profile AS node, f.role AS role,
+WHERE f.file IS NOT NULL AND f.role <> 'flow' AND coalesce(f.decision, 'allow') <> 'deny'
+WITH f, a, b, CASE WHEN a:Topic|Service|Action THEN b.robot ELSE a.robot END AS robot
+WHERE $robot = '' OR robot = $robot
+WITH robot, f.file AS file, f.line AS line, f.enclave AS enclave, f.profile AS node, f.role AS role,
      max(size(f.carries)) AS carried, max(size(coalesce(f.further, []))) AS further, collect([a, b]) AS flows
 WHERE carried = 0
 CALL (flows) {

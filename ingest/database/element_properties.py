@@ -15,13 +15,15 @@ from rosprivacy.analysis.fleet.likeness import NO_ROBOTS, pattern_id
 from rosprivacy.analysis.kernel.roles import facts
 from rosprivacy.analysis.legal import turned_special
 from rosprivacy.analysis.model import UNSTATED
+from rosprivacy.analysis.non_ros import BY_KIND
+from rosprivacy.ingest.database.by_hand import seal_of
 from rosprivacy.ingest.database.carrying import moving
 from rosprivacy.ingest.database.exposure_properties import exposure_properties
 from rosprivacy.ingest.database.processing_properties import processing_properties
 from rosprivacy.ingest.database.type_properties import type_properties
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.answer import Analysis, Finding
     from rosprivacy.analysis.findings.derived_from import Origin
@@ -74,27 +76,35 @@ class Names:
 class Roles:
     """Statements about an element -> the kinds that it lets out, cleans, and makes of others, if they come (rule S7).
 
-    All kinds of the vocabulary are asked for, not only those that a source brings in: who looks for leaks of a kind
-    finds them whatever else was loaded.
+    All kinds of the vocabulary are asked for, not only those that a source brings in. The labels of leaks say less: of
+    a display, which lets out whatever comes, those of all kinds would say nothing.
     """
 
     def __init__(self, vocabulary: Vocabulary, labels: Mapping[str, str]) -> None:
         self._hierarchy = vocabulary.hierarchy
         self._labels = labels
-        self._known: dict[tuple[Statement, ...], tuple[list[str], list[str], list[str]]] = {}
+        self._top = [name for name, above in self._hierarchy.ancestors.items() if len(above) == 1]
+        self._known: dict[tuple[Statement, ...], tuple[list[str], list[str]]] = {}
 
-    def of(self, said: tuple[Statement, ...]) -> tuple[list[str], list[str], list[str]]:
-        """(kinds that leak, kinds that are cleaned, labels for these and for what is made)."""
+    def of(self, said: tuple[Statement, ...]) -> tuple[list[str], list[str]]:
+        """(kinds that leak, kinds that are cleaned)."""
         if said not in self._known:
-            leaks, cleans = self._decided(said, "leak"), self._decided(said, "sanitizer")
-            made = sorted({s.to for s in said if s.role == "derivation"})
-            labels = [
-                *self._as_labels(made, "Source"),
-                *self._as_labels(leaks, "Leak"),
-                *self._as_labels(cleans, "Sanitizer"),
-            ]
-            self._known[said] = leaks, cleans, labels
+            self._known[said] = self._decided(said, "leak"), self._decided(said, "sanitizer")
         return self._known[said]
+
+    def labels(self, said: tuple[Statement, ...], gets: Iterable[str]) -> list[str]:
+        """The labels of what is made, let out and cleaned; leaks of kinds that get there or that somebody names.
+
+        Who says it of every kind names those at the top.
+        """
+        leaks, cleans = self.of(said)
+        words = [s for s in said if s.role == "leak" and s.rank != BY_KIND]
+        named = {name for s in words for name in s.categories or self._top}
+        return [
+            *self._as_labels({s.to for s in said if s.role == "derivation"}, "Source"),
+            *self._as_labels(set(leaks) & {*gets, *named}, "Leak"),
+            *self._as_labels(cleans, "Sanitizer"),
+        ]
 
     def _decided(self, said: tuple[Statement, ...], role: str) -> list[str]:
         if not any(statement.role == role for statement in said):
@@ -108,7 +118,7 @@ class Roles:
             leaks = tuple(statement for statement in said if statement.role == "leak")
             return role == "leak" and role in facts("", leaks, category, self._hierarchy).roles
 
-    def _as_labels(self, names: list[str], suffix: str) -> list[str]:
+    def _as_labels(self, names: Iterable[str], suffix: str) -> list[str]:
         return sorted({self._labels[up] + suffix for name in names for up in self._hierarchy.ancestors[name]})
 
 
@@ -119,7 +129,14 @@ def element_results(analysis: Analysis, bound: Bound, names: Names, roles: Roles
     for vertex, element in enumerate(analysis.graph.elements):
         question = questions.get(element.shown_as)
         present = found.present(vertex)
-        leaks, cleans, labelled = roles.of(bound.elements.get(vertex, ()))
+        said = bound.elements.get(vertex, ())
+        leaks, cleans = roles.of(said)
+        labels = [
+            *names.labels(present, ""),
+            *names.labels(found.begins(vertex), "Source"),
+            *roles.labels(said, names.exact(present)),
+        ]
+        labels = list(dict.fromkeys(labels))
         properties = {
             "carries": names.broad(present),
             "pseudonymised": names.broad(found.bits.planes(present)[1]),
@@ -136,12 +153,7 @@ def element_results(analysis: Analysis, bound: Bound, names: Names, roles: Roles
             "frontier": question.frontier if question else None,
             "distance": question.distance if question else None,
         }
-        labels = [
-            *names.labels(present, ""),
-            *names.labels(found.begins(vertex), "Source"),
-            *labelled,
-        ]
-        yield properties, list(dict.fromkeys(labels))
+        yield {**properties, "seal": seal_of(properties, labels)}, labels
 
 
 def _surroundings(where: Surroundings | None, element: Element) -> Row:
@@ -251,6 +263,7 @@ def finding_row(
         "properties": {
             "pattern": pattern,
             "robot": robot,
+            "leak_robot": robots[finding.leak],
             "kind": finding.kind,
             "reason": finding.reason or None,
             "category": finding.category,

@@ -37,6 +37,8 @@ from rosprivacy.ingest.database.rows import (
     rows_of,
     stated_of_robot,
 )
+from rosprivacy.ingest.database.schema import DOMAIN, FLEET, INFRASTRUCTURE
+from rosprivacy.ingest.fleet.dds_domains import is_domain
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -167,12 +169,13 @@ class FleetRows:
         parts["foreign"] += [
             intake_row(robot, key, element) for key, (element, robot) in sorted(ids.foreign_intakes.items())
         ]
-        model = self._likeness.models.get(owner)
+        model, part = self._likeness.models.get(owner), self._part(owner)
         properties = {
-            "verdict": str(self._verdicts[owner]),
+            "verdict": str(self._verdicts[owner]) if part != DOMAIN else None,
             "view": self._graph.view,
             "model": model or None,
-            "shared": None if self._likeness.is_robot(owner) else True,
+            "shared": True if part else None,
+            "part": part,
             **stated_of_robot(self._placed.bound, owner),
             **self._more.get(owner, {}),
             **({"beyond": len(parts["beyond"].findings)} if self._beyond else {}),
@@ -299,6 +302,12 @@ class FleetRows:
             return leaks[:1]
         alike = self._likeness.members[owner]
         return leaks[alike.index(name) :: len(alike)] or [leaks[alike.index(name) % len(leaks)]]
+
+    def _part(self, owner: str) -> str | None:
+        """What of a fleet it is that is no robot."""
+        if self._likeness.is_robot(owner):
+            return None
+        return DOMAIN if is_domain(owner) else INFRASTRUCTURE if owner in self._placed.profiles else FLEET
 
     def _across_too_often(self, finding: Finding) -> bool:
         return bool(self._too_many) and pattern_id(finding, self._likeness) in self._too_many

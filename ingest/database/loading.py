@@ -25,6 +25,7 @@ from rosprivacy.ingest.database.schema import (
     LOOK_AT,
     MADE_POSSIBLE_BY,
     RELATIONSHIPS,
+    ROBOT,
     ROLES,
     SUFFIXES,
 )
@@ -304,7 +305,9 @@ def _write_robots(transaction: ManagedTransaction, robots: list[RobotRows], labe
     _write_beyond(transaction, [rows.beyond for rows in robots])
     if known:
         run(transaction, cypher.DELETE_EMPTY_ENCLAVES, names=known)
-    run(transaction, cypher.WRITE_ROBOTS, rows=[{"robot": r.robot, "properties": r.properties} for r in robots])
+    absent = {field.name: None for field in ROBOT.properties if field.name not in (ROBOT.key, "version")}
+    said = [{"robot": r.robot, "properties": absent | r.properties} for r in robots]
+    run(transaction, cypher.WRITE_ROBOTS, rows=said)
 
 
 def _write_beyond(transaction: ManagedTransaction, robots: list[BeyondRows]) -> None:

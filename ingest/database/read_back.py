@@ -25,6 +25,7 @@ from rosprivacy.analysis.model import (
     Statement,
 )
 from rosprivacy.analysis.non_ros import by_kind
+from rosprivacy.ingest.database.by_hand import Sealed, meaningless_relationships
 from rosprivacy.ingest.database.exposure_properties import exposures_of
 from rosprivacy.ingest.database.flow_statements import DATABASE, names_of, statements_of
 from rosprivacy.ingest.database.non_ros_properties import facts_of
@@ -142,6 +143,7 @@ def _read(transaction: ManagedTransaction, vocabulary: Vocabulary) -> Stored:
     reader.said(transaction.run(SAID))
     reader.profiles(transaction.run(PROFILES))
     reader.robots(robots)
+    reader.by_hand(meaningless_relationships(transaction))
     for name, robot in sorted(robots.items()):
         if damaged := unreadable(robot):
             reader.problems.append(
@@ -177,7 +179,8 @@ class _Reader:
         self._vertices: dict[Element, _Vertex] = {}
         self._by_key: dict[str, Element] = {}
         self._flows: list[tuple[Element, Element, str, str, Mapping[str, Any]]] = []
-        self._said: dict[str, list[tuple[str, str, Mapping[str, Any]]]] = defaultdict(list)
+        self._said: dict[str, list[tuple[str, tuple[Any, ...], bool]]] = defaultdict(list)
+        self._foreign_kinds = False
         self._profiles: list[Profile] = []
         self._outside: dict[Element, NonRosFacts] = {}
         self._processing: dict[str, Processing] = {}
@@ -262,10 +265,20 @@ class _Reader:
     def said(self, records: Iterable[Record]) -> None:
         for record in records:
             if record["category"] not in self._vocabulary.categories:
+                self._foreign_kinds = True
                 hint = "use one that rosprivacy load wrote"
                 self.problems.append(_problem(f"unknown category {shown(str(record['category']))!r}", hint))
                 continue
-            self._said[record["key"]].append((_ROLE_OF[record["type"]], record["category"], record["properties"]))
+            role, category, said = _ROLE_OF[record["type"]], record["category"], record["properties"]
+            if not (element := self._by_key.get(record["key"])):  # a problem of its own
+                continue
+            try:
+                facts = role_facts_of(role, category, said)
+            except (TypeError, ValueError) as error:
+                what = f"{ROLES[role].type} of {shown(element.name)!r} cannot be understood: {shown(str(error))}"
+                self.problems.append(_problem(what, "see docs/database.md for what a role has"))
+                continue
+            self._said[record["key"]].append((category, facts, bool(said.get("every"))))
 
     def profiles(self, records: Iterable[Record]) -> None:
         for record in records:
@@ -283,6 +296,17 @@ class _Reader:
                 continue
             if said:
                 self._of_robots["" if self._alone else name] = said
+
+    def by_hand(self, meaningless: Iterable[InputError]) -> None:
+        """See that what people wrote means something; where kinds are unknown, what is made of them is, too."""
+        self.problems += meaningless
+        if self._foreign_kinds:
+            return
+        sealed = Sealed(self._vocabulary)
+        for vertex in self._vertices.values():
+            made = [category for category, facts, _ in self._said.get(vertex.key, ()) if facts[0] == "derivation"]
+            name = str(vertex.properties["name"])
+            self.problems += sealed.problems(name, vertex.labels, vertex.properties, made)
 
     def stored(self, robots: Mapping[str, Mapping[str, Any]], view: str) -> Stored:
         """Number everything, sorted (rule S14)."""
@@ -337,15 +361,8 @@ class _Reader:
     def _statements(self, key: str) -> Iterator[Statement]:
         """What is said of an element; the categories that one label of a channel names stand together again."""
         together: dict[tuple[Any, ...], list[str]] = defaultdict(list)
-        for role, category, said in self._said.get(key, ()):
-            try:
-                facts = role_facts_of(role, category, said)
-            except (TypeError, ValueError) as error:
-                what = (
-                    f"{ROLES[role].type} of {shown(self._by_key[key].name)!r} cannot be understood: {shown(str(error))}"
-                )
-                raise InputErrors([_problem(what, "see docs/database.md for what a role has")]) from None
-            alone = () if role in ("only", "never") or said.get("every") else (category,)
+        for category, facts, every in self._said.get(key, ()):
+            alone = () if facts[0] in ("only", "never") or every else (category,)
             together[(*facts, *alone)].append(category)
         for facts, categories in sorted(together.items(), key=lambda item: str(item[0])):
             role, rank, place, method, stated, to, through, every, naming, why, author, pinned = facts[:FACTS]

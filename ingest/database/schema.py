@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from rosprivacy.analysis.model import CONTEXTS
 
-SCHEMA = 4  # raised when what a load writes gains what an answer rests on, or changes its meaning; none was stored at 1
+SCHEMA = 5  # raised when what a load writes gains what an answer rests on, or changes its meaning; none was stored at 1
 _IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 STRING, INTEGER, BOOLEAN, STRINGS = "STRING", "INTEGER", "BOOLEAN", "LIST<STRING>"
 
@@ -73,6 +73,7 @@ KIND_LABELS = {
     "person": "Person",
 }
 LEG, WILDCARD, INTAKE = "Leg", "Wildcard", "Intake"
+DOMAIN, INFRASTRUCTURE, FLEET = "domain", "infrastructure", "fleet"  # what of a fleet is no robot
 CARRIES = "CARRIES_"  # and a kind of data, as `carries` writes it
 
 _OURS = Property("robot", STRING, "whose load wrote it; absent on what people add")
@@ -124,6 +125,9 @@ ELEMENT = NodeKind(
         Property("leaks", STRINGS, "kinds that it lets out, if they come"),
         Property("sanitizes", STRINGS, "kinds that it cleans, if they come"),
         Property("stops", STRINGS, "kinds that some source brings in and that do not go on from here"),
+        Property(
+            "seal", STRING, "of what the analysis wrote of it: a change of that by hand says nothing, and is told"
+        ),
         Property("open", STRINGS, "kinds that get here and that no label covers"),
         Property("frontier", BOOLEAN, "open, and reached before any other open node: to be reviewed first"),
         Property("distance", INTEGER, "of an open element: flows from the nearest source"),
@@ -151,7 +155,8 @@ ELEMENT = NodeKind(
     f"element at the end of `{CARRIES}…`, where what comes to it goes on another way than what begins there. And for "
     "each category, here `Biometric`: "
     "`Biometric` where it gets to, `BiometricSource` where it begins (at a source, or at a node that makes it of other "
-    "data), `BiometricLeak`, `BiometricSanitizer`; the labels of broader categories too",
+    "data), `BiometricLeak` on what lets it out where it gets there or a label names it, `BiometricSanitizer` on what "
+    "cleans it if it comes; the labels of broader categories too",
 )
 ROBOT = NodeKind(
     "Robot",
@@ -161,7 +166,8 @@ ROBOT = NodeKind(
         Property("name", STRING, "unique"),
         Property("model", STRING, "of a robot of a fleet, if it has one"),
         Property("shared", BOOLEAN, "true for infrastructure, a DDS domain, or the fleet itself: no robot"),
-        Property("verdict", STRING, "leak, undetermined or no-leak-found"),
+        Property("part", STRING, "of what is shared: infrastructure, domain, or fleet for what the fleet file states"),
+        Property("verdict", STRING, "leak, undetermined or no-leak-found; a DDS domain has none: data passes there"),
         Property("view", STRING, "declared or enforced"),
         Property("version", INTEGER, "how often it was written"),
         Property("schema", INTEGER, "version of this graph; a robot with another one has to be loaded again"),
@@ -228,7 +234,8 @@ FINDING = NodeKind(
             STRING,
             "made from kind, category, source, leak, and across robots or not: the same on each",
         ),
-        Property("robot", STRING, "name of its robot"),
+        Property("robot", STRING, "name of the robot of its source"),
+        Property("leak_robot", STRING, "name of the robot of its leak, which may be another one"),
         Property("kind", STRING, "disclosure, storage-limitation, third-country-transfer or unprotected-channel"),
         Property("reason", STRING, "of other kinds than disclosure: what is wrong there"),
         Property("category", STRING, "name of the category that arrives"),
@@ -515,8 +522,8 @@ def constraints() -> list[str]:
         for kind in NODES
     ]
     statements += [
-        f"CREATE INDEX {quoted(f'{kind.label}_robot')} IF NOT EXISTS FOR (n:{quoted(kind.label)}) ON (n.`robot`)"
-        for kind in (ELEMENT, ENCLAVE, FINDING)
+        f"CREATE INDEX {quoted(f'{kind.label}_{key}')} IF NOT EXISTS FOR (n:{quoted(kind.label)}) ON (n.{quoted(key)})"
+        for kind, key in ((ELEMENT, "robot"), (ENCLAVE, "robot"), (FINDING, "robot"), (FINDING, "leak_robot"))
     ]
     # A text index takes names of any length.
     statements.append("CREATE TEXT INDEX `Element_name` IF NOT EXISTS FOR (n:`Element`) ON (n.`name`)")

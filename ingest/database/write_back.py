@@ -26,7 +26,7 @@ from rosprivacy.ingest.database.ids import category_labels, element_id
 from rosprivacy.ingest.database.loading import delete_beyond, refusals, run, write
 from rosprivacy.ingest.database.robot_notices import diagnostics_of
 from rosprivacy.ingest.database.rows import end_id, intake_row, kind_labels
-from rosprivacy.ingest.database.schema import DERIVES_FROM, ELEMENT, KIND_LABELS, SUFFIXES
+from rosprivacy.ingest.database.schema import DERIVES_FROM, DOMAIN, ELEMENT, KIND_LABELS, SUFFIXES
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -157,7 +157,11 @@ class _Changes:
         write(transaction, cypher.CREATE_FINDINGS, _rows(self._findings, robots))
         write(transaction, cypher.CREATE_ACROSS, _rows(self._across, robots))
         self._write_carried(transaction, robots)
-        write(transaction, VERDICTS, [{"robot": name, "verdict": str(self._verdicts[name])} for name in names])
+        write(transaction, VERDICTS, [self._verdict_on(name) for name in names])
+
+    def _verdict_on(self, robot: str) -> Row:
+        domain = self._stored.robots[robot].get("part") == DOMAIN
+        return {"robot": robot, "verdict": None if domain else str(self._verdicts[robot])}
 
     def _write_carried(self, transaction: ManagedTransaction, robots: list[str]) -> None:
         """Where kinds of data go from elements of some robots, as far as it differs; intakes stand before."""

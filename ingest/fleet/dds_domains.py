@@ -139,6 +139,11 @@ def called_in_fleet(members: Sequence[Member]) -> Iterator[tuple[Member, Callabl
         yield from ((member, names.of_member(member)) for member in some)
 
 
+def is_domain(name: str) -> bool:
+    """Return whether channels of a domain are filed under a name."""
+    return name.startswith(pseudo_robot(""))
+
+
 def shared(domain: str, members: Sequence[Member], view: str, bounds: Bounds = BOUNDS) -> Part:
     """The part of robots that share a domain."""
     names = _Names(domain, members)

@@ -25,7 +25,7 @@ CODES = {
     4: "`analyze` and `bag`: undetermined; `--fail-on leak` makes it 0, but never where no data was followed, and "
     "`--fail-on doubt` adds a doubt that nobody has accepted; `check`: nothing differs, but not all is known; "
     "`observe`: nothing was seen; `diff`: labels are given and no data was followed on a side, with `--as usage` the "
-    "observation has gaps",
+    "observation has gaps; `query`: `--limit` cuts JSON or CSV",
     70: "an error of the program itself: no answer; the message says which file to send",
 }
 LEAK, UNDETERMINED, OWN_ERROR = 1, 4, 70

@@ -11,6 +11,7 @@ import typer
 
 from rosprivacy.analysis.errors import QueryError, reason, shown
 from rosprivacy.cli.driver import driver_of
+from rosprivacy.cli.exit_code import UNDETERMINED
 from rosprivacy.cli.inputs import refuse
 from rosprivacy.cli.options import Output, Server
 from rosprivacy.cli.output import emit, not_for_a_terminal
@@ -60,12 +61,21 @@ def query(
         ),
     ] = RowFormat.table,
     output: Output = None,
-    limit: Annotated[int, typer.Option(min=1, help="Most rows to print.")] = 1000,
+    limit: Annotated[
+        int | None,
+        typer.Option(
+            min=1,
+            show_default=False,
+            help="Most rows to print; without it 1000 in a table or a picture, and all in JSON and CSV. JSON or CSV "
+            "that a limit cuts ends with exit code 4.",
+        ),
+    ] = None,
     timeout: Annotated[float, typer.Option(min=0.1, help="Seconds that the server may take.")] = 60.0,
     neo4j: Server = None,
 ) -> None:
     """Ask the database: one of the questions that come with the program, or Cypher of your own, which only reads."""
     from rosprivacy.queries.library import find, pack
+    from rosprivacy.queries.run import LIMIT
     from rosprivacy.reading.stored_rows import rows_of
 
     given = list(values or ())
@@ -93,13 +103,17 @@ def query(
         parameters = dict(_pairs([*([name] if name else []), *given]))
     if format is RowFormat.svg:
         _check_drawing(asked, output)
+    read_by_programs = format in (RowFormat.json, RowFormat.csv)
+    most = limit or (None if read_by_programs else LIMIT)
     with driver_of(neo4j) as driver:
-        rows, warning = rows_of(driver, text, parameters, limit=limit, timeout=timeout, asked=asked)
+        rows, warning = rows_of(driver, text, parameters, limit=most, timeout=timeout, asked=asked)
     emit(answer(rows, format, _title(asked, given, file, text), wide=output is not None), output)
     if rows.more:
-        print(f"only the first {limit:,} rows are shown; --limit shows more", file=sys.stderr)
+        print(f"only the first {most:,} rows are shown; --limit shows more", file=sys.stderr)
     if warning:
         print(f"warning: {warning}", file=sys.stderr)
+    if rows.more and read_by_programs:
+        raise typer.Exit(UNDETERMINED)
 
 
 def _listed(queries: Iterable[Query]) -> str:

@@ -90,7 +90,7 @@ def _rows(part: tuple[Sequence[Unit], int], plan: Plan, core: frozenset[str]) ->
 def _row(rows: RobotRows, part: int, *, shared: bool) -> Row:
     properties = rows.properties
     said = (json.dumps(getattr(rows, name), sort_keys=True) for name in PARTS)
-    return (rows.robot, properties["verdict"], properties.get("model"), shared, part, *said)
+    return (rows.robot, properties.get("verdict"), properties.get("model"), shared, part, *said)
 
 
 def _elements(row: Row) -> Iterator[Row]:

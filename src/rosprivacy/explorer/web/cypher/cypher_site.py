@@ -29,7 +29,7 @@ from rosprivacy.explorer.web.forms import Form, FormError
 from rosprivacy.explorer.web.rendering import Message
 from rosprivacy.explorer.web.titles import titles_of
 from rosprivacy.explorer.web.view import LONGEST, View
-from rosprivacy.queries.library import NAMES, pack
+from rosprivacy.queries.library import pack
 from rosprivacy.reading.stored_rows import rows_of
 from rosprivacy.report.explorer.live_svg import Links
 from rosprivacy.report.page.html import in_html
@@ -192,8 +192,12 @@ def _offered(standing: Standing) -> Mapping[str, tuple[str, ...]]:
         "category": sorted(standing.vocabulary.categories),
         "robot": sorted({element.robot for element in elements if element.robot}),
         "element": names,
+        "data-type": sorted({one for kind in standing.vocabulary.categories.values() for one in kind.data_types}),
+        "identity-factor": sorted(
+            {one for kind in standing.vocabulary.categories.values() for one in kind.identity_factors}
+        ),
     }
-    return {type_: tuple(found[type_]) for type_ in NAMES}
+    return {type_: tuple(some) for type_, some in found.items()}
 
 
 def _said(query: str) -> dict[str, str]:

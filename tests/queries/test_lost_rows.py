@@ -1,0 +1,252 @@
+"""What a question must not lose: what ends at a robot, what may be of a kind, infrastructure, a slip (S11, S12).
+
+From policies, labels and fleet files to rows.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+import rosprivacy
+from rosprivacy.analysis.errors import InputErrors, QueryError
+from rosprivacy.ingest.database.loading import load
+from rosprivacy.private_neo4j import connection
+from rosprivacy.queries.library import find
+from rosprivacy.reading.robot_system import robot_of
+from rosprivacy.reading.stored_rows import rows_of
+from rosprivacy.reading.stored_system import answer_stored
+from rosprivacy.settings import Settings
+from tests.helpers.daily import one_in
+from tests.helpers.fleet_files import policy
+from tests.helpers.fleet_rows import VOCABULARY, rows
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from neo4j import Driver
+
+    from rosprivacy.private_neo4j.connection import Connection
+    from tests.helpers.command import Cli
+
+pytestmark = pytest.mark.database
+CAMERA, UPLINK = policy("/camera>/video"), policy("/uplink</video")
+SOURCE = "labels: 1\nnodes: {/camera: {source: [Video]}}\nchannels: {/video: sensitive}\n"
+LEAK = "labels: 1\nnodes: {/uplink: {leak: [Video]}}\n"
+ROBOTS = "fleet: 1\nrobots: {a: {policies: [a.xml], domain: lab, labels: [l.yaml]}"
+TWO = f"{ROBOTS}, b: {{policies: [b.xml], domain: lab, labels: [m.yaml]}}}}\n"
+BASE = f"{ROBOTS}}}\ninfrastructure: {{base: {{policies: [b.xml], domain: lab, labels: [m.yaml]}}}}\n"
+IN_B = [
+    ("findings", {}), ("leak-paths", {}), ("findings-by-robot", {}), ("reaching-leak", {"leak": "/uplink"}),
+    ("lines-behind-findings", {}), ("leak-path-graph", {}), ("data-graph", {}), ("findings-by-data-type", {}),
+    ("findings-by-identity-factor", {}), ("findings-under-article", {}), ("shared-channels", {"least": "1"}),
+    ("path-between", {"from": "/camera", "to": "/uplink"}), ("reach-of-source", {"source": "/camera"}),
+    ("sources-of-element", {"element": "/uplink"}), ("category-overview", {}),
+]  # fmt: skip
+
+
+@pytest.fixture
+def driver(neo4j_server: Connection, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Driver]:
+    monkeypatch.chdir(tmp_path)
+    with connection.open_driver(neo4j_server) as opened:
+        opened.execute_query("MATCH (n) DETACH DELETE n")
+        yield opened
+
+
+def write(folder: Path, **files: str) -> None:
+    for name, text in files.items():
+        (folder / name.replace("_", ".")).write_text(text, "utf-8")
+
+
+def load_fleet(driver: Driver, folder: Path, fleet: str, base: str = UPLINK, said: str = LEAK) -> None:
+    write(folder, a_xml=CAMERA, l_yaml=SOURCE, b_xml=base, m_yaml=said, fleet_yaml=fleet)
+    load(driver, rows("fleet.yaml"), VOCABULARY)
+
+
+def load_robot(driver: Driver, folder: Path, labels: str, text: str = "") -> None:
+    write(folder, p_xml=text or policy("/camera>/video", "/uplink</video"), l_yaml=labels)
+    load(driver, [robot_of("x", rosprivacy.analyze("p.xml", "l.yaml"))], VOCABULARY)
+
+
+def ask(driver: Driver, name: str, **given: str) -> list[dict[str, Any]]:
+    query = find(name)
+    found = rows_of(driver, query.text, query.values(given), limit=None, timeout=None, asked=query).rows
+    return [dict(zip(found.columns, row, strict=True)) for row in found.rows]
+
+
+class TestWhatEndsAtARobot:
+    @pytest.mark.parametrize("fleet", ["b", "base"])
+    def test_it_is_shown_there(self, driver: Driver, tmp_path: Path, fleet: str) -> None:
+        load_fleet(driver, tmp_path, TWO if fleet == "b" else BASE)
+        for name, given in IN_B:
+            assert ask(driver, name, robot=fleet, **given), name
+        (row,) = ask(driver, "findings", robot=fleet)
+        assert (row["robot"], row["leak_robot"]) == ("a", fleet)
+        (row,) = ask(driver, "findings-by-robot", robot=fleet)
+        assert (row["robot"], row["findings"], row["ending"]) == (fleet, 1, 1)
+        assert [row["findings"] for row in ask(driver, "robots")] == [1, 1, 0]  # a, b or base, the domain
+
+    def test_a_line_about_a_shared_channel_is_one_of_the_node_s_robot(self, driver: Driver, tmp_path: Path) -> None:
+        """Nothing goes along it: the subscriber's line is unused, though the flow begins at the domain's channel."""
+        load_fleet(driver, tmp_path, TWO, policy("/uplink</other", "/gauge>/other"), said=LEAK)
+        assert {row["node"] for row in ask(driver, "unused-grants", robot="b", mundane="true")} == {"/uplink", "/gauge"}
+
+
+class TestVerdicts:
+    def test_infrastructure_has_a_row_and_a_domain_none(self, driver: Driver, tmp_path: Path) -> None:
+        both = "labels: 1\nnodes: {/camera: {source: [Video]}, /uplink: {leak: [Video]}}\n"
+        write(tmp_path, c_yaml="labels: 1\nnodes: {/camera: conduit}\nchannels: {/video: sensitive}\n")
+        load_fleet(driver, tmp_path, BASE.replace("l.yaml", "c.yaml"), policy("/camera>/video", "/uplink</video"), both)
+        shown = {(row["part"], row["verdict"], *row["some_robots"]) for row in ask(driver, "verdicts")}
+        assert ("infrastructure", "leak", "base") in shown
+        assert len(shown) == 2  # the robot's own, and no row of the domain
+        assert {row["robot"]: row["verdict"] for row in ask(driver, "robots")}["domain lab"] is None
+        answer_stored(driver, Settings())
+        assert {row["robot"]: row["verdict"] for row in ask(driver, "robots")}["domain lab"] is None
+
+    def test_an_open_channel_of_a_domain_is_open_on_its_robots(self, driver: Driver, tmp_path: Path) -> None:
+        """Rules S11 and S12: no verdict on the domain must not make the others look settled."""
+        write(tmp_path, o_yaml=SOURCE.partition("channels")[0])
+        load_fleet(driver, tmp_path, TWO.replace("l.yaml", "o.yaml"), said="labels: 1\nnodes: {/uplink: conduit}\n")
+        shown = [(row["part"], row["verdict"], row["robots"]) for row in ask(driver, "verdicts")]
+        assert shown == [("robot", "undetermined", 2)]
+
+
+class TestKinds:
+    """S7, S11: data of a broader kind may be of the kind that is asked for."""
+
+    LABELS = "labels: 1\nnodes: {{/camera: {{source: [{}]}}, /uplink: {{leak: [Biometric]}}}}\n"
+
+    @pytest.mark.parametrize("name", ["findings", "leak-paths", "leak-paths-of-category", "findings-by-pattern",
+                                      "leak-path-graph"])  # fmt: skip
+    def test_what_may_be_of_it_is_shown_as_such(self, driver: Driver, tmp_path: Path, name: str) -> None:
+        load_robot(driver, tmp_path, self.LABELS.format("PersonalData"))
+        shown = ask(driver, name, category="Biometric")
+        assert [(row["category"], row["may_be"]) for row in shown] == [("PersonalData", True)]
+        shown = ask(driver, name, category="PersonalData")
+        assert [(row["category"], row["may_be"]) for row in shown] == [("PersonalData", False)]
+
+    def test_an_article(self, driver: Driver, tmp_path: Path) -> None:
+        load_robot(driver, tmp_path, self.LABELS.format("PersonalData"))
+        for may in ("true", "false"):
+            (row,) = ask(driver, "findings-under-article", article="9", may=may)
+            assert (row["category"], row["verdict"], row["may_be"]) == ("PersonalData", "may-reveal", True)
+        load_robot(driver, tmp_path, self.LABELS.format("FaceTemplate"))
+        (row,) = ask(driver, "findings-under-article", article="9", may="false")
+        assert (row["verdict"], row["may_be"]) == ("conditional", False)
+
+    def test_two_kinds(self, driver: Driver, tmp_path: Path) -> None:
+        load_robot(driver, tmp_path, self.LABELS.format("PersonalData"))
+        shown = ask(driver, "carrying-both", first="Biometric", second="Location")
+        assert [(row["element"], row["may_be"]) for row in shown] == [
+            ("/camera", True), ("/uplink", True), ("/video", True),
+        ]  # fmt: skip
+
+
+CLEAN = (
+    "labels: 1\nnodes: {/camera: {source: [Video]}, /uplink: {leak: none, conduit: [Video]}}\n"
+    "channels: {/video: sensitive}\n"
+)
+THESE = "MATCH (n {name: '/uplink'}), (m {name: '/camera'}), (c:DataCategory {name: 'Video'}) "
+MEANINGLESS = [  # what is written by hand, and what the error has to name
+    ("MERGE (n)-[:LEAK]->(c)", "LEAK' .*did you mean LEAKS"),
+    ("MERGE (n)-[:leaks]->(c)", "leaks' .*did you mean LEAKS"),
+    ("MERGE (n)-[:FLOW_TO]->(m)", "FLOW_TO' .*did you mean FLOWS_TO"),
+    ("MERGE (n)-[:FLOW_TO]->(:ExternalSystem {name: 'cloud'})", "FLOW_TO' .*did you mean FLOWS_TO"),
+    ("MERGE (n)-[:SANITISES]->(c)", "SANITISES' .*did you mean SANITIZES"),
+    ("MERGE (c)-[:LEAKS]->(n)", r"LEAKS' .*\(n\)-\[:LEAKS\]->\(:DataCategory"),
+    ("MERGE (n)-[:LEAKS]->(m)", r"LEAKS' .*\(n\)-\[:LEAKS\]->\(:DataCategory"),
+    ("SET n:VideoLeak", r"VideoLeak; write \(n\)-\[:LEAKS\]->\(:DataCategory {name: 'Video'}\)"),
+    ("SET n:VideoLeaks", "VideoLeaks; did you mean VideoLeak"),
+    ("SET m:VideoSanitizer", "VideoSanitizer; write .*SANITIZES"),
+    ("SET n.leaks = ['Video']", "leaks, .*VideoLeak; write .*LEAKS"),
+    ("SET m.begins = ['Voice']", "begins, .*VoiceSource; write .*SOURCE_OF"),
+    ("REMOVE m:VideoSource", "begins, .*VideoSource"),
+    ("CREATE (:Storage:Element:VideoLeak {name: 'disk'})", "'disk' .*VideoLeak"),
+]
+
+
+class TestByHand:
+    @pytest.mark.parametrize(("edit", "message"), one_in(4, MEANINGLESS))
+    def test_what_means_nothing_is_an_error(self, driver: Driver, tmp_path: Path, edit: str, message: str) -> None:
+        load_robot(driver, tmp_path, CLEAN)
+        driver.execute_query(THESE + edit)
+        before = driver.execute_query("MATCH (n:Element) RETURN n.name, labels(n) ORDER BY n.name").records
+        with pytest.raises(InputErrors, match=message):
+            answer_stored(driver, Settings())
+        assert driver.execute_query("MATCH (n:Element) RETURN n.name, labels(n) ORDER BY n.name").records == before
+
+    def test_all_at_once(self, driver: Driver, tmp_path: Path) -> None:
+        load_robot(driver, tmp_path, CLEAN)
+        wrong = "MERGE (n)-[:LEAK]->(c) SET n:VideoLeak MERGE (n)-[:SANITIZES {method: 'x'}]->(c)"
+        driver.execute_query(THESE + wrong)
+        with pytest.raises(InputErrors) as error:
+            answer_stored(driver, Settings())
+        assert len(str(error.value).splitlines()) == 3
+
+    def test_what_is_a_person_s_own_stays(self, driver: Driver, tmp_path: Path) -> None:
+        """Labels, relationships and properties that are not near to ours; a role that is taken away, or a right one."""
+        load_robot(driver, tmp_path, CLEAN.replace("leak: none, conduit: [Video]", "leak: [Video]"))
+        own = "MERGE (n)-[:AT_SITE]->(:Site {name: 'hall'}) MERGE (n)-[:HAS_ROLE]->(m) SET n:Audited, n.owner = 'Ada'"
+        driver.execute_query(f"{THESE} {own}")
+        assert str(answer_stored(driver, Settings()).analysis.verdict) == "leak"
+        driver.execute_query("MATCH (:RosNode {name: '/uplink'})-[l:LEAKS]->() DELETE l")
+        assert not answer_stored(driver, Settings()).analysis.findings
+        driver.execute_query(f"{THESE} MERGE (n)-[:LEAKS]->(c)")
+        assert str(answer_stored(driver, Settings()).analysis.verdict) == "leak"
+        assert driver.execute_query(
+            "MATCH (:Audited:VideoLeak {owner: 'Ada'})-[:AT_SITE]->(s) RETURN s.name"
+        ).records[0][0] == "hall"  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("name", "given", "message"),
+    [
+        ("findings-by-data-type", {"type": "vidio"}, "no data type 'vidio' .*video"),
+        ("findings-by-identity-factor", {"factor": "ecnomic"}, "no identity factor 'ecnomic' .*economic"),
+        ("findings-under-article", {"article": "99"}, "no article '99' .*9"),
+        ("findings-under-article", {"article": "nine"}, r"no article 'nine' .*9, 9\(1\)"),
+    ],
+)
+def test_a_misspelt_parameter_is_no_answer(
+    driver: Driver, tmp_path: Path, name: str, given: dict[str, str], message: str
+) -> None:
+    load_robot(driver, tmp_path, CLEAN)
+    with pytest.raises(QueryError, match=message):
+        ask(driver, name, **given)
+
+
+def test_labels_of_leaks_stand_for_what_arrives_or_is_named(driver: Driver, tmp_path: Path) -> None:
+    labels = (
+        "labels: 1\nnodes: {/camera: {source: [FaceTemplate]}, /uplink: {leak: [Biometric, Video]}}\n"
+        "elements: {screen: {kind: display}, wall: {kind: display}}\n"
+        "flows: [{from: /uplink, to: screen}, {from: /gauge, to: wall}]\n"
+    )
+    load_robot(driver, tmp_path, labels, policy("/camera>/video", "/uplink</video", "/gauge>/video"))
+    found = driver.execute_query(
+        "MATCH (n:Element) WHERE n.name IN ['screen', 'wall', '/uplink'] "
+        "RETURN n.name, [l IN labels(n) WHERE l ENDS WITH 'Leak'] AS leaks"
+    ).records
+    above = {name: {f"{up}Leak" for up in VOCABULARY.hierarchy.ancestors[name]} for name in VOCABULARY.categories}
+    assert {name: {*leaks} for name, leaks in found} == {
+        "screen": above["FaceTemplate"],
+        "wall": set(),
+        "/uplink": above["Video"] | above["FaceTemplate"],
+    }
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("driver")
+def test_what_a_program_reads_is_whole_or_says_that_it_is_not(cli: Cli) -> None:
+    many = "UNWIND range(1, 1500) AS i RETURN i"
+    whole = cli("query", "--cypher", many, "-f", "json")
+    assert (whole.returncode, len(json.loads(whole.stdout)), whole.stderr) == (0, 1500, "")
+    for form, size in (("json", 2), ("csv", 3)):
+        cut = cli("query", "--cypher", many, "-f", form, "--limit", "2")
+        assert cut.returncode == 4
+        assert (len(json.loads(cut.stdout)) if form == "json" else len(cut.stdout.splitlines())) == size
+    assert cli("query", "--cypher", "RETURN 1 AS i", "-f", "csv", "--limit", "1").returncode == 0
+    assert cli("query", "--cypher", many).returncode == 0  # a person sees the line below the table
