@@ -122,8 +122,8 @@ class Groups:
             yield source, leak
             if self._most_across is not None:
                 if across[rows[0]] and count.all > self._most_across:
-                    ends = (np.unique(robots[rows], return_index=True)[1] for robots in (a, table.first[b]))
-                    rows = rows[np.concatenate([*ends])]
+                    firsts = [np.unique(robots[rows], return_index=True)[1] for robots in (a, table.first[b])]
+                    rows = rows[np.concatenate(firsts)]
                 yield from zip(sources[rows].tolist(), leaks[rows].tolist(), strict=True)
         no = np.zeros(len(keys), bool)
         for robots_at, ends_here in ((a, no), (table.first[b], across)):
