@@ -75,7 +75,7 @@ OF_ITS_OWN = {  # modules that touch files in another way, and why none of these
     "report/compare/validity.py": "what is shipped",
     "ingest/policies/saved_graph.py": "what is shipped; bounded_file.py reads",
     "src/rosprivacy/api.py": "begins a session, no file",
-    "src/rosprivacy/cli/explore.py": "begins a session, no file",
+    "src/rosprivacy/cli/explore.py": "the link in a file of its own, gone at the end",
     "src/rosprivacy/explorer/web/application.py": "what is shipped",
     "src/rosprivacy/explorer/journal.py": "journals of sessions, in the user's state folder",
     "src/rosprivacy/cli/own_error.py": "the report of an error, a new file",
