@@ -174,7 +174,7 @@ READERS = [
     Reader("saved graph", 1000, _graph, read_saved),
     Reader("types", 500, _types, read_types),
     Reader("decisions", 500, _decisions, lambda file: read_decisions(file, load(), AT[:10])),
-    _cpp("comments", 20000, lambda n: "// just a comment, say a licence\n" * n),
+    _cpp("comments", 5000, lambda n: "// just a comment, say a licence\n" * n),
     _cpp("comments behind code", 2000, lambda n: "int a; // just a comment\n" * n),
     _cpp("annotations", 4000, lambda n: "// privacy: source Video\n" * n),
     _cpp("publishers", 1000, lambda n: 'auto p = create_publisher<Image>("/a");\n' * n),
