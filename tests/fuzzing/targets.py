@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import rosprivacy
 from rosprivacy.analysis import durations
-from rosprivacy.analysis.errors import InputError, InputErrors
+from rosprivacy.analysis.errors import InputError, InputErrors, QueryError
 from rosprivacy.analysis.model import Confidence, Element, Place, Profile
 from rosprivacy.analysis.suggesting.asked_elements import Asked
 from rosprivacy.analysis.suggesting.by_package import package_evidence
@@ -251,7 +251,10 @@ def _results() -> None:
 def _query() -> None:
     text = Path("asked.cypher").read_text("utf-8", "replace")
     parse("asked", text)
-    refuse_too_much(text)
+    try:
+        refuse_too_much(text)
+    except QueryError as error:  # of a query that has no file, so no place
+        raise QueryError(f"asked.cypher: {error}") from None
 
 
 def _duration() -> None:
