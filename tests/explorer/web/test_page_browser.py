@@ -5,6 +5,7 @@ from __future__ import annotations
 import webbrowser
 from pathlib import Path
 from typing import TYPE_CHECKING
+from urllib.parse import urlsplit
 
 import pytest
 
@@ -234,6 +235,8 @@ def test_the_file_that_opens_the_page_opens_it(
         assert explore._open(explorer.door.link)
         WebDriverWait(browser, SECONDS).until(lambda _: browser.find_elements("css selector", "#rows"))
         assert browser.current_url == f"http://127.0.0.1:{explorer.door.port}/"
+        asked = {urlsplit(address).netloc for address in chrome.requests(browser)}
+        assert asked == {"", f"127.0.0.1:{explorer.door.port}"}  # the file, and the page
 
 
 def test_a_full_disk_in_mid_session_loses_nothing_and_is_told(browser: WebDriver, tmp_path: Path) -> None:

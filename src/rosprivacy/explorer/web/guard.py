@@ -41,7 +41,8 @@ HEADERS = {
 # The page asks for the next one itself: where the link came from another page, or from a file, a browser keeps the
 # cookie back in all that the answer leads to (SameSite), but not in what our own page asks.
 ENTERED = (
-    "<!doctype html><html lang=en><meta http-equiv=refresh content='0;url=/'><title>rosprivacy explore</title>"
+    "<!doctype html><html lang=en><meta http-equiv=refresh content='0;url=/'><link rel=icon href='data:,'>"
+    "<title>rosprivacy explore</title>"
     "<p><a href='/'>Go on to the page</a></p></html>"
 )
 # A link to the page itself: from a terminal in a web page, the first request comes without the cookie (SameSite).
