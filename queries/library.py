@@ -18,6 +18,7 @@ import re
 from contextlib import suppress
 from dataclasses import dataclass
 from importlib.resources import files
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import QueryError, shown
@@ -255,15 +256,16 @@ def _faults(query: Query, stem: str) -> Iterator[str]:
 
 def _returned(body: str) -> list[str]:
     """The names of the columns of the last RETURN that stands in no subquery."""
-    while "{" in body and (outside := re.sub(r"\{[^{}]*\}", "", body)) != body:
-        body = outside
-    last = re.split(r"\bRETURN\b(?:\s+DISTINCT\b)?", body)[-1]
+    outside, depth = [], 0
+    for piece in re.split("([{}])", body):
+        depth = max(0, depth + (piece == "{") - (piece == "}"))
+        outside += [] if depth or piece == "}" else [piece]
+    last = re.split(r"\bRETURN\b(?:\s+DISTINCT\b)?", "".join(outside))[-1]
     last = re.split(r"\bORDER BY\b|\bLIMIT\b|;", last)[0]
-    parts, depth = [""], 0
-    for character in last:
+    ends, depth = [-1], 0
+    for at, character in enumerate(last):
         depth += (character in "([{") - (character in ")]}")
         if character == "," and not depth:
-            parts.append("")
-        else:
-            parts[-1] += character
+            ends.append(at)
+    parts = [last[begin + 1 : end] for begin, end in pairwise([*ends, len(last)])]
     return [re.split(r"\bAS\b", part)[-1].strip() for part in parts]

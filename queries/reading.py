@@ -1,6 +1,7 @@
 """What a query would do, by the server's own plan of it (``EXPLAIN``, which runs nothing), before it is run.
 
-In: an open transaction and the Cypher that is to run in it. Out: nothing, or why it is refused. The access mode of the
+In: an open transaction and the Cypher that is to run in it. Out: nothing, or why it is refused. What a server's parser
+would not survive is refused by its text, before the server gets it. The access mode of the
 session stops what writes to the graph. It does not stop ``LOAD CSV``, procedures, and what acts on the server; the
 plan shows these, whatever the text looks like. Only what is known to read the graph passes: a step that a newer server
 brings is refused until it stands here.
@@ -18,6 +19,15 @@ if TYPE_CHECKING:
 
     from neo4j import ResultSummary, Transaction
 
+DEEPEST = 150  # brackets and CASE within each other
+ALIKE = 200  # of one operator with no other between: NOT NOT …, .a.a…
+OPERATORS = 2_000  # between two commas or clauses; beyond each of these the server's stack overflows, or it plans on
+_TEXT = r"""'(?:[^'\\]|\\.)*'?|"(?:[^"\\]|\\.)*"?|`[^`]*`?|//[^\n]*"""  # what is not closed goes to the end
+_CLAUSES = "MATCH|WITH|WHERE|RETURN|UNWIND|CALL|UNION|ORDER|LIMIT|SKIP|YIELD"
+_WORDS = rf"(?P<clause>\b(?:{_CLAUSES})\b|,)|(?P<open>\bCASE\b|[(\[{{])|(?P<close>\bEND\b|[)\]}}])"
+_TOKEN = re.compile(
+    rf"(?:{_TEXT})|{_WORDS}|(?P<operator>\b(?:NOT|AND|OR|XOR|IN|IS)\b|[-+*/%^=<>.:|])", re.IGNORECASE | re.DOTALL
+)
 INSTEAD = "queries only read the graph: use cypher-shell or the driver for it"
 # Operators of plans, as Neo4j's manual lists them, without what stands before and behind: `Partitioned`,
 # `Directed` and `Undirected`, `(All)`, `@neo4j`.
@@ -55,6 +65,36 @@ _STEP = re.compile(r"(?:Partitioned)?(?:Directed|Undirected)?([^(@]+).*", re.DOT
 _LOADS = re.compile(r"\bLOAD\s+CSV\b", re.IGNORECASE)
 _CALLS = re.compile(r"\b(?:Unr|R)esolvedCall\b|\bCALL\s+[^\s({]|\b(?:TERMINATE|SHOW)\s+TRANSACTION", re.IGNORECASE)
 _ADDED = "SHOW FUNCTIONS YIELD name, isBuiltIn WHERE NOT isBuiltIn RETURN name ORDER BY name"
+
+
+def refuse_too_much(text: str) -> None:
+    """Let a query pass that a server can take apart in its time.
+
+    Raises
+    ------
+    QueryError
+        If it stands too deep in brackets, or has too many operators in a row.
+
+    Examples
+    --------
+    >>> refuse_too_much("RETURN 1" + " + 1" * 100)
+    """
+    rows, last, alike = [0], "", 0  # operators so far, at each level of brackets; the last one, and how many of it
+    for token in _TOKEN.finditer(text):
+        sort, word = token.lastgroup, token[0].upper()
+        if sort == "open":
+            rows.append(0)
+        elif sort == "close":
+            rows = rows[:-1] or [0]
+        elif sort == "clause":
+            rows[-1] = alike = 0
+        elif sort == "operator":
+            rows[-1] += 1
+            last, alike = word, alike + 1 if word == last else 1
+        if len(rows) > DEEPEST + 1:
+            raise QueryError(f"the query has brackets within brackets, more than {DEEPEST} deep; ask for less")
+        if alike > ALIKE or rows[-1] > OPERATORS:
+            raise QueryError(f"the query has too many operators in a row, {rows[-1]:,} and more; ask for less")
 
 
 def refuse_unless_reading(transaction: Transaction, text: str, values: Mapping[str, Any]) -> ResultSummary:

@@ -8,7 +8,9 @@ from __future__ import annotations
 import json
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from itertools import accumulate
+from functools import partial
+from queue import Empty, SimpleQueue
+from threading import Thread
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import DatabaseError as OurDatabaseError
@@ -16,7 +18,7 @@ from rosprivacy.analysis.errors import QueryError, shown
 from rosprivacy.analysis.written_names import A_LITTLE, FEW, did_you_mean, nearest
 from rosprivacy.queries.graph_values import GraphValue, graph_values, nodes_in, plain, value_of, with_known
 from rosprivacy.queries.library import NAMES
-from rosprivacy.queries.reading import refuse_unless_reading
+from rosprivacy.queries.reading import refuse_too_much, refuse_unless_reading
 from rosprivacy.queries.unknown_names import refuse_unknown_names
 
 if TYPE_CHECKING:
@@ -33,9 +35,7 @@ FETCHED = 100  # rows at once; the server keeps them in memory until they are re
 TIMEOUT = 60.0  # seconds
 LARGEST = 100 * 2**20  # of all rows, as `_size` counts; what is held here while it is turned into text
 LONGEST_REASON = 400
-DEEPEST = (
-    150  # brackets within brackets: from some 250 on the server's stack overflows, and it says nothing for 2 minutes
-)
+GRACE = 10.0  # seconds beyond that bound: the server keeps it while it runs a query, not while it plans one
 WAY = "path"  # the column of the pack that names elements in the order of the flow
 
 
@@ -74,7 +74,8 @@ def run(
     limit
         Most rows to return; None for all.
     timeout
-        Seconds that the server may take; None for as long as it takes.
+        Seconds that the server may take; None for as long as it takes. What it has not even planned ``GRACE`` later is
+        waited for no more.
     known
         Names that the graph can have: one that is neither among these nor in the database is refused; None lets all
         names pass.
@@ -87,10 +88,37 @@ def run(
     DatabaseError
         If the server cannot answer for a reason of its own.
     """
+    refuse_too_much(text)
+    answer = partial(_answer, driver, text, dict(values or {}), limit, timeout, known)
+    return answer() if timeout is None else _in_time(answer, timeout + GRACE)
+
+
+def _in_time(answer: Callable[[], Rows], seconds: float) -> Rows:
+    """Wait for an answer so long: what then still waits for the server ends when the driver is closed."""
+    answers: SimpleQueue[Rows | BaseException] = SimpleQueue()
+
+    def work() -> None:
+        try:
+            answers.put(answer())
+        except BaseException as error:  # noqa: BLE001 - it is raised by whoever waits
+            answers.put(error)
+
+    Thread(target=work, daemon=True).start()
+    try:
+        answered = answers.get(timeout=seconds)
+    except Empty:
+        what = f"the server has not answered within {seconds:g} s: it may still be planning the query"
+        raise QueryError(f"{what}; ask for less") from None
+    if isinstance(answered, BaseException):
+        raise answered
+    return answered
+
+
+def _answer(
+    driver: Driver, text: str, values: dict[str, Any], limit: int | None, timeout: float | None, known: Known | None
+) -> Rows:
     import neo4j  # noqa: PLC0415 - light start
 
-    if _depth(text) > DEEPEST:
-        raise QueryError(f"the query has brackets within brackets, more than {DEEPEST} deep; ask for less")
     with (
         _refusals(driver, timeout),
         driver.session(
@@ -100,10 +128,10 @@ def run(
         ) as session,
         session.begin_transaction(timeout=timeout) as transaction,
     ):
-        planned = refuse_unless_reading(transaction, text, values or {})
+        planned = refuse_unless_reading(transaction, text, values)
         if known is not None:
             refuse_unknown_names(transaction, planned, known)
-        result = transaction.run(text, dict(values or {}))
+        result = transaction.run(text, values)
         columns = tuple(result.keys())
         rows: list[tuple[Any, ...]] = []
         held = 0
@@ -179,12 +207,6 @@ def as_cell(value: Any, column: str = WAY, words: Callable[[GraphValue], str] = 
     return json.dumps(plain(value), ensure_ascii=False, sort_keys=True)
 
 
-def _depth(text: str) -> int:
-    """Return how deep brackets stand in each other at most; those in strings count."""
-    steps = ((sign in "([{") - (sign in ")]}") for sign in text)
-    return max(accumulate(steps), default=0)
-
-
 def _size(value: Any) -> int:
     """Return about how many bytes a plain value takes as text."""
     if isinstance(value, str):
@@ -212,7 +234,7 @@ def _refusals(driver: Driver, timeout: float | None) -> Iterator[None]:
         # A server that has no memory left for a value breaks the connection, and goes on.
         with suppress(DriverError, Neo4jError):
             driver.verify_connectivity()
-            what = "the server broke off while it answered, and runs: the answer may be too large for it"
+            what = "the server broke off, and runs: the query or its answer is too much for it"
             raise QueryError(f"{what}; ask for less") from None
         raise
     except RecursionError:

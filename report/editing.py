@@ -38,6 +38,10 @@ def editing(file: Path) -> Iterator[None]:
         target = file.resolve()
         target.parent.stat()  # filelock would make the folder
         neighbour = target.with_name(f".{target.name[:50]}.lock")
+        if neighbour.is_symlink():  # filelock follows none
+            raise InputError(
+                str(file), 0, f"{shown(str(neighbour))} is a link, and no lock of ours", "remove that link"
+            )
         replaced = target.is_file() or not file.exists()
     if not replaced:  # a pipe
         yield

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import ast
 import doctest
+import json
 import re
 import shlex
 import shutil
@@ -28,6 +29,8 @@ from rosprivacy.ingest.lint.rule_table import RULES
 from rosprivacy.ontology.vocabulary import TOP, load
 from rosprivacy.queries.library import pack
 from rosprivacy.report.terminal import categories
+from tests.fuzzing import record
+from tests.fuzzing.targets import TARGETS
 from tests.helpers.docs import CATEGORIES, blocks
 from tests.helpers.house import MODULES, PACKAGE, ROOMS, WINGS
 from tests.helpers.observed import node_info
@@ -46,6 +49,7 @@ LINT = ROOT / "docs" / "lint.md"
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md"]
 NEEDS_SERVER = ("load", "query", "db", "explore")  # their tests are those of the database; the last is one itself
 SECURITY = ROOT / "docs" / "security.md"
+FUZZED = ROOT / "tests" / "fuzzing" / "record.json"
 PAGES.append(ROOT / "SECURITY.md")
 
 HEAD = """\
@@ -170,6 +174,10 @@ def lint_page(text: str) -> str:
     rows = [f"| `{rule.name}` | {rule.severity} | {rule.about} | {rule.why} |" for rule in RULES.values()]
     head = ["| rule | severity | broken by | what comes of it |", "| --- | --- | --- | --- |"]
     return with_parts(text, rules="\n".join([*head, *rows, ""]).replace("*", r"\*").replace("<", "&lt;"))
+
+
+def security_page(text: str) -> str:
+    return with_parts(text, fuzzing=record.table(json.loads(FUZZED.read_text("utf-8"))))
 
 
 def house() -> str:
@@ -303,6 +311,13 @@ def test_the_ontologies_that_are_shown_are_read(block: str, tmp_path: Path) -> N
     assert len(found.categories) > len(load().categories)
 
 
+def test_the_record_of_the_fuzzing_is_the_one_that_is_kept_and_has_each_reader() -> None:
+    text = SECURITY.read_text("utf-8")
+    assert text == security_page(text)
+    targets = json.loads(FUZZED.read_text("utf-8"))["targets"]
+    assert {name for name, counts in targets.items() if counts["inputs"]} == TARGETS.keys()
+
+
 def test_what_holds_a_promise_is_there() -> None:
     """docs/security.md names a test or a file for each promise."""
     named = re.findall(r"`((?:[\w.-]+/)+[\w.-]+\.\w+)(?:::(\w+))?`", SECURITY.read_text("utf-8"))
@@ -331,4 +346,5 @@ if __name__ == "__main__":
     CATEGORIES.write_text(categories_page(CATEGORIES.read_text("utf-8")), "utf-8")
     COMMAND_LINE.write_text(command_line(), "utf-8")
     LINT.write_text(lint_page(LINT.read_text("utf-8")), "utf-8")
+    SECURITY.write_text(security_page(SECURITY.read_text("utf-8")), "utf-8")
     DATABASE.write_text(database_page(DATABASE.read_text("utf-8")), "utf-8")

@@ -41,6 +41,7 @@ NO_ROBOT = "no-robot"  # folders beside those that a group of robots matches, in
 OWN_DOMAINS = "own-domains"  # robots of which nobody says in which domain they are (rule S1)
 RECORDING = "recording"  # a bag that is a storage: its size, its time, its topics
 SEEN_ALTHOUGH_DENIED = "seen-although-denied"
+SIGNED_BY = "signed-by"  # the CA of a keystore, and whether a user has pinned it
 WITHOUT_WARNINGS = "made-without-warnings"  # a text of what runs, without what the tool warned of (rule S16)
 GAPS = (  # doubts that break the verdict (rule S11)
     UNREAD_FILE, OBSERVATION_GAP, BAG_GAP, ACCESS_GAP, LEAK_JOINS_NOTHING,
@@ -49,7 +50,14 @@ RIDES = (  # doubts that ride on it
     NOTHING_ENFORCED, FALLBACK_TAKEN, EMPTY_GROUP, PATHS_NOT_COUNTED, EMPTY_INCLUDE, WITHOUT_WARNINGS, JOINS_NOTHING,
     NO_ROBOT, REFUSED_NAME, ODD_NAMESPACE, MISTAKEN_TILDE, CAREFUL_DENY, TYPES_OF_NOTHING, IN_PARTS,
 )  # fmt: skip
-ASSUMED = (OBSERVED, ENCLAVES_MADE_UP, FOLDED_NAMES, RECORDING, OWN_DOMAINS)  # notices that stand under Assumed
+ASSUMED = (
+    OBSERVED,
+    ENCLAVES_MADE_UP,
+    FOLDED_NAMES,
+    RECORDING,
+    OWN_DOMAINS,
+    SIGNED_BY,
+)  # notices that stand under Assumed
 NO_SOURCE = "no-source"  # what 'no leak found' lacks, so that it says nothing (rules S11, S12)
 GOES_NOWHERE = "goes-nowhere"
 NO_LEAK_NAMED = "no-leak-named"

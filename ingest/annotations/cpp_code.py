@@ -17,13 +17,13 @@ from rosprivacy.ingest.annotations.cpp_nodes import (
     CLASSES,
     Where,
     arguments_of,
+    brief,
     end_of,
     last_of,
     line_of,
     literal_of,
     names_of,
     path_of,
-    templated,
     text_of,
     variable,
     walk,
@@ -37,12 +37,15 @@ from rosprivacy.ingest.annotations.source_code import (
     Comment,
     Lines,
     NodeClass,
+    OutOfTime,
     Site,
     class_owner,
+    clock,
+    in_time,
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
     from tree_sitter import Node
 
@@ -63,6 +66,9 @@ IMAGE = "sensor_msgs/msg/Image"
 ARGUMENTS = ("argument_list", "initializer_list")
 TEXTS = ("string_literal", "raw_string_literal", "char_literal", "comment", "system_lib_string")
 NAMES = ("qualified_identifier", "type_identifier")
+NAMESPACES = 50  # that are used whole: each plain name of the file may be of each of them
+FEWER = "name what is used of them"
+PIECE = 512  # bytes that the library is given at once
 SIGNS = "/*!< \t\r"  # of comments, at the beginning of a line
 NO_COMMENT = "an annotation stands in a macro or in code that cannot be read"
 ALONE = "put it on a line of its own above the call or class, or correct the code"
@@ -80,12 +86,20 @@ def read_cpp(file: str, data: bytes) -> Code:
     ------
     ImportError
         If there is no library to read it with.
+    LabelError
+        If its names can mean too much.
+    OutOfTime
+        If it takes too long.
     """
     import tree_sitter  # noqa: PLC0415 - an extra, imported where it is used
     import tree_sitter_cpp  # noqa: PLC0415
 
-    language = tree_sitter.Language(tree_sitter_cpp.language())
-    return _Reader(file, data).read(tree_sitter.Parser(language).parse(data).root_node)
+    parser, late = tree_sitter.Parser(tree_sitter.Language(tree_sitter_cpp.language())), clock()
+    try:  # piece by piece: the library can be stopped only so
+        tree = parser.parse(lambda at, _: data[at : at + PIECE], progress_callback=lambda _at, _broken: late())
+    except ValueError:
+        raise OutOfTime from None
+    return _Reader(file, data).read(in_time(walk(tree.root_node), late))
 
 
 class _Reader:
@@ -102,8 +116,8 @@ class _Reader:
         self.sites: list[Site] = []
         self.understood: list[tuple[int, int]] = []  # comments and strings, by byte
 
-    def read(self, root: Node) -> Code:
-        for node, where in walk(root):
+    def read(self, nodes: Iterable[tuple[Node, Where]]) -> Code:
+        for node, where in nodes:
             kind = node.type
             if kind in TEXTS and not (where.broken and kind != "comment"):
                 self.understood.append((node.start_byte, node.end_byte))
@@ -119,19 +133,21 @@ class _Reader:
                 self._class(node, where)
             elif kind == "field_initializer":
                 self._initializer(node, where)
-            elif kind == "init_declarator" and node.parent is not None and node.parent.type == "declaration":
-                self._declared(node, node.parent, where)
+            elif kind == "declaration":
+                self._declared(node, where)
             elif kind == "call_expression":
                 self._call(node, where)
                 self._use_of_call(node, where)
             elif kind in NAMES:
                 self._use_of_name(node, where)
+        if len(set(self.used.namespaces)) > NAMESPACES:
+            raise LabelError(self.file, 0, f"using namespace, of more than {NAMESPACES} namespaces", FEWER)
         sites = tuple(site._replace(type=self.types.message(site.type)) for site in self.sites)
         classes, lost = tuple(self.classes), tuple(self._lost())
         return Code(self.file, "c++", tuple(self.comments), classes, sites, lost, self.used.uses())
 
     def _comment(self, node: Node) -> Iterator[Comment]:
-        before = self.data[: node.start_byte].rpartition(b"\n")[2]
+        before = self.data[self.data.rfind(b"\n", 0, node.start_byte) + 1 : node.start_byte]
         for at, line in enumerate(text_of(node).split("\n")):
             text = line.rstrip("\r \t\\").removesuffix("*/").strip(SIGNS)
             yield Comment(line_of(node) + at, text, at > 0 or not before.strip())
@@ -159,7 +175,7 @@ class _Reader:
         bases = tuple(
             last_of(child) for child in (clause.named_children if clause else ()) if "access" not in child.type
         )
-        lines = Lines(where.first if templated(node) else line_of(node), line_of(body))
+        lines = Lines(where.first if where.templated else line_of(node), line_of(body))
         self.classes.append(NodeClass(last_of(name), bases, lines))
         self.sites.append(Site(NODE, None, lines, lines, class_owner(last_of(name)), head=True))
 
@@ -171,14 +187,16 @@ class _Reader:
             lines = Lines(where.first, end_of(node))
             self._node(arguments, lines, class_owner(where.of_class), Lines(line_of(node), end_of(node)), base)
 
-    def _declared(self, node: Node, declaration: Node, where: Where) -> None:
+    def _declared(self, declaration: Node, where: Where) -> None:
         """``rclcpp::Node node("camera")``."""
-        type_name, value = declaration.child_by_field_name("type"), node.child_by_field_name("value")
-        if type_name and value and last_of(type_name) in NODE_CLASSES and value.type in ARGUMENTS:
-            target = node.child_by_field_name("declarator")
-            owner = variable(text_of(target), where) if target else ""
-            lines = Lines(line_of(declaration), end_of(declaration))
-            self._node(value, lines, owner, lines, "")
+        type_name = declaration.child_by_field_name("type")
+        if type_name is None or last_of(type_name) not in NODE_CLASSES:
+            return
+        lines = Lines(line_of(declaration), end_of(declaration))
+        for node in declaration.children_by_field_name("declarator"):
+            target, value = node.child_by_field_name("declarator"), node.child_by_field_name("value")
+            if node.type == "init_declarator" and value and value.type in ARGUMENTS:
+                self._node(value, lines, variable(brief(target), where) if target else "", lines, "")
 
     def _node(self, arguments: Node, statement: Lines, owner: str, lines: Lines, base: str) -> None:
         given = arguments_of(arguments)
@@ -222,12 +240,12 @@ class _Reader:
     ) -> None:  # fmt: skip
         kind, role = CALLS[path[-1]]
         space = path[-2] if len(path) > 1 else ""
-        found = text_of(template[0]) if template else ""
+        found = brief(template[0]) if template else ""
         if space == ACTIONS and path[-1] == "create_client":
             kind, role = "action", "call"
         free = space in FREE and not (given and literal_of(given[0]) is not None)
         if free:
-            receiver = text_of(given[0]) if given else "?"
+            receiver = brief(given[0]) if given else "?"
             given = given[1:]
         owner = class_owner(where.of_class) if receiver in ("", "this", "*this") else variable(receiver, where)
         name = literal_of(given[0]) if given else None

@@ -16,11 +16,18 @@ if TYPE_CHECKING:
 
 STATEMENTS = ("expression_statement", "declaration", "field_declaration", "return_statement", "field_initializer")
 CLASSES = ("class_specifier", "struct_specifier")
+LONGEST = 1000  # bytes of a variable or type
 FUNCTIONS = ("function_definition", "lambda_expression")
 
 
 class Where(NamedTuple):
-    """Where a piece of code stands: class, function, its first line, the statement, and the variable that is set."""
+    """Where a piece of code stands: class, function, its first line, the statement, and the variable that is set.
+
+    Attributes
+    ----------
+    templated
+        Whether template parameters stand right before it. The library's own ``parent`` goes down from the root.
+    """
 
     of_class: str = ""
     function: int = 0
@@ -28,11 +35,17 @@ class Where(NamedTuple):
     statement: Lines | None = None
     target: str = ""
     broken: bool = False
+    templated: bool = False
 
 
 def text_of(node: Node) -> str:
     """Return the text of a piece of code, as far as it is UTF-8."""
     return (node.text or b"").decode("utf-8", "replace")
+
+
+def brief(node: Node) -> str:
+    """Return the text of what may be a variable or a type; ``?`` for what is longer than any."""
+    return text_of(node) if node.end_byte - node.start_byte <= LONGEST else "?"
 
 
 def walk(root: Node) -> Iterator[tuple[Node, Where]]:
@@ -47,22 +60,24 @@ def walk(root: Node) -> Iterator[tuple[Node, Where]]:
 
 def _inside(node: Node, where: Where) -> Where:
     """Where the parts of a node stand."""
-    kind = node.type
+    kind, templated = node.type, where.templated
+    if templated:
+        where = where._replace(templated=False)
     if kind == "ERROR":
         return where._replace(broken=True)
     if kind in CLASSES and (name := node.child_by_field_name("name")):
         where = Where(of_class=last_of(name), broken=where.broken)
     elif kind in FUNCTIONS:
-        first = where.first if templated(node) else line_of(node)
+        first = where.first if templated else line_of(node)
         of_class = _scope(node) or where.of_class
         where = Where(of_class, node.start_byte + 1, first, broken=where.broken)
     elif kind == "template_declaration":
-        where = where._replace(first=line_of(node))
+        where = where._replace(first=line_of(node), templated=True)
     elif kind in STATEMENTS:
         where = where._replace(statement=Lines(line_of(node), end_of(node)), target="")
     elif kind in ("init_declarator", "assignment_expression"):
         target = node.child_by_field_name("declarator") or node.child_by_field_name("left")
-        where = where._replace(target=text_of(target) if target else "")
+        where = where._replace(target=brief(target) if target else "")
     elif kind in ("argument_list", "compound_statement"):
         where = where._replace(target="")
     return where
@@ -77,11 +92,6 @@ def _scope(function: Node) -> str:
         )
     path = names_of(declarator) if declarator is not None else []
     return path[-2] if len(path) > 1 else ""
-
-
-def templated(node: Node) -> bool:
-    """Return whether code has template parameters before it."""
-    return node.parent is not None and node.parent.type == "template_declaration"
 
 
 def variable(name: str, where: Where) -> str:
@@ -128,7 +138,7 @@ def path_of(function: Node) -> tuple[list[str], list[Node], str]:
     receiver = ""
     if function.type == "field_expression":
         argument, field = function.child_by_field_name("argument"), function.child_by_field_name("field")
-        receiver = text_of(argument) if argument else "?"
+        receiver = brief(argument) if argument else "?"
         function = field or function
     node = function
     while node.type == "qualified_identifier" and (name := node.child_by_field_name("name")) is not None:

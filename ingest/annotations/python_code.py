@@ -24,6 +24,8 @@ from rosprivacy.ingest.annotations.source_code import (
     NodeClass,
     Site,
     class_owner,
+    clock,
+    in_time,
 )
 
 if TYPE_CHECKING:
@@ -73,14 +75,20 @@ def read_python(file: str, data: bytes) -> Code:
     ----------
     file
         For messages.
+
+    Raises
+    ------
+    OutOfTime
+        If it takes too long; Python's own parser, which nothing can stop, takes a time in proportion to the file.
     """
+    late = clock()
     try:
         encoding, _ = tokenize.detect_encoding(io.BytesIO(data).readline)
         text = data.decode(encoding).replace("\r\n", "\n").replace("\r", "\n")
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # what Python thinks of the code is its author's business
             tree = ast.parse(text)
-        comments = tuple(_comments(text))
+        comments = tuple(in_time(_comments(text), late))
     except FAILURES as error:
         line = (isinstance(error, SyntaxError) and error.lineno) or 1
         what = error.msg if isinstance(error, SyntaxError) else str(error) or type(error).__name__
@@ -89,7 +97,7 @@ def read_python(file: str, data: bytes) -> Code:
     imports = dict(pairs)
     used = PythonUses(tree, file)
     classes, sites = [], []
-    for node, where in _walk(tree):
+    for node, where in in_time(_walk(tree), late):
         if isinstance(node, ast.ClassDef):
             classes.append(_class(node, imports))
             lines = classes[-1].lines
@@ -97,7 +105,7 @@ def read_python(file: str, data: bytes) -> Code:
         elif isinstance(node, ast.Call) and (site := _site(node, where, imports)):
             sites.append(site)
     own = comments, tuple(classes), tuple(sites)
-    return Code(file, "python", *own, (), used.uses(), used.units, *launched(tree), pairs)
+    return Code(file, "python", *own, (), used.uses(late), used.units, *launched(tree), pairs)
 
 
 def _comments(text: str) -> Iterator[Comment]:

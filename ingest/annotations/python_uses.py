@@ -16,11 +16,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.suggesting.library_rules import ADDRESS
-from rosprivacy.ingest.annotations.source_code import LONGEST_USE, Lines, Unit, Use
+from rosprivacy.ingest.annotations.source_code import LONGEST_USE, Lines, Unit, Use, in_time
 from rosprivacy.ingest.annotations.started import program
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
 LONGEST = 32  # names and calls of a chain: what is longer is nobody's
 BUILT_IN = ("open", "input")
@@ -73,14 +73,20 @@ class PythonUses:
         self._made: dict[tuple[str, str], set[str]] = defaultdict(set)  # by unit and variable: what makes its values
         self._commands: dict[tuple[str, str], list[ast.expr]] = defaultdict(list)  # lists and texts that variables are
 
-    def uses(self) -> tuple[Use, ...]:
-        """Return what is used, each name once in a unit, in the order of the text."""
+    def uses(self, late: Callable[[], bool]) -> tuple[Use, ...]:
+        """Return what is used, each name once in a unit, in the order of the text.
+
+        Raises
+        ------
+        OutOfTime
+            When it is late.
+        """
         pieces = [(node, unit) for unit, top in self._tops() for node in ast.walk(top)]
-        for node, unit in pieces:
+        for node, unit in in_time(pieces, late):
             self._note(node, unit)
         found: dict[tuple[str, str], Use] = {}
         inside: set[int] = set()  # parts of what has been looked at as a whole
-        for node, unit in pieces:
+        for node, unit in in_time(pieces, late):
             if id(node) in inside or not isinstance(node, PIECES):
                 continue
             of_text = isinstance(node, ast.Constant | ast.JoinedStr)

@@ -5,14 +5,21 @@ Made by ``python_code.py`` and ``cpp_code.py``. Nothing is run, built or guessed
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from time import thread_time
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator
+
     from rosprivacy.analysis.errors import InputError
+
+    Item = TypeVar("Item")
 
 NODE = "node"
 CLASS = "class "
 NODE_CLASSES = ("Node", "LifecycleNode")  # of rclpy, rclcpp, rclcpp_lifecycle, nav2_util
+SECONDS = 120.0  # of processor time for one file; the largest that is read takes a quarter of it
+OFTEN = 100  # items between two looks at the clock
 LONGEST_USE = 200  # signs of a name that is used: no library has a longer one
 WRITES = ("publish", "reply", "request", "execute", "call")  # roles of what sends something into its channel
 
@@ -171,3 +178,27 @@ def class_owner(name: str) -> str:
 def class_of(owner: str) -> str:
     """Return the name of a class whose nodes are meant; empty for a variable."""
     return owner.removeprefix(CLASS) if owner.startswith(CLASS) else ""
+
+
+class OutOfTime(Exception):  # noqa: N818 - of the field
+    """A file was not read to its end in ``SECONDS``: what it says is not known."""
+
+
+def clock() -> Callable[[], bool]:
+    """Return what tells whether the time for one file is over; processor time, so that a busy machine is no matter."""
+    until = thread_time() + SECONDS
+    return lambda: thread_time() > until
+
+
+def in_time(items: Iterable[Item], late: Callable[[], bool]) -> Iterator[Item]:
+    """Yield items as long as there is time.
+
+    Raises
+    ------
+    OutOfTime
+        When there is none left.
+    """
+    for number, item in enumerate(items):
+        if number % OFTEN == 0 and late():
+            raise OutOfTime
+        yield item

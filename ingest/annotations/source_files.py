@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from rosprivacy.analysis.errors import LabelError, shown
 from rosprivacy.ingest.annotations.cpp_code import read_cpp
 from rosprivacy.ingest.annotations.python_code import read_python
-from rosprivacy.ingest.annotations.source_code import Code
+from rosprivacy.ingest.annotations.source_code import SECONDS, Code, OutOfTime
 from rosprivacy.ingest.policies.folders import contents
 from rosprivacy.ingest.reading.bounded_file import beginning, read_regular
 
@@ -33,6 +33,7 @@ OF_OTHERS = frozenset(
 )
 MAX_BYTES = 4 * 2**20
 FIRST_LINE = 200
+LATE = "split it, or put a file COLCON_IGNORE into its folder to leave it out"
 MISSING = "install the extra [code] from where rosprivacy came from"
 
 
@@ -72,6 +73,9 @@ def read_sources(sources: Iterable[str]) -> Sources:
             codes.append((read_cpp if _language(file) == "c++" else read_python)(file, data))
         except LabelError as error:
             codes.append(Code(file, "", problems=(error,)))
+        except OutOfTime:
+            late = LabelError(file, 0, f"not read to its end in {SECONDS:g} s of processor time", LATE)
+            codes.append(Code(file, "", problems=(late,)))
         except ImportError as error:
             refused = LabelError(file, 0, f"C++ needs a library that is not installed ({error})", MISSING)
             codes += [] if lacking else [Code(file, "c++", problems=(refused,))]

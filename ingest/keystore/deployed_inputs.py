@@ -9,8 +9,9 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
-from rosprivacy.analysis.errors import InputErrors
+from rosprivacy.analysis.errors import InputErrors, PolicyError
 from rosprivacy.analysis.modes import View
+from rosprivacy.ingest.keystore.certificate import pinned
 from rosprivacy.ingest.keystore.files_alone import read_alone
 from rosprivacy.ingest.keystore.governance_remarks import governance_remarks, rule_remarks
 from rosprivacy.ingest.keystore.governing import domains_of, governed
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.keystore.permissions_file import Permissions
 
 Read = tuple[tuple["Policy", ...], tuple["Diagnostic", ...]]
+ALONE = "not verified with --permissions-ca, since it is named without its keystore"
 _Found = tuple[list["Policy"], list["Diagnostic"]]
 
 
@@ -41,6 +43,7 @@ def read_deployed(
     allow_unsigned: bool = False,
     view: str = View.declared,
     besides: Iterable[str] = (),
+    authorities: tuple[str, ...] = (),
 ) -> Read:
     """Read keystores, and permissions and governance files in any order.
 
@@ -57,6 +60,9 @@ def read_deployed(
         The enforced view has also what the governance leaves to everybody (rule S6).
     besides
         Files and folders that somebody else reads.
+    authorities
+        Certificates or fingerprints of the CAs that may have signed; none where that of a keystore may. A file that is
+        named by itself is not verified, so it is refused then.
 
     Raises
     ------
@@ -64,7 +70,10 @@ def read_deployed(
         With every problem, one line each.
     """
     arguments = tuple(arguments)
-    reading = _Reading(domain, today, allow_unsigned, view, tuple(besides))
+    try:
+        reading = _Reading(domain, today, allow_unsigned, view, tuple(besides), pinned(authorities))
+    except PolicyError as error:
+        raise InputErrors([error]) from None
     alone = [argument for argument in arguments if not is_keystore(argument)]
     parts = [partial(reading.keystore, argument) for argument in arguments if is_keystore(argument)]
     policies: list[Policy] = []
@@ -91,10 +100,13 @@ class _Reading(NamedTuple):
     allow_unsigned: bool
     view: str
     besides: tuple[str, ...]
+    pins: frozenset[str]
 
     def keystore(self, folder: str) -> _Found:
         """What a keystore grants; each enclave has a governance beside it."""
-        enclaves, told = read_keystore(folder, self.today, allow_unsigned=self.allow_unsigned, besides=self.besides)
+        enclaves, told = read_keystore(
+            folder, self.today, allow_unsigned=self.allow_unsigned, besides=self.besides, pins=self.pins
+        )
         policies: list[Policy] = []
         said = list(told)
         for enclave in enclaves:
@@ -105,6 +117,8 @@ class _Reading(NamedTuple):
 
     def alone(self, names: Iterable[str]) -> _Found:
         """What files by themselves grant; each governance counts for the domains that its rules name."""
+        if self.pins:
+            raise InputErrors([PolicyError(name, 0, ALONE, "name the keystore") for name in names])
         read = read_alone(names, allow_unsigned=self.allow_unsigned)
         policies: list[Policy] = []
         said: list[Diagnostic] = []

@@ -6,7 +6,6 @@ read only where that is allowed.
 
 from __future__ import annotations
 
-import hashlib
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -69,7 +68,7 @@ def _read(name: str, read: FilesAlone, *, allow_unsigned: bool) -> None:
     if not allow_unsigned:
         what = "governance by itself: nothing says who may sign it" if governs else PERMISSIONS_ALONE
         raise PolicyError(name, 0, what, "name the keystore, or read them all the same with --allow-unsigned")
-    hashed = name, hashlib.sha256(signed.data).hexdigest()
+    hashed = name, signed.sha256
     if governs:
         read.governances.append((read_governance(signed.data, name, signed.before), hashed))
     else:

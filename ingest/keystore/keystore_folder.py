@@ -9,7 +9,6 @@ folder for each enclave with ``cert.pem``, ``governance.p7s`` and ``permissions.
 
 from __future__ import annotations
 
-import hashlib
 import os
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -17,8 +16,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputErrors, PolicyError, shown
-from rosprivacy.analysis.model import Diagnostic, Place, Severity
-from rosprivacy.ingest.keystore.certificate import given_by, read_certificate
+from rosprivacy.analysis.model import SIGNED_BY, Diagnostic, Place, Severity
+from rosprivacy.ingest.keystore.certificate import given_by, read_authority, read_certificate
 from rosprivacy.ingest.keystore.governance_file import read_governance
 from rosprivacy.ingest.keystore.grants import enclave_of
 from rosprivacy.ingest.keystore.permissions_file import read_permissions
@@ -29,6 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from rosprivacy.analysis.errors import InputError
+    from rosprivacy.ingest.keystore.certificate import Authority
     from rosprivacy.ingest.keystore.governance_file import Governance
     from rosprivacy.ingest.keystore.permissions_file import Permissions
     from rosprivacy.ingest.keystore.signed_file import SignedText
@@ -36,11 +36,15 @@ if TYPE_CHECKING:
 PERMISSIONS, GOVERNANCE, CERTIFICATE = "permissions.p7s", "governance.p7s", "cert.pem"
 FILES = (".p7s", ".pem")
 PERMISSIONS_CA, IDENTITY_CA = "permissions_ca.cert.pem", "identity_ca.cert.pem"
+CALLED = {PERMISSIONS_CA: "the permissions CA", IDENTITY_CA: "the identity CA"}
+PINNED = "it is that of --permissions-ca"
+NOT_PINNED = "it lies beside what it signed, so nothing shows whose it is (--permissions-ca pins it)"
+PIN = "find out who made it; correct the option, or the keystore"
 
 
 @dataclass(frozen=True, slots=True)
 class Deployed:
-    """Permissions as they are deployed, with their governance and the SHA-256 of both files."""
+    """Permissions as they are deployed, with their governance and the SHA-256 of all files that were read."""
 
     permissions: Permissions
     governance: Governance
@@ -48,7 +52,12 @@ class Deployed:
 
 
 def read_keystore(
-    folder: str, today: str, *, allow_unsigned: bool = False, besides: Iterable[str] = ()
+    folder: str,
+    today: str,
+    *,
+    allow_unsigned: bool = False,
+    besides: Iterable[str] = (),
+    pins: frozenset[str] = frozenset(),
 ) -> tuple[tuple[Deployed, ...], tuple[Diagnostic, ...]]:
     """Read all enclaves of a keystore.
 
@@ -60,6 +69,8 @@ def read_keystore(
         Whether what is unsigned or badly signed is read too; then that is told.
     besides
         Files and folders that somebody else reads.
+    pins
+        Fingerprints of the CAs that may have signed; none where the CA of the keystore may.
 
     Raises
     ------
@@ -73,11 +84,11 @@ def read_keystore(
     problems = [error for path, error in unread.items() if path.suffix not in FILES]  # of a file who reads it says it
     if not (enclaves or problems):
         problems.append(PolicyError(folder, 0, f"a keystore without any {PERMISSIONS}", "create an enclave in it"))
-    verified: dict[str, SignedText] = {}
+    shared = _Shared(folder, today, allow_unsigned, pins)
     deployed: list[Deployed] = []
     said = list(beside_keystore(folder, {*map(os.path.realpath, besides)}))
     for enclave in enclaves:
-        reader = _Enclave(folder, enclave, today, allow_unsigned, verified)
+        reader = _Enclave(shared, enclave)
         try:
             deployed.append(reader.read())
         except InputErrors as error:
@@ -85,18 +96,51 @@ def read_keystore(
         said += reader.said
     if problems:
         raise InputErrors(problems)
-    return tuple(deployed), tuple(said)
+    return tuple(deployed), (*said, *shared.signers())
+
+
+@dataclass(slots=True)
+class _Shared:
+    """A keystore, how to read it, and what its enclaves share: it is asked for once."""
+
+    keystore: str
+    today: str
+    allow_unsigned: bool
+    pins: frozenset[str]
+    verified: dict[str, SignedText] = field(default_factory=dict)  # by file
+    authorities: dict[str, Authority] = field(default_factory=dict)  # by name
+
+    def authority(self, name: str) -> Authority:
+        """Return a CA; a permissions CA that is not pinned is none."""
+        if name not in self.authorities:
+            file = str(Path(self.keystore) / "public" / name)
+            read = read_authority(file, CALLED[name])
+            others = [one for one in read.fingerprints if one not in self.pins]
+            if name == PERMISSIONS_CA and self.pins and others:
+                raise _NotPinnedError(
+                    file, 0, f"not the CA of --permissions-ca: its SHA-256 fingerprint is {others[0]}", PIN
+                )
+            self.authorities[name] = read
+        return self.authorities[name]
+
+    def signers(self) -> Iterator[Diagnostic]:
+        """Say which CA the signatures are of."""
+        authority = self.authorities.get(PERMISSIONS_CA)
+        for fingerprint in authority.fingerprints if authority and self.verified else ():
+            message = f"the CA of the signatures, SHA-256 {fingerprint}: {PINNED if self.pins else NOT_PINNED}"
+            yield Diagnostic(Place(authority.file, 0), Severity.NOTICE, message, SIGNED_BY)
+
+
+class _NotPinnedError(PolicyError):
+    """The CA of a keystore is not the one that a user pinned: --allow-unsigned does not help."""
 
 
 @dataclass(slots=True)
 class _Enclave:
     """One folder with its permissions, and what is found in it."""
 
-    keystore: str
+    shared: _Shared
     folder: Path
-    today: str
-    allow_unsigned: bool
-    verified: dict[str, SignedText]  # by file: the governance that all enclaves share is asked for once
     said: list[Diagnostic] = field(default_factory=list)
     problems: list[InputError] = field(default_factory=list)
     sources: dict[str, str] = field(default_factory=dict)
@@ -130,40 +174,46 @@ class _Enclave:
     def _signed(self, name: str) -> SignedText | None:
         """A signed file of the folder; None, with the problem noted, if it is refused."""
         file = str(self.folder / name)
-        shared = Path(self.keystore) / "enclaves" / name
-        if name == GOVERNANCE and shared.is_file() and Path(file).is_file() and shared.samefile(file):
-            file = str(shared)  # sros2 links it into each enclave
-        authority = str(Path(self.keystore) / "public" / PERMISSIONS_CA)
+        enclaves = Path(self.shared.keystore) / "enclaves"
+        if name == GOVERNANCE and (common := enclaves / name).is_file() and Path(file).is_file():
+            file = str(common) if common.samefile(file) else file  # sros2 links it into each enclave
         try:
-            signed = self.verified.get(file) or read_signed(file, authority)
+            authority = self.shared.authority(PERMISSIONS_CA)
+            signed = self.shared.verified.get(file) or read_signed(file, authority)
+            self.sources[authority.file] = authority.sha256
         except PolicyError as error:
-            if not self.allow_unsigned or not Path(file).is_file():
+            unsigned = self.shared.allow_unsigned and not isinstance(error, _NotPinnedError)
+            if not unsigned or not Path(file).is_file():
                 self.problems.append(error)
                 return None
             signed = read_signed(file, None)
             self._warn(file, f"not verified: {error.problem}; read all the same, as --allow-unsigned asks")
         if signed.verified:
-            self.verified[file] = signed
-        self.sources[file] = hashlib.sha256(signed.data).hexdigest()
+            self.shared.verified[file] = signed
+        self.sources[file] = signed.sha256
         return signed
 
     def _certificate(self, permissions: Permissions) -> None:
         """Whose permissions these are: the certificate beside them says it, and its CA vouches for it."""
         file = str(self.folder / CERTIFICATE)
-        certificate = read_certificate(file)
-        authority = Path(self.keystore) / "public" / IDENTITY_CA
-        if not given_by(certificate, str(authority)):
-            raise PolicyError(file, 0, f"not given by {shown(str(authority))}", "create the enclave anew")
+        certificate, authority = read_certificate(file), self.shared.authority(IDENTITY_CA)
+        self.sources |= {file: certificate.sha256, authority.file: authority.sha256}
+        if not given_by(certificate, authority):
+            raise PolicyError(file, 0, f"not given by {shown(authority.file)}", "create the enclave anew")
         named = [grant.subject for grant in permissions.grants]
         if certificate.subject not in named:
             what = f"permissions of {shown(', '.join(named))}, beside the certificate of {shown(certificate.subject)}"
             raise PolicyError(permissions.file, 0, what, "the middleware refuses this enclave; create it anew")
-        path = "/" + self.folder.relative_to(Path(self.keystore) / "enclaves").as_posix()
+        path = "/" + self.folder.relative_to(Path(self.shared.keystore) / "enclaves").as_posix()
         if enclave_of(certificate.subject) != path:
             self._warn(file, f"the certificate of {certificate.subject} stands in the folder of enclave {path}")
-        if not certificate.not_before.date().isoformat() <= self.today <= certificate.not_after.date().isoformat():
+        if (
+            not certificate.not_before.date().isoformat()
+            <= self.shared.today
+            <= certificate.not_after.date().isoformat()
+        ):
             when = f"from {certificate.not_before.date()} to {certificate.not_after.date()}"
-            message = f"the certificate of {certificate.subject} is valid {when}, not on {self.today}"
+            message = f"the certificate of {certificate.subject} is valid {when}, not on {self.shared.today}"
             self._warn(file, f"{message}: a middleware refuses it now; it is read, since it can be renewed")
 
     def _warn(self, file: str, message: str) -> None:

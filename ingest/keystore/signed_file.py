@@ -11,17 +11,19 @@ Source: DDS-Security 1.1, 9.4.1.1; ``Permissions.cpp`` of Fast DDS and ``access_
 
 from __future__ import annotations
 
+import hashlib
 from dataclasses import dataclass
-from pathlib import Path
+from functools import partial
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import PolicyError, shown
-from rosprivacy.ingest.keystore.openssl import absolute, openssl
+from rosprivacy.ingest.keystore.openssl import AUTHORITY, openssl
 from rosprivacy.ingest.reading.bounded_file import read_regular
 from rosprivacy.ingest.reading.file_kinds import is_signed
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.errors import InputError
+    from rosprivacy.ingest.keystore.certificate import Authority
 
 MAX_BYTES = 64 * 2**20
 _XML = (b"<?xml", b"<dds")
@@ -33,6 +35,8 @@ class SignedText:
 
     Attributes
     ----------
+    sha256
+        Of the file as it lies there.
     before
         Lines of the file before the text.
     verified
@@ -40,18 +44,19 @@ class SignedText:
     """
 
     file: str
+    sha256: str
     data: bytes
     before: int
     verified: bool
 
 
-def read_signed(file: str, authority: str | None) -> SignedText:
+def read_signed(file: str, authority: Authority | None) -> SignedText:
     """Read a signed file.
 
     Parameters
     ----------
     authority
-        The certificate of the permissions CA; None where the signature shall not count. Then the text is taken as it
+        The permissions CA; None where the signature shall not count. Then the text is taken as it
         stands, whether it is signed or not.
 
     Raises
@@ -59,13 +64,14 @@ def read_signed(file: str, authority: str | None) -> SignedText:
     PolicyError
         If it cannot be read, is not signed, or its signature is not the CA's.
     """
-    data = read_regular(file, MAX_BYTES, lambda line, what, hint: PolicyError(file, line, what, hint))
+    data = read_regular(file, MAX_BYTES, partial(PolicyError, file))
+    sha256 = hashlib.sha256(data).hexdigest()
     text, before = _text(data)
     if authority is None:
-        return SignedText(file, text, before, verified=False)
+        return SignedText(file, sha256, text, before, verified=False)
     if not is_signed(data):
         raise PolicyError(file, 1, "not signed", "sign it, or read it all the same with --allow-unsigned")
-    return SignedText(file, _verified(file, authority), before, verified=True)
+    return SignedText(file, sha256, _verified(file, data, authority), before, verified=True)
 
 
 def _text(data: bytes) -> tuple[bytes, int]:
@@ -78,14 +84,12 @@ def _text(data: bytes) -> tuple[bytes, int]:
     return data[start : end + len(b"</dds>") if end >= 0 else len(data)], data.count(b"\n", 0, start)
 
 
-def _verified(file: str, authority: str) -> bytes:
+def _verified(file: str, data: bytes, authority: Authority) -> bytes:
     """The text that openssl takes out of a file whose signature is that of the CA."""
-    if not Path(authority).is_file():
-        raise PolicyError(authority, 0, "no certificate of the permissions CA", "correct the keystore")
-    switches = ["-verify", "-text", "-noverify", "-nointern", "-inform", "SMIME"]
-    done = openssl(["smime", *switches, "-certfile", absolute(authority), "-in", absolute(file)], file)
+    switches = ["-verify", "-text", "-noverify", "-nointern", "-inform", "SMIME", "-certfile", AUTHORITY]
+    done = openssl(["smime", *switches], file, data, authority.pem)
     if done.returncode:
-        raise _refused(file, authority, done.stderr.decode("utf-8", "replace"))
+        raise _refused(file, authority.file, done.stderr.decode("utf-8", "replace"))
     return done.stdout
 
 

@@ -353,6 +353,7 @@ _TYPED = {
     "a.recording": "{file} : un stockage est un enregistrement (bag) ; aucun message n'y a été lu ({said}).",
     "a.law": "Seul le RGPD est suivi le long des chemins, tel que l'ontologie du programme le rend, revue le {date}. Le règlement sur l'intelligence artificielle, le droit des communications électroniques et le droit national sont signalés à côté des chemins, sans être évalués ; les accords d'entreprise ne sont pas examinés. Les propositions de droit nouveau ne sont pas appliquées.",
     "a.own-domains": "{file} : {n} robot(s) sans domaine nommé, chacun supposé dans le sien ; ROS 2 les met tous dans le domaine 0.",
+    "a.signed-by": "{file} : les signatures sont vérifiées avec cette AC ; seul --permissions-ca fixe à qui elle est ({said}).",
     "a.labels": "Les annotations sont la parole d'une personne. Le programme ne peut pas vérifier ce qu'un nœud fait en lui-même, ni ce qui le quitte en dehors de ROS.",
     "t.closed": "Fermé sur la parole de quelqu'un : sans elle, des données iraient plus loin",
     "k.intro": "Chaque ligne est une ligne de politique ou de fichier d'annotations, ou une décision, qui tient des données à l'écart d'un destinataire ou d'un élément que personne n'a examiné. Le résultat ne vaut que dans la mesure où ces lignes sont exactes.",

@@ -55,6 +55,7 @@ def analyze(
     add: Paths = (),
     domain: int | None = None,
     allow_unsigned: bool = False,
+    permissions_ca: Paths = (),
     include_root: Path | None = None,
     max_bytes: int = MAX_BYTES,
     bounds: Bounds = BOUNDS,
@@ -108,6 +109,9 @@ def analyze(
         DDS domain of the robot, for permissions with rules for several.
     allow_unsigned
         Read permissions and governance that are not signed by their CA too.
+    permissions_ca
+        Certificates, or their SHA-256 fingerprints, of the CAs that may have signed what is read; by default each
+        keystore names its own.
     include_root
         Folder that includes may read from; by default the policy's own.
     max_bytes
@@ -150,6 +154,7 @@ def analyze(
         max_paths=max_paths,
         domain=domain,
         allow_unsigned=allow_unsigned,
+        permissions_ca=_paths(permissions_ca),
         include_root=_path(include_root),
         max_bytes=max_bytes,
         bounds=bounds,
@@ -180,6 +185,7 @@ def analyze_fleet(
     today: str | None = None,
     domain: int | None = None,
     allow_unsigned: bool = False,
+    permissions_ca: Paths = (),
     include_root: Path | None = None,
     max_bytes: int = MAX_BYTES,
     bounds: Bounds = BOUNDS,
@@ -196,7 +202,7 @@ def analyze_fleet(
         As in ``analyze``.
     hangs_on
         Whether to work out what the answer hangs on, which takes longer; else ``Result.hangs_on`` is None.
-    domain, allow_unsigned, include_root, max_bytes, bounds, progress
+    domain, allow_unsigned, permissions_ca, include_root, max_bytes, bounds, progress
         As in ``analyze``.
 
     Returns
@@ -232,6 +238,7 @@ def analyze_fleet(
         hangs_on=hangs_on,
         domain=domain,
         allow_unsigned=allow_unsigned,
+        permissions_ca=_paths(permissions_ca),
         include_root=_path(include_root),
         max_bytes=max_bytes,
         bounds=bounds,

@@ -55,6 +55,8 @@ class Settings:
         That of the robot, for permissions with rules for several domains.
     allow_unsigned
         Whether permissions and governance are read that are not signed by their CA.
+    permissions_ca
+        Certificates or SHA-256 fingerprints of the CAs that may have signed keystores; empty for that of each keystore.
     bounds
         How much of what is read or made at most.
     progress
@@ -86,6 +88,7 @@ class Settings:
     max_bytes: int = MAX_BYTES
     domain: int | None = None
     allow_unsigned: bool = False
+    permissions_ca: tuple[str, ...] = ()
     bounds: Bounds = BOUNDS
     progress: Callable[[Sequence[str]], Iterable[str]] = field(default=lambda files: files)
     decisions: str | None = None
@@ -98,6 +101,6 @@ class Settings:
         if self.article9_level is not None:
             Article9Level(self.article9_level)
             object.__setattr__(self, "article9", True)
-        for name in ("add", "categories", "data_types", "identity_factors", "ontologies", "types"):
+        for name in ("add", "categories", "data_types", "identity_factors", "ontologies", "permissions_ca", "types"):
             if isinstance(getattr(self, name), str):
                 object.__setattr__(self, name, (getattr(self, name),))

@@ -5,9 +5,12 @@ from __future__ import annotations
 import http.client
 import re
 import signal
+import socket
 import subprocess
 import sys
+import time
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING
 from urllib.parse import urlencode, urlsplit
 
@@ -16,8 +19,7 @@ import pytest
 from tests.helpers.explorers import BARE, FACTORY, node
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from pathlib import Path
+    from collections.abc import Callable, Iterator
 
     from tests.helpers.command import Cli
 
@@ -49,7 +51,7 @@ def entered(line: str) -> tuple[http.client.HTTPConnection, dict[str, str]]:
     asking.request("GET", f"{there.path}?{there.query}")
     answer = asking.getresponse()
     answer.read()
-    assert answer.status == 303
+    assert answer.status == 200
     headers = {"cookie": answer.headers["set-cookie"].partition(";")[0], "origin": f"http://{there.netloc}"}
     return asking, {**headers, "content-type": "application/x-www-form-urlencoded"}
 
@@ -143,3 +145,53 @@ def test_a_policy_that_is_not_there_is_one_line(cli: Cli, tmp_path: Path) -> Non
     done = cli("explore", "no.policy.xml", cwd=tmp_path)
     assert done.returncode == 2
     assert len(done.stderr.splitlines()) == 1
+
+
+def test_no_argument_of_the_browser_holds_the_secret(tmp_path: Path) -> None:
+    """Everybody on the machine can read what programs are called with; the file that is opened, its user alone."""
+    browser, seen = tmp_path / "browser", tmp_path / "seen"
+    browser.write_text(
+        f"#!/bin/sh\nfor one; do printf '%s\\n' \"$one\"; done > {seen}.new\n/bin/mv {seen}.new {seen}\n"
+    )
+    browser.chmod(0o755)
+    words = [sys.executable, "-u", "-m", "rosprivacy", "explore", str(BARE)]
+    told = {"PATH": "", "HOME": str(tmp_path), "DISPLAY": ":9", "BROWSER": str(browser)}
+    with subprocess.Popen(words, stdout=subprocess.PIPE, text=True, env=told) as process:
+        assert process.stdout
+        line = process.stdout.readline()
+        wait_until(seen.exists)
+        (address,) = seen.read_text().split()
+        page = Path(urlsplit(address).path)
+        secret = line.rpartition("token=")[2].strip()
+        assert secret not in address
+        assert f"token={secret}'" in page.read_text()
+        assert page.stat().st_mode & 0o777 == 0o600
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=SECONDS)
+    assert not page.exists()
+
+
+def wait_until(there: Callable[[], bool]) -> None:
+    until = time.monotonic() + SECONDS
+    while not there():
+        assert time.monotonic() < until
+        time.sleep(0.05)
+
+
+@pytest.mark.parametrize("of", [0, 60_000])
+def test_a_form_that_is_broken_off_is_no_error_of_the_program(tmp_path: Path, of: int) -> None:
+    with started("-l", str(tmp_path / "new.labels.yaml")) as (process, lines):
+        asking, headers = entered(lines[0])
+        asking.close()
+        for _ in range(3):
+            with socket.create_connection((asking.host, asking.port), timeout=SECONDS) as broken:
+                said = {**headers, "host": f"{asking.host}:{asking.port}", "content-length": "60001"}
+                head = "".join(f"{name}: {value}\r\n" for name, value in said.items())
+                broken.sendall(f"POST /label HTTP/1.1\r\n{head}\r\n".encode() + b"x" * of)
+        again = http.client.HTTPConnection(asking.host, asking.port, timeout=SECONDS)
+        again.request("GET", "/", headers=headers)
+        assert again.getresponse().status == 200
+        again.close()
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=SECONDS)
+        assert errors == ""

@@ -109,6 +109,20 @@ def test_a_lock_that_is_closed_to_us_is_named(cli: Cli, tmp_path: Path) -> None:
     assert line.startswith(f"{tmp_path / '.d.yaml.lock'}: cannot be written: ")
 
 
+def test_a_link_in_the_place_of_the_lock_is_named_and_not_followed(cli: Cli, tmp_path: Path) -> None:
+    """A checkout may bring one along."""
+    victim, link = tmp_path / "victim", tmp_path / ".decisions.yaml.lock"
+    victim.write_text("theirs")
+    link.symlink_to(victim)
+    done = cli("decide", "mitigate", "0" * 16, "--decisions", "decisions.yaml", cwd=tmp_path)
+    assert done.returncode == 2
+    assert f"{link} is a link" in done.stderr
+    assert "remove that link" in done.stderr
+    assert victim.read_text() == "theirs"
+    link.unlink()
+    assert cli("decide", "mitigate", "0" * 16, "--decisions", "decisions.yaml", cwd=tmp_path).returncode == 0
+
+
 def test_a_first_label_file_replaces_none_that_appears_meanwhile(tmp_path: Path) -> None:
     """What a person saves while the policies are read, which takes a second or two."""
     file = tmp_path / "l.yaml"

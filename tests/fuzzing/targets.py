@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import rosprivacy
 from rosprivacy.analysis import durations
-from rosprivacy.analysis.errors import InputError, InputErrors
+from rosprivacy.analysis.errors import InputError, InputErrors, QueryError
 from rosprivacy.analysis.model import Confidence, Element, Place, Profile
 from rosprivacy.analysis.suggesting.asked_elements import Asked
 from rosprivacy.analysis.suggesting.by_package import package_evidence
@@ -50,6 +50,7 @@ from rosprivacy.mitigation import run_mitigation
 from rosprivacy.ontology.own import with_own
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.queries.library import parse
+from rosprivacy.queries.reading import refuse_too_much
 from rosprivacy.report.compare.earlier import read_earlier
 from rosprivacy.report.json_text import as_text
 from rosprivacy.running.observing import written
@@ -247,6 +248,15 @@ def _results() -> None:
     assert isinstance(document["verdict"], str)
 
 
+def _query() -> None:
+    text = Path("asked.cypher").read_text("utf-8", "replace")
+    parse("asked", text)
+    try:
+        refuse_too_much(text)
+    except QueryError as error:  # of a query that has no file, so no place
+        raise QueryError(f"asked.cypher: {error}") from None
+
+
 def _duration() -> None:
     text = Path("duration").read_text("utf-8")
     durations.parts(text)
@@ -321,7 +331,7 @@ TARGETS = {target.name: target for target in (
         ("diff", "old.json", "base.xml", "-l", "base.yaml"),
     ),
     Target("parquet", 3, other_texts.parquet, _results, words=""),
-    Target("query", 25, other_texts.query, lambda: parse("asked", Path("asked.cypher").read_text("utf-8", "replace"))),
+    Target("query", 25, other_texts.query, _query),
     Target("duration", 25, other_texts.duration, _duration, words=""),
     Target(
         "bag", 30, bag_texts.bag, _bags, lambda: rosprivacy.analyze("base.xml", "bag.yaml", today=TODAY),

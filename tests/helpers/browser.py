@@ -64,6 +64,8 @@ def open_page(
     browser: WebDriver, address: str, *, width: int = DESKTOP, dark: bool = False, paper: bool = False
 ) -> list[str]:
     """Open a page; return the addresses that it asked for, itself first. What is in the page counts as no request."""
+    from selenium.webdriver.support.wait import WebDriverWait
+
     shade(browser, dark=dark, paper=paper)
     size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": width < DESKTOP and not paper}
     browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
@@ -71,6 +73,8 @@ def open_page(
     browser.get_log("performance")  # type: ignore[no-untyped-call]
     browser.get_log("browser")  # type: ignore[no-untyped-call]
     browser.get(address)
+    there = "return !location.pathname.startsWith('/enter') && document.readyState === 'complete'"
+    WebDriverWait(browser, 30, 0.02).until(lambda b: b.execute_script(there))  # the link leads on to the page
     return requests(browser)
 
 

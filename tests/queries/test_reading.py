@@ -218,7 +218,7 @@ def test_an_answer_that_is_too_large_for_the_server_is_one_line_and_it_runs_on(o
     done = ask(opened.to, "--cypher", "RETURN range(1, 100000000) AS x")
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.count("\n") == 1
-    assert "needs more memory than the server gives" in done.stderr or "broke off while it answered" in done.stderr
+    assert "needs more memory than the server gives" in done.stderr or "broke off, and runs" in done.stderr
     assert run(opened.driver, "RETURN 1").rows == ((1,),)
 
 

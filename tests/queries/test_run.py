@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import time
 from typing import TYPE_CHECKING
 
 import pytest
 
 from rosprivacy.analysis.errors import QueryError
 from rosprivacy.private_neo4j import connection
+from rosprivacy.queries import run as running
 from rosprivacy.queries.graph_values import Relationship, plain, value_of
-from rosprivacy.queries.run import DEEPEST, run
+from rosprivacy.queries.reading import ALIKE, DEEPEST, OPERATORS
+from rosprivacy.queries.run import run
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -86,6 +89,43 @@ def test_brackets_that_the_server_would_not_survive_are_refused_before_it_gets_t
         run(driver, nested(DEEPEST + 1))
     if pair != "{}":
         assert run(driver, nested(DEEPEST)).columns == ("x",)
+
+
+@pytest.mark.parametrize(
+    ("text", "most"),
+    [
+        ("RETURN {}true AS x", ("NOT ", ALIKE)),
+        ("RETURN 1{} AS x", (" + 1", ALIKE)),
+        ("RETURN {{a: 1}}{} AS x", (".a", ALIKE)),
+        ("RETURN 1{} AS x", (" + 1 - 1", OPERATORS // 2)),
+        ("RETURN {}1{} AS x", ("CASE WHEN true THEN ", DEEPEST)),
+    ],
+)
+def test_operators_that_the_server_would_not_survive_are_refused_before_it_gets_them(
+    driver: Driver, text: str, most: tuple[str, int]
+) -> None:
+    part, count = most
+    ends = [" END" * (count * 4)] if "CASE" in part else []
+    begun = time.monotonic()
+    with pytest.raises(QueryError, match=r"(in a row|within brackets)"):
+        run(driver, text.format(part * (count * 4), *ends))
+    assert time.monotonic() - begun < 10
+
+
+def test_many_values_and_alternatives_are_no_row_of_operators(driver: Driver) -> None:
+    values = ", ".join(["1 + 1"] * OPERATORS)
+    assert run(driver, f"WITH [{values}] AS many, '{'+' * OPERATORS}' AS x RETURN size(many)").rows == ((OPERATORS,),)
+
+
+def test_a_server_that_plans_on_and_on_is_not_waited_for(driver: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The server's own bound holds while it runs a query. Of this one its stack overflows, and it says nothing."""
+    monkeypatch.setattr(running, "refuse_too_much", lambda _: None)
+    monkeypatch.setattr(running, "GRACE", 1.0)
+    begun = time.monotonic()
+    with pytest.raises(QueryError, match="has not answered within 3 s: it may still be planning the query"):
+        run(driver, "RETURN " + "NOT " * 5000 + "true", timeout=2)
+    assert time.monotonic() - begun < 30
+    assert run(driver, "RETURN 1").rows == ((1,),)
 
 
 def test_nodes_relationships_and_paths(driver: Driver) -> None:

@@ -85,11 +85,12 @@ def explore(
         else:
             site = (ReviewSite if review else Site)(session, settings, words, door)
         _tell(door.link, door.port)
-        if open:
-            _open(door.link)
+        opened = _open(door.link) if open else None
         try:
             _serve(site.application(), listening)
         finally:
+            if opened:
+                opened.unlink(missing_ok=True)
             site.close()
             session.close()
     if session.unsaved:
@@ -123,12 +124,25 @@ def _tell(link: str, port: int) -> None:
         print(f"From the machine that you came from by SSH, run this first: {line}", flush=True)
 
 
-def _open(link: str) -> None:
-    """Open the page on a desktop; a browser that takes over the terminal is none."""
-    import webbrowser
+def _open(link: str) -> Path | None:
+    """Open the page on a desktop, by a file that only its user can read: what a program is called with all can read.
 
-    if sys.platform in ("win32", "darwin") or any(os.environ.get(name) for name in DISPLAYS):
-        webbrowser.open_new_tab(link)
+    The file stands in the home folder, since a browser in a container (snap) sees no other, until the program ends.
+    """
+    import webbrowser
+    from pathlib import Path
+    from tempfile import mkstemp
+
+    if not (sys.platform in ("win32", "darwin") or any(os.environ.get(name) for name in DISPLAYS)):
+        return None  # a browser that takes over the terminal is none
+    try:
+        handle, name = mkstemp(prefix="rosprivacy-explore-", suffix=".html", dir=Path.home())
+    except (OSError, RuntimeError):
+        return None  # the link stands in the terminal
+    with os.fdopen(handle, "w", encoding="utf-8") as file:
+        file.write(f"<!doctype html><meta http-equiv=refresh content='0;url={link}'><a href='{link}'>The page</a>\n")
+    webbrowser.open_new_tab(Path(name).as_uri())
+    return Path(name)
 
 
 def _serve(app: ASGIApp, listening: socket.socket) -> None:

@@ -29,6 +29,7 @@ from rosprivacy.cli.options import (
     NoStandard,
     NoTypeLimits,
     Ontologies,
+    PermissionsCA,
     Policies,
     SavedGraphs,
     Server,
@@ -65,6 +66,7 @@ class Inputs(NamedTuple):
     no_type_limits: NoTypeLimits = False
     domain: Domain = None
     allow_unsigned: AllowUnsigned = False
+    permissions_ca: PermissionsCA = None
     include_root: IncludeRoot = None
     max_bytes: MaxBytes = 64 * 2**20
     bound: BoundsRaised = None
@@ -89,6 +91,7 @@ class Inputs(NamedTuple):
             type_limits=None if self.no_type_limits else self.type_limits,
             domain=self.domain,
             allow_unsigned=self.allow_unsigned,
+            permissions_ca=tuple(self.permissions_ca or ()),
             include_root=str(self.include_root) if self.include_root else None,
             max_bytes=self.max_bytes,
             bounds=Bounds.raised(self.bound or ()),
@@ -147,7 +150,7 @@ class Inputs(NamedTuple):
 
 OF_FILES = (
     "policies", "labels", "add", "fleet", "standard_channels", "no_standard_channels", "types", "domain",
-    "allow_unsigned", "include_root", "max_bytes", "category", "view",
+    "allow_unsigned", "permissions_ca", "include_root", "max_bytes", "category", "view",
 )  # fmt: skip
 OPTIONS = get_type_hints(Inputs, include_extras=True)
 DEFAULTS = Inputs._field_defaults

@@ -181,6 +181,16 @@ AllowUnsigned = Annotated[
         rich_help_panel=READ,
     ),
 ]
+PermissionsCA = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--permissions-ca",
+        metavar="FILE|SHA256",
+        show_default=False,
+        help="The CA that has to have signed all that is read: its certificate or its fingerprint; may be repeated.",
+        rich_help_panel=READ,
+    ),
+]
 IncludeRoot = Annotated[
     Path | None,
     typer.Option(

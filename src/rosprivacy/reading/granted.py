@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 ZENOH = ".json5"
 """How the name of a Zenoh configuration ends."""
+UNSIGNED = "nobody signs such a file, and --permissions-ca asks for the CA of all that is read"
 Read = tuple[tuple["Policy", ...], tuple["Diagnostic", ...]]
 
 
@@ -45,6 +46,10 @@ def read_granted(names: Iterable[str], settings: Settings, within: str | None = 
     granted, stated = deployed(name for name in names if not name.endswith(ZENOH))
     policies: tuple[Policy, ...] = ()
     said: tuple[Diagnostic, ...] = ()
+    if settings.permissions_ca and (unsigned := (*stated, *access)):
+        raise InputErrors(
+            [PolicyError(name, 0, UNSIGNED, "name a keystore, or leave the option away") for name in unsigned]
+        )
     if stated or not (granted or access):
         policies, said = read_policies(
             stated,
@@ -75,7 +80,13 @@ def _deployed(names: list[str], settings: Settings, within: str | None, besides:
     _confined(names, within)
     on = settings.today or today(os.environ)
     policies, said = read_deployed(
-        names, settings.domain, on, allow_unsigned=settings.allow_unsigned, view=settings.view, besides=besides
+        names,
+        settings.domain,
+        on,
+        allow_unsigned=settings.allow_unsigned,
+        view=settings.view,
+        authorities=settings.permissions_ca,
+        besides=besides,
     )
     _confined([file for policy in policies for file, _ in policy.sources], within)
     return _with_said(policies, said)

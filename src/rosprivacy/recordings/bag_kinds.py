@@ -16,6 +16,7 @@ from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.kernel.roles import facts
 from rosprivacy.analysis.model import NOTHING_FOLLOWED, Place, by_confidence, unread
 from rosprivacy.analysis.model.recording import JudgedBag, TopicKinds
+from rosprivacy.analysis.written_names import is_glob, meant
 from rosprivacy.ingest.policies.names import covered, covers, is_pattern, recorded_channels
 
 if TYPE_CHECKING:
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.model import Statement, Suggestion
     from rosprivacy.analysis.model.recording import Bag, BagTopic
+    from rosprivacy.ingest.labels.entries import Entry
     from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.ingest.types.type_table import TypeTable
     from rosprivacy.ontology.vocabulary import Vocabulary
@@ -156,42 +158,47 @@ def _senders(vertex: int, writers: dict[int, list[int]], analysis: Analysis) -> 
 
 def by_labels(files: Sequence[Labels], vocabulary: Vocabulary) -> Callable[[str], Said]:
     """Return what tells of a topic what label files say of it, where no policy says who writes to it."""
-    hierarchy = vocabulary.hierarchy
+    entries = [entry for file in files for entry in file.entries]
+    sources = [one for entry in entries for one in entry.statements if one.role == "source" and one.through]
+    named: dict[str, list[int]] = defaultdict(list)  # a bag can have more topics than a system has channels
+    globs = [at for at, entry in enumerate(entries) if is_glob(entry.name)]
+    for at, entry in enumerate(entries):
+        if not is_glob(entry.name):
+            named[meant(entry.name)].append(at)
+    decided: dict[tuple[Statement, ...], Said] = {}
 
     def said_of(topic: str) -> Said:
         channels = recorded_channels(topic)
         names = {name for _, name, _ in channels}
-        kinds = {kind for file in files for kind in _named_by_sources(file, names)}
+        kinds = {kind for one in sources if any(covered(end, names) for end in one.through) for kind in one.categories}
         if kinds:
             return Said(tuple(sorted(kinds)), why="sources that name the channel", covered=True)
-        said = [statement for file in files for statement in _of_channels(file, channels)]
-        decided = {name: facts(topic, said, name, hierarchy) for name in sorted(vocabulary.categories)}
-        passing = [name for name, fact in decided.items() if fact.passes]
-        if not passing:
-            own = [statement for statement in said if not statement.shipped]
-            shipped = len(own) < len(said) and any(facts(topic, own, name, hierarchy).passes for name in decided)
-            return Said(why=f"{_lines(said)}: it carries no kind of data", covered=not shipped, shipped=shipped)
-        if len(passing) < len(decided) and (only := {s for fact in decided.values() for s in fact.by_role("only")}):
-            stated = {name for statement in only for name in statement.categories}.intersection(passing)
-            if stated:
-                return Said(tuple(sorted(stated)), why=f"{_lines(only)}: it carries these at most", covered=True)
-        return Said(unknown="no label says what it carries")
+        near = [entries[at] for at in sorted({at for name in names for at in named.get(name, ())}.union(globs))]
+        said = tuple(statement for entry in near if _is_about(entry, channels) for statement in entry.statements)
+        if said not in decided:
+            decided[said] = _decided(topic, said, vocabulary)
+        return decided[said]
 
     return said_of
 
 
-def _named_by_sources(file: Labels, names: set[str]) -> Iterable[str]:
-    """The kinds that sources bring in through some channels, as far as a file names the channels (S8)."""
-    for entry in file.entries:
-        for statement in entry.statements:
-            if statement.role == "source" and any(covered(one, names) for one in statement.through):
-                yield from statement.categories
+def _is_about(entry: Entry, channels: Sequence[Channel]) -> bool:
+    return any(kind in entry.kinds and covered(entry.name, [name]) for kind, name, _ in channels)
 
 
-def _of_channels(file: Labels, channels: Sequence[Channel]) -> Iterable[Statement]:
-    for entry in file.entries:
-        if any(kind in entry.kinds and covered(entry.name, [name]) for kind, name, _ in channels):
-            yield from entry.statements
+def _decided(topic: str, said: Sequence[Statement], vocabulary: Vocabulary) -> Said:
+    """What some statements say of a topic; of most topics the same ones speak, or none."""
+    decided = {name: facts(topic, said, name, vocabulary.hierarchy) for name in sorted(vocabulary.categories)}
+    passing = [name for name, fact in decided.items() if fact.passes]
+    if not passing:
+        own = [statement for statement in said if not statement.shipped]
+        shipped = len(own) < len(said) and any(facts(topic, own, name, vocabulary.hierarchy).passes for name in decided)
+        return Said(why=f"{_lines(said)}: it carries no kind of data", covered=not shipped, shipped=shipped)
+    if len(passing) < len(decided) and (only := {s for fact in decided.values() for s in fact.by_role("only")}):
+        stated = {name for statement in only for name in statement.categories}.intersection(passing)
+        if stated:
+            return Said(tuple(sorted(stated)), why=f"{_lines(only)}: it carries these at most", covered=True)
+    return Said(unknown="no label says what it carries")
 
 
 def _lines(said: Iterable[Statement]) -> str:

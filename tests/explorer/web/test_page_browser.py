@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import webbrowser
+from pathlib import Path
 from typing import TYPE_CHECKING
+from urllib.parse import urlsplit
 
 import pytest
 
+from rosprivacy.cli import explore
 from tests.helpers import browser as chrome
+from tests.helpers import explorers
 from tests.helpers.browser import DESKTOP, PHONE
 from tests.helpers.explorers import BARE, FACTORY, FILTERED, copied, label
 from tests.helpers.full_disk import full_disk
@@ -14,7 +19,6 @@ from tests.helpers.page_reader import SECONDS, Reader, meaning, served
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from pathlib import Path
 
     from selenium.webdriver.chrome.webdriver import WebDriver
 
@@ -216,6 +220,23 @@ def test_two_explorers_stand_side_by_side_in_one_browser(browser: WebDriver, tmp
         assert {cookie["name"] for cookie in browser.get_cookies()} >= {one.door.cookie, other.door.cookie}
     assert "/archive_server" in first.read_text("utf-8")
     assert other.labels.is_file()
+
+
+def test_the_file_that_opens_the_page_opens_it(
+    browser: WebDriver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """From a file to the page and on: a browser keeps the cookie back (SameSite) until our own page asks."""
+    from selenium.webdriver.support.wait import WebDriverWait
+
+    monkeypatch.setattr(Path, "home", lambda: tmp_path)
+    monkeypatch.setenv("DISPLAY", ":9")
+    monkeypatch.setattr(webbrowser, "open_new_tab", browser.get)
+    with explorers.served(BARE, tmp_path / "new.labels.yaml") as explorer:
+        assert explore._open(explorer.door.link)
+        WebDriverWait(browser, SECONDS).until(lambda _: browser.find_elements("css selector", "#rows"))
+        assert browser.current_url == f"http://127.0.0.1:{explorer.door.port}/"
+        asked = {urlsplit(address).netloc for address in chrome.requests(browser)}
+        assert asked >= {"", f"127.0.0.1:{explorer.door.port}"}  # the file, and the page
 
 
 def test_a_full_disk_in_mid_session_loses_nothing_and_is_told(browser: WebDriver, tmp_path: Path) -> None:

@@ -9,13 +9,14 @@ in the cookie, where we need one secret only.
 from __future__ import annotations
 
 import secrets
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 from urllib.parse import parse_qs
 
 from starlette.datastructures import Headers, MutableHeaders
-from starlette.requests import cookie_parser
-from starlette.responses import HTMLResponse, PlainTextResponse, RedirectResponse
+from starlette.requests import ClientDisconnect, cookie_parser
+from starlette.responses import HTMLResponse, PlainTextResponse
 
 if TYPE_CHECKING:
     from collections.abc import Collection
@@ -37,6 +38,13 @@ HEADERS = {
     "cross-origin-resource-policy": "same-origin",
     "cache-control": "no-store",
 }
+# The page asks for the next one itself: where the link came from another page, or from a file, a browser keeps the
+# cookie back in all that the answer leads to (SameSite), but not in what our own page asks.
+ENTERED = (
+    "<!doctype html><html lang=en><meta http-equiv=refresh content='0;url=/'><link rel=icon href='data:,'>"
+    "<title>rosprivacy explore</title>"
+    "<p><a href='/'>Go on to the page</a></p></html>"
+)
 # A link to the page itself: from a terminal in a web page, the first request comes without the cookie (SameSite).
 STRANGER = (
     "<!doctype html><html lang=en><title>rosprivacy explore</title><h1>Open the link that the terminal shows</h1>"
@@ -119,7 +127,8 @@ class Guard:
             await send(message)
 
         answer = self._answer(scope)
-        await (answer or self.app)(scope, receive, held)
+        with suppress(ClientDisconnect):  # a form that was broken off: there is nobody to tell
+            await (answer or self.app)(scope, receive, held)
 
     def _answer(self, scope: Scope) -> Response | None:
         """What is answered without asking the application; None for what it may be asked."""
@@ -136,7 +145,7 @@ class Guard:
         kept = self.door.enter(token) if scope["method"] == "GET" else None
         if kept is None:
             return HTMLResponse(STRANGER, 401)
-        response = RedirectResponse("/", 303)
+        response = HTMLResponse(ENTERED)
         response.set_cookie(self.door.cookie, kept, httponly=True, samesite="strict")
         return response
 
