@@ -67,7 +67,7 @@ def analysis_document(answer: Answer) -> AnalysisDocument:
     categories, hierarchy, graph = answer.vocabulary.categories, answer.vocabulary.hierarchy, analysis.graph
     at_sources = answer.contexts
     contexts = at_sources.everywhere
-    return {
+    document: AnalysisDocument = {
         "format": FORMAT,
         "verdict": str(analysis.verdict),
         "view": graph.view,
@@ -84,7 +84,6 @@ def analysis_document(answer: Answer) -> AnalysisDocument:
         ],
         "doubts": [doubt_entry(doubt) for doubt in answer.doubts],
         "taken_away": ledger.rows(taken, element_dict),
-        **_hangs_on(answer),
         "carries": [
             {
                 "element": element_dict(carried.element),
@@ -139,6 +138,8 @@ def analysis_document(answer: Answer) -> AnalysisDocument:
             "globs": ledger.globs(answer.globs(taken), element_dict),
         },
     }
+    document.update(_hangs_on(answer))
+    return document
 
 
 def _hangs_on(answer: Answer) -> HangsOn:
