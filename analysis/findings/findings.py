@@ -26,6 +26,7 @@ from rosprivacy.analysis.findings.unknown_ends import unknown_ends
 from rosprivacy.analysis.findings.witness import witness_of
 from rosprivacy.analysis.kernel import spreading, standard_channels
 from rosprivacy.analysis.kernel.bits import bits_of
+from rosprivacy.analysis.kernel.overruled import untouched
 from rosprivacy.analysis.kernel.search import START, Search, path_to, present
 from rosprivacy.analysis.kernel.searches import ROOM, searches
 from rosprivacy.analysis.kernel.states import Net
@@ -147,6 +148,7 @@ def analyse(
         unstated=tuple(_unstated(spread)),
         diagnostics=(
             *(one.diagnostic() for one in spread.overruled),
+            *untouched(spread.facts, graph.elements, spread.categories),
             *work.not_counted(),
             *(() if leak or questions else _lacking(lacks, options, spread)),
         ),

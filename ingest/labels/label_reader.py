@@ -221,9 +221,12 @@ class LabelReader(NameReader):
             return
         for key, line, value in self.entries_of(label, NODE_KEYS):
             at = Place(self.file, line)
-            if value.kind == "text" and value.text == NONE and key in NONE_OF:
-                yield Statement(NONE_OF[key], (), rank, at)
-            elif key == "source":
+            if key in NONE_OF and (value.text == NONE or value.get(NONE)):
+                yield from self._none(key, value, at, rank)
+                value = value._replace(entries=tuple(one for one in value.entries if one[0] != NONE))  # noqa: PLW2901
+                if not value.entries:
+                    continue
+            if key == "source":
                 yield from self._source(value, at, rank)
             elif key in ("leak", "conduit"):
                 for name in self.categories_of(value, key):
@@ -234,6 +237,14 @@ class LabelReader(NameReader):
                 yield from self._derives(value, at, rank)
             elif key == "absent":
                 yield from self._absent(label, value, at, rank)
+
+    def _none(self, key: str, value: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
+        """What takes a source or a leak back: of all kinds, or of some."""
+        if (kinds := value.get(NONE)) is None:
+            yield Statement(NONE_OF[key], (), rank, place)
+            return
+        for name in self.categories_of(kinds, f"{key}: none"):
+            yield Statement(NONE_OF[key], (name,), rank, place)
 
     def _source(self, value: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
         if value.kind != "map":
