@@ -136,9 +136,7 @@ def closes(statement: Statement, category: str, hierarchy: Hierarchy) -> bool:
         return _named_distance(statement, category, hierarchy) is None
     if statement.role == CANNOT:
         return category in statement.categories
-    return statement.role == "mundane" or (
-        statement.role == "never" and _named_distance(statement, category, hierarchy) is not None
-    )
+    return statement.role in ("mundane", "never") and _distance(statement, category, hierarchy) is not None
 
 
 def by_line(statement: Statement) -> tuple[str, int, str]:

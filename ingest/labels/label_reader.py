@@ -28,6 +28,7 @@ from rosprivacy.analysis.model import (
 )
 from rosprivacy.ingest.labels.bag_storages import bags_of
 from rosprivacy.ingest.labels.entries import EXACT, SHIPPED, Entry, FlowEntry, naming, specificity
+from rosprivacy.ingest.labels.log_text import is_log, without_text
 from rosprivacy.ingest.labels.name_reader import NameReader
 from rosprivacy.ingest.labels.non_ros_reader import is_non_ros, read_element, read_limits
 from rosprivacy.ingest.labels.pins import PINS, Pin, read_pins
@@ -184,6 +185,9 @@ class LabelReader(NameReader):
             rank = self.rank(specificity(name))
             read = self._node if section == "nodes" else self._channel
             statements = self._said(label, read(label, Place(self.file, at), rank), naming(name))
+            if self.tier == SHIPPED and is_log(name):
+                kinds = without_text(self.vocabulary)
+                statements = tuple(one._replace(categories=kinds) for one in statements if kinds)
             place, of_node = Place(self.file, at), section == "nodes"
             subjects = self._subjects(label) if of_node else ()
             processing = self._processing(label, place) if of_node else UNSTATED

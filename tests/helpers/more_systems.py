@@ -42,7 +42,8 @@ def ranked(draw: st.DrawFn) -> System:
         some = [*said, *draw(st.lists(extra, max_size=2))]
         system.said[vertex] = [placed(one, vertex) for one in dict.fromkeys(some)]
         if draw(st.booleans()) and vertex in channels:
-            system.said[vertex].append(SHIPPED)
+            kinds = draw(st.sampled_from([(), ("Face", "Loc")]))  # of a log what no text holds (S13)
+            system.said[vertex].append(SHIPPED._replace(categories=kinds))
         written = [names[b].name for a, b in system.edges if a == vertex and b in channels]
         if draw(st.booleans()) and written:
             through = tuple(sorted(draw(st.sets(st.sampled_from(written), min_size=1))))

@@ -18,6 +18,14 @@ if TYPE_CHECKING:
 
 __all__ = ["cli"]
 
+OWN = """
+@prefix : <urn:example:own:> .
+@prefix rp: <urn:x-rosprivacy:> .
+@prefix skos: <http://www.w3.org/2004/02/skos/core#> .
+:Caption a skos:Concept ; rp:label "Caption" ; skos:broader rp:Video ; rp:dataType "{}" ;
+    skos:prefLabel "caption"@en ; skos:definition "What is seen on a video."@en .
+"""
+
 
 @pytest.fixture(autouse=True)
 def _folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -301,6 +309,39 @@ class TestWhatASourceNamesAChannelFor:
         policy(camera=">tf_static", uplink="<tf_static")
         text = "nodes: {/camera: {source: [Voice]}, /uplink: {leak: [Voice]}}\nchannels: {'/*': sensitive}"
         assert cli("analyze", "p.xml", *labels(text), "-l", "rosprivacy:infrastructure").returncode == 1
+
+
+class TestTheLogIsText:
+    """Rule S13: ``rosout`` ends a kind only if neither it nor a narrower one is text or an identifier."""
+
+    @pytest.mark.parametrize("kind", ["SpeechTranscript", "PersonName", "PostalAddress", "Location", "PersonalData"])
+    @pytest.mark.parametrize("topic", ["rosout", "ward/rosout"])
+    def test_what_can_be_said_in_words_passes(self, cli: Cli, kind: str, topic: str) -> None:
+        policy(listener=f">words >{topic}", bridge=f"<{topic}")
+        text = f"nodes: {{/listener: {{source: [{kind}]}}, /bridge: {{leak: [PersonalData]}}}}"
+        assert cli("analyze", "p.xml", *labels(text)).returncode == 1
+        own = f"{text}\nchannels: {{/{topic}: mundane, /words: sensitive}}"
+        assert cli("analyze", "p.xml", *labels(own)).returncode == 0
+
+    @pytest.mark.parametrize("kind", ["Video", "Voice", "FaceTemplate"])
+    def test_a_picture_or_a_sound_does_not(self, cli: Cli, kind: str) -> None:
+        policy(camera=">video >rosout", bridge="<rosout")
+        text = f"nodes: {{/camera: {{source: [{kind}]}}, /bridge: {{leak: [PersonalData]}}}}\n"
+        assert document(cli, *labels(f"{text}channels: {{/video: sensitive}}"))["findings"] == []
+
+    def test_a_kind_of_a_users_own_is_what_its_file_says(self, cli: Cli) -> None:
+        policy(camera=">video >rosout", bridge="<rosout")
+        text = "nodes: {/camera: {source: [Caption]}, /bridge: {leak: [PersonalData]}}\nchannels: {/video: sensitive}"
+        for form, code in (("text", 1), ("video", 0)):
+            Path("own.ttl").write_text(OWN.format(form), "utf-8")
+            assert cli("analyze", "p.xml", *labels(text), "--ontology", "own.ttl").returncode == code
+
+    def test_a_file_that_replaces_the_standard_one_is_of_no_more_avail(self, cli: Cli) -> None:
+        policy(listener=">words >rosout", bridge="<rosout")
+        text = "nodes: {/listener: {source: [SpeechTranscript]}, /bridge: {leak: [PersonalData]}}"
+        for name in ("/rosout", "*/rosout", "/ros*"):
+            Path("s.yaml").write_text(f'labels: 1\nchannels: {{"{name}": mundane}}\n', "utf-8")
+            assert cli("analyze", "p.xml", *labels(text), "--standard-channels", "s.yaml").returncode == 1
 
 
 class TestAFileThatReplacesTheStandardOne:
