@@ -42,6 +42,7 @@ if TYPE_CHECKING:
         LawEntry,
         OpenEntry,
         StepEntry,
+        Stopped,
         WhyEntry,
     )
     from rosprivacy.report.contract.stated import (
@@ -127,10 +128,7 @@ def analysis_document(answer: Answer) -> AnalysisDocument:
                 {"element": element_dict(element), "category": category, "taken_as": "pseudonymise"}
                 for element, category in analysis.unstated
             ],
-            "standard_channels_reached": [
-                {"element": element_dict(replace(element, leg="")), "categories": list(categories)}
-                for element, categories in analysis.standard_reached
-            ],
+            "standard_channels_reached": [_stopped(*row, analysis) for row in analysis.standard_reached],
             "standard_channels_unchanged": [
                 element_dict(replace(element, leg="")) for element in analysis.standard_unchanged
             ],
@@ -158,6 +156,14 @@ def label_key(element: Element) -> LabelKey:
     """
     section = SECTIONS.get(element.kind, "elements")
     return {"section": section, "name": element.name if section == "elements" else literal(element.name)}
+
+
+def _stopped(channel: Element, categories: tuple[str, ...], analysis: Analysis) -> Stopped:
+    stopped: Stopped = {"element": element_dict(replace(channel, leg="")), "categories": list(categories)}
+    for row in analysis.closed_by_shipped:
+        if row.end and row.channel.identity == channel.identity:
+            stopped["keeps_from"] = element_dict(row.end)
+    return stopped
 
 
 def _overruled(one: Overruled) -> OverruledEntry:
