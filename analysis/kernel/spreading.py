@@ -257,7 +257,7 @@ def _set_vertex(spread: Spread, vertex: int, does: _Does) -> None:
 def _read_by_nobody(spread: Spread) -> dict[int, int]:
     """What is read from wildcards, with the bits for which nobody to whom that is granted is there."""
     own, meetings = parted(spread.graph.flows) if spread.gone else ((), ())
-    ends = [((flow.source,), (flow.target,)) for _, flow in own]
+    ends: list[tuple[tuple[int, ...], tuple[int, ...]]] = [((flow.source,), (flow.target,)) for _, flow in own]
     ends += [(meeting.written, meeting.read) for meeting in meetings if meeting.of_written]
     read: dict[int, int] = {}
     for channels, readers in ends:
