@@ -294,7 +294,9 @@ class TestWhatASourceNamesAChannelFor:
         assert "   of 1 of them a glob says otherwise, which does not count: /patient/clock; name them" in done.stdout
         channel = {"robot": "", "kind": "topic", "name": "/patient/clock"}
         assumed = document(cli, *options)["assumptions"]
-        assert assumed["standard_channels_reached"] == [{"element": channel, "categories": ["Voice"]}]
+        (reached,) = assumed["standard_channels_reached"]
+        assert (reached["element"], reached["categories"]) == (channel, ["Voice"])
+        assert reached["keeps_from"]["name"] == "/uplink"
         assert assumed["standard_channels_unchanged"] == [channel]
 
     @pytest.mark.parametrize("name", ["/patient/clock", "*/clock", "/p*/clock"])
