@@ -49,7 +49,10 @@ def carried(result: Result) -> dict[str, set[str]]:
 
 
 def test_each_block_has_a_test() -> None:
-    assert set(BLOCKS) == {"Label files", "Where the system works", "Outside ROS", "Who, why, on which basis"}
+    assert set(BLOCKS) == {
+        "Label files", "Where the system works", "Outside ROS", "Who, why, on which basis",
+        "A glob answers for what you have seen",
+    }  # fmt: skip
     assert len(ROWS) == PAGE.count("| no-leak-found |") + PAGE.count("| leak |\n") + PAGE.count("| error |")
 
 
@@ -126,6 +129,13 @@ def test_decisions_that_cover_some_recipients_only_need_an_adequacy_that_is_stat
         kinds = {f.kind for f in rosprivacy.analyze("p.xml", "l.yaml").analysis.findings}
         needs = country in partly[1].split(", ") and not transfer
         assert ("third-country-transfer" in kinds) == (needs or country == "CN"), transfer
+
+
+@pytest.mark.parametrize(("more", "asked"), [((), set()), (("/uploader</image",), {"/uploader"})])
+def test_a_glob_answers_for_what_somebody_has_seen(more: tuple[str, ...], asked: set[str]) -> None:
+    system = ("/camera>/image", "/planner>/cmd</image", "/recorder</image", *more)
+    result = run("A glob answers for what you have seen", *system)
+    assert {question.element.name for question in result.analysis.open} == asked
 
 
 def test_who_why_and_on_which_basis() -> None:
