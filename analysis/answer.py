@@ -6,11 +6,13 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import TYPE_CHECKING, NamedTuple
 
+from rosprivacy.analysis.model import Rank
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.kernel.spread import Spread
-    from rosprivacy.analysis.model import Diagnostic, Element, FlowGraph, Grant, NonRosFacts, Reason, UnknownEnd
+    from rosprivacy.analysis.model import Diagnostic, Element, FlowGraph, Grant, NonRosFacts, Place, Reason, UnknownEnd
 
 
 class Step(NamedTuple):
@@ -173,6 +175,37 @@ class ClosedByTypes(NamedTuple):
     findings: tuple[Finding, ...] = ()
 
 
+class ClosedByShipped(NamedTuple):
+    """What a statement of a shipped file alone keeps from a leak (rule S13).
+
+    Attributes
+    ----------
+    channel
+        Where data stops.
+    categories
+        What gets there, sorted.
+    end
+        The nearest labelled leak, storage or element outside ROS that it would get to; None where it was not worked
+        out, since too much hangs on such lines.
+    places
+        The lines that say so, sorted.
+    rank
+        It breaks the verdict where the standard file speaks of a channel outside its standard place, and rides where
+        only the file of infrastructure says it; None for a standard channel in its place, which is counted.
+    """
+
+    channel: Element
+    categories: tuple[str, ...]
+    end: Element | None
+    places: tuple[Place, ...]
+    rank: Rank | None
+
+    @property
+    def at(self) -> tuple[Element, ...]:
+        """Where it counts: the channel, and what it would get to."""
+        return (self.channel, self.end) if self.end else (self.channel,)
+
+
 @dataclass(frozen=True, slots=True)
 class Analysis:
     """The answer: what was found, what is open, what every element carries.
@@ -195,6 +228,8 @@ class Analysis:
         Channels taken as mundane by the shipped file (rule S13).
     standard_reached
         Of these, (channel, emitted categories that get to it and stop there).
+    closed_by_shipped
+        Of these, those that alone keep data from a leak, a storage or an element outside ROS, with the nearest.
     standard_unchanged
         Of these, those of which a glob of the user's says otherwise that does not count.
     spread
@@ -224,6 +259,7 @@ class Analysis:
     spread: Spread
     unstated: tuple[tuple[Element, str], ...] = ()
     standard_reached: tuple[tuple[Element, tuple[str, ...]], ...] = ()
+    closed_by_shipped: tuple[ClosedByShipped, ...] = ()
     standard_unchanged: tuple[Element, ...] = ()
     diagnostics: tuple[Diagnostic, ...] = ()
     outside: Mapping[Element, NonRosFacts] = field(default_factory=dict)
@@ -281,7 +317,8 @@ def robot_verdicts(
     open_at = {robot_of(question.element) for question in analysis.open}
     open_at |= {robot_of(element) for element in _beside_open_channels(analysis)}
     carrying = () if analysis.lacking else analysis.carried
-    known = {robot_of(carried.element) for carried in carrying}.difference(not_read)
+    broken = {robot_of(e) for row in analysis.closed_by_shipped if row.rank is Rank.BREAKS for e in row.at}
+    known = {robot_of(carried.element) for carried in carrying} - {*not_read, *broken}
     return {
         robot: Verdict.of(leak=robot in leaking, is_open=robot in open_at, known=robot in known) for robot in robots
     }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -216,7 +217,7 @@ def test_a_table_that_cannot_be_read_is_refused_with_all_its_lines() -> None:
     with pytest.raises(rosprivacy.InputErrors) as refused:
         read_table("bad.yaml", VOCABULARY)
     assert str(refused.value).splitlines() == [
-        "bad.yaml:2: unknown key 'extra'; one of type_table, version, assumes, cannot, suggests",
+        "bad.yaml:2: unknown key 'extra'; one of type_table, version, assumes, cannot, hashes, suggests",
         "bad.yaml:4: 'Bool' is not the name of a type; write pkg/msg/Name",
         "bad.yaml:4: unknown category 'Vidoe'; did you mean Video or Voice?",
         "bad.yaml:5: std_srvs/srv/Empty is the type of a service; write leg: request or response",
@@ -266,6 +267,41 @@ def test_every_type_of_the_table_is_bounded_in_every_release_of_foreign_definiti
             free = unbounded(definitions, name)
             assert not free or (name in LISTS and all(one.startswith("list ") for one in free)), (store, name, free)
     assert {name for name, leg in limits.of if not leg} == looked
+
+
+def test_the_hashes_of_the_table_are_those_of_foreign_definitions() -> None:
+    """Rule S15; of services there are no foreign ones here: each has one."""
+    from rosbags.typesys import Stores, get_typestore
+
+    limits = read_table(TABLE, VOCABULARY).limits
+    stores = [get_typestore(store) for store in Stores if store.name.startswith("ROS2")]
+    assert set(limits.hashes) == {name for name, _ in limits.of}
+    for name, hashes in limits.hashes.items():
+        found = {store.hash_rihs01(name) for store in stores if name in store.fielddefs}
+        assert hashes == found if "/msg/" in name else len(hashes) == 1, name
+
+
+BOOLS = next(iter(read_table(TABLE, VOCABULARY).limits.hashes["std_msgs/msg/Bool"]))
+OTHER = f"RIHS01_{'1' * 64}"
+
+
+@pytest.mark.parametrize(
+    ("hashes", "elsewhere", "closes"),
+    [
+        ([""], "", True),
+        ([BOOLS], "", True),
+        ([BOOLS, BOOLS], BOOLS, True),
+        ([OTHER], "", False),  # not the known definition
+        ([BOOLS, OTHER], "", False),  # two
+        ([""], OTHER, False),  # the same name on another channel
+    ],
+)
+def test_a_type_that_is_defined_otherwise_excludes_nothing(hashes: list[str], elsewhere: str, closes: bool) -> None:  # noqa: FBT001
+    """Rule S15."""
+    seen = [{"type": "std_msgs/msg/Bool", "writers": ["/cam"], **({"hash": one} if one else {})} for one in hashes]
+    other = [{"type": "std_msgs/msg/Bool", "writers": ["/door"], **({"hash": elsewhere} if elsewhere else {})}]
+    Path("t.yaml").write_text(json.dumps({"types": 1, "topics": {"/a": seen, "/x": other}}), "utf-8")
+    assert bool(told("", types="t.yaml").findings) != closes
 
 
 def test_every_format_tells_of_the_table_and_none_breaks() -> None:

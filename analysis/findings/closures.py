@@ -14,7 +14,7 @@ from rosprivacy.analysis.kernel.nearest import Nearest
 from rosprivacy.analysis.model import CANNOT, Method, Place, Statement
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.kernel.backward import Backward
     from rosprivacy.analysis.kernel.roles import Facts
@@ -59,14 +59,25 @@ def closures(spread: Spread) -> list[Closure]:
     >>> [(closure.by, NAMES[closure.vertex]) for closure in closures(spread(*factory()))]
     [('sanitizer', '/filter'), ('only', '/faces'), ('standard-channel', '/rosout'), ('deny', '/video')]
     """
-    return [*_elements(spread), *_flows(spread), *_denied(spread)]
+    return [*_elements(spread, spread.keeps), *_flows(spread), *_denied(spread)]
 
 
-def _elements(spread: Spread) -> Iterator[Closure]:
+def standard_closures(spread: Spread) -> list[Closure]:
+    """Return where data ends on the word of shipped files alone.
+
+    >>> from rosprivacy.analysis.example import NAMES, factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> [NAMES[closure.vertex] for closure in standard_closures(spread(*factory()))]
+    ['/rosout']
+    """
+    return [closure for closure in _elements(spread, spread.standard) if closure.by == STANDARD]
+
+
+def _elements(spread: Spread, vertices: Iterable[int]) -> Iterator[Closure]:
     alike: dict[tuple[int, int], list[tuple[int, tuple[Line, ...], bool]]] = {}  # the same is said of many elements
-    for vertex, keeps in sorted(spread.keeps.items()):
+    for vertex in sorted(vertices):
         decided = spread.facts[vertex]
-        stopped = spread.arrives.get(vertex, 0) & ~keeps
+        stopped = spread.arrives.get(vertex, 0) & ~spread.keeps[vertex]
         if (id(decided), stopped) not in alike:
             alike[id(decided), stopped] = [
                 (stopped & sum(map(spread.both, categories)), lines, any(_alone(decided[c]) for c in categories))

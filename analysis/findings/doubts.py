@@ -14,10 +14,12 @@ from rosprivacy.analysis.model import (
     BACKUPS_NOT_STATED,
     BY_GLOBS,
     GAPS,
+    INFRASTRUCTURE_CLOSES,
     NO_FLOW,
     NO_READER,
     RESTRICTED,
     RIDES,
+    STANDARD_CLOSES,
     TYPE_CLOSES,
     Doubt,
     Rank,
@@ -74,6 +76,7 @@ def doubts(
         *_of_files((*diagnostics, *analysis.diagnostics)),
         *_ends(analysis),
         *_closed(analysis),
+        *_shipped(analysis),
         *_backups(analysis),
         *_by_globs(by_globs, {*analysis.emitted}),
     ]
@@ -132,6 +135,14 @@ def _closed(analysis: Analysis) -> Iterator[Doubt]:
         kinds.setdefault(finding.leak, set()).add(finding.category)
     for leak, some in kinds.items():
         yield Doubt(TYPE_CLOSES, Rank.RIDES, leak, categories=tuple(sorted(some)))
+
+
+def _shipped(analysis: Analysis) -> Iterator[Doubt]:
+    """Channels at which a shipped file alone closes a path to a leak; a standard channel in its place is no doubt."""
+    for row in analysis.closed_by_shipped:
+        name = STANDARD_CLOSES if row.rank is Rank.BREAKS else INFRASTRUCTURE_CLOSES
+        if row.rank is not None:
+            yield Doubt(name, row.rank, row.channel, categories=row.categories)
 
 
 def _backups(analysis: Analysis) -> Iterator[Doubt]:

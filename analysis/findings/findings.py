@@ -18,6 +18,7 @@ from rosprivacy.analysis.answer import Analysis, Carried, Finding, Verdict
 from rosprivacy.analysis.bounds import BOUNDS, Tally
 from rosprivacy.analysis.case import Case
 from rosprivacy.analysis.findings.arrival import shown_arrivals
+from rosprivacy.analysis.findings.closed_by_shipped import closed_by_shipped
 from rosprivacy.analysis.findings.concerns import concerns
 from rosprivacy.analysis.findings.grounds import grounds, lacking
 from rosprivacy.analysis.findings.open_questions import open_questions
@@ -26,6 +27,7 @@ from rosprivacy.analysis.findings.unknown_ends import unknown_ends
 from rosprivacy.analysis.findings.witness import witness_of
 from rosprivacy.analysis.kernel import spreading, standard_channels
 from rosprivacy.analysis.kernel.bits import bits_of
+from rosprivacy.analysis.kernel.overruled import untouched
 from rosprivacy.analysis.kernel.search import START, Search, path_to, present
 from rosprivacy.analysis.kernel.searches import ROOM, searches
 from rosprivacy.analysis.kernel.states import Net
@@ -142,11 +144,13 @@ def analyse(
         roles=_roles(spread, mask),
         standard_channels=_standard_channels(spread),
         standard_reached=standard_channels.reached(spread, mask),
+        closed_by_shipped=closed_by_shipped(spread, mask),
         standard_unchanged=standard_channels.unchanged(spread, bound),
         spread=spread,
         unstated=tuple(_unstated(spread)),
         diagnostics=(
             *(one.diagnostic() for one in spread.overruled),
+            *untouched(spread.facts, graph.elements, spread.categories),
             *work.not_counted(),
             *(() if leak or questions else _lacking(lacks, options, spread)),
         ),

@@ -105,6 +105,7 @@ class FleetView:
             roles={element: said for element, said in analysis.roles.items() if element.robot not in second},
             unstated=tuple((element, name) for element, name in analysis.unstated if element.robot not in second),
             standard_reached=tuple(row for row in analysis.standard_reached if row[0].robot not in second),
+            closed_by_shipped=tuple(row for row in analysis.closed_by_shipped if row.channel.robot not in second),
             standard_unchanged=tuple(e for e in analysis.standard_unchanged if e.robot not in second),
             outside={element: facts for element, facts in analysis.outside.items() if element.robot not in second},
             unknown_ends=tuple(end for end in analysis.unknown_ends if end.element.robot not in second),

@@ -1,7 +1,8 @@
-"""Channels that a source names: nothing but a user's full name takes away what it sends through them (rules S7, S8).
+"""Channels that a source names: nothing takes away what it sends through them (rules S7, S8).
 
 In: what statements mean for elements and flows, before they are carried. Out: the same, where statements that would
-close a channel to what a source names it for do not count there; and an error where a user's full name says so.
+close a channel to what a source names it for do not count there, in neither leg of a service or action; and an error
+where a user's full name says so.
 """
 
 from __future__ import annotations
@@ -85,6 +86,8 @@ def named(
 ) -> list[tuple[str, Statement, int, int]]:
     """Return (category, statement of a source, channel that it names, flow to it), with what wildcards match there.
 
+    With the leg of a service or an action that the source writes comes the other, to which it has no flow: -1.
+
     >>> from rosprivacy.analysis.example import CAMERA, NAMES, factory
     >>> from rosprivacy.analysis.model import Bound, Place, Statement
     >>> graph, _, hierarchy = factory()
@@ -106,12 +109,17 @@ def named(
     for meeting in (one for one in meetings if one.of_wildcards):
         for written in meeting.written:
             met[written] += meeting.read
+    legs: dict[tuple[str, str, str], list[int]] = defaultdict(list)
+    for vertex, element in enumerate(graph.elements):
+        if element.leg:
+            legs[element.identity].append(vertex)
     for vertex, decided in elements.items():
         for category, fact in decided.items():
             for source in fact.by_role("source")[:1] if fact.through else ():
                 indices = bound.through.get((vertex, fact.through), ())
-                every = _with_matches(indices, graph, matches, met)
-                rows += [(category, source, graph.flows[i].target, i) for i in every]
+                ends = {graph.flows[i].target: i for i in _with_matches(indices, graph, matches, met)}
+                both = {leg: -1 for end in ends for leg in legs.get(graph.elements[end].identity, ())}
+                rows += [(category, source, end, index) for end, index in {**both, **ends}.items()]
     return rows
 
 

@@ -1,7 +1,7 @@
 """Sources and leaks that one statement says and another takes away: that is never silent (rule S7).
 
-In: what statements mean for each element. Out: ``Overruled``, for a warning and for what is assumed; and an error where
-one of a user's files takes away what another says, and does not say so by name.
+In: what statements mean for each element. Out: ``Overruled``, for a warning and for what is assumed; and a warning
+where a conduit stands beside one: it takes nothing away, and the warning says what to write if that is meant.
 """
 
 from __future__ import annotations
@@ -9,18 +9,17 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import TYPE_CHECKING, NamedTuple
 
-from rosprivacy.analysis.errors import LabelError, shown
+from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.kernel.ranks import NONE_OF, in_words
-from rosprivacy.analysis.model import STANDARD, Diagnostic, Method, Severity
+from rosprivacy.analysis.model import STANDARD, Diagnostic, Severity
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Callable, Iterable, Mapping
 
     from rosprivacy.analysis.kernel.roles import Facts
     from rosprivacy.analysis.model import Element, Statement
 
 LISTED = 3  # names in a message
-USERS = STANDARD + 1  # the tier of a user's files; what people write into the database is above
 
 
 class Overruled(NamedTuple):
@@ -29,7 +28,7 @@ class Overruled(NamedTuple):
     Attributes
     ----------
     lost, by
-        The statement, and the one that takes it away.
+        The statement, and the one that takes it away; of ``untouched`` a conduit, which does not.
     categories, names
         For which, and at which elements, sorted.
     """
@@ -47,24 +46,24 @@ class Overruled(NamedTuple):
     @property
     def message(self) -> str:
         """What it says to a person, in one sentence."""
-        more = f" and {len(self.names) - LISTED} more" if len(self.names) > LISTED else ""
-        names = f"{', '.join(map(shown, self.names[:LISTED]))}{more}"
-        what = f"the {self.role} of {', '.join(self.categories)} at {self.lost.place}"
-        return f"{names}: {in_words(self.by)} takes away {what}"
+        return self._sentence("takes away")
 
     def diagnostic(self) -> Diagnostic:
         """Return the warning."""
         return Diagnostic(self.by.place, Severity.WARNING, self.message)
 
-    def error(self) -> LabelError | None:
-        """Return the error, where one file takes away what another says without a word of it."""
-        files = self.lost.place.file != self.by.place.file and self.lost.rank[0] == self.by.rank[0] == USERS
-        absent_by_name = self.by.method is Method.ABSENT and self.by.by_name
-        says_so = absent_by_name or self.by.role in (self.role, NONE_OF[self.role])
-        if not files or self.by.rank == self.lost.rank or says_so:
-            return None
-        hint = f"if this is meant, write '{self.role}: none' beside it, else correct one of them"
-        return LabelError(self.by.place.file, self.by.place.line, self.message, hint)
+    def _sentence(self, does: str) -> str:
+        more = f" and {len(self.names) - LISTED} more" if len(self.names) > LISTED else ""
+        names = f"{', '.join(map(shown, self.names[:LISTED]))}{more}"
+        what = f"the {self.role} of {', '.join(self.categories)} at {self.lost.place}"
+        return f"{names}: {in_words(self.by)} {does} {what}"
+
+    def stays(self) -> Diagnostic:
+        """Return the warning that a conduit takes nothing away, with what would."""
+        above = self.by.rank > self.lost.rank
+        write = f"write '{self.role}: none'" if above else f"name under {self.role} the other kinds only"
+        message = f"{self._sentence('does not take away')}; if that is meant, {write}"
+        return Diagnostic(self.by.place, Severity.WARNING, message)
 
 
 def overruled(meaning: Mapping[int, Mapping[str, Facts]], elements: tuple[Element, ...]) -> tuple[Overruled, ...]:
@@ -78,20 +77,54 @@ def overruled(meaning: Mapping[int, Mapping[str, Facts]], elements: tuple[Elemen
     >>> from rosprivacy.analysis.model import Place, Statement
     >>> graph, _, hierarchy = factory()
     >>> leak = Statement("leak", ("Video",), (1, 0), Place("site.yaml", 3))
-    >>> none = Statement("no-leak", ("Video",), (1, 1), Place("robot.yaml", 7))
+    >>> none = Statement("no-leak", (), (1, 1), Place("robot.yaml", 7))
     >>> meaning = {ARCHIVE: {"Video": facts("/archive", (leak, none), "Video", hierarchy)}}
     >>> [one.message for one in overruled(meaning, graph.elements)]
     ['/archive: leak: none takes away the leak of Video at site.yaml:3']
     """
-    outdone: dict[tuple[Statement, Statement], tuple[set[str], set[str]]] = defaultdict(lambda: (set(), set()))
+    return _rows(meaning, elements, lambda fact: (pair for pair in fact.outdone if _counts(fact, *pair)))
+
+
+def untouched(
+    meaning: Mapping[int, Mapping[str, Facts]], elements: tuple[Element, ...], emitted: Iterable[str]
+) -> Iterable[Diagnostic]:
+    """Return a warning for each source and leak of what is emitted beside which a higher or nearer conduit stands.
+
+    >>> from rosprivacy.analysis.example import ARCHIVE, factory
+    >>> from rosprivacy.analysis.kernel.roles import facts
+    >>> from rosprivacy.analysis.model import Place, Statement
+    >>> graph, _, hierarchy = factory()
+    >>> leak = Statement("leak", ("Video",), (1, 0), Place("site.yaml", 3))
+    >>> conduit = Statement("conduit", (), (1, 1), Place("robot.yaml", 7))
+    >>> meaning = {ARCHIVE: {"Video": facts("/archive", (leak, conduit), "Video", hierarchy)}}
+    >>> for warning in untouched(meaning, graph.elements, ["Video"]):
+    ...     print(warning.message)
+    /archive: conduit does not take away the leak of Video at site.yaml:3; if that is meant, write 'leak: none'
+    """
+    kinds = set(emitted)
+    of_these = {v: {kind: decided[kind] for kind in kinds & decided.keys()} for v, decided in meaning.items()}
+    return (row.stays() for row in _rows(of_these, elements, _beside))
+
+
+def _beside(fact: Facts) -> Iterable[tuple[Statement, Statement]]:
+    conduits = fact.by_role("conduit")[:1]
+    stand = [one for role in NONE_OF for one in fact.by_role(role) if one.rank[0] > STANDARD] if conduits else ()
+    return ((one, conduit) for one in stand for conduit in conduits)
+
+
+def _rows(
+    meaning: Mapping[int, Mapping[str, Facts]], elements: tuple[Element, ...],
+    pairs: Callable[[Facts], Iterable[tuple[Statement, Statement]]],
+) -> tuple[Overruled, ...]:  # fmt: skip
+    """One for each two lines, in the order of files and lines."""
+    by_pair: dict[tuple[Statement, Statement], tuple[set[str], set[str]]] = defaultdict(lambda: (set(), set()))
     for vertex, decided in meaning.items():
         for category, fact in decided.items():
-            for lost, by in fact.outdone:
-                if _counts(fact, lost, by):
-                    categories, names = outdone[lost, by]
-                    categories.add(category)
-                    names.add(elements[vertex].name)
-    together = (Overruled(*pair, tuple(sorted(c)), tuple(sorted(n))) for pair, (c, n) in outdone.items())
+            for pair in pairs(fact):
+                categories, names = by_pair[pair]
+                categories.add(category)
+                names.add(elements[vertex].name)
+    together = (Overruled(*pair, tuple(sorted(c)), tuple(sorted(n))) for pair, (c, n) in by_pair.items())
     return tuple(sorted(_merged(together), key=_order))
 
 

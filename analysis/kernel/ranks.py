@@ -3,9 +3,10 @@
 In: statements, a category, the hierarchy. Out: ``Decided``.
 
 Of statements that contradict each other the higher rank wins, then the one nearer in the hierarchy. ``mundane``,
-``sensitive``, ``only`` and ``never`` are of one kind in this: each lets a category pass or stops it. A leak
-is never outdone by a statement about a broader or an overlapping category, and the standard channels' file is not
-outdone by a glob of the user's whose last segment is not written out. Equals that contradict are an error.
+``sensitive``, ``only`` and ``never`` are of one kind in this: each lets a category pass or stops it. A source and a
+leak are taken away by ``none`` of a higher rank, or with the whole node by ``absent``, and by nothing else. The
+standard channels' file is not outdone by a glob of the user's whose last segment is not written out. Equals that
+contradict are an error, and so is a sanitizer of what the node itself brings in.
 """
 
 from __future__ import annotations
@@ -40,7 +41,8 @@ OPPOSED = frozenset(
 )
 # What is not on the robot does nothing: a label of higher rank that says it does makes it be there (rule S7).
 OPPOSED_TO_ABSENT = frozenset(frozenset(("sanitizer", role)) for role in ("leak", "derivation"))
-NONE_OF = {"source": "no-source", "leak": "no-leak"}  # role -> what takes it back by name
+NONE_OF = {"source": "no-source", "leak": "no-leak"}  # role -> what takes it back
+KEPT = frozenset({("conduit", "source"), ("conduit", "leak"), ("sanitizer", "source")})  # not taken away by the first
 
 Rank = tuple[int, int, int]
 
@@ -65,7 +67,7 @@ def decided(name: str, said: Sequence[Statement], category: str, hierarchy: Hier
     >>> from rosprivacy.analysis.example import factory
     >>> from rosprivacy.analysis.model import Place, Statement
     >>> leak = Statement("leak", ("Video",), (1, 0), Place("labels.yaml", 3), naming=GLOB)
-    >>> none = Statement("no-leak", ("Video",), (1, 1), Place("labels.yaml", 7))
+    >>> none = Statement("no-leak", (), (1, 1), Place("labels.yaml", 7))
     >>> holding = decided("/archive", (leak, none), "Video", factory()[2])
     >>> [statement.role for statement in holding.accepted], [lost.role for lost, _ in holding.outdone]
     (['no-leak'], ['leak'])
@@ -84,14 +86,14 @@ def decided(name: str, said: Sequence[Statement], category: str, hierarchy: Hier
     for rank, statement in ranked:
         against = [(r, s) for r, s in ranked if _opposed(s, statement, category, hierarchy)]
         for other_rank, other in against:
-            if _clash(rank, statement, other_rank, other, hierarchy):
+            if statement.rank == other.rank and _clash(-rank[2], statement, -other_rank[2], other, category):
                 raise _contradiction(name, category, other, statement)
-        winners = [s for r, s in against if _outdoes(r, s, rank, statement, hierarchy)]
+        winners = [s for r, s in against if _outdoes(r, s, rank, statement)]
         if not winners:
             accepted.append(statement)
         elif statement.role in NONE_OF:
             outdone.append((statement, _decisive(statement, winners)))
-    _check_derivations(name, category, accepted)
+    _check_sanitizers(name, category, accepted)
     return Decided(_seen(accepted, category), tuple(sorted(outdone, key=lambda pair: by_line(pair[0]))))
 
 
@@ -134,9 +136,7 @@ def closes(statement: Statement, category: str, hierarchy: Hierarchy) -> bool:
         return _named_distance(statement, category, hierarchy) is None
     if statement.role == CANNOT:
         return category in statement.categories
-    return statement.role == "mundane" or (
-        statement.role == "never" and _named_distance(statement, category, hierarchy) is not None
-    )
+    return statement.role in ("mundane", "never") and _distance(statement, category, hierarchy) is not None
 
 
 def by_line(statement: Statement) -> tuple[str, int, str]:
@@ -160,7 +160,8 @@ def in_words(statement: Statement) -> str:
     ['derives FaceTemplate from Video', 'sanitizer (pseudonymise)', 'only [FaceTemplate]']
     """
     if statement.role in NONE_OF.values():
-        return f"{statement.role.removeprefix('no-')}: none"
+        kinds = f"{{none: [{', '.join(statement.categories)}]}}" if statement.categories else "none"
+        return f"{statement.role.removeprefix('no-')}: {kinds}"
     if statement.role == "sanitizer":
         return "absent" if statement.method is Method.ABSENT else f"sanitizer ({statement.method})"
     if statement.role in ("only", "never", CANNOT):
@@ -192,9 +193,8 @@ def _named_distance(statement: Statement, category: str, hierarchy: Hierarchy) -
 def _opposed(a: Statement, b: Statement, category: str, hierarchy: Hierarchy) -> bool:
     """Whether two statements cannot both hold for a category."""
     if a.role in OF_CHANNELS:
-        whole = {a.role, b.role} <= OF_EVERY_KIND and a.rank == b.rank
-        differ = a.role != b.role or set(a.categories) != set(b.categories)
-        return closes(a, category, hierarchy) != closes(b, category, hierarchy) or (whole and differ)
+        two = a.role == b.role == "only" and a.rank == b.rank and set(a.categories) != set(b.categories)
+        return two or closes(a, category, hierarchy) != closes(b, category, hierarchy)
     if a.role != b.role:
         absent = Method.ABSENT in (a.method, b.method)
         return frozenset((a.role, b.role)) in (OPPOSED | OPPOSED_TO_ABSENT if absent else OPPOSED)
@@ -203,24 +203,32 @@ def _opposed(a: Statement, b: Statement, category: str, hierarchy: Hierarchy) ->
     return a.role == "source" and a.through != b.through
 
 
-def _outdoes(rank: Rank, statement: Statement, other_rank: Rank, other: Statement, hierarchy: Hierarchy) -> bool:
+def _outdoes(rank: Rank, statement: Statement, other_rank: Rank, other: Statement) -> bool:
     """Whether the first statement outdoes the other."""
-    if _too_broad(statement, other, hierarchy) or (_standard(other) and _open_ended(statement)):
+    pair = (statement.role, other.role)
+    if pair in KEPT and statement.method is not Method.ABSENT and other.rank[0] >= STANDARD:
+        return False  # below are leaks that the sort of an element implies: a conduit takes these back
+    if statement.role == NONE_OF.get(other.role):
+        return statement.rank > other.rank
+    if _standard(other) and _open_ended(statement):
         return False
-    return (_standard(statement) and _open_ended(other)) or rank > other_rank
+    lets = pair == ("only", "never") and rank == other_rank  # a tie lets through
+    return lets or rank > other_rank or (_standard(statement) and _open_ended(other))
 
 
-def _clash(rank: Rank, statement: Statement, other_rank: Rank, other: Statement, hierarchy: Hierarchy) -> bool:
-    """Whether neither of two that are opposed outdoes the other."""
-    either = _too_broad(statement, other, hierarchy) or _too_broad(other, statement, hierarchy)
-    whole = {statement.role, other.role} <= OF_EVERY_KIND and statement.rank == other.rank
-    return whole or (rank == other_rank and not either)
-
-
-def _too_broad(one: Statement, leak: Statement, hierarchy: Hierarchy) -> bool:
-    """Whether a statement is about more than a leak is about: then it never outdoes it, whatever the ranks."""
-    named = leak.categories if leak.role == "leak" else ()
-    return any(hierarchy.distance(a, name) is None for name in named for a in one.categories)
+def _clash(near: int, a: Statement, other: int, b: Statement, category: str) -> bool:
+    """Whether two of one rank that are opposed, at these distances, are an error."""
+    by_role = {a.role: (a, near), b.role: (b, other)}
+    if by_role.keys() <= OF_EVERY_KIND:
+        return True
+    if by_role.keys() == {"only", "never"}:
+        return category in by_role["only"][0].categories
+    if by_role.keys() == {"leak", "conduit"}:
+        return a.categories == b.categories
+    for role, none in NONE_OF.items():
+        if by_role.keys() == {role, none}:
+            return by_role[none][1] <= by_role[role][1]
+    return near == other
 
 
 def _decisive(lost: Statement, winners: Sequence[Statement]) -> Statement:
@@ -241,15 +249,21 @@ def _open_ended(statement: Statement) -> bool:
     return statement.rank[0] > STANDARD and statement.naming == GLOB
 
 
-def _check_derivations(name: str, category: str, accepted: Sequence[Statement]) -> None:
-    """Refuse a node that ends a category and makes it again of what it ends (rule S7)."""
-    ends = [s for s in accepted if s.role == "sanitizer" and s.method is not None and s.method.ends]
-    for made in accepted:
-        if made.role == "derivation" and made.to == category and ends:
-            raise _contradiction(name, category, ends[0], made)
+def _check_sanitizers(name: str, category: str, accepted: Sequence[Statement]) -> None:
+    """Refuse a node that cleans what it brings in (S10), and one that makes a category again of what it ends (S7)."""
+    cleans = [s for s in accepted if s.role == "sanitizer" and s.method not in (None, Method.ABSENT)]
+    ends = [s for s in cleans if s.method is not None and s.method.ends]
+    for other in accepted if cleans else ():
+        if other.role == "source":
+            hint = "keep one of them; 'source: none' takes a source back"
+            raise _contradiction(name, category, cleans[0], other, hint)
+        if other.role == "derivation" and other.to == category and ends:
+            raise _contradiction(name, category, ends[0], other)
 
 
-def _contradiction(name: str, category: str, a: Statement, b: Statement) -> LabelError:
+def _contradiction(
+    name: str, category: str, a: Statement, b: Statement, hint: str = "keep one of them, or make one more specific"
+) -> LabelError:
     first, second = sorted((a, b), key=lambda s: (s.place.file, s.place.line))
     every = not first.categories and not second.categories
     every = every or {first.role, second.role} <= OF_EVERY_KIND
@@ -257,4 +271,4 @@ def _contradiction(name: str, category: str, a: Statement, b: Statement) -> Labe
     what = (
         f"{shown(name)} is {in_words(second)} for {about} here and {in_words(first)} at {printable(str(first.place))}"
     )
-    return LabelError(second.place.file, second.place.line, what, "keep one of them, or make one more specific")
+    return LabelError(second.place.file, second.place.line, what, hint)

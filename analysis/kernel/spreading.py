@@ -17,6 +17,7 @@ from rosprivacy.analysis.kernel.ranks import applies
 from rosprivacy.analysis.kernel.roles import Facts, facts
 from rosprivacy.analysis.kernel.searches import searches_after
 from rosprivacy.analysis.kernel.spread import Spread
+from rosprivacy.analysis.many_flows import parted
 from rosprivacy.analysis.model import Method
 
 if TYPE_CHECKING:
@@ -98,7 +99,6 @@ def meaning(
     spread = Spread(graph, tuple(sorted(categories)), hierarchy=hierarchy)
     problems = _decide(spread, bound, hierarchy, left_out, before)
     spread.overruled = overruled(spread.facts, graph.elements)
-    problems += [error for one in spread.overruled if (error := one.error())]
     problems += keep_named(spread.facts, spread.flow_facts, graph, bound, hierarchy)
     restricted = any(statement.through for said in bound.elements.values() for statement in said)
     stated = stated_flows(graph) if restricted else {}
@@ -112,6 +112,7 @@ def meaning(
             alike[id(decided)] = _Does.of(spread, decided)
         _set_vertex(spread, vertex, alike[id(decided)])
         _begin_through(spread, vertex, bound, stated)
+    spread.gone.update(_read_by_nobody(spread))
     for index, kept in spread.flow_facts.items():
         spread.flow_keeps[index] = _bits(spread, kept, lambda fact: fact.passes)
     if problems:
@@ -251,6 +252,19 @@ def _set_vertex(spread: Spread, vertex: int, does: _Does) -> None:
     spread.derives[vertex] = does.derives
     spread.emits[vertex] = does.emits
     spread.made.update(does.made)
+
+
+def _read_by_nobody(spread: Spread) -> dict[int, int]:
+    """What is read from wildcards, with the bits for which nobody to whom that is granted is there."""
+    own, meetings = parted(spread.graph.flows) if spread.gone else ((), ())
+    ends: list[tuple[tuple[int, ...], tuple[int, ...]]] = [((flow.source,), (flow.target,)) for _, flow in own]
+    ends += [(meeting.written, meeting.read) for meeting in meetings if meeting.of_written]
+    read: dict[int, int] = {}
+    for channels, readers in ends:
+        for vertex in (v for v in channels if spread.graph.elements[v].side == "read"):
+            for reader in readers:
+                read[vertex] = read.get(vertex, spread.all_bits) & spread.gone.get(reader, 0)
+    return {vertex: bits for vertex, bits in read.items() if bits}
 
 
 def _begin_through(spread: Spread, vertex: int, bound: Bound, stated: Mapping[int, Collection[int]]) -> None:

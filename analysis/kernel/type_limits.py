@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import replace
+from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.kernel.ranks import closes
@@ -31,17 +32,19 @@ class TypeLimit(NamedTuple):
 
 
 class TypeLimits(NamedTuple):
-    """A table of limits, by (name of a type, leg)."""
+    """A table of limits, by (name of a type, leg), and the hashes of the definitions that it speaks of, by name."""
 
     file: str
     sha256: str
     of: Mapping[tuple[str, str], TypeLimit]
+    hashes: Mapping[str, frozenset[str]] = MappingProxyType({})
 
 
 def under_limits(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, limits: TypeLimits | None) -> Bound:
     """Return what is bound to a graph with what the types of its channels cannot carry.
 
-    Several types exclude what all of them exclude. A channel is limited only where what each of its writers sends is
+    Several types exclude what all of them exclude; one that was seen with two hashes, or with one that is not that of
+    the definition in the table, excludes nothing. A channel is limited only where what each of its writers sends is
     known, and only in the declared view. What a derivation makes, and what a label says that a flow there may carry,
     is not taken away; what labels of the channel and sources say of it outranks these statements by itself.
 
@@ -60,9 +63,12 @@ def under_limits(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, limits: T
     if limits is None or not bound.types or graph.view != View.declared:
         return bound
     kept, said = _Kept(graph, bound, hierarchy), dict[int, Statement]()
-    begun = emitted(bound.elements.values())
+    begun, other = emitted(bound.elements.values()), _otherwise_defined(bound, limits)
     for vertex, types in bound.types.items():
-        found = [limits.of.get((one.name, graph.elements[vertex].leg)) for one in types]
+        found = [
+            None if (one.robot, one.name) in other else limits.of.get((one.name, graph.elements[vertex].leg))
+            for one in types
+        ]
         some = [one for one in found if one]
         if not some or len(some) < len(found) or not kept.known(vertex, types):
             continue
@@ -74,6 +80,18 @@ def under_limits(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, limits: T
         return bound
     both = {v: (*bound.elements.get(v, ()), *([said[v]] if v in said else ())) for v in {*bound.elements, *said}}
     return replace(bound, elements=dict(sorted(both.items())))
+
+
+def _otherwise_defined(bound: Bound, limits: TypeLimits) -> set[tuple[str, str]]:
+    """(robot, name) of types of which what is there called so is not, or not everywhere, what the table speaks of."""
+    seen: dict[tuple[str, str], set[str]] = defaultdict(set)
+    for types in bound.types.values():
+        of_channel: dict[str, set[str]] = defaultdict(set)  # robots may share it
+        for one in types:
+            of_channel[one.name].update(filter(None, [one.hash]))
+        for one in types:
+            seen[one.robot, one.name] |= of_channel[one.name]
+    return {key for key, hashes in seen.items() if len(hashes) > 1 or not hashes <= limits.hashes.get(key[1], hashes)}
 
 
 class _Kept:

@@ -27,6 +27,8 @@ NO_FLOW = "no-flow"  # an element outside ROS that no flow reaches
 BACKUPS_NOT_STATED = "backups-not-stated"
 RESTRICTED = "restricted"  # the answer is about some kinds of data only
 BY_GLOBS = "by-globs"  # only a glob answers for what gets to an element, in a file without pins
+STANDARD_CLOSES = "standard-closes"  # only the standard file does, of a channel that is not in its standard place (S13)
+INFRASTRUCTURE_CLOSES = "infrastructure-closes"  # only the file of infrastructure does
 TYPE_CLOSES = "type-closes"  # only what a message type cannot carry closes a path to a leak
 
 

@@ -44,6 +44,7 @@ from rosprivacy.ingest.database.row_facts import (
 )
 from rosprivacy.ingest.database.schema import KIND_LABELS, ROLES
 from rosprivacy.ingest.database.type_properties import types_of
+from rosprivacy.ingest.labels.log_text import is_log, without_text
 from rosprivacy.ingest.labels.stated_types import in_order
 from rosprivacy.ingest.labels.surroundings import surroundings_of
 
@@ -362,7 +363,7 @@ class _Reader:
         """What is said of an element; the categories that one label of a channel names stand together again."""
         together: dict[tuple[Any, ...], list[str]] = defaultdict(list)
         for category, facts, every in self._said.get(key, ()):
-            alone = () if facts[0] in ("only", "never") or every else (category,)
+            alone = () if facts[0] in ("only", "never", "mundane") or every else (category,)
             together[(*facts, *alone)].append(category)
         for facts, categories in sorted(together.items(), key=lambda item: str(item[0])):
             role, rank, place, method, stated, to, through, every, naming, why, author, pinned = facts[:FACTS]
@@ -371,4 +372,6 @@ class _Reader:
                 names = (to,)
                 to = categories[0]  # it is stored the other way round: the target is what is made
             shipped = role == "mundane" and rank[0] <= STANDARD
+            if shipped and rank[0] == STANDARD and is_log(self._by_key[key].name):  # earlier versions: of every kind
+                names = without_text(self._vocabulary)
             yield Statement(role, names, rank, place, method, stated, to, through, shipped, naming, why, author, pinned)

@@ -126,7 +126,9 @@ class _Shared:
     def signers(self) -> Iterator[Diagnostic]:
         """Say which CA the signatures are of."""
         authority = self.authorities.get(PERMISSIONS_CA)
-        for fingerprint in authority.fingerprints if authority and self.verified else ():
+        if authority is None or not self.verified:
+            return
+        for fingerprint in authority.fingerprints:
             message = f"the CA of the signatures, SHA-256 {fingerprint}: {PINNED if self.pins else NOT_PINNED}"
             yield Diagnostic(Place(authority.file, 0), Severity.NOTICE, message, SIGNED_BY)
 

@@ -28,6 +28,7 @@ from rosprivacy.analysis.model import (
 )
 from rosprivacy.ingest.labels.bag_storages import bags_of
 from rosprivacy.ingest.labels.entries import EXACT, SHIPPED, Entry, FlowEntry, naming, specificity
+from rosprivacy.ingest.labels.log_text import is_log, without_text
 from rosprivacy.ingest.labels.name_reader import NameReader
 from rosprivacy.ingest.labels.non_ros_reader import is_non_ros, read_element, read_limits
 from rosprivacy.ingest.labels.pins import PINS, Pin, read_pins
@@ -184,6 +185,9 @@ class LabelReader(NameReader):
             rank = self.rank(specificity(name))
             read = self._node if section == "nodes" else self._channel
             statements = self._said(label, read(label, Place(self.file, at), rank), naming(name))
+            if self.tier == SHIPPED and is_log(name):
+                kinds = without_text(self.vocabulary)
+                statements = tuple(one._replace(categories=kinds) for one in statements if kinds)
             place, of_node = Place(self.file, at), section == "nodes"
             subjects = self._subjects(label) if of_node else ()
             processing = self._processing(label, place) if of_node else UNSTATED
@@ -221,9 +225,12 @@ class LabelReader(NameReader):
             return
         for key, line, value in self.entries_of(label, NODE_KEYS):
             at = Place(self.file, line)
-            if value.kind == "text" and value.text == NONE and key in NONE_OF:
-                yield Statement(NONE_OF[key], (), rank, at)
-            elif key == "source":
+            if key in NONE_OF and (value.text == NONE or value.get(NONE)):
+                yield from self._none(key, value, at, rank)
+                value = value._replace(entries=tuple(one for one in value.entries if one[0] != NONE))  # noqa: PLW2901
+                if not value.entries:
+                    continue
+            if key == "source":
                 yield from self._source(value, at, rank)
             elif key in ("leak", "conduit"):
                 for name in self.categories_of(value, key):
@@ -234,6 +241,14 @@ class LabelReader(NameReader):
                 yield from self._derives(value, at, rank)
             elif key == "absent":
                 yield from self._absent(label, value, at, rank)
+
+    def _none(self, key: str, value: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
+        """What takes a source or a leak back: of all kinds, or of some."""
+        if (kinds := value.get(NONE)) is None:
+            yield Statement(NONE_OF[key], (), rank, place)
+            return
+        for name in self.categories_of(kinds, f"{key}: none"):
+            yield Statement(NONE_OF[key], (name,), rank, place)
 
     def _source(self, value: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
         if value.kind != "map":

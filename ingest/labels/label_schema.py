@@ -231,13 +231,18 @@ def _element(kind: str, labels: dict[str, Any]) -> dict[str, Any]:
 def _node(one: dict[str, Any], some: dict[str, Any], said: dict[str, Any]) -> dict[str, Any]:
     channels = {"type": "array", "minItems": 1, "items": NAME}
     none = {"const": NONE}
+    nothing = {"type": "object", "required": [NONE], "additionalProperties": False, "properties": {NONE: some}}
+    through = _by_category(channels)
     return _object(
         {
             "source": {
                 "description": "Brings these in; as a map, only through the channels named; none takes labels back.",
-                "anyOf": [some, _by_category(channels), none],
+                "anyOf": [some, {**through, "properties": {NONE: some}}, none],
             },
-            "leak": {"anyOf": [some, none], "description": "Lets these out; none takes labels of lower rank back."},
+            "leak": {
+                "anyOf": [some, none, nothing],
+                "description": "Lets these out; none takes labels of lower rank back, of all kinds or of some.",
+            },
             "conduit": {**some, "description": "Reviewed: passes these on."},
             "sanitizer": {
                 "description": "Cleans these; a method that is not stated counts as pseudonymise.",

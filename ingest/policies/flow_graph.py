@@ -104,9 +104,10 @@ class _Denials:
             for endpoint in endpoints(grant.role, grant.kind, grant.name):
                 rules[grant.policy, grant.enclave, endpoint.writes].append((endpoint.dds, grant))
         self._of = {key: (found, *apart(found)) for key, found in rules.items()}
+        self._of_wildcards: dict[tuple[Grant, str], tuple[list[Grant], list[Rule]]] = {}
 
     def of(self, grant: Grant, endpoint: Endpoint) -> tuple[list[Grant], list[Rule]]:
-        """The lines that deny all of what a grant opens, and the rules that deny a part of its wildcard."""
+        """The lines that deny all of what a grant opens in a leg, and the rules that deny a part of its wildcard."""
         if not self._of:
             return [], []
         rules, plain, patterns = self._of.get((grant.policy, grant.enclave, endpoint.writes), ((), {}, ()))
@@ -115,11 +116,18 @@ class _Denials:
             rules, plain, patterns = _before(grant.rank, rules)
         if not is_pattern(endpoint.name):
             return [*plain.get(endpoint.dds, ()), *(g for dds, g in patterns if self._work.hold(dds, endpoint.dds))], []
-        whole = [line for dds, line in rules if self._work.hold(dds, endpoint.dds)]
-        if whole:
-            return whole, []
-        part = [rule for rule in rules if self._work.meet(rule[0], endpoint.dds)]
-        if part and not self._work.name_left((endpoint.dds,), part):
+        if (grant, endpoint.leg) not in self._of_wildcards:
+            self._of_wildcards[grant, endpoint.leg] = self._of_leg(rules, endpoint)
+        return self._of_wildcards[grant, endpoint.leg]
+
+    def _of_leg(self, rules: Sequence[Rule], endpoint: Endpoint) -> tuple[list[Grant], list[Rule]]:
+        """Of a wildcard with all of its DDS topics: a leg of an action has several, and is one element."""
+        names = dds_names(endpoint.kind, endpoint.name, endpoint.leg)
+        whole = {name: [line for dds, line in rules if self._work.hold(dds, name)] for name in names}
+        if all(whole.values()):
+            return [line for lines in whole.values() for line in lines], []
+        part = [rule for rule in rules if any(self._work.meet(rule[0], name) for name in names)]
+        if part and not any(self._work.name_left((name,), part) for name in names if not whole[name]):
             return [line for _, line in part], []
         return [], part
 

@@ -14,7 +14,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.bounds import BOUNDS
-from rosprivacy.analysis.errors import InputError, InputErrors, TypesError
+from rosprivacy.analysis.errors import InputError, InputErrors, TypesError, shown
 from rosprivacy.analysis.kernel.type_limits import TypeLimit, TypeLimits
 from rosprivacy.analysis.model import Place, Suggestion, by_confidence, interface_of, kind_of_type
 from rosprivacy.ingest.reading import yaml_values
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.reading.yaml_values import Value
     from rosprivacy.ontology.vocabulary import Vocabulary
 
-PARTS = ("type_table", "version", "assumes", "cannot", "suggests")
+PARTS = ("type_table", "version", "assumes", "cannot", "hashes", "suggests")
 KEYS = ("types", "leg", "kinds", "why", "source")
 Key = tuple[str, str]  # name of a type, leg
 Rules = tuple[Suggestion, ...]
@@ -104,10 +104,10 @@ def read_table(file: str, vocabulary: Vocabulary, bounds: Bounds = BOUNDS) -> Ty
     except InputError as error:
         raise InputErrors([error]) from None
     reader = _Reader(file, error=TypesError, bounds=bounds)
-    limits, suggestions = reader.document(top, vocabulary)
+    limits, hashes, suggestions = reader.document(top, vocabulary)
     if reader.problems:
         raise InputErrors(reader.problems)
-    return TypeTable(TypeLimits(file, hashlib.sha256(data).hexdigest(), limits), suggestions)
+    return TypeTable(TypeLimits(file, hashlib.sha256(data).hexdigest(), limits, hashes), suggestions)
 
 
 def excluded(vocabulary: Vocabulary, named: frozenset[str]) -> frozenset[str]:
@@ -142,15 +142,25 @@ def _follows(category: Category, broader: list[bool], vocabulary: Vocabulary) ->
 class _Reader(EntryReader):
     """One table."""
 
-    def document(self, top: Value, vocabulary: Vocabulary) -> tuple[dict[Key, TypeLimit], dict[Key, Rules]]:
+    def document(
+        self, top: Value, vocabulary: Vocabulary
+    ) -> tuple[dict[Key, TypeLimit], dict[str, frozenset[str]], dict[Key, Rules]]:
         if top.kind != "map":
             self.problem(top.line, f"a table of types is a map, not a {top.kind}", "begin with 'type_table: 1'")
-            return {}, {}
+            return {}, {}, {}
         self.version(top, "type_table", "table")
         said = {key: value for key, _, value in self.entries_of(top, PARTS)}
         limits = self._limits(self.list_of(said["cannot"], "cannot") if "cannot" in said else (), vocabulary)
         rules = self.list_of(said["suggests"], "suggests") if "suggests" in said else ()
-        return limits, read_suggestions(self, rules, vocabulary, limits)
+        return limits, self._hashes(said.get("hashes")), read_suggestions(self, rules, vocabulary, limits)
+
+    def _hashes(self, value: Value | None) -> dict[str, frozenset[str]]:
+        found: dict[str, frozenset[str]] = {}
+        for name, line, hashes in value.entries if value else ():
+            if not kind_of_type(name):
+                self.problem(line, f"{shown(name)!r} is not the name of a type", "write pkg/msg/Name: [RIHS01_…]")
+            found[name] = frozenset(one.text for one in self.list_of(hashes, name))
+        return found
 
     def _limits(self, items: Iterable[Value], vocabulary: Vocabulary) -> dict[Key, TypeLimit]:
         found: dict[Key, TypeLimit] = {}

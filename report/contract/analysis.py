@@ -22,6 +22,7 @@ if TYPE_CHECKING:
         PlaceEntry,
         Reached,
         RelianceEntry,
+        Stopped,
         UnknownEnd,
     )
     from rosprivacy.report.contract.stated import (
@@ -140,7 +141,7 @@ class Assumptions(Given):
     taken_by_kind: dict[str, str]
     backups_taken_as_none: NotRequired[list[ElementEntry]]
     sanitizers_without_method: list[NoMethod]
-    standard_channels_reached: NotRequired[list[Reached]]
+    standard_channels_reached: NotRequired[list[Stopped]]
     standard_channels_unchanged: NotRequired[list[ElementEntry]]
     overruled: NotRequired[list[OverruledEntry]]
     absent: NotRequired[list[AbsentEntry]]

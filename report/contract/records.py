@@ -57,6 +57,12 @@ class Reached(TypedDict):
     categories: list[str]
 
 
+class Stopped(Reached):
+    """A channel that a shipped file takes as mundane, what stops there, and the nearest leak that it keeps it from."""
+
+    keeps_from: NotRequired[ElementEntry]
+
+
 class StepEntry(TypedDict):
     """A step of a witness."""
 

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.kernel.overruled import Overruled
     from rosprivacy.analysis.model import Category, Diagnostic, Element, Flow, FlowGraph, Grant, Legal, Reason
     from rosprivacy.report.answer import Answer
-    from rosprivacy.report.contract.analysis import AnalysisDocument, Given, HangsOn
+    from rosprivacy.report.contract.analysis import AnalysisDocument, Given
     from rosprivacy.report.contract.records import (
         DeniedEntry,
         DiagnosticEntry,
@@ -42,6 +42,7 @@ if TYPE_CHECKING:
         LawEntry,
         OpenEntry,
         StepEntry,
+        Stopped,
         WhyEntry,
     )
     from rosprivacy.report.contract.stated import (
@@ -126,10 +127,7 @@ def analysis_document(answer: Answer) -> AnalysisDocument:
                 {"element": element_dict(element), "category": category, "taken_as": "pseudonymise"}
                 for element, category in analysis.unstated
             ],
-            "standard_channels_reached": [
-                {"element": element_dict(replace(element, leg="")), "categories": list(categories)}
-                for element, categories in analysis.standard_reached
-            ],
+            "standard_channels_reached": [_stopped(*row, analysis) for row in analysis.standard_reached],
             "standard_channels_unchanged": [
                 element_dict(replace(element, leg="")) for element in analysis.standard_unchanged
             ],
@@ -138,16 +136,11 @@ def analysis_document(answer: Answer) -> AnalysisDocument:
             "globs": ledger.globs(answer.globs(taken), element_dict),
         },
     }
-    document.update(_hangs_on(answer))
+    if answer.hangs_on is None:  # so that nobody takes it for 'hangs on nothing'
+        document["not_asked"] = [{"key": "hangs_on", "option": HANGS_ON}]
+    else:
+        document["hangs_on"] = reliance.rows(answer.hangs_on, element_dict)
     return document
-
-
-def _hangs_on(answer: Answer) -> HangsOn:
-    """What the answer hangs on; or that nobody asked, so that nobody takes it for 'nothing'."""
-    rows = answer.hangs_on
-    if rows is None:
-        return {"not_asked": [{"key": "hangs_on", "option": HANGS_ON}]}
-    return {"hangs_on": reliance.rows(rows, element_dict)}
 
 
 def label_key(element: Element) -> LabelKey:
@@ -159,6 +152,14 @@ def label_key(element: Element) -> LabelKey:
     """
     section = SECTIONS.get(element.kind, "elements")
     return {"section": section, "name": element.name if section == "elements" else literal(element.name)}
+
+
+def _stopped(channel: Element, categories: tuple[str, ...], analysis: Analysis) -> Stopped:
+    stopped: Stopped = {"element": element_dict(replace(channel, leg="")), "categories": list(categories)}
+    for row in analysis.closed_by_shipped:
+        if row.end and row.channel.identity == channel.identity:
+            stopped["keeps_from"] = element_dict(row.end)
+    return stopped
 
 
 def _overruled(one: Overruled) -> OverruledEntry:

@@ -89,6 +89,10 @@ def _stopped(index: Index) -> Iterator[str]:
     for rows in grouped(said.get("standard_channels_reached", ()), lambda row: tuple(row["categories"])):
         names = words.row(index.names([row["element"] for row in rows]))
         yield words("a.standard.reached", element=names, data=index.all_data(rows[0]["categories"]))
+    for row in said.get("standard_channels_reached", ()):
+        if end := row.get("keeps_from"):
+            ends = {"element": name(row["element"]), "end": name(end)}
+            yield words("a.standard.keeps", data=index.all_data(row["categories"]), **ends)
     if unchanged := said.get("standard_channels_unchanged", ()):
         yield words("a.standard.unchanged", element=words.row(index.names(unchanged)))
     for row in said.get("absent", ()):

@@ -35,6 +35,10 @@ def standard_lines(report: Mapping[str, Any], most: int | None, words: Words) ->
     reached = [f"{shown_name(row['element'])} ({', '.join(row['categories'])})" for row in reached_of(report)]
     if reached:
         yield f"   {words('tty.standard.reached', n=len(reached), names=_listed(reached, most, words))}", ""
+    rows = [row for row in reached_of(report) if "keeps_from" in row]
+    keeping = [f"{shown_name(row['element'])} -> {shown_name(row['keeps_from'])}" for row in rows]
+    if keeping:
+        yield f"   {words('tty.standard.keeps', n=len(keeping), names=_listed(keeping, most, words))}", ""
     unchanged = [shown_name(element) for element in assumptions.get("standard_channels_unchanged", ())]
     if unchanged:
         names = _listed(unchanged, most, words)

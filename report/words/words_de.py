@@ -312,6 +312,7 @@ WORDS = {
     "a.standard.proposed": "{channels}: angenommen, dass sie keine personenbezogenen Daten tragen, nach der Datei {file} (SHA-256 {sha}) oder nach {proposed}.",
     "a.standard.none": "Von keinem Standardkanal von ROS wurde angenommen, dass er keine personenbezogenen Daten trägt.",
     "a.standard.reached": "{data}: würde zu {element} gelangen und endet deshalb dort.",
+    "a.standard.keeps": "{data}: Nur das hält diese Daten bei {element} von {end} fern.",
     "a.standard.unchanged": "Eine Angabe mit Platzhaltern sagt, dass {element} Daten tragen kann; sie zählt gegen diese Datei nicht.",
     "a.types.observed": "Die Nachrichtentypen der Datei {file} wurden von {start} bis {end} beobachtet; was nicht gesehen wurde, beweist nichts.",
     "a.types.none": "Von keinem Nachrichtentyp wurde angenommen, dass er begrenzt, was ein Kanal trägt.",

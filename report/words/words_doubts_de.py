@@ -79,6 +79,12 @@ DOUBTS = {
         "{n} Namen haben kein / hinter ~ und sind andere Namen ({names})",
         "~/ davor schreiben",
     ),
+    "infrastructure-closes": (
+        "Nur die Datei der Infrastruktur schließt den Weg zu einem Ausgang",
+        "nur die Datei der Infrastruktur schließt den Weg zu einem Ausgang bei {names}",
+        "nur die Datei der Infrastruktur schließt die Wege zu Ausgängen bei {n} Kanälen ({names})",
+        "ansehen, was der Kanal trägt, und es angeben",
+    ),
     "no-flow": (
         "Ein Element außerhalb von ROS, zu dem kein Fluss führt",
         "zu {names} führt kein Fluss",
@@ -132,6 +138,12 @@ DOUBTS = {
         "gefragt war nur nach manchen Arten von Daten",
         "gefragt war nur nach manchen Arten von Daten",
         "nach allen Arten fragen",
+    ),
+    "standard-closes": (
+        "Nur die Datei der Standardkanäle schließt den Weg zu einem Ausgang, an einem Kanal, der nicht an seinem Platz ist",
+        "nur die Datei der Standardkanäle schließt den Weg zu einem Ausgang bei {names}, und das ist kein Standardkanal an seinem Platz",
+        "nur die Datei der Standardkanäle schließt die Wege zu Ausgängen bei {n} Kanälen, die nicht an ihrem Platz sind ({names})",
+        "ansehen, was der Kanal trägt, und es mit vollem Namen angeben",
     ),
     "type-closes": (
         "Nur der Typ eines Kanals schließt den Weg zu einem Ausgang",

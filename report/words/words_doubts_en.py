@@ -79,6 +79,12 @@ DOUBTS = {
         "{n} names have no / behind ~ and are other names ({names})",
         "write ~/ before it",
     ),
+    "infrastructure-closes": (
+        "Only the file of infrastructure closes the way to a leak",
+        "only the file of infrastructure closes the way to a leak at {names}",
+        "only the file of infrastructure closes the ways to leaks at {n} channels ({names})",
+        "look at what the channel carries, and say so in a label",
+    ),
     "no-flow": (
         "An element outside ROS that no flow reaches",
         "no flow reaches {names}",
@@ -132,6 +138,12 @@ DOUBTS = {
         "only some kinds of data were asked for",
         "only some kinds of data were asked for",
         "ask about all kinds",
+    ),
+    "standard-closes": (
+        "Only the standard file closes the way to a leak, at a channel that is not in its standard place",
+        "only the standard file closes the way to a leak at {names}, which is not a standard channel in its place",
+        "only the standard file closes the ways to leaks at {n} channels that are not in their standard place ({names})",
+        "look at what the channel carries, and say so in a label by its full name",
     ),
     "type-closes": (
         "Only the type of a channel closes the way to a leak",

@@ -79,6 +79,12 @@ DOUBTS = {
         "{n} noms n'ont pas de / derrière ~ et sont d'autres noms ({names})",
         "écrire ~/ devant",
     ),
+    "infrastructure-closes": (
+        "Seul le fichier d'infrastructure ferme le chemin vers un point de sortie",
+        "seul le fichier d'infrastructure ferme le chemin vers un point de sortie à {names}",
+        "seul le fichier d'infrastructure ferme les chemins vers des points de sortie à {n} canaux ({names})",
+        "regarder ce que le canal transporte, et l'annoter",
+    ),
     "no-flow": (
         "Un élément hors de ROS qu'aucun flux n'atteint",
         "aucun flux n'atteint {names}",
@@ -132,6 +138,12 @@ DOUBTS = {
         "seules certaines catégories de données ont été demandées",
         "seules certaines catégories de données ont été demandées",
         "demander toutes les catégories",
+    ),
+    "standard-closes": (
+        "Seul le fichier des canaux standard ferme le chemin vers un point de sortie, sur un canal qui n'est pas à sa place",
+        "seul le fichier des canaux standard ferme le chemin vers un point de sortie à {names}, qui n'est pas un canal standard à sa place",
+        "seul le fichier des canaux standard ferme les chemins vers des points de sortie à {n} canaux qui ne sont pas à leur place ({names})",
+        "regarder ce que le canal transporte, et l'annoter par son nom entier",
     ),
     "type-closes": (
         "Seul le type d'un canal ferme le chemin vers un point de sortie",

@@ -351,6 +351,7 @@ WORDS = {
     "a.standard.proposed": "{channels} taken to carry no personal data, by the file {file} (SHA-256 {sha}), or by {proposed}.",
     "a.standard.none": "No standard ROS channel was taken to carry no personal data.",
     "a.standard.reached": "{data} would get to {element}, and stops there for this.",
+    "a.standard.keeps": "This alone keeps {data} at {element} from {end}.",
     "a.standard.unchanged": "A label by a glob says that {element} may carry data; it does not count against that file.",
     "a.types.observed": "The message types of the file {file} were observed from {start} to {end}; what was not seen proves nothing.",
     "a.types.none": "No message type was taken to limit what a channel carries.",

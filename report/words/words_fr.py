@@ -317,6 +317,7 @@ _TYPED = {
     "a.standard.proposed": "{channels} : supposés ne porter aucune donnée à caractère personnel, d'après le fichier {file} (SHA-256 {sha}) ou d'après {proposed}.",
     "a.standard.none": "D'aucun canal standard de ROS il n'a été supposé qu'il ne porte aucune donnée à caractère personnel.",
     "a.standard.reached": "{data} : ces données atteindraient {element} et s'y arrêtent pour cette raison.",
+    "a.standard.keeps": "{data} : cela seul empêche ces données d'aller de {element} à {end}.",
     "a.standard.unchanged": "Une annotation à caractères génériques dit que {element} peut porter des données ; elle ne compte pas contre ce fichier.",
     "a.types.observed": "Les types de message du fichier {file} ont été observés du {start} au {end} ; ce qui n'a pas été vu ne prouve rien.",
     "a.types.none": "Aucun type de message n'a été supposé limiter ce que porte un canal.",

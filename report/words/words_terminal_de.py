@@ -159,6 +159,7 @@ WORDS = {
     "tty.standard.by": "{channels}, nach {file} (sha256 {sha}){more}",
     "tty.standard.proposed": ", oder nach {file} (rosprivacy labels --infrastructure)",
     "tty.standard.reached": "Daten gelangen zu {n} davon und enden dort: {names}",
+    "tty.standard.keeps": "bei {n} davon hält nichts anderes Daten von einem Ausgang fern: {names}",
     "tty.standard.unchanged": "von {n} davon sagt ein Muster etwas anderes, was nicht zählt: {names}; einzeln nennen, oder das Ende des Musters ausschreiben (*/rosout)",
     "tty.types.times": ", beobachtet von {start} bis {end}",
     "tty.types.file": "Nachrichtentypen {file} (sha256 {sha}{times})",

@@ -159,6 +159,7 @@ WORDS = {
     "tty.standard.by": "{channels} by {file} (sha256 {sha}){more}",
     "tty.standard.proposed": ", or by {file} (rosprivacy labels --infrastructure)",
     "tty.standard.reached": "data gets to {n} of them and stops there: {names}",
+    "tty.standard.keeps": "at {n} of them nothing else keeps data from a leak: {names}",
     "tty.standard.unchanged": "of {n} of them a glob says otherwise, which does not count: {names}; name them, or write out the end of the glob (*/rosout)",
     "tty.types.times": ", observed from {start} to {end}",
     "tty.types.file": "message types {file} (sha256 {sha}{times})",

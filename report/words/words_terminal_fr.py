@@ -161,6 +161,7 @@ _TYPED = {
     "tty.standard.by": "{channels}, d'après {file} (sha256 {sha}){more}",
     "tty.standard.proposed": ", ou d'après {file} (rosprivacy labels --infrastructure)",
     "tty.standard.reached": "des données atteignent {n} d'entre eux et s'y arrêtent : {names}",
+    "tty.standard.keeps": "à {n} d'entre eux, rien d'autre n'empêche des données d'aller à un point de sortie : {names}",
     "tty.standard.unchanged": "de {n} d'entre eux un motif dit autre chose, ce qui ne compte pas : {names} ; nommez-les, ou écrivez la fin du motif (*/rosout)",
     "tty.types.times": ", observés du {start} au {end}",
     "tty.types.file": "types de message {file} (sha256 {sha}{times})",

@@ -264,8 +264,8 @@ def test_what_was_refused_before_a_decision_keeps_no_robots_apart(small: Path) -
     own = ", ".join(f"{name}: {{model: eye, labels: [{name}.yaml]}}" for name in ("one", "two"))
     small.write_text(small.read_text("utf-8") + f"robots: {{{own}}}\n", "utf-8")
     session = begun(small)
-    with pytest.raises(RosPrivacyError, match="takes away the leak"):
-        session.label("one:/uplink", only_this_robot=True, conduit=True)
+    with pytest.raises(RosPrivacyError, match="keep one of them"):
+        session.label("one:/camera", only_this_robot=True, sanitizer={"Video": "drop"})
     session.decide(pattern(session, across=False).id, "accept", robots=["one", "two"], **SIGNED)
     assert session.stands_for("one") == ("one", "two")
     assert session.result.to("json") == fresh(small).to("json")

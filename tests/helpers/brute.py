@@ -34,6 +34,7 @@ PAIRS = [
 OF_CHANNELS = {"mundane", "sensitive", "only", "never"}  # S7: statements of one kind
 OF_EVERY_KIND = {"mundane", "sensitive", "only"}
 PASSING = {"conduit", "sensitive", "only"}
+KEPT = {("conduit", "source"), ("conduit", "leak"), ("sanitizer", "source")}  # the first takes no second away
 ENDS = {"anonymise", "aggregate", "drop"}
 ABSENT = "absent"  # the word of a node that is not there: it does nothing, so it is opposed to all that it might do
 CONDUIT = Statement("conduit", (), (-1, 0), Place("", 0))
@@ -113,11 +114,11 @@ class Brute:
         return [up for up in self.hierarchy.ancestors.values() if category in up and set(s.categories) & set(up)]
 
     def named(self, vertex: int, category: str) -> list[Statement]:
-        """S7: the statements of sources that name a channel for a category, and hold."""
+        """S7: the statements of sources that name a channel for a category, and hold; both legs of it have one name."""
         return [
             s
             for a, b in self.edges
-            if b == vertex and a in self.nodes and self.names.get(vertex)
+            if b not in self.nodes and a in self.nodes and self.names.get(vertex, "") == self.names.get(b)
             for s in self.holding(a, category)
             if s.role == "source" and self.names[vertex] in s.through
         ]
@@ -141,9 +142,8 @@ class Brute:
     def opposed(self, s: Statement, t: Statement, category: str) -> bool:
         """Whether two statements cannot both hold for a category."""
         if s.role in OF_CHANNELS:
-            whole = {s.role, t.role} <= OF_EVERY_KIND and s.rank == t.rank
-            differ = s.role != t.role or set(s.categories) != set(t.categories)
-            return self.closes(s, category) != self.closes(t, category) or (whole and differ)
+            two = s.role == t.role == "only" and s.rank == t.rank and set(s.categories) != set(t.categories)
+            return two or self.closes(s, category) != self.closes(t, category)
         if s.role == t.role:
             return (s.role == "sanitizer" and s.method != t.method) or (s.role == "source" and s.through != t.through)
         if ABSENT in (str(s.method), str(t.method)):
@@ -151,9 +151,15 @@ class Brute:
         return {s.role, t.role} in PAIRS
 
     def beats(self, t: Statement, s: Statement, category: str) -> bool:
-        """S7: the higher rank, then the nearer; S13: a user's glob with an open end does not beat the standard file."""
-        if s.role == "leak" and self.about_more(s, t):
-            return False  # never outdone by a statement about a broader or an overlapping kind, whatever the ranks
+        """S7: the higher rank, then the nearer; S13: a user's glob with an open end does not beat the standard file.
+
+        A source and a leak are taken away by ``none`` of a higher rank, or with the whole node; a leak that the sort of
+        an element implies by a conduit too.
+        """
+        if (t.role, s.role) in KEPT and str(t.method) != ABSENT and s.rank[0] >= 0:
+            return False
+        if t.role == f"no-{s.role}":
+            return t.rank > s.rank
         if standard(s) and open_ended(t):
             return False
         if standard(t) and open_ended(s):
@@ -161,11 +167,23 @@ class Brute:
         near, other = self.nearness(t, category), self.nearness(s, category)
         assert near is not None
         assert other is not None
-        return (*t.rank, -near) > (*s.rank, -other)
+        lets = (t.role, s.role) == ("only", "never") and near == other  # a tie lets through
+        return (*t.rank, -near) > (*s.rank, -other) or (lets and t.rank == s.rank)
 
-    def about_more(self, s: Statement, t: Statement) -> bool:
-        """Whether some of what the second is about is nothing that the first is about."""
-        return any(c not in self.hierarchy.ancestors[k] for c in s.categories for k in t.categories)
+    def clash(self, s: Statement, t: Statement, category: str) -> bool:
+        """S7: whether two of one rank that cannot both hold are an error."""
+        pair, near, other = {s.role, t.role}, self.nearness(s, category), self.nearness(t, category)
+        if s.rank != t.rank:
+            return False
+        if (s.role, t.role) == ("never", "only"):
+            return any(never in self.hierarchy.ancestors[only] for never in s.categories for only in t.categories)
+        if pair <= OF_EVERY_KIND:
+            return True
+        if pair == {"leak", "conduit"}:
+            return s.categories == t.categories
+        if s.role == f"no-{t.role}":
+            return (near or 0) <= (other or 0)
+        return near == other and pair not in ({"never", "only"}, {"leak", "no-leak"}, {"source", "no-source"})
 
     def holding(self, vertex: int, category: str) -> list[Statement]:
         """S7: the statements that apply, but for those that a higher or a nearer one contradicts."""
@@ -214,23 +232,14 @@ class Brute:
         return {(vertex, s.role, category) for vertex, category, s, _ in self.outdone()}
 
     def refused(self) -> bool:
-        """S7: whether labels contradict each other, or one file takes away what another says without a word of it."""
-        for _, _, s, t in self.outdone():
-            files = s.place.file != t.place.file and s.rank != t.rank and s.rank[0] == t.rank[0] == 1
-            by_name = str(t.method) == ABSENT and by_a_users_name(t)
-            if files and t.role not in (s.role, f"no-{s.role}") and not by_name:
-                return True
+        """S7: whether labels contradict each other."""
         emitted = self.kinds_emitted()
         for vertex, category in self.judged():
             applying = self.said_of(vertex, category)
-            for s in applying:
-                for t in applying:
-                    same = not self.beats(s, t, category) and not self.beats(t, s, category)
-                    leak, other = (s, t) if s.role == "leak" else (t, s)
-                    broad = (leak.role, other.role) == ("leak", "conduit") and self.about_more(leak, other)
-                    whole = {s.role, t.role} <= OF_EVERY_KIND and s.rank == t.rank
-                    if self.opposed(s, t, category) and ((same and not broad) or whole):
-                        return True
+            if any(self.opposed(s, t, category) and self.clash(s, t, category) for s in applying for t in applying):
+                return True
+            if self.has(vertex, "source", category) and self.cleans(vertex, category):
+                return True
             ends = [s for s in self.holding(vertex, category) if s.role == "sanitizer" and str(s.method) in ENDS]
             if ends and any(s.role == "derivation" and s.to == category for s in self.holding(vertex, category)):
                 return True
@@ -255,6 +264,10 @@ class Brute:
         onward = {source for source, _ in self.edges} & self.sources()
         return bool(onward) and (storages or any(s.role in ("leak", "no-leak") for s in said))
 
+    def cleans(self, vertex: int, category: str) -> bool:
+        """Whether it cleans a category; what is not there cleans nothing."""
+        return any(s.role == "sanitizer" and str(s.method) != ABSENT for s in self.holding(vertex, category))
+
     def has(self, vertex: int, role: str, category: str) -> bool:
         return any(s.role == role for s in self.holding(vertex, category))
 
@@ -267,7 +280,13 @@ class Brute:
         return bool(sanitizers) and all(str(s.method) not in {*ENDS, ABSENT} for s in sanitizers)
 
     def gone(self, vertex: int, category: str) -> bool:
-        """Whether a label says that a node is not on the robot, and no higher one says that it does something."""
+        """Whether a label says that a node is not on the robot, and no higher one says that it does something.
+
+        What is read from a wildcard is not there if nobody who reads it is.
+        """
+        readers = {b for a, b in self.edges if a == vertex and vertex in self.sides}
+        if readers:
+            return all(self.gone(reader, category) for reader in readers)
         return any(str(s.method) == ABSENT for s in self.holding(vertex, category))
 
     def made(self, vertex: int, data: Data) -> set[Data]:

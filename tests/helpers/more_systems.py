@@ -18,6 +18,8 @@ SHIPPED = Statement("mundane", (), (0, 6), Place("rosprivacy:standard", 1), ship
 def ranked(draw: st.DrawFn) -> System:
     """Statements by names and globs of one or two files; sources that name channels; standard channels."""
     system = draw(systems(outside=2))
+    if system.channels > 1:
+        system = replace(system, service=draw(st.booleans()))
     names = system.graph().elements
     channels = range(system.nodes, system.nodes + system.channels)
     one_file, two = st.just("a"), st.sampled_from(["a", "b"])
@@ -32,19 +34,24 @@ def ranked(draw: st.DrawFn) -> System:
         lambda r, c: statement(r, *sorted(c)), st.sampled_from(["only", "never"]), st.sets(category, min_size=1)
     )
     plain = st.sampled_from([statement("mundane"), statement("sensitive")])
-    words = st.sampled_from([statement("no-leak"), statement("no-source"), statement("conduit"), ABSENT])
+    nones = st.sampled_from(["no-leak", "no-source"])
+    some_none = st.one_of(st.builds(statement, nones), st.builds(statement, nones, category))
+    words = st.one_of(some_none, st.sampled_from([statement("conduit"), ABSENT]))
     for vertex, said in system.said.items():
         extra = st.one_of(more, plain) if vertex in channels else words
         some = [*said, *draw(st.lists(extra, max_size=2))]
         system.said[vertex] = [placed(one, vertex) for one in dict.fromkeys(some)]
         if draw(st.booleans()) and vertex in channels:
-            system.said[vertex].append(SHIPPED)
+            kinds = draw(st.sampled_from([(), ("Face", "Loc")]))  # of a log what no text holds (S13)
+            system.said[vertex].append(SHIPPED._replace(categories=kinds))
         written = [names[b].name for a, b in system.edges if a == vertex and b in channels]
         if draw(st.booleans()) and written:
             through = tuple(sorted(draw(st.sets(st.sampled_from(written), min_size=1))))
             system.said[vertex] = [
                 s._replace(through=through) if s.role == "source" else s for s in system.said[vertex]
             ]
+    if system.service:
+        system.said[channels[-1]] = system.said[channels[-2]]
     return system
 
 

@@ -65,6 +65,7 @@ class System:
     outside: list[tuple[str, NonRosFacts]] = field(default_factory=list)
     exposed: frozenset[int] = frozenset()  # channels, by vertex
     wildcard: bool = False  # the last two channels are what is written to a wildcard and what is read from it
+    service: bool = False  # … or the legs of a service
 
     @property
     def sides(self) -> dict[int, int]:
@@ -81,6 +82,8 @@ class System:
         elements += [Element("topic", f"/t{i}") for i in range(self.channels)]
         for read, written in self.sides.items():
             elements[written], elements[read] = (Element("topic", "/w*", side=side) for side in ("write", "read"))
+        if self.service:
+            elements[-2:] = (Element("service", "/s", leg=leg) for leg in ("request", "response"))
         flows = tuple(Flow(a, b, STATED if (a, b) in self.stated else "publish") for a, b in self.edges)
         return FlowGraph(tuple(elements), flows, (), ())
 

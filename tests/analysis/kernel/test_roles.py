@@ -369,5 +369,5 @@ class TestWhatDecided:
         assert [(s.role, s.categories) for s in fact.closers] == [("never", ("Biometric",))]
 
     def test_what_is_outdone_is_kept_with_what_outdid_it(self, tmp_path: Path) -> None:
-        result = system(tmp_path, SOURCE + "  /c*: {leak: [Biometric]}\n  /c: conduit\n")
-        assert self.told(result, "c") == ([], [("leak", "conduit")])
+        result = system(tmp_path, SOURCE + "  /c*: {leak: [Biometric]}\n  /c: {leak: none}\n")
+        assert self.told(result, "c") == ([], [("leak", "no-leak")])

@@ -94,6 +94,39 @@ def test_what_is_pinned_comes_back(driver: Driver, tmp_path: Path, pins: str) ->
     assert document == result.document()
 
 
+RULES = {  # S7, S13: labels of a system with a wildcard, a log and a channel outside its standard place -> verdict
+    "conduit": ("{'/up*': {leak: [Video]}, /uplink: conduit}", "leak"),
+    "none": ("{'/up*': {leak: [Video]}, /uplink: {leak: none, conduit: [Video]}}", "undetermined"),
+    "none of a kind": ("{'/up*': {leak: [PersonalData]}, /uplink: {leak: {none: [Video]}}}", "undetermined"),
+    "source none": (
+        "{'/up*': {leak: [Video]}, '/cam*': {source: {none: [Voice]}}, /camera: {source: [Voice]}}",
+        "leak",
+    ),
+    "absent": ("{/uplink: {leak: none}, /spy: {absent: sold}}", "undetermined"),
+    "clock": ("{/uplink: conduit, /spy: conduit, /watch: {leak: [Video]}}", "undetermined"),
+    "log": ("{/uplink: {leak: [SpeechTranscript]}, /listener: {source: [SpeechTranscript]}}", "leak"),
+}
+
+
+@pytest.mark.parametrize("case", RULES)
+def test_sharpened_rules_mean_the_same_from_the_database(
+    driver: Driver, case: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    nodes, verdict = RULES[case]
+    profiles = ("/camera>/video,/x/clock", "/uplink</video,/rosout", "/spy</v*", "/watch</x/clock", "/listener>/rosout")
+    (tmp_path / "p.xml").write_text(policy(*profiles), "utf-8")
+    (tmp_path / "1.yaml").write_text("labels: 1\nnodes: {/camera: {source: [Video]}}\nchannels: {/video: sensitive}")
+    (tmp_path / "2.yaml").write_text(f"labels: 1\nnodes: {nodes}\nchannels: {{'/v*': sensitive}}")
+    result = rosprivacy.analyze("p.xml", ["1.yaml", "2.yaml"])
+    assert str(result.analysis.verdict) == verdict
+    load(driver, [robot_of("r", result)], VOCABULARY)
+    document = answer_stored(driver, Settings()).document()
+    assert document["assumptions"].pop("database") == {"robots": 1}
+    assert document == result.document()
+    assert verdicts(driver) == {"r": verdict}
+
+
 def verdicts(driver: Driver) -> dict[str, str]:
     return dict(record.values() for record in driver.execute_query("MATCH (r:Robot) RETURN r.name, r.verdict").records)
 

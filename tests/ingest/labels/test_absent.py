@@ -99,6 +99,22 @@ def test_a_channel_that_only_an_absent_node_reads_can_wait(tmp_path: Path) -> No
     assert "1 can wait: from there data gets to no leak and no node that is not reviewed" in text
 
 
+@pytest.mark.parametrize("others", [(), (("screen", "subscribe", "image"),)])
+def test_a_wildcard_that_only_an_absent_node_reads_asks_nothing(
+    tmp_path: Path, others: tuple[tuple[str, str, str], ...]
+) -> None:
+    """S7: the whole node is taken away, with what was granted to it alone."""
+    labels = f'{ENDS}  /spy: {{absent: a debug tool}}\nchannels: {{"/image": sensitive}}\n'
+    spy = ("spy", "subscribe", "/i*")
+    asked = {q.element.name for q in analyze(tmp_path, labels, spy, *others).analysis.open}
+    assert "/i*" not in asked
+    assert asked == {
+        q.element.name for q in analyze(tmp_path, labels, ("spy", "subscribe", "other"), *others).analysis.open
+    }
+    there = analyze(tmp_path, labels, spy, ("screen", "subscribe", "/i*"))
+    assert "/i*" in {q.element.name for q in there.analysis.open}
+
+
 @pytest.mark.parametrize(
     ("label", "problem"),
     [

@@ -43,6 +43,8 @@ from tests.helpers.label_files import SYSTEM, VIDEO, analyse, wrong
             ("1.yaml:3", "2.yaml:3"),
         ),
         (["channels:\n  /image: {only: [Video]}", "channels:\n  /image: {only: [Voice]}"], ("1.yaml:3", "2.yaml:3")),
+        # S7: `never` of the same or a broader kind than an `only` names
+        (["channels:\n  /image:\n    only: [Video]\n    never: [PersonImage]"], ("1.yaml:4", "1.yaml:5")),
         (
             [
                 "flows:\n  - {from: /camera, to: /image, only: [Video]}",
@@ -90,10 +92,31 @@ def test_a_contradiction_about_every_category_is_one_problem(tmp_path: Path, lab
         ["channels: {/image: sensitive, /clean: mundane}"],
         ["nodes: {/filter: conduit}", "nodes: {/filter: {leak: [Video]}}"],  # S7: the nearest in the hierarchy wins
         ["channels: {/image: sensitive}", "channels: {/image: {never: [Video]}}"],
+        ["channels: {'/ima*': sensitive, '*mage': {sensitive: [Video]}}"],  # S7: these say the same
+        ["channels: {/image: sensitive}", "channels: {/image: sensitive}"],
+        ["channels: {/image: {only: [Video]}}", "channels: {/image: {sensitive: [Video]}}"],
+        ["channels: {/image: {only: [PersonImage], never: [Video]}}"],
     ],
 )
 def test_labels_that_agree_are_no_contradiction(tmp_path: Path, labels: list[str]) -> None:
     analyse(tmp_path, *[f"labels: 1\n{text}" for text in labels], VIDEO)
+
+
+@pytest.mark.parametrize(
+    ("channels", "carries"),
+    [
+        ("{'/ima*': {never: [PersonImage]}, /image: {only: [Video]}}", True),
+        ("{'/ima*': {only: [Video]}, /image: {never: [PersonImage]}}", False),
+        ("{/image: {only: [PersonImage], never: [Video]}}", False),  # the nearer
+        ("{/image: {only: [Location], never: [ContactData]}}", True),  # an address is of both: a tie lets through
+    ],
+)
+def test_of_only_and_never_the_higher_decides_then_the_nearer(tmp_path: Path, channels: str, carries: bool) -> None:  # noqa: FBT001
+    """Rule S7."""
+    kind = "PostalAddress" if "Location" in channels else "Video"
+    source = f"labels: 1\nnodes: {{/camera: {{source: [{kind}]}}}}"
+    result = analyse(tmp_path, source, f"labels: 1\nchannels: {channels}")
+    assert ("/image" in {one.element.name for one in result.carried}) == carries
 
 
 def test_every_contradiction_is_reported_at_once(tmp_path: Path) -> None:

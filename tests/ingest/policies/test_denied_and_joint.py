@@ -332,6 +332,36 @@ def test_a_pattern_of_which_denys_leave_no_common_name_carries_nothing(here: Pat
     assert answer(*denied[1:], "/z") == (1, "leak")
 
 
+@pytest.mark.parametrize("other", ["", "asks"])
+@pytest.mark.parametrize("writes", [False, True])
+def test_a_deny_of_the_topics_of_an_action_counts_for_a_wildcard_of_actions(
+    here: Path,
+    cli: Cli,
+    other: str,
+    writes: bool,  # noqa: FBT001
+) -> None:
+    """S4 exactly: the only names that the two share are topics of actions, and these the DENY takes out.
+
+    The enclave of the other node, whose wildcard has the same name, denies nothing.
+    """
+    ours, theirs = ("publish", "subscribe") if writes else ("subscribe", "publish")
+    word = "execute" if writes else "call"
+    action = f'<actions {word}="ALLOW"><action>/a/ac?</action></actions>'
+    deny = f'<topics {ours}="DENY"><topic>/a/*</topic></topics>'
+    enclaves = [
+        enclave("/e1", profile("n5", action, deny)),
+        enclave("/e0", profile("n0", topics(f'{theirs}="ALLOW"', "/a/*"))),
+    ]
+    enclaves += [enclave("/e2", profile(other, action))] if other else []
+    write(here, "p.xml", policy(*enclaves))
+    source, leak = ("/n5", "/n0") if writes else ("/n0", "/n5")
+    write(here, "l.yaml", f"labels: 1\nnodes: {{{source}: {{source: [Video]}}, {leak}: {{leak: [Video]}}}}")
+    assert cli("analyze", "p.xml", "-l", "l.yaml").returncode == 4
+    if other and not writes:
+        write(here, "l.yaml", f"labels: 1\nnodes: {{{source}: {{source: [Video]}}, /{other}: {{leak: [Video]}}}}")
+        assert cli("analyze", "p.xml", "-l", "l.yaml").returncode == 1
+
+
 def test_a_write_deny_takes_nothing_from_reading(here: Path, cli: Cli) -> None:
     reader = profile("uplink", topics('subscribe="ALLOW"', "/v*"), topics('publish="DENY"', "/v*"))
     write(here, "p.xml", policy(CAMERA, enclave("/up", reader)))

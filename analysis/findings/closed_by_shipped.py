@@ -1,0 +1,87 @@
+"""Ways to a leak that only a shipped file closes: nobody has said that the channel is harmless (rules S11, S13).
+
+In: a spread at its fixpoint. Out: ``ClosedByShipped`` facts: the channel, what stops there, the nearest leak, storage
+or element outside ROS that it would get to, and how much that weighs.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.answer import ClosedByShipped
+from rosprivacy.analysis.findings.closures import PERHAPS, behind, standard_closures
+from rosprivacy.analysis.many_flows import leaving
+from rosprivacy.analysis.model import NON_ROS, STANDARD, Rank, Statement
+
+if TYPE_CHECKING:
+    from collections.abc import Collection
+
+    from rosprivacy.analysis.kernel.spread import Spread
+    from rosprivacy.analysis.model import Element
+
+
+def closed_by_shipped(spread: Spread, mask: int) -> tuple[ClosedByShipped, ...]:
+    """Return what shipped statements alone close, one for both legs and sides of a channel, in the order of channels.
+
+    Parameters
+    ----------
+    mask
+        Bits of the categories that the answer is about.
+
+    Notes
+    -----
+    Nothing where nobody reads what was closed; else a few runs of the kernel, as for the ledger.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> carried = spread(*factory())
+    >>> closed_by_shipped(carried, carried.all_bits)  # nobody reads /rosout
+    ()
+    """
+    elements, onward = spread.graph.elements, leaving(spread.graph.flows) if spread.standard else {}
+    closed = [one for one in standard_closures(spread) if one.bits & mask and one.vertex in onward]
+    if not closed:
+        return ()
+    ends = {v: bits & mask for v, bits in spread.leaks.items()}
+    ends |= {v: mask for v, element in enumerate(elements) if element.kind in NON_ROS}
+    nodes = {element.name for v, element in enumerate(elements) if element.is_node and v not in spread.absent}
+    found: dict[tuple[str, str, str], list[ClosedByShipped]] = defaultdict(list)
+    for number, end in sorted(behind(spread, closed, ends).items()):
+        closure = closed[number]
+        lines = [line for line in closure.lines if isinstance(line, Statement) and line.shipped]
+        by_standard = any(line.rank[0] == STANDARD for line in lines)
+        channel = elements[closure.vertex]
+        outside = Rank.BREAKS if not in_its_place(channel, nodes) else None
+        row = ClosedByShipped(
+            channel,
+            spread.names(closure.bits & mask),
+            None if end == PERHAPS else elements[end],
+            tuple(sorted({line.place for line in lines})),
+            outside if by_standard else Rank.RIDES,
+        )
+        found[channel.identity].append(row)
+    return tuple(_one(found[key]) for key in sorted(found))
+
+
+def in_its_place(channel: Element, nodes: Collection[str]) -> bool:
+    """Return whether a standard channel is where ROS has it: a topic at the root, a service of a node that is there.
+
+    >>> from rosprivacy.analysis.model import Element
+    >>> [in_its_place(Element("topic", name), ()) for name in ("/clock", "/patient/clock")]
+    [True, False]
+    >>> [in_its_place(Element("service", "/cloud/get_parameters"), nodes) for nodes in (["/cloud"], ["/camera"])]
+    [True, False]
+    """
+    owner = channel.name.rpartition("/")[0]
+    return owner in nodes if channel.kind == "service" else not owner
+
+
+def _one(rows: list[ClosedByShipped]) -> ClosedByShipped:
+    """Legs and sides of a channel as one, with what weighs most."""
+    first = min(rows, key=lambda row: (row.rank is None, row.rank or "", row.end is None))
+    categories = {name for row in rows for name in row.categories}
+    places = {place for row in rows for place in row.places}
+    return first._replace(categories=tuple(sorted(categories)), places=tuple(sorted(places)))
