@@ -80,7 +80,7 @@ def doubts(
         *_backups(analysis),
         *_by_globs(by_globs, {*analysis.emitted}),
     ]
-    listed += [Doubt(RESTRICTED, Rank.RIDES)] if restricted else []
+    listed += [Doubt(RESTRICTED)] if restricted else []
     lines = first_lines(analysis.graph, {doubt.element.shown_as for doubt in listed if doubt.element})
     lines |= {e.shown_as: facts.place for e, facts in analysis.outside.items() if in_a_file(facts.place)}
     distinct = {doubt.id: doubt for doubt in (_counted(doubt, lines, weight) for doubt in listed) if doubt.count}
@@ -94,7 +94,7 @@ def judged(analysis: Analysis, listed: Iterable[Doubt]) -> Analysis:
     >>> from rosprivacy.analysis.example import factory
     >>> from rosprivacy.analysis.findings.findings import analyse
     >>> analysis = replace(analyse(*factory()), verdict=Verdict.NO_LEAK_FOUND)
-    >>> str(judged(analysis, [Doubt(UNREAD_FILE, Rank.BREAKS, place=Place("a.xml", 1))]).verdict)
+    >>> str(judged(analysis, [Doubt(UNREAD_FILE, place=Place("a.xml", 1))]).verdict)
     'undetermined'
     """
     broken = analysis.verdict is Verdict.NO_LEAK_FOUND and any(doubt.breaks for doubt in listed)
@@ -118,14 +118,13 @@ def _of_files(diagnostics: Iterable[Diagnostic]) -> Iterator[Doubt]:
     """What readers reported with a code that is a doubt."""
     for diagnostic in diagnostics:
         if diagnostic.code in GAPS or diagnostic.code in RIDES:
-            rank = Rank.BREAKS if diagnostic.code in GAPS else Rank.RIDES
-            yield Doubt(diagnostic.code, rank, None, diagnostic.place, (), diagnostic.number, diagnostic.message)
+            yield Doubt(diagnostic.code, None, diagnostic.place, (), diagnostic.number, diagnostic.message)
 
 
 def _ends(analysis: Analysis) -> Iterator[Doubt]:
     """Where data's path ends without anybody known."""
     for end in analysis.unknown_ends:
-        yield Doubt(ENDS[end.what], Rank.RIDES, end.element, categories=end.categories)
+        yield Doubt(ENDS[end.what], end.element, categories=end.categories)
 
 
 def _closed(analysis: Analysis) -> Iterator[Doubt]:
@@ -134,15 +133,18 @@ def _closed(analysis: Analysis) -> Iterator[Doubt]:
     for finding in analysis.closed.findings if analysis.closed else ():
         kinds.setdefault(finding.leak, set()).add(finding.category)
     for leak, some in kinds.items():
-        yield Doubt(TYPE_CLOSES, Rank.RIDES, leak, categories=tuple(sorted(some)))
+        yield Doubt(TYPE_CLOSES, leak, categories=tuple(sorted(some)))
 
 
 def _shipped(analysis: Analysis) -> Iterator[Doubt]:
     """Channels at which a shipped file alone closes a path to a leak; a standard channel in its place is no doubt."""
     for row in analysis.closed_by_shipped:
-        name = STANDARD_CLOSES if row.rank is Rank.BREAKS else INFRASTRUCTURE_CLOSES
         if row.rank is not None:
-            yield Doubt(name, row.rank, row.channel, categories=row.categories)
+            yield Doubt(
+                STANDARD_CLOSES if row.rank is Rank.BREAKS else INFRASTRUCTURE_CLOSES,
+                row.channel,
+                categories=row.categories,
+            )
 
 
 def _backups(analysis: Analysis) -> Iterator[Doubt]:
@@ -150,7 +152,7 @@ def _backups(analysis: Analysis) -> Iterator[Doubt]:
     holding = {carried.element.identity: carried.categories for carried in analysis.carried}
     for element, facts in analysis.outside.items():
         if element.kind == "storage" and facts.backups is None and element.identity in holding:
-            yield Doubt(BACKUPS_NOT_STATED, Rank.RIDES, element, categories=holding[element.identity])
+            yield Doubt(BACKUPS_NOT_STATED, element, categories=holding[element.identity])
 
 
 def _by_globs(rows: Iterable[ByGlobs], asked: AbstractSet[str]) -> Iterator[Doubt]:
@@ -162,4 +164,4 @@ def _by_globs(rows: Iterable[ByGlobs], asked: AbstractSet[str]) -> Iterator[Doub
         places += row.places
     for element, (kinds, places) in seen.items():
         if kinds:
-            yield Doubt(BY_GLOBS, Rank.RIDES, element, places[0], tuple(sorted(kinds)))
+            yield Doubt(BY_GLOBS, element, places[0], tuple(sorted(kinds)))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING, NamedTuple
 
-from rosprivacy.analysis.model.diagnostic import Place
+from rosprivacy.analysis.model.diagnostic import GAPS, RIDES, Place
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.model.element import Element
@@ -30,6 +30,12 @@ BY_GLOBS = "by-globs"  # only a glob answers for what gets to an element, in a f
 STANDARD_CLOSES = "standard-closes"  # only the standard file does, of a channel that is not in its standard place (S13)
 INFRASTRUCTURE_CLOSES = "infrastructure-closes"  # only the file of infrastructure does
 TYPE_CLOSES = "type-closes"  # only what a message type cannot carry closes a path to a leak
+
+RANKS = {  # each sort of doubts, what breaks first (rule S11)
+    **dict.fromkeys((*GAPS, STANDARD_CLOSES), Rank.BREAKS),
+    **dict.fromkeys((*RIDES, NO_READER, NO_FLOW, BACKUPS_NOT_STATED, RESTRICTED), Rank.RIDES),
+    **dict.fromkeys((BY_GLOBS, INFRASTRUCTURE_CLOSES, TYPE_CLOSES), Rank.RIDES),
+}
 
 
 class Acceptance(NamedTuple):
@@ -67,7 +73,7 @@ class Doubt:
     Attributes
     ----------
     name
-        Of its sort, for programs: the code of a diagnostic, or ``NO_READER`` and others.
+        Of its sort, for programs: one of ``RANKS``.
     element
         What it is about; None of a file, or of the whole answer.
     place
@@ -83,7 +89,6 @@ class Doubt:
     """
 
     name: str
-    rank: Rank
     element: Element | None = None
     place: Place = NO_PLACE
     categories: tuple[str, ...] = ()
@@ -92,12 +97,17 @@ class Doubt:
     accepted: Acceptance | None = None
 
     @property
+    def rank(self) -> Rank:
+        """What it does to the verdict."""
+        return RANKS[self.name]
+
+    @property
     def id(self) -> str:
         """16 hexadecimal digits, the same as long as it is about the same: its name, and its element or file.
 
         A line may move; a file's message is part of what it is about, so that no acceptance covers another problem.
 
-        >>> Doubt("unread-file", Rank.BREAKS, place=Place("a.xml", 3), message="not read").id
+        >>> Doubt("unread-file", place=Place("a.xml", 3), message="not read").id
         '4777f4f0fece49e1'
         """
         about = self.element.identity if self.element else (self.place.file, self.message)

@@ -12,10 +12,10 @@ from rosprivacy.analysis.answer import Analysis, Verdict, robot_verdicts
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.findings.doubts import judged
 from rosprivacy.analysis.findings.findings import Options, analyse
-from rosprivacy.analysis.model import UNREAD_FILE, Doubt, Element, Place, Rank
+from rosprivacy.analysis.model import UNREAD_FILE, Doubt, Element, Place
 from tests.helpers.systems import HIERARCHY, System, statement, systems
 
-UNREAD = (Doubt(UNREAD_FILE, Rank.BREAKS, place=Place("part.xml", 3), message="not read"),)
+UNREAD = (Doubt(UNREAD_FILE, place=Place("part.xml", 3), message="not read"),)
 
 
 def one_robot(analysis: Analysis, *, unread: bool = False) -> Verdict:

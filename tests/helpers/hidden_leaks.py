@@ -201,27 +201,27 @@ HIDDEN = {
     ),
     # globs and ranks (S7, S11)
     "a glob that calls everything mundane": labelled(
-        LEAK + 'channels: {"/*": mundane}\n', "glob-answers", breaks=False, text=TWO_STEPS
+        LEAK + 'channels: {"/*": mundane}\n', "by-globs", breaks=False, text=TWO_STEPS
     ),
     "a glob that calls everything a conduit": labelled(
-        'nodes: {/camera: {source: [Video]}, "/*": conduit, /view: {leak: [Voice]}}\n' + SENSITIVE, "glob-answers", breaks=False
+        'nodes: {/camera: {source: [Video]}, "/*": conduit, /view: {leak: [Voice]}}\n' + SENSITIVE, "by-globs", breaks=False
     ),
     "a glob that cleans": labelled(
         'nodes: {/camera: {source: [Video]}, "/rel*": {sanitizer: {Video: drop}}, /view: {leak: none, conduit: [Video]}, '
         "/uplink: {leak: [Video]}}\n" + "channels: {/video: sensitive, /sent: sensitive}\n",
-        "glob-answers",
+        "by-globs",
         breaks=False,
         text=TWO_STEPS,
     ),
     "a glob that says never": labelled(
         RELAYED + 'channels: {/video: sensitive, "/se*": {never: [Video]}}\n',
-        "glob-answers",
+        "by-globs",
         breaks=False,
         text=TWO_STEPS,
     ),
     "a glob that says only": labelled(
         RELAYED + 'channels: {/video: sensitive, "/se*": {only: [Voice]}}\n',
-        "glob-answers",
+        "by-globs",
         breaks=False,
         text=TWO_STEPS,
     ),
@@ -281,7 +281,7 @@ HIDDEN = {
             "f.yaml": "fleet: 1\nrobots: {a: {policies: [a.xml], domain: lab, labels: [l.yaml]}}\n"
             "infrastructure: {base: {policies: [b.xml], labels: [m.yaml]}}\n",
         },
-        "joins-nothing",
+        "leak-joins-nothing",
         fleet="f.yaml",
     ),
     "a domain in capitals": Hidden(
