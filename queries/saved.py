@@ -64,8 +64,8 @@ def written_out(query: Query, values: Mapping[str, Any]) -> str:
     """Return the Cypher of a query alone, with some values in the place of parameters; others stay.
 
     >>> from rosprivacy.queries.library import find
-    >>> print(written_out(find("findings"), {"robot": "r'1", "category": ""}).splitlines()[1])
-    WHERE ("r'1" = '' OR f.robot = "r'1")
+    >>> print(written_out(find("findings"), {"robot": "r'1", "category": ""}).splitlines()[4])
+    WHERE "r'1" = '' OR f.robot = "r'1" OR f.leak_robot = "r'1"
     """
     return _with_texts(query, {name: json.dumps(value) for name, value in values.items()})
 

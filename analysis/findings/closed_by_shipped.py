@@ -35,11 +35,17 @@ def closed_by_shipped(spread: Spread, mask: int) -> tuple[ClosedByShipped, ...]:
 
     Examples
     --------
+    >>> from dataclasses import replace
     >>> from rosprivacy.analysis.example import factory
     >>> from rosprivacy.analysis.kernel.spreading import spread
-    >>> carried = spread(*factory())
-    >>> closed_by_shipped(carried, carried.all_bits)  # nobody reads /rosout
-    ()
+    >>> from rosprivacy.analysis.model import Place
+    >>> graph, bound, hierarchy = factory()
+    >>> faces = [element.name for element in graph.elements].index("/faces")
+    >>> mundane = Statement("mundane", (), (STANDARD, 0), Place("rosprivacy:standard", 7), shipped=True)
+    >>> bound = replace(bound, elements={**bound.elements, faces: (mundane,)})
+    >>> carried = spread(graph, bound, hierarchy)
+    >>> [(row.channel.name, row.end.name, row.rank) for row in closed_by_shipped(carried, carried.all_bits)]
+    [('/faces', '/archive', None)]
     """
     elements, onward = spread.graph.elements, leaving(spread.graph.flows) if spread.standard else {}
     closed = [one for one in standard_closures(spread) if one.bits & mask and one.vertex in onward]

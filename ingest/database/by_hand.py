@@ -56,7 +56,7 @@ def seal_of(properties: Mapping[str, Any], labels: Iterable[str]) -> str | None:
     """Return the seal of what is written of an element: its labels of kinds of data, and ``SEALED``; None for nothing.
 
     >>> seal_of({"leaks": [], "begins": []}, []), seal_of({"leaks": ["Video"]}, [])
-    (None, 'b5ffc86b34f74edb')
+    (None, '228073b206773a67')
     """
     written = [sorted(labels), *(properties.get(name) or [] for name in SEALED)]
     return hashlib.sha256(json.dumps(written, default=str).encode()).hexdigest()[:16] if any(written) else None

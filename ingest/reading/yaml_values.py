@@ -175,6 +175,10 @@ def _feed_yaml(text: str, builder: Builder, fail: Callable[[int, str, str], Inpu
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         problem = error.problem or error.context or "not YAML"
+        if "nesting depth" in problem:  # a bound of newer versions of libyaml
+            raise fail(
+                mark.line + 1 if mark else 1, "nested more deeply than can be read", "write it flatter"
+            ) from None
         raise fail(mark.line + 1 if mark else 1, f"not YAML: {shown(problem)}", "correct the syntax") from None
     except (yaml.YAMLError, ValueError) as error:
         raise fail(1, f"not YAML: {shown(str(error))}", "correct the syntax") from None

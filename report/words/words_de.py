@@ -348,7 +348,7 @@ WORDS = {
     "a.folded-names": "{file}: Namen, die ein Programm bei jedem Start neu bildet, sind zusammengefasst ({said}).",
     "a.recording": "{file}: Ein Speicher ist eine Aufzeichnung (Bag); keine Nachricht darin wurde gelesen ({said}).",
     "a.law": "Nur für die DSGVO werden die Wege verfolgt, so wie die Ontologie des Programms sie wiedergibt, durchgesehen am {date}. Auf die KI-Verordnung, das Recht der elektronischen Kommunikation und nationales Recht wird bei den Wegen hingewiesen; beurteilt werden sie nicht. Betriebsvereinbarungen werden nicht betrachtet. Vorschläge für neues Recht werden nicht angewandt.",
-    "a.own-domains": "{file}: {n} Roboter ohne genannte Domain, jeder gilt als in einer eigenen; ROS 2 legt alle in Domain 0.",
+    "a.own-domains": "{file}: Roboter ohne genannte Domain gelten als je in einer eigenen; ROS 2 legt alle in Domain 0 ({said}).",
     "a.signed-by": "{file}: Mit dieser CA sind die Signaturen geprüft; wessen sie ist, legt nur --permissions-ca fest ({said}).",
     "a.labels": "Angaben sind das Wort einer Person. Was ein Knoten im Inneren tut und was ihn an ROS vorbei verlässt, kann das Programm nicht nachsehen.",
     "t.closed": "Auf jemandes Wort hin verschlossen: Ohne es kämen Daten weiter",

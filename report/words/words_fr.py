@@ -353,7 +353,7 @@ _TYPED = {
     "a.folded-names": "{file} : les noms qu'un programme invente à chaque démarrage sont réunis ({said}).",
     "a.recording": "{file} : un stockage est un enregistrement (bag) ; aucun message n'y a été lu ({said}).",
     "a.law": "Seul le RGPD est suivi le long des chemins, tel que l'ontologie du programme le rend, revue le {date}. Le règlement sur l'intelligence artificielle, le droit des communications électroniques et le droit national sont signalés à côté des chemins, sans être évalués ; les accords d'entreprise ne sont pas examinés. Les propositions de droit nouveau ne sont pas appliquées.",
-    "a.own-domains": "{file} : {n} robot(s) sans domaine nommé, chacun supposé dans le sien ; ROS 2 les met tous dans le domaine 0.",
+    "a.own-domains": "{file} : des robots sans domaine nommé sont supposés chacun dans le sien ; ROS 2 les met tous dans le domaine 0 ({said}).",
     "a.signed-by": "{file} : les signatures sont vérifiées avec cette AC ; seul --permissions-ca fixe à qui elle est ({said}).",
     "a.labels": "Les annotations sont la parole d'une personne. Le programme ne peut pas vérifier ce qu'un nœud fait en lui-même, ni ce qui le quitte en dehors de ROS.",
     "t.closed": "Fermé sur la parole de quelqu'un : sans elle, des données iraient plus loin",

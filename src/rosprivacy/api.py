@@ -293,7 +293,7 @@ def suggest(
     >>> told = suggest("examples/care-home/care-home.policy.xml", "examples/care-home/care-home.labels.yaml")
     >>> one = told.proposals[0]
     >>> one.label.element.name, one.label.role, one.label.kind, str(one.confidence)
-    ('/camera', 'source', 'DepthImage', 'may')
+    ('/recorder', 'leak', 'PersonalData', 'may')
     """
     from rosprivacy.labelling.knowledge import UserFiles  # noqa: PLC0415 - light start
     from rosprivacy.labelling.suggesting import suggest_labels  # noqa: PLC0415

@@ -124,7 +124,7 @@ HIDDEN = {
     "a policy without an ending": beside("up", UP),
     "a policy as a generator's template": beside("up.xml.erb", UP),
     "a compressed policy": beside("up.xml.gz", gzip.compress(UP.encode(), mtime=0)),
-    "a hidden policy": beside(".up.xml", UP),
+    "a hidden policy": beside(".up.xml", UP, "open"),
     "an access list of Zenoh": beside("uplink.json5", LIST),
     "a fragment that nobody includes": beside("up.xml", FRAGMENT),
     "permissions": beside("permissions.xml", PERMISSIONS, "access-gap"),
@@ -146,7 +146,7 @@ HIDDEN = {
         breaks=False,
     ),
     "an element outside ROS that nothing reaches": labelled(
-        REVIEWED + "}\n" + SENSITIVE + "elements: {cloud: {kind: external, country: DE}}\n",
+        REVIEWED + "}\n" + SENSITIVE + "elements: {cloud: {kind: external-system, country: DE}}\n",
         "no-flow",
         breaks=False,
         text=SEEN,
@@ -194,7 +194,7 @@ HIDDEN = {
         "leak",
     ),
     "the infrastructure file": Hidden(
-        {"p.xml": enclaves("/camera>/video,/diagnostics", "/view</video", "/uplink</diagnostics"), "l.yaml": WITH_UPLINK},
+        {"p.xml": enclaves("/camera>/video,/tf_static", "/view</video", "/uplink</tf_static"), "l.yaml": WITH_UPLINK},
         "infrastructure-closes",
         breaks=False,
         labels=("l.yaml", "rosprivacy:infrastructure"),
@@ -204,7 +204,7 @@ HIDDEN = {
         LEAK + 'channels: {"/*": mundane}\n', "by-globs", breaks=False, text=TWO_STEPS
     ),
     "a glob that calls everything a conduit": labelled(
-        'nodes: {/camera: {source: [Video]}, "/*": conduit, /view: {leak: [Voice]}}\n' + SENSITIVE, "by-globs", breaks=False
+        'nodes: {/camera: {source: [Video]}, "/*": conduit, /view: {leak: none, conduit: [Video]}}\n' + SENSITIVE, "by-globs", breaks=False
     ),
     "a glob that cleans": labelled(
         'nodes: {/camera: {source: [Video]}, "/rel*": {sanitizer: {Video: drop}}, /view: {leak: none, conduit: [Video]}, '
