@@ -80,9 +80,16 @@ def in_its_place(channel: Element, nodes: Collection[str]) -> bool:
     [True, False]
     >>> [in_its_place(Element("service", "/cloud/get_parameters"), nodes) for nodes in (["/cloud"], ["/camera"])]
     [True, False]
+
+    Versions of rclcpp before Foxy name ``parameter_events`` below the namespace of the node:
+
+    >>> [in_its_place(Element("topic", "/map/parameter_events"), nodes) for nodes in (["/map/server"], ["/camera"])]
+    [True, False]
     """
-    owner = channel.name.rpartition("/")[0]
-    return owner in nodes if channel.kind == "service" else not owner
+    owner, _, last = channel.name.rpartition("/")
+    if channel.kind == "service":
+        return owner in nodes
+    return not owner or (last == "parameter_events" and any(node.rpartition("/")[0] == owner for node in nodes))
 
 
 def _one(rows: list[ClosedByShipped]) -> ClosedByShipped:

@@ -67,7 +67,7 @@ def labels(choices: Choices) -> dict[str, str]:
         top |= _non_ros(choices, NODES)
     elif choices.once_in(3):
         top["flows"] = [{"from": "/n0", "to": choices.pick(("/a", "/b")), **_restriction(choices)}]
-    if choices.once_in(6):
+    if choices.once_in(9):
         top["pins"] = _pins(choices)
     return {"labels.yaml": written(choices, top)}
 
