@@ -19,6 +19,7 @@ import typer
 
 import rosprivacy
 from rosprivacy.analysis.bounds import BOUNDS, WHAT
+from rosprivacy.analysis.model import RANKS
 from rosprivacy.cli.app import program
 from rosprivacy.cli.exit_code import CODES
 from rosprivacy.cli.inputs import WRITTEN
@@ -29,6 +30,7 @@ from rosprivacy.ingest.lint.rule_table import RULES
 from rosprivacy.ontology.vocabulary import TOP, load
 from rosprivacy.queries.library import pack
 from rosprivacy.report.terminal import categories
+from rosprivacy.report.words.words import IN_ENGLISH
 from tests.fuzzing import record
 from tests.fuzzing.targets import TARGETS
 from tests.helpers.docs import CATEGORIES, blocks
@@ -46,6 +48,7 @@ ARCHITECTURE = ROOT / "docs" / "architecture.md"
 COMMAND_LINE = ROOT / "docs" / "command-line.md"
 DATABASE = ROOT / "docs" / "database.md"
 LINT = ROOT / "docs" / "lint.md"
+DECISIONS = ROOT / "docs" / "decisions.md"
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md"]
 NEEDS_SERVER = ("load", "query", "db", "explore")  # their tests are those of the database; the last is one itself
 SECURITY = ROOT / "docs" / "security.md"
@@ -180,6 +183,16 @@ def security_page(text: str) -> str:
     return with_parts(text, fuzzing=record.table(json.loads(FUZZED.read_text("utf-8"))))
 
 
+def decisions_page(text: str) -> str:
+    """The page with the table of doubts: each sort with its rank, and what to do."""
+    rows = [
+        f"| `{name}` | {rank} | {IN_ENGLISH(f'doubt.{name}.title')} | {IN_ENGLISH(f'doubt.{name}.do')} |"
+        for name, rank in RANKS.items()
+    ]
+    head = ["| doubt | rank | what it is | what to do |", "| --- | --- | --- | --- |"]
+    return with_parts(text, doubts="\n".join([*head, *rows, ""]))
+
+
 def house() -> str:
     """The rooms and their wings, with what each of them says of itself and may import."""
     rows = []
@@ -210,6 +223,10 @@ def categories_page(text: str) -> str:
 def test_the_schema_and_the_query_tables_are_those_of_the_program() -> None:
     text = DATABASE.read_text("utf-8")
     assert text == database_page(text)
+
+
+def test_every_sort_of_doubts_is_in_the_table() -> None:
+    assert DECISIONS.read_text("utf-8") == decisions_page(DECISIONS.read_text("utf-8"))
 
 
 def test_the_house_is_told_as_it_is() -> None:
@@ -345,6 +362,7 @@ if __name__ == "__main__":
     ARCHITECTURE.write_text(with_parts(ARCHITECTURE.read_text("utf-8"), house=house()), "utf-8")
     CATEGORIES.write_text(categories_page(CATEGORIES.read_text("utf-8")), "utf-8")
     COMMAND_LINE.write_text(command_line(), "utf-8")
+    DECISIONS.write_text(decisions_page(DECISIONS.read_text("utf-8")), "utf-8")
     LINT.write_text(lint_page(LINT.read_text("utf-8")), "utf-8")
     SECURITY.write_text(security_page(SECURITY.read_text("utf-8")), "utf-8")
     DATABASE.write_text(database_page(DATABASE.read_text("utf-8")), "utf-8")
