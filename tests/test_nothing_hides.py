@@ -87,30 +87,27 @@ def plain(text: str | bytes) -> str:
     return text.replace("\\_", "_").replace("\\*", "*").replace("<wbr>", "").replace("\\u002f", "/")
 
 
-@pytest.mark.parametrize("name", one_in(5, HIDDEN))
-def test_on_a_robot_or_a_fleet(name: str, tmp_path: Path, cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    hidden = HIDDEN[name]
-    write_files(hidden, tmp_path)
+def see(hidden: Hidden, folder: Path, cli: Cli) -> None:
+    """What is hidden is refused, or every output shows it."""
+    write_files(hidden, folder)
     observed(hidden, cli)
     if hidden.shows == "error":
         with pytest.raises(RosPrivacyError):
             answer(hidden)
-        return
-    check(hidden, answer(hidden))
+    else:
+        check(hidden, answer(hidden))
+
+
+@pytest.mark.parametrize("name", one_in(5, HIDDEN))
+def test_on_a_robot_or_a_fleet(name: str, tmp_path: Path, cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    see(HIDDEN[name], tmp_path, cli)
 
 
 @pytest.mark.parametrize("name", one_in(5, [name for name, hidden in HIDDEN.items() if not hidden.fleet]))
 def test_as_the_only_robot_of_a_fleet(name: str, tmp_path: Path, cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    hidden = on_a_fleet(HIDDEN[name])
-    write_files(hidden, tmp_path)
-    observed(hidden, cli)
-    if hidden.shows == "error":
-        with pytest.raises(RosPrivacyError):
-            answer(hidden)
-        return
-    check(hidden, answer(hidden))
+    see(on_a_fleet(HIDDEN[name]), tmp_path, cli)
 
 
 @pytest.mark.database
