@@ -144,6 +144,8 @@ class Result(Answer):
         ------
         InputError
             If there is no such format or language, the earlier file cannot be read, or the base is no IRI.
+        ValueError
+            If it was asked without the number of paths, and there are findings: none would be taken for one.
 
         Examples
         --------
@@ -152,6 +154,8 @@ class Result(Answer):
         >>> print(result.to("text", quiet=True), end="")
         no-leak-found: no way to a leak, everything on the way is reviewed
         """
+        if self.analysis.findings and not self.options.count_paths:
+            raise ValueError("nobody asked for the number of paths of the findings")
         style = Style(
             verbose=verbose,
             quiet=quiet,

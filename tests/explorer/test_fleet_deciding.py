@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from rosprivacy.analysis.answer import Finding
+    from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.explorer.deciding import How
     from rosprivacy.explorer.decision_scope import Scope
     from rosprivacy.result import Result
@@ -74,15 +75,14 @@ def accepted(result: Result) -> set[tuple[str, str, str, str]]:
     return found
 
 
-def meant(scope: Scope) -> set[tuple[str, str, str, str]]:
-    """What a decision is told to be about."""
+def meant(scope: Scope, likeness: Likeness) -> set[tuple[str, str, str, str]]:
+    """What a decision is told to be about; the robot of its finding stands for its robots, and need not be one."""
     one = scope.finding
     what = (one.kind + one.category, one.source.name + one.leak.name)
     if scope.to_robots:
         return {(*what, a, b) for a in scope.robots for b in scope.to_robots if a != b}
-    ends = {(robot if one.source.robot else "", robot if one.leak.robot else "") for robot in scope.robots}
-    on = [one.source.robot in scope.robots, one.leak.robot in scope.robots]
-    return {(*what, a if on[0] else "", b if on[1] else "") for a, b in ends or {("", "")}}
+    begins, ends = (likeness.is_robot(end.robot) for end in (one.source, one.leak))
+    return {(*what, robot if begins else "", robot if ends else "") for robot in scope.robots or ("",)}
 
 
 def test_a_session_that_can_decide_begins_as_the_analysis(hospital: Path) -> None:
@@ -92,6 +92,7 @@ def test_a_session_that_can_decide_begins_as_the_analysis(hospital: Path) -> Non
 @pytest.mark.parametrize("seed", range(6))
 def test_what_is_decided_is_exactly_what_was_told_and_what_the_file_means(hospital: Path, seed: int) -> None:
     session, random = begun(hospital), Random(seed)  # noqa: S311 - no secret
+    assert session.result.fleet
     told: set[tuple[str, str, str, str]] = set()
     for _ in range(4):
         finding = random.choice([one for one in session.findings if one.stands])
@@ -101,10 +102,11 @@ def test_what_is_decided_is_exactly_what_was_told_and_what_the_file_means(hospit
         some = random.sample(scope.robots, random.randint(1, len(scope.robots))) if scope.robots else None
         scope = scope.chosen(some, scope.to_robots or None) or scope
         choice = random.choice(["accept", "accept", "delegate"])
+        decided = meant(scope, session.result.fleet.likeness)
         session.decide(
             finding.id, choice, robots=scope.robots or None, to_robots=scope.to_robots or None, **SIGNED
         )  # fmt: skip
-        told = told | meant(scope) if choice == "accept" else told - meant(scope)
+        told = told | decided if choice == "accept" else told - decided
         assert accepted(session.result) == told
         whole = fresh(hospital)
         assert whole.to("json") == session.result.to("json")
