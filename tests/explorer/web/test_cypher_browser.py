@@ -202,6 +202,6 @@ def test_without_its_script_it_asks_as_well(browser: WebDriver, loaded: Connecti
             wait.until(lambda b: len(b.find_elements("css selector", "tbody tr")) > 2)
             browser.find_element("css selector", ".ask button[value=edit]").click()
             wait.until(lambda b: not b.find_elements("css selector", "[name^=p-]"))
-            assert browser.find_element("css selector", "textarea").text.startswith("MATCH (f:Finding)")
+            assert browser.find_element("css selector", "textarea").text.startswith("MATCH (c:DataCategory)")
         finally:
             browser.execute_cdp_cmd("Emulation.setScriptExecutionDisabled", {"value": False})
