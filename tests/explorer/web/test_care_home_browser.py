@@ -115,6 +115,7 @@ def _places(carer: Carer) -> None:
     carer.say("/lidar", *carer.choose("s", "location"))
     carer.only("location")
     carer.say("/scan", "0", "v")
+    carer.say("/rosout", "m")  # no line of the log says where anybody is
     carer.say("/person_tracker", "c")
     carer.say("/person_tracker", *carer.choose("d", "person t"))
     carer.only("person track")
