@@ -235,7 +235,7 @@ def test_many_that_one_line_stands_behind_are_one_line_of_the_list(cli: Cli, tmp
     (tmp_path / "l.yaml").write_text(f"labels: 1\nnodes: {{/camera: {{source: [{', '.join(kinds)}]}}}}\n")
     done = cli("analyze", "keystore", "-l", "l.yaml", cwd=tmp_path)
     [line] = [line for line in done.stdout.splitlines() if "can be read on the network: " in line]
-    assert line.startswith("  1. can be read on the network: Location, Video, Voice, 9 findings, 3 channels; nothing")
+    assert line.startswith("  1. can be read on the network: Video, Voice, Location, 9 findings, 3 channels; nothing")
     assert (
         len(json.loads(cli("analyze", "keystore", "-l", "l.yaml", "-f", "json", cwd=tmp_path).stdout)["findings"]) == 9
     )

@@ -15,19 +15,25 @@ from rosprivacy.analysis.many_flows import leaving
 from rosprivacy.analysis.model import NON_ROS, STANDARD, Rank, Statement
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Collection, Sequence
 
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Element
 
 
-def closed_by_shipped(spread: Spread, mask: int) -> tuple[ClosedByShipped, ...]:
+def closed_by_shipped(
+    spread: Spread, mask: int, beyond: Collection[int] = (), unit: Sequence[int] = ()
+) -> tuple[ClosedByShipped, ...]:
     """Return what shipped statements alone close, one for both legs and sides of a channel, in the order of channels.
 
     Parameters
     ----------
     mask
         Bits of the categories that the answer is about.
+    beyond
+        Of a part of a graph, the vertices through which data gets to other parts: a leak may lie behind each.
+    unit
+        Of a part of a graph, by vertex: what a node has to have in common with its services; empty for nothing.
 
     Notes
     -----
@@ -53,18 +59,22 @@ def closed_by_shipped(spread: Spread, mask: int) -> tuple[ClosedByShipped, ...]:
         return ()
     ends = {v: bits & mask for v, bits in spread.leaks.items()}
     ends |= {v: mask for v, element in enumerate(elements) if element.kind in NON_ROS}
-    nodes = {element.name for v, element in enumerate(elements) if element.is_node and v not in spread.absent}
+    ends |= dict.fromkeys(beyond, mask)
+    nodes: dict[int, set[str]] = defaultdict(set)
+    for v, element in enumerate(elements):
+        if element.is_node and v not in spread.absent:
+            nodes[unit[v] if unit else 0].add(element.name)
     found: dict[tuple[str, str, str], list[ClosedByShipped]] = defaultdict(list)
     for number, end in sorted(behind(spread, closed, ends).items()):
         closure = closed[number]
         lines = [line for line in closure.lines if isinstance(line, Statement) and line.shipped]
         by_standard = any(line.rank[0] == STANDARD for line in lines)
         channel = elements[closure.vertex]
-        outside = Rank.BREAKS if not in_its_place(channel, nodes) else None
+        outside = Rank.BREAKS if not in_its_place(channel, nodes[unit[closure.vertex] if unit else 0]) else None
         row = ClosedByShipped(
             channel,
             spread.names(closure.bits & mask),
-            None if end == PERHAPS else elements[end],
+            None if end == PERHAPS or (end in beyond and elements[end].kind not in NON_ROS) else elements[end],
             tuple(sorted({line.place for line in lines})),
             outside if by_standard else Rank.RIDES,
         )

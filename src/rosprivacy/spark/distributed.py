@@ -23,7 +23,7 @@ from rosprivacy.analysis.fleet.patterns import different
 from rosprivacy.analysis.fleet.source_leak_pairs import forms
 from rosprivacy.analysis.kernel.arrays import GraphArrays, of_elements
 from rosprivacy.analysis.kernel.spreading import emitted, fill, meaning
-from rosprivacy.analysis.model import unread
+from rosprivacy.analysis.model import Rank, unread
 from rosprivacy.analysis.non_ros import on_day
 from rosprivacy.analysis.parts.border import Core
 from rosprivacy.analysis.parts.part_patterns import Crossed
@@ -39,6 +39,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from rosprivacy.analysis.answer import ClosedByShipped
     from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.analysis.fleet.patterns import Deviant
     from rosprivacy.analysis.fleet.tallies import Group
@@ -105,6 +106,10 @@ class Found:
         The core with its spread at the fixpoint.
     open
         How many elements of the fleet are.
+    closed
+        What shipped files alone close, where that is a doubt: one robot for each kind.
+    broken
+        Robots at which this breaks the verdict.
     """
 
     emitted: tuple[str, ...]
@@ -123,6 +128,8 @@ class Found:
     core: tuple[Piece, Spread]
     border: Border
     open: int
+    closed: tuple[ClosedByShipped, ...]
+    broken: frozenset[str]
 
     @property
     def shared(self) -> dict[Element, NonRosFacts]:
@@ -268,6 +275,15 @@ class _Run:
         unit = unit_of(split(self._task.groups)[1])
         needed = self._needed | classes.bringers(groups, sources)
         needed |= {unit[robot] for robot in kinds if robot in unit}
+        onward = {
+            element
+            for flow, (from_core, _) in zip(self._fleet.flows, at.ends, strict=True)
+            for element in (from_core if COLON in flow.target else ())
+        }
+        beyond = [v for v, element in enumerate(piece.graph.elements) if element in onward or element.robot == HUB]
+        closed = [*workers.doubtful(ours, mask, beyond), *(row for answer in answers for row in answer.closed)]
+        shown = _one_of_each(closed, self._likeness)
+        needed |= {unit[row.channel.robot] for row in shown if row.channel.robot in unit}
         ends = (element.robot for group in groups for element in (group.pair.source, group.pair.leak))
         needed |= {unit[robot] for robot in ends if robot in unit}
         lacking = reduce(or_, (answer.grounds for answer in answers), grounds(ours, mask)).lacking
@@ -294,6 +310,8 @@ class _Run:
             core=(piece, ours),
             border=at,
             open=count + len(core_open),
+            closed=shown,
+            broken=frozenset(e.robot for row in closed if row.rank is Rank.BREAKS for e in row.at),
         )
 
 
@@ -303,6 +321,17 @@ def _together(told: Iterable[Told]) -> Told:
     for part in others:
         whole = building.joined(whole, part)
     return whole
+
+
+def _one_of_each(closed: Iterable[ClosedByShipped], likeness: Likeness) -> tuple[ClosedByShipped, ...]:
+    """What shipped files close, of the first robot where they close the same before the same."""
+    first: dict[object, ClosedByShipped] = {}
+    for row in sorted(
+        (row for row in closed if likeness.weight(row.channel.robot)), key=lambda row: row.channel.identity
+    ):
+        end = likeness.alike(row.end) if row.end else None
+        first.setdefault((likeness.alike(row.channel), row.categories, end, row.rank), row)
+    return tuple(first.values())
 
 
 def _opened(

@@ -125,8 +125,9 @@ def plan_of(task: Task, found: Found, answer: Result, settings: Settings) -> tup
     assumptions = answer.assumptions
     joins = tuple(said for said in found.told.diagnostics if said.code in OF_FLEET)
     plan = Plan(
-        fleet, fixed, examples, found.shared, found.leaking, found.lacking, assumptions, settings, task.reader, joins
-    )
+        fleet, fixed, examples, found.shared, found.leaking, found.lacking, assumptions, settings, task.reader, joins,
+        found.broken,
+    )  # fmt: skip
     return plan, units
 
 

@@ -81,6 +81,8 @@ def shown(task: Task, found: Found, paths: str, max_paths: int) -> Shown:
     if found.verdict is Verdict.UNDETERMINED and not found.open:
         told += lacking(found.lacking, restricted=task.asked is not None)
     analysis = replace(analysis, verdict=found.verdict, emitted=found.emitted, lacking=found.lacking, diagnostics=told)
+    known = {row.channel.identity: row for row in (*found.closed, *analysis.closed_by_shipped)}
+    analysis = replace(analysis, closed_by_shipped=tuple(known[key] for key in sorted(known)))
     return Shown(analysis, view, placed, members)
 
 

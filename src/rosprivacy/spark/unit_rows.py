@@ -67,6 +67,8 @@ class Plan:
         Of the answer about the whole fleet.
     joins
         What a reader has to know of the fleet: what joins nothing.
+    broken
+        See ``Found``.
     """
 
     fleet: Fleet
@@ -79,6 +81,7 @@ class Plan:
     settings: Settings
     reader: Callable[[], Read]
     joins: tuple[Diagnostic, ...] = ()
+    broken: frozenset[str] = frozenset()
 
 
 def unit_rows(units: Sequence[Unit], plan: Plan) -> list[RobotRows]:
@@ -173,7 +176,7 @@ def _fleet_rows(placed: Placed, members: Mapping[str, Member], plan: Plan, mine:
     said = {name: _more(member, analysis, plan, vocabulary) for name, member in members.items()}
     said[plan.fleet.name] = remembered({**plan.assumptions, "policies": [], "labels": [], "types": []}, plan.joins)
     not_read = [name for name, member in members.items() if unread(member.diagnostics)]
-    not_read += [plan.fleet.name] if unread(plan.joins) else []
+    not_read += [*([plan.fleet.name] if unread(plan.joins) else []), *plan.broken]
     analysis = replace(analysis, lacking=plan.lacking)
     verdicts = robot_verdicts(analysis, said, lambda element: element.robot, not_read, plan.leaking)
     more = {name: {**some, "verdict": str(verdicts[name])} for name, some in said.items()}

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 import numpy as np
 
 from rosprivacy.analysis.errors import InputErrors
+from rosprivacy.analysis.findings.closed_by_shipped import closed_by_shipped
 from rosprivacy.analysis.findings.concerns import concerns
 from rosprivacy.analysis.findings.grounds import Grounds, grounds
 from rosprivacy.analysis.findings.open_questions import open_bits
@@ -26,10 +27,11 @@ from rosprivacy.spark.building import Problem, problems_of
 from rosprivacy.spark.units import HUB, Piece, units_piece
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 
     from numpy.typing import NDArray
 
+    from rosprivacy.analysis.answer import ClosedByShipped
     from rosprivacy.analysis.findings.concerns import Concern
     from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.analysis.hierarchy import Hierarchy
@@ -177,6 +179,8 @@ class Answer:
         Elements without their robot, with the categories for which they are open, and what has to be known of them.
     grounds
         What 'no leak found' needs, as far as it is in the part.
+    closed
+        What shipped files alone close there, where that is a doubt.
     """
 
     within: tuple[Within, ...]
@@ -186,6 +190,7 @@ class Answer:
     sets: tuple[frozenset[tuple[Element, tuple[str, ...]]], ...]
     grounds: Grounds
     counts: Counts
+    closed: tuple[ClosedByShipped, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -248,7 +253,18 @@ def answered(part: Ready, forms: Mapping[int, tuple[int, ...]], asked: Asked) ->
     on_robots, sets = _open(part, found, asked.mask)
     border = set(part.piece.border)
     counts = counted(graph, found, part.likeness, border, {v for v in border if graph.elements[v].robot == HUB})
-    return Answer(tuple(within), tuple(sources), tuple(ends), on_robots, sets, grounds(found, asked.mask), counts)
+    closed = doubtful(found, asked.mask, part.piece.border, part.piece.unit)
+    return Answer(
+        tuple(within), tuple(sources), tuple(ends), on_robots, sets, grounds(found, asked.mask), counts, closed
+    )
+
+
+def doubtful(
+    found: Spread, mask: int, beyond: Collection[int], unit: Sequence[int] = ()
+) -> tuple[ClosedByShipped, ...]:
+    """Return what shipped files alone close, where that is a doubt; what a hub leads to is not worked out here."""
+    rows = (row for row in closed_by_shipped(found, mask, beyond, unit) if row.rank is not None)
+    return tuple(row._replace(end=None) if row.end and row.end.robot == HUB else row for row in rows)
 
 
 def _open(

@@ -11,10 +11,11 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 
+from rosprivacy.analysis.answer import Verdict
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.reading.fleet_system import answer_fleet
 from rosprivacy.settings import Settings
-from tests.helpers.fleet_files import write
+from tests.helpers.fleet_files import policy, write
 from tests.helpers.parts import FLEET, documents, fleet_file, in_list, same, scattered
 from tests.helpers.paths import ROOT
 from tests.helpers.random_fleets import Case, fleets
@@ -85,3 +86,42 @@ def test_a_flow_that_is_stated_twice_with_different_limits_is_refused(fleet_file
     write(fleet_file, FLEET + '  - {from: "*:/uplink", to: "*:disk"}\n')
     with pytest.raises(InputErrors, match=r"f.yaml:25: a flow within a robot, of which a label file says more"):
         in_list(fleet_file)
+
+
+OUTSIDE = "/x/clock"  # a standard channel that is not in its standard place
+
+
+@pytest.mark.parametrize("size", [1, 3])
+@pytest.mark.parametrize("channel", [OUTSIDE, "/clock"])
+@pytest.mark.parametrize("place", ["robot", "element", "other robot"])
+def test_what_a_shipped_file_closes_breaks_the_verdict_in_parts_too(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, place: str, channel: str, size: int
+) -> None:
+    """Rules S11 and S13: of whatever robot it is, and wherever the leak lies behind it."""
+    monkeypatch.chdir(tmp_path)
+    labels = "labels: 1\nnodes: {/camera: {source: [Video]}, /viewer: conduit, /uplink: {leak: LEAK}}\n"
+    labels += "channels: {/video: sensitive}\n"
+    write("plain.xml", policy("/camera>/video", "/viewer</video", "/uplink<x"))
+    write("clock.xml", policy(f"/camera>/video,{channel}", "/viewer</video", f"/uplink<{channel}"))
+    write("out.xml", policy("/out<x"))
+    write("leak.yaml", labels.replace("LEAK", "[Video]"))
+    write("none.yaml", labels.replace("{leak: LEAK}", "conduit"))
+    write("out.yaml", "labels: 1\nnodes: {/out: {leak: [Video]}}\n")
+    last = "leak" if place == "robot" else "none"
+    robots = (
+        "  z1: {policies: clock.xml, labels: LAST.yaml}\n  z2: {policies: clock.xml, labels: [LAST.yaml, own.yaml]}\n"
+    )
+    write("own.yaml", "labels: 1\nlimits: {Video: P7D}\n")
+    text = f"fleet: 1\nrobots:\n  a: {{policies: plain.xml, labels: leak.yaml}}\n{robots.replace('LAST', last)}"
+    text += "  y: {policies: out.xml, labels: out.yaml}\n"
+    if place == "element":
+        text += 'elements: {cloud: {kind: external-system, country: DE}}\nflows: [{from: "z*:/uplink", to: cloud}]\n'
+    elif place == "other robot":
+        text += 'flows: [{from: "z*:/uplink", to: "y:/out"}]\n'
+    write("f.yaml", text)
+    expected = Verdict.UNDETERMINED if channel == OUTSIDE else Verdict.NO_LEAK_FOUND
+    for result in (answer_fleet("f.yaml", Settings()), in_list("f.yaml", size)):
+        assert result.analysis.verdict is expected
+        found = [doubt for doubt in result.doubts if doubt.breaks]
+        assert {doubt.name for doubt in found} == ({"standard-closes"} if channel == OUTSIDE else set())
+        assert {doubt.element.name for doubt in found if doubt.element} <= {channel}
