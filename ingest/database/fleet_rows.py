@@ -70,7 +70,7 @@ class FleetRows:
         How many findings each pattern has that goes from robot to robot, by id, where not all of them are given: those
         that are, as ``Groups`` chooses them, are written for robots at either end.
     not_read
-        Robots of the graph of which grants were not read (rule S11).
+        Robots of the graph of which a doubt breaks the verdict, such as a file that was not read (rule S11).
     beyond
         What the enforced view adds; None where nobody asked for both views.
 

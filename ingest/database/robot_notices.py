@@ -57,7 +57,7 @@ def diagnostics_of(robot: Mapping[str, Any]) -> tuple[Diagnostic, ...]:
     """Return what was said of a robot when it was loaded, from its properties."""
     return tuple(
         Diagnostic(
-            Place(d["file"], d["line"]), Severity(d["severity"]), d["message"], d.get("code", ""), d.get("count", 1)
+            Place(d["file"], d["line"]), Severity(d["severity"]), d["message"], d.get("code", ""), d.get("number", 1)
         )
         for d in json.loads(robot.get("diagnostics") or "[]")
     )

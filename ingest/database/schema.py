@@ -182,6 +182,12 @@ ROBOT = NodeKind(
         *_PROCESSING,
         Property("assumptions", STRING, "JSON: what the answer rests on"),
         Property("diagnostics", STRING, "JSON: what its policies and labels were read with"),
+        Property(
+            "doubts",
+            STRINGS,
+            "what is not known of it, or rests on more than a person's word: `breaks unread-file: d/x.xml was not read`; "
+            "with one that breaks the verdict is undetermined at best",
+        ),
     ),
 )
 ENCLAVE = NodeKind(

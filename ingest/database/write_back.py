@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.answer import robot_verdicts
 from rosprivacy.analysis.errors import DatabaseError
-from rosprivacy.analysis.model import unread
 from rosprivacy.ingest.database import cypher
 from rosprivacy.ingest.database.carrying import Carrying
 from rosprivacy.ingest.database.element_properties import (
@@ -24,12 +23,11 @@ from rosprivacy.ingest.database.element_properties import (
 )
 from rosprivacy.ingest.database.ids import category_labels, element_id
 from rosprivacy.ingest.database.loading import delete_beyond, refusals, run, write
-from rosprivacy.ingest.database.robot_notices import diagnostics_of
 from rosprivacy.ingest.database.rows import end_id, intake_row, kind_labels
 from rosprivacy.ingest.database.schema import DERIVES_FROM, DOMAIN, ELEMENT, KIND_LABELS, SUFFIXES
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Collection, Iterable, Mapping
 
     from neo4j import Driver, ManagedTransaction
 
@@ -50,19 +48,33 @@ NAME_ELEMENTS = "UNWIND $rows AS row MATCH (n) WHERE elementId(n) = row.key SET 
 DELETE_ORIGINS = "MATCH ()-[d:DERIVES_FROM]->() WHERE d.robot IN $names DELETE d"
 VERDICTS = (
     "UNWIND $rows AS row MATCH (r:Robot {name: row.robot}) "
-    "SET r.verdict = row.verdict, r.version = r.version + 1 REMOVE r.digest"
+    "SET r.verdict = row.verdict, r.doubts = row.doubts, r.version = r.version + 1 REMOVE r.digest"
 )
 
 
-def write_back(driver: Driver, stored: Stored, analysis: Analysis, vocabulary: Vocabulary) -> int:
+def write_back(
+    driver: Driver,
+    stored: Stored,
+    analysis: Analysis,
+    vocabulary: Vocabulary,
+    doubts: Mapping[str, list[str]] = {},
+    broken: Collection[str] = (),
+) -> int:
     """Write the answer; return how many elements and flows changed.
+
+    Parameters
+    ----------
+    doubts
+        By robot, as its property keeps them.
+    broken
+        Robots of which one of these breaks the verdict (rule S11).
 
     Raises
     ------
     DatabaseError
         If the server refuses, or a robot was written since ``stored`` was read.
     """
-    rows = _Changes(stored, analysis, vocabulary)
+    rows = _Changes(stored, analysis, vocabulary, doubts, broken)
     with refusals(), driver.session() as session:
         for start in range(0, len(rows.robots), ROBOTS):
             session.execute_write(rows.write, rows.robots[start : start + ROBOTS])
@@ -72,8 +84,15 @@ def write_back(driver: Driver, stored: Stored, analysis: Analysis, vocabulary: V
 class _Changes:
     """What differs, by robot; what belongs to no robot stands under the empty name and comes first."""
 
-    def __init__(self, stored: Stored, analysis: Analysis, vocabulary: Vocabulary) -> None:
-        self._stored = stored
+    def __init__(
+        self,
+        stored: Stored,
+        analysis: Analysis,
+        vocabulary: Vocabulary,
+        doubts: Mapping[str, list[str]],
+        broken: Collection[str],
+    ) -> None:
+        self._stored, self._doubts = stored, doubts
         self._analysis = analysis
         labels = category_labels(vocabulary)
         self._ours = {label + suffix for label in labels.values() for suffix in SUFFIXES}
@@ -103,8 +122,7 @@ class _Changes:
         origins = list(origin_rows(analysis, ids, robots))
         self._origins = _by(origins, dict(zip(ids, robots, strict=True)), "source")
         self.robots = sorted({*robots, *stored.robots})
-        not_read = [name for name, robot in stored.robots.items() if unread(diagnostics_of(robot))]
-        self._verdicts = robot_verdicts(analysis, self.robots, of_robot.__getitem__, not_read)
+        self._verdicts = robot_verdicts(analysis, self.robots, of_robot.__getitem__, broken)
 
     def _changed_elements(
         self, results: Iterable[tuple[Row, list[str]]], ids: list[str], robots: list[str]
@@ -161,7 +179,8 @@ class _Changes:
 
     def _verdict_on(self, robot: str) -> Row:
         domain = self._stored.robots[robot].get("part") == DOMAIN
-        return {"robot": robot, "verdict": None if domain else str(self._verdicts[robot])}
+        verdict = None if domain else str(self._verdicts[robot])
+        return {"robot": robot, "verdict": verdict, "doubts": self._doubts.get(robot, [])}
 
     def _write_carried(self, transaction: ManagedTransaction, robots: list[str]) -> None:
         """Where kinds of data go from elements of some robots, as far as it differs; intakes stand before."""

@@ -130,11 +130,14 @@ def _decisions(decisions: Decisions | None) -> dict[str, Any]:
     return {"decisions": {"file": decisions.file, "sha256": decisions.sha256, "today": decisions.today}}
 
 
-def remembered(assumptions: Mapping[str, Any], diagnostics: Iterable[Diagnostic]) -> dict[str, str]:
+def remembered(
+    assumptions: Mapping[str, Any], diagnostics: Iterable[Diagnostic], doubts: list[str]
+) -> dict[str, str | list[str]]:
     """Return what the answer rests on as properties of a ``Robot``."""
     return {
         "assumptions": json.dumps(assumptions, sort_keys=True),
         "diagnostics": diagnostics_text(diagnostics),
+        "doubts": doubts,
     }
 
 

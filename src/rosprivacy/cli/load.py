@@ -19,6 +19,7 @@ from rosprivacy.cli.inputs import Inputs, reads_system, refuse
 from rosprivacy.cli.options import ViewOrBoth, ViewOrBothChosen
 from rosprivacy.cli.output import emit
 from rosprivacy.report.element_counts import count_elements
+from rosprivacy.report.verdict import verdict_sentence
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -79,10 +80,17 @@ def load(
         with _bar(rows.size) as advance:
             done = database.load(driver, [rows], result.vocabulary, advance)
     how = "is there already, nothing to change" if done.unchanged else "is written"
-    emit(f"robot {shown(name)} {how}: {_counts(result, rows)}; verdict {result.analysis.verdict}\n", None)
+    emit(f"robot {shown(name)} {how}: {_counts(result, rows)}\n{_sentence(result)}\n", None)
     if robot is None:
         print(f"robot {shown(name)} has the name of its policy file; --robot NAME says another", file=sys.stderr)
     _tell_replaced(done)
+
+
+def _sentence(result: Result) -> str:
+    """The verdict in a sentence that names its doubts (rule S11)."""
+    from rosprivacy.report.document.doubts import verdict_facts
+
+    return verdict_sentence(verdict_facts(result))
 
 
 def _counts(result: Result, rows: RobotRows) -> str:
@@ -138,9 +146,7 @@ def _load_fleet(file: str, settings: Settings, neo4j: str | None, *, both: bool)
     _tell_replaced(done)
     robots = len(system.fleet.robots)
     what = f"fleet {shown(file)}: {robots:,} robots and what they share"
-    emit(
-        f"{what}: {done.written:,} written, {done.unchanged:,} as they were; verdict {result.analysis.verdict}\n", None
-    )
+    emit(f"{what}: {done.written:,} written, {done.unchanged:,} as they were\n{_sentence(result)}\n", None)
     if rows.left_out:
         message = f"{rows.left_out:,} findings from one robot to another are not written one by one: of each pattern"
         print(
@@ -160,7 +166,7 @@ def _load_results(folder: str, ontologies: tuple[str, ...], neo4j: str | None) -
         done = database.load(driver, rows, vocabulary, advance)
     _tell_replaced(done)
     what = f"results {shown(folder)}: {document['fleet']['robots']:,} robots and what they share"
-    emit(f"{what}: {done.written:,} written, {done.unchanged:,} as they were; verdict {document['verdict']}\n", None)
+    emit(f"{what}: {done.written:,} written, {done.unchanged:,} as they were\n{verdict_sentence(document)}\n", None)
     if any(pattern["across"] for pattern in document["fleet"]["patterns"]):
         message = "findings from one robot to another are not written one by one: of each pattern only one for each"
         print(f"{message} robot that data comes from", file=sys.stderr)

@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors
-from rosprivacy.analysis.model import unread
 from rosprivacy.answering import answer
 from rosprivacy.assumptions import assumptions_of, files_read, remembered, types_read
 from rosprivacy.ingest.database.fleet_rows import FleetRows
@@ -23,6 +22,7 @@ from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, Change
 from rosprivacy.question import question_of
 from rosprivacy.reading.robot_reader import Reader, Tried
 from rosprivacy.reading.robot_system import beyond_of
+from rosprivacy.robot_doubts import breaking, doubt_lines, doubts_by_robot
 from rosprivacy.system import System
 
 if TYPE_CHECKING:
@@ -216,15 +216,21 @@ def rows_of_fleet(system: FleetSystem, question: Question, result: Result) -> Fl
     result
         With every finding, or those of ``most_across``, about all categories.
     """
-    more = {}
+    elements, first = system.graph.elements, system.likeness.second
+    files_of: dict[str, tuple[Diagnostic, ...]] = {element.robot: () for element in elements}
+    files_of |= {name: member.diagnostics for name, member in system.members.items()}
+    told = doubts_by_robot(
+        result.doubts, files_of, system.graph, system.likeness, lambda one: first.get(one.robot, one.robot)
+    )
+    more: dict[str, dict[str, str | list[str]]] = {
+        name: {"doubts": doubt_lines(doubts)} for name, doubts in told.items()
+    }
     for name, member in system.members.items():
         files = files_read(member.policies, member.files, question.settings)
         said = assumptions_of({**files, **types_read(member.types)}, result.analysis, question)
-        more[name] = remembered(said, member.diagnostics)
+        more[name] = remembered(said, member.diagnostics, doubt_lines(told[name]))
     everything = {**result.assumptions, "policies": [], "labels": [], "types": []}
-    more[system.fleet.name] = remembered(everything, system.joins)
-    said = {**{name: member.diagnostics for name, member in system.members.items()}, system.fleet.name: system.joins}
-    not_read = [name for name, diagnostics in said.items() if unread(diagnostics)]
+    more[system.fleet.name] = remembered(everything, system.joins, doubt_lines(told.get(system.fleet.name, ())))
     assert result.fleet is not None, "the answer about a fleet"
     across = {pattern.id: pattern.count for pattern in result.fleet.patterns if pattern.across}
     return FleetRows(
@@ -232,7 +238,7 @@ def rows_of_fleet(system: FleetSystem, question: Question, result: Result) -> Fl
         result.analysis,
         system.vocabulary,
         more,
-        not_read=not_read,
+        not_read=breaking(told),
         beyond=beyond_of(result),
         most_across=question.most_across,
         counts=None if question.most_across is None else across,

@@ -198,8 +198,9 @@ def lenient_system(
 def robot_of(name: str, result: Result) -> RobotRows:
     """Return the rows of a robot for the database; what the answer rests on goes with it."""
     from rosprivacy.ingest.database.rows import robot_rows  # noqa: PLC0415
+    from rosprivacy.robot_doubts import doubt_lines  # noqa: PLC0415
 
-    more = remembered(result.assumptions, result.diagnostics)
+    more = remembered(result.assumptions, result.diagnostics, doubt_lines(result.doubts))
     return robot_rows(name, result.analysis, result.bound, result.vocabulary, more, beyond_of(result))
 
 

@@ -12,8 +12,10 @@ from rosprivacy.answering import answer
 from rosprivacy.assumptions import put_together
 from rosprivacy.ingest.database.fleet_rows import MOST_ACROSS
 from rosprivacy.ingest.database.read_back import Stored, read_stored
+from rosprivacy.ingest.database.robot_notices import diagnostics_of
 from rosprivacy.ingest.database.write_back import write_back
 from rosprivacy.question import question_of
+from rosprivacy.robot_doubts import breaking, doubt_lines, doubts_by_robot
 from rosprivacy.system import System
 
 if TYPE_CHECKING:
@@ -67,5 +69,10 @@ def answer_stored(driver: Driver, settings: Settings) -> Result:
     system = stored_system(driver, question.vocabulary)
     everything = question._replace(asked=None, decisions=None)
     result = answer(system, everything)
-    write_back(driver, system.stored, result.analysis, question.vocabulary)
+    stored = system.stored
+    names = {element: stored.robot_of(vertex) for vertex, element in enumerate(stored.graph.elements)}
+    files_of = {name: diagnostics_of(robot) for name, robot in stored.robots.items()}
+    told = doubts_by_robot(result.doubts, files_of, stored.graph, stored.likeness, names.__getitem__)
+    lines = {name: doubt_lines(doubts) for name, doubts in told.items()}
+    write_back(driver, stored, result.analysis, question.vocabulary, lines, breaking(told))
     return result if question == everything else answer(system, question)

@@ -124,9 +124,12 @@ def plan_of(task: Task, found: Found, answer: Result, settings: Settings) -> tup
     fleet = replace(task.fleet, robots=(), infrastructure=())
     assumptions = answer.assumptions
     joins = tuple(said for said in found.told.diagnostics if said.code in OF_FLEET)
+    likeness = found.likeness
+    core = (one for one in answer.doubts if one.element and not likeness.is_robot(one.element.robot))
+    doubts = (*core, *(one for one in answer.doubts if one.name == IN_PARTS))
     plan = Plan(
         fleet, fixed, examples, found.shared, found.leaking, found.lacking, assumptions, settings, task.reader, joins,
-        found.broken,
+        found.broken, doubts,
     )  # fmt: skip
     return plan, units
 

@@ -11,16 +11,18 @@ from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.answer import robot_verdicts
+from rosprivacy.analysis.findings.answered_by_globs import answered_by_globs
+from rosprivacy.analysis.findings.doubts import doubts
 from rosprivacy.analysis.findings.findings import Options, analyse
 from rosprivacy.analysis.fleet.source_leak_pairs import pairs
-from rosprivacy.analysis.model import unread
 from rosprivacy.assumptions import assumptions_of, files_read, remembered, types_read
 from rosprivacy.ingest.database.fleet_rows import FleetRows
 from rosprivacy.ingest.database.rows import rows_of
-from rosprivacy.ingest.fleet.dds_domains import pseudo_robot
+from rosprivacy.ingest.fleet.dds_domains import is_domain, pseudo_robot
 from rosprivacy.ingest.fleet.fleet_graph import place_chosen
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.question import Question
+from rosprivacy.robot_doubts import breaking, doubt_lines, doubts_by_robot
 from rosprivacy.spark.shown_robots import limited
 from rosprivacy.spark.units import unit_of
 
@@ -31,7 +33,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.findings.concerns import Concern
     from rosprivacy.analysis.fleet.source_leak_pairs import Pairs
     from rosprivacy.analysis.kernel.spread import Spread
-    from rosprivacy.analysis.model import Diagnostic, Element, NonRosFacts
+    from rosprivacy.analysis.model import Diagnostic, Doubt, Element, NonRosFacts
     from rosprivacy.ingest.database.rows import RobotRows, Row
     from rosprivacy.ingest.fleet.alike_robots import Alike
     from rosprivacy.ingest.fleet.dds_domains import Member
@@ -69,6 +71,8 @@ class Plan:
         What a reader has to know of the fleet: what joins nothing.
     broken
         See ``Found``.
+    doubts
+        Of the whole answer, and about elements of the core.
     """
 
     fleet: Fleet
@@ -82,6 +86,7 @@ class Plan:
     reader: Callable[[], Read]
     joins: tuple[Diagnostic, ...] = ()
     broken: frozenset[str] = frozenset()
+    doubts: tuple[Doubt, ...] = ()
 
 
 def unit_rows(units: Sequence[Unit], plan: Plan) -> list[RobotRows]:
@@ -173,17 +178,39 @@ def _fleet_rows(placed: Placed, members: Mapping[str, Member], plan: Plan, mine:
         vocabulary.hierarchy,
         Options(choose=choose, today=plan.settings.today or "", bounds=plan.settings.bounds),
     )
-    said = {name: _more(member, analysis, plan, vocabulary) for name, member in members.items()}
-    said[plan.fleet.name] = remembered({**plan.assumptions, "policies": [], "labels": [], "types": []}, plan.joins)
-    not_read = [name for name, member in members.items() if unread(member.diagnostics)]
-    not_read += [*([plan.fleet.name] if unread(plan.joins) else []), *plan.broken]
+    told = _doubts(placed, members, analysis, plan, mine)
+    said: dict[str, dict[str, str | list[str]]] = {
+        name: _more(member, analysis, plan, vocabulary, told[name]) for name, member in members.items()
+    }
+    everything = {**plan.assumptions, "policies": [], "labels": [], "types": []}
+    said |= {name: {"doubts": doubt_lines(some)} for name, some in told.items() if name not in said}
+    said[plan.fleet.name] = remembered(everything, plan.joins, doubt_lines(told[plan.fleet.name]))
     analysis = replace(analysis, lacking=plan.lacking)
-    verdicts = robot_verdicts(analysis, said, lambda element: element.robot, not_read, plan.leaking)
-    more = {name: {**some, "verdict": str(verdicts[name])} for name, some in said.items()}
+    verdicts = robot_verdicts(analysis, said, lambda element: element.robot, {*breaking(told), *plan.broken}, plan.leaking)
+    more = {
+        name: {**some, **({} if is_domain(name) else {"verdict": str(verdicts[name])})} for name, some in said.items()
+    }
     return FleetRows(placed, analysis, vocabulary, more, most_across=0)
 
 
-def _more(member: Member, analysis: Analysis, plan: Plan, vocabulary: Any) -> dict[str, str]:
+def _doubts(
+    placed: Placed, members: Mapping[str, Member], analysis: Analysis, plan: Plan, mine: Mapping[str, str]
+) -> dict[str, list[Doubt]]:
+    """The doubts of each robot: about elements those of our units; about files, and the whole, all."""
+    everything = dict.fromkeys((*(said for member in members.values() for said in member.diagnostics), *plan.joins))
+    by_globs = answered_by_globs(analysis.spread, placed.bound, load(ontologies=plan.settings.ontologies).hierarchy)
+    listed = doubts(analysis, everything, placed.likeness.weight, by_globs=by_globs)
+    some = [doubt for doubt in listed if not doubt.element or doubt.element.robot in mine]
+    names: dict[str, tuple[Diagnostic, ...]] = {element.robot: () for element in placed.graph.elements}
+    names |= {plan.fleet.name: (), **{name: member.diagnostics for name, member in members.items()}}
+    return doubts_by_robot(
+        [*some, *plan.doubts], names, placed.graph, placed.likeness, lambda element: element.robot
+    )
+
+
+def _more(
+    member: Member, analysis: Analysis, plan: Plan, vocabulary: Any, told: list[Doubt]
+) -> dict[str, str | list[str]]:
     files = {**files_read(member.policies, member.files, plan.settings), **types_read(member.types)}
     question = Question(plan.settings, vocabulary, None, None, plan.settings.today or "")
     said = assumptions_of(files, analysis, question)
@@ -192,7 +219,7 @@ def _more(member: Member, analysis: Analysis, plan: Plan, vocabulary: Any) -> di
         robots = [spread.graph.elements[vertex] for vertex in spread.standard]
         taken = {element.identity for element in robots if element.robot == member.robot.id}
         said["standard_channels"] = {**said["standard_channels"], "taken": len(taken)}
-    return remembered(said, member.diagnostics)
+    return remembered(said, member.diagnostics, doubt_lines(told))
 
 
 def _derived_at(rows: RobotRows, known: Collection[str]) -> RobotRows:
