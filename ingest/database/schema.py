@@ -185,8 +185,8 @@ ROBOT = NodeKind(
         Property(
             "doubts",
             STRINGS,
-            "what is not known of it, or rests on more than a person's word: `breaks unread-file: d/x.xml was not read`; "
-            "with one that breaks the verdict is undetermined at best",
+            "what is not known of it, or rests on more than a person's word: `breaks unread-file: d/x.xml was not "
+            "read`; with one that breaks the verdict is undetermined at best",
         ),
     ),
 )

@@ -180,7 +180,7 @@ class _Changes:
     def _verdict_on(self, robot: str) -> Row:
         domain = self._stored.robots[robot].get("part") == DOMAIN
         verdict = None if domain else str(self._verdicts[robot])
-        return {"robot": robot, "verdict": verdict, "doubts": self._doubts.get(robot, [])}
+        return {"robot": robot, "verdict": verdict, "doubts": self._doubts.get(robot)}
 
     def _write_carried(self, transaction: ManagedTransaction, robots: list[str]) -> None:
         """Where kinds of data go from elements of some robots, as far as it differs; intakes stand before."""

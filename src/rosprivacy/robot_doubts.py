@@ -1,6 +1,6 @@
 """The list of doubts by robot, as a database keeps it: a line for each that nobody has accepted (rule S11).
 
-In: doubts of an answer, and what was said of each robot's files. Out: lines in English, and who has a doubt that breaks.
+In: doubts of an answer, and what was said of each robot's files. Out: lines in English, and who has one that breaks.
 """
 
 from __future__ import annotations
@@ -80,7 +80,8 @@ def _beside(
     some: Iterable[Element], graph: FlowGraph, robot_of: Callable[[Element], str]
 ) -> defaultdict[tuple[str, ...], set[str]]:
     """The robots that write or read some channels, by how these are shown."""
-    channels, found = {element.shown_as for element in some if element.is_channel}, defaultdict(set)
+    channels = {element.shown_as for element in some if element.is_channel}
+    found: defaultdict[tuple[str, ...], set[str]] = defaultdict(set)
     for flow in graph.flows if channels else ():
         ends = graph.elements[flow.source], graph.elements[flow.target]
         for channel, other in (ends, ends[::-1]):

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.findings.derived_from import origins
 from rosprivacy.analysis.fleet.likeness import pattern_id
-from rosprivacy.analysis.model import DISCLOSURE
+from rosprivacy.analysis.model import BACKUPS_NOT_STATED, DISCLOSURE, NO_READER
 from rosprivacy.analysis.non_ros import BY_KIND
 from rosprivacy.answering import answer
 from rosprivacy.ingest.database.carrying import moving, passed_and_made
@@ -59,7 +59,7 @@ class Fleet:
     """What memory says of one fleet."""
 
     def __init__(self, system: FleetSystem, result: Result) -> None:
-        self.system, self.analysis, self.bound = system, result.analysis, system.bound
+        self.system, self.result, self.analysis, self.bound = system, result, result.analysis, system.bound
         self.graph, self.spread = result.analysis.graph, result.analysis.spread
         self.elements = self.graph.elements
         self.shared = {e.robot for e in self.elements if not system.likeness.is_robot(e.robot)}
@@ -183,6 +183,29 @@ class Fleet:
             part = "domain" if lab else "infrastructure" if base else "fleet" if name in self.shared else "robot"
             verdict = "undetermined" if name in open_at or name not in known else "no-leak-found"
             told[name] = ("leak" if name in ends else verdict, part)
+        return told
+
+    @cached_property
+    def doubts(self) -> dict[str, set[str]]:
+        """Name -> lines: rule S11; of a channel of a domain also those of who writes or reads it."""
+        lines = {
+            BACKUPS_NOT_STATED: "backups of {} are not stated and taken as none",
+            NO_READER: "{} ends at no known reader",
+        }
+        told: dict[str, set[str]] = {}
+        for doubt in self.result.doubts:
+            assert doubt.element is not None, "of these fleets all is read"
+            e = doubt.element
+            own = self.system.likeness.is_robot(e.robot)
+            line = f"rides {doubt.name}: " + lines[doubt.name].format(e.name if own else f"{e.robot}:{e.name}")
+            ends = ((self.elements[flow.source], self.elements[flow.target]) for flow in self.graph.flows)
+            beside = {
+                b.robot if a.shown_as == e.shown_as else a.robot
+                for a, b in ends
+                if e.shown_as in (a.shown_as, b.shown_as)
+            }
+            for name in {e.robot} | (beside if e.is_channel else set()):
+                told.setdefault(name, set()).add(line)
         return told
 
 
@@ -338,8 +361,16 @@ class Memory:
         return rows
 
     def verdicts(self) -> Rows:
-        told = [pair for one in self.fleets for pair in one.verdicts.values() if pair[1] != "domain"]
-        return [(verdict, "declared", count, part) for (verdict, part), count in Counter(told).items()]
+        those: dict[tuple[str, str], list[set[str]]] = {}
+        for one in self.fleets:
+            for name, said in one.verdicts.items():
+                if said[1] != "domain":
+                    those.setdefault(said, []).append(one.doubts.get(name, set()))
+        rows = []
+        for (verdict, part), some in those.items():
+            lines = sorted(set().union(*some))
+            rows.append((verdict, "declared", len(some), part, tuple(lines[:20]), len(lines)))
+        return rows
 
     def robots_that_differ(self) -> Rows:
         by_robot = {}

@@ -60,7 +60,7 @@ CHECKS = {
         "robot category source pseudonymised dismissed leak_robot path", ({"leak": "/n1"}, {"leak": "cloud1"})
     ),
     "robots": Check("robot verdict findings dismissed open part"),
-    "verdicts": Check("verdict view robots part"),
+    "verdicts": Check("verdict view robots part doubts number_of_doubts"),
     "robots-that-differ": Check("robot more_findings fewer_findings more_open fewer_open"),
     "open-elements": Check("frontier distance robot kind element categories"),
     "review-next": Check("distance kind element categories robots"),

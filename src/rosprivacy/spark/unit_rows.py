@@ -203,9 +203,7 @@ def _doubts(
     some = [doubt for doubt in listed if not doubt.element or doubt.element.robot in mine]
     names: dict[str, tuple[Diagnostic, ...]] = {element.robot: () for element in placed.graph.elements}
     names |= {plan.fleet.name: (), **{name: member.diagnostics for name, member in members.items()}}
-    return doubts_by_robot(
-        [*some, *plan.doubts], names, placed.graph, placed.likeness, lambda element: element.robot
-    )
+    return doubts_by_robot([*some, *plan.doubts], names, placed.graph, placed.likeness, lambda element: element.robot)
 
 
 def _more(
