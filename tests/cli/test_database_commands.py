@@ -42,7 +42,7 @@ EMPTY = """<policy version="0.2.0"><enclaves><enclave path="/one">
 <profiles><profile ns="/" node="n"/></profiles></enclave></enclaves></policy>"""
 COUNTED = (
     "robot h1 is written: 98 elements and 219 flows (172 nodes with the legs of services and actions, "
-    "221 FLOWS_TO with denied flows), 3 findings; verdict leak\n"
+    "221 FLOWS_TO with denied flows), 3 findings\nleak: data can reach a leak\n"
 )
 GUESS = "bad guess"
 LOCKED = 6  # seconds; after three wrong passwords the server lets nobody in for 5
