@@ -186,7 +186,9 @@ def _fleet_rows(placed: Placed, members: Mapping[str, Member], plan: Plan, mine:
     said |= {name: {"doubts": doubt_lines(some)} for name, some in told.items() if name not in said}
     said[plan.fleet.name] = remembered(everything, plan.joins, doubt_lines(told[plan.fleet.name]))
     analysis = replace(analysis, lacking=plan.lacking)
-    verdicts = robot_verdicts(analysis, said, lambda element: element.robot, {*breaking(told), *plan.broken}, plan.leaking)
+    verdicts = robot_verdicts(
+        analysis, said, lambda element: element.robot, {*breaking(told), *plan.broken}, plan.leaking
+    )
     more = {
         name: {**some, **({} if is_domain(name) else {"verdict": str(verdicts[name])})} for name, some in said.items()
     }
