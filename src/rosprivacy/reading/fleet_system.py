@@ -228,7 +228,7 @@ def rows_of_fleet(system: FleetSystem, question: Question, result: Result) -> Fl
     for name, member in system.members.items():
         files = files_read(member.policies, member.files, question.settings)
         said = assumptions_of({**files, **types_read(member.types)}, result.analysis, question)
-        more[name] = remembered(said, member.diagnostics, doubt_lines(told[name]))
+        more[name] = remembered(said, (*member.diagnostics, *system.joins), doubt_lines(told[name]))
     everything = {**result.assumptions, "policies": [], "labels": [], "types": []}
     more[system.fleet.name] = remembered(everything, system.joins, doubt_lines(told.get(system.fleet.name, ())))
     assert result.fleet is not None, "the answer about a fleet"
