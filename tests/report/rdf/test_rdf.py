@@ -460,8 +460,8 @@ class TestShapesCanFail:
             if not problems(changed):
                 accepted.append(re.split("[:#/]", str(predicate))[-1])
         assert sorted(accepted) == [  # what a finding, a hop, a category can be without
-            "appliesFrom", "bibliographicCitation", "broadMatch", "broader", "conduitOf", "country", "derivationOf",
-            "diagnostic", "exactMatch", "fallsUnder", "followed", "identityFactor", "inContext", "inFile", "leakOf",
+            "adopted", "appliesFrom", "bibliographicCitation", "broadMatch", "broader", "conduitOf", "confirmed",
+            "country", "derivationOf", "diagnostic", "exactMatch", "fallsUnder", "followed", "identityFactor", "inContext", "inFile", "leakOf",
             "leg", "lookAt", "path", "sameAs", "sanitizerOf", "seeAlso", "sourceOf", "title", "used", "wasDerivedFrom",
         ]  # fmt: skip
 
