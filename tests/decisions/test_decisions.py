@@ -19,7 +19,10 @@ PAGE = ROOT / "docs" / "suggestions.md"
 
 
 def test_a_label_file_is_taken_apart_into_what_is_typed() -> None:
-    text = 'labels: 1\nnodes:\n  /a: conduit  # why\n  /b:\n    leak: [Video]\nchannels:\n  "/c/*": mundane\n'
+    text = (
+        'labels: 1\nnodes:\n  /a: conduit  # why\n  /b:\n    leak: [Video]\nchannels:\n  "/c/*": mundane\n'
+        "pins:\n  topics:\n    /c/d: [Video]\n"
+    )
     assert [(one.section, one.name, one.keys) for one in entries(text)] == [
         ("nodes", "/a", 11), ("nodes", "/b", 16), ("channels", "/c/*", 15),
     ]  # fmt: skip

@@ -68,10 +68,12 @@ def care_home() -> Truth:
 
 
 def entries(text: str) -> list[Entry]:
-    """Take a label file apart into what is said of each name."""
+    """Take a label file apart into what a person says of each name; pins are written by the program."""
     found: list[Entry] = []
     section = ""
     for line in (re.sub(r"(^|\s)#.*", "", line).rstrip() for line in text.splitlines()):
+        if section == "pins" and line.startswith(" "):
+            continue
         if line.startswith("   "):
             found[-1] = found[-1]._replace(lines=(*found[-1].lines, line))
         elif line.startswith("  "):
