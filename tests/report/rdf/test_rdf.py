@@ -461,8 +461,9 @@ class TestShapesCanFail:
                 accepted.append(re.split("[:#/]", str(predicate))[-1])
         assert sorted(accepted) == [  # what a finding, a hop, a category can be without
             "adopted", "appliesFrom", "bibliographicCitation", "broadMatch", "broader", "conduitOf", "confirmed",
-            "country", "derivationOf", "diagnostic", "exactMatch", "fallsUnder", "followed", "identityFactor", "inContext", "inFile", "leakOf",
-            "leg", "lookAt", "path", "sameAs", "sanitizerOf", "seeAlso", "sourceOf", "title", "used", "wasDerivedFrom",
+            "country", "derivationOf", "diagnostic", "exactMatch", "fallsUnder", "followed", "identityFactor",
+            "inContext", "inFile", "leakOf", "leg", "lookAt", "path", "sameAs", "sanitizerOf", "seeAlso",
+            "sourceOf", "title", "used", "wasDerivedFrom",
         ]  # fmt: skip
 
     @pytest.mark.parametrize(
