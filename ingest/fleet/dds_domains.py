@@ -152,7 +152,7 @@ def shared(domain: str, members: Sequence[Member], view: str, bounds: Bounds = B
 
     def unmarked(grant: Grant) -> Grant:
         robot, node = grant.node.split(MARK)
-        return as_written(grant._replace(enclave=grant.enclave.split(MARK)[1], node=node), added[robot])
+        return as_written(grant._replace(enclave=grant.enclave.rpartition(MARK)[2], node=node), added[robot])
 
     whole = _with_grants(Part.of(graph, Bound({}), names.of_marked), unmarked)
     return together([whole, *(_part(member, names.of_member(member)) for member in members)])

@@ -200,3 +200,22 @@ class TestNothingEnforced:
             if row["doubt"] == "nothing-enforced"
         )
         assert doubt["count"] == 2
+
+    def test_robots_of_one_domain_are_one_enclave(self, cli: Cli, observed: Path) -> None:
+        """What one robot sends, a node of the other may read, too: nothing keeps it (S6)."""
+        (observed / "s.txt").write_text(node_info("/sink", "", "/clean"))
+        assert cli("observe", "--text", "s.txt", "--at", "2026-11-22T10:00:00Z", "-o", "s.xml").returncode == 0
+        (observed / "s.yaml").write_text("labels: 1\nnodes: {/sink: {leak: [Video]}}\n")
+        (observed / "f.yaml").write_text(
+            "fleet: 1\nrobots:\n  a: {policies: [r.xml], labels: [l.yaml], domain: 3}\n"
+            "  b: {policies: [s.xml], labels: [s.yaml], domain: 3}\n"
+        )
+        declared = document(cli, "--fleet", "f.yaml")
+        assert declared["findings"] == []
+        assert "nothing is enforced for 4 nodes" in declared["sentence"]
+        enforced = document(cli, "--fleet", "f.yaml", "--view", "enforced")
+        findings = enforced["findings"]
+        ends = {(row["source"]["robot"], row["leak"]["robot"], row["leak"]["name"]) for row in findings}
+        assert ends == {("a", "a", "/uplink"), ("a", "b", "/sink")}
+        unlabelled = [row["element"] for row in enforced["open"]]
+        assert {row["robot"] for row in unlabelled if row["name"] == "network"} == {"a", "b"}
