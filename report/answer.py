@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.findings.processed import Processed
     from rosprivacy.analysis.fleet.counts import Counts
     from rosprivacy.analysis.fleet.patterns import FleetView
-    from rosprivacy.analysis.model import Bound, Diagnostic, Doubt, NonRosFacts, Surroundings
+    from rosprivacy.analysis.model import Bound, Diagnostic, Doubt, Element, NonRosFacts, Surroundings
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 
@@ -43,13 +43,13 @@ class Enforced(NamedTuple):
         Under the enforced view.
     added
         The findings that only this view has, in its order; and those in which it alone has plain data.
-    unreviewed
-        How many elements are open in this view only, or for more categories.
+    open
+        The elements that are open in this view only, or for more categories: those outside ROS first.
     """
 
     answer: Answer
     added: tuple[Added, ...]
-    unreviewed: int = 0
+    open: tuple[Element, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -281,9 +281,11 @@ def test_what_only_the_enforced_view_leaves_open_is_counted_beside_no_finding(cl
     document = both_views(("p.xml",), ("l.yaml",), Settings()).document()
     assert (document["verdict"], document["enforced"]["verdict"]) == ("no-leak-found", "undetermined")
     assert (document["enforced"]["added"], document["enforced"]["unreviewed"]) == ([], 1)
+    (left,) = document["enforced"]["open"]
     arguments = ("p.xml", "-l", "l.yaml", "--view", "both")
-    assert "it also leaves 1 element open that nobody has reviewed" in cli("analyze", *arguments).stdout
-    assert "1 element that nobody has reviewed for it" in cli("report", *arguments).stdout
+    expected = f"it also leaves 1 element open that nobody has reviewed ({left['name']})"
+    assert expected in cli("analyze", *arguments).stdout
+    assert f"1 element that nobody has reviewed for it ({left['name']})" in cli("report", *arguments).stdout
 
 
 @pytest.mark.usefixtures("example")

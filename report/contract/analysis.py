@@ -193,6 +193,7 @@ class EnforcedEntry(TypedDict):
 
     verdict: str
     unreviewed: NotRequired[int]
+    open: NotRequired[list[ElementEntry]]
     added: list[AddedEntry]
 
 

@@ -27,7 +27,8 @@ def enforced_document(enforced: Enforced) -> EnforcedEntry:
         findings = decided_findings(findings, answer.decided)
     return {
         "verdict": str(answer.analysis.verdict),
-        "unreviewed": enforced.unreviewed,
+        "unreviewed": len(enforced.open),
+        "open": [element_dict(element) for element in enforced.open],
         "added": [_added(one, finding) for one, finding in zip(enforced.added, findings, strict=True)],
     }
 

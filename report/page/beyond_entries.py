@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from rosprivacy.report.page.index import Index
 
 MOST = 200  # that are told one by one
+NAMED_OPEN = 12  # elements in the sentence of what is open
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,11 +60,12 @@ def beyond_said(index: Index) -> tuple[str, ...]:
     """Return what is to be known of all of it: how much there is, and how many are not told one by one."""
     words, number = index.words, len(_added(index))
     left = number - MOST
-    unreviewed = index.document.get("enforced", {}).get("unreviewed", 0)
+    elements = [name(element) for element in index.document.get("enforced", {}).get("open", ())]
+    names = words.row(words.first(elements, NAMED_OPEN))
     return (
         words.count(number, "y.number"),
         *([words.count(left, "y.left")] if left > 0 else []),
-        *([words.count(unreviewed, "y.unreviewed")] if unreviewed else []),
+        *([words.count(len(elements), "y.unreviewed", names=names)] if elements else []),
     )
 
 

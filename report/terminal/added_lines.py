@@ -23,8 +23,8 @@ def enforced_lines(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
     added = report["enforced"]["added"]
     yield "", ""
     yield words("tty.enforced", findings=words.count(len(added), "tty.finding")), "bold"
-    if number := report["enforced"].get("unreviewed"):
-        yield words.count(number, "tty.enforced.unreviewed"), ""
+    if elements := [shown_name(element) for element in report["enforced"].get("open", ())]:
+        yield words.count(len(elements), "tty.enforced.unreviewed", names=named(elements, words)), ""
     by_id = {entry["finding"]["id"]: entry for entry in added}
 
     def more(finding: Mapping[str, Any]) -> Iterator[Line]:

@@ -180,8 +180,10 @@ class TestNothingEnforced:
         assert ("participant", "network") in {
             (row["element"]["kind"], row["element"]["name"]) for row in enforced["open"]
         }
-        added = document(cli, "r.xml", "-l", "l.yaml", "--view", "both")["enforced"]["added"]
-        assert [row["finding"]["leak"]["name"] for row in added] == ["/uplink"]
+        both = document(cli, "r.xml", "-l", "l.yaml", "--view", "both")["enforced"]
+        assert [row["finding"]["leak"]["name"] for row in both["added"]] == ["/uplink"]
+        assert both["open"][0] == {"robot": "", "kind": "participant", "name": "network"}
+        assert "(network, " in cli("analyze", "r.xml", "-l", "l.yaml", "--view", "both").stdout
         assert "network" not in json.dumps(document(cli, "r.xml", "-l", "l.yaml")["carries"])
 
     def test_labels_may_speak_of_the_network_in_both_views(self, cli: Cli, observed: Path) -> None:

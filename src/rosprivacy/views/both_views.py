@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.findings.beyond import granted
 from rosprivacy.analysis.fleet.likeness import pattern_id
+from rosprivacy.analysis.model import NON_ROS
 from rosprivacy.analysis.modes import View
 from rosprivacy.answering import answer
 from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, Change
@@ -86,7 +87,9 @@ def _both(settings: Settings, reader: Callable[[Question], Reader]) -> Result:
     new = (one for one in found.analysis.findings if not one.dismissed and _is_new(one, known))  # accepted ones, too
     added = tuple(_added(new, remedies, whole.likeness))
     more = {shown for shown, _ in _open(found) - _open(every) if shown[0] not in whole.likeness.second}
-    return replace(result, enforced=Enforced(found, added, len(more)))
+    elements = {one.element.shown_as: one.element for one in found.analysis.open}
+    outside_first = sorted((elements[shown] for shown in more), key=lambda e: (e.kind not in NON_ROS, e.sort_key()))
+    return replace(result, enforced=Enforced(found, added, tuple(outside_first)))
 
 
 def _is_new(finding: Finding, known: Mapping[str, bool]) -> bool:
