@@ -9,7 +9,7 @@ from collections import defaultdict
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.model import ASSUMED, observed_when
+from rosprivacy.analysis.model import ASSUMED, OWN_DOMAINS, observed_when
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -31,14 +31,20 @@ def observed_lines(report: Mapping[str, Any], words: Words) -> Iterator[str]:
     for code, messages in said.items():
         for number, (message, files) in enumerate(messages.items(), 1):
             if number <= NAMED:
-                yield words(f"a.{code}", file=_named(files), said=_told(message, words), n=message.partition(" ")[0])
+                yield words(
+                    f"a.{code}", file=_named(files), said=_told(code, message, words), n=message.partition(" ")[0]
+                )
         if len(messages) > NAMED:
             others = [file for files in list(messages.values())[NAMED:] for file in files]
             yield words(f"a.{code}", file=_named(others), said="…", n="…")
 
 
-def _told(message: str, words: Words) -> str:
-    """What the reader of an input said; from when to when somebody looked, and by which doors, in the language."""
+def _told(code: str, message: str, words: Words) -> str:
+    """What the reader of an input said; when somebody looked, by which doors, what has no domain, in the language."""
+    if code == OWN_DOMAINS:
+        names, _, more = message.rpartition(": ")[2].partition(" and ")
+        names += f" {words('more', n=more.removesuffix(' more'))}" if more else ""
+        return words.count(int(message.partition(" ")[0].replace(",", "")), "a.own-domains.said", names=names)
     when = observed_when(message)
     if when is None:
         return message

@@ -394,6 +394,8 @@ WORDS = {
     "a.recording": "{file}: {said}.",
     "a.law": "Only the GDPR is followed into paths, as the ontology of the program has it, reviewed on {date}. The AI Act, the law on electronic communications and national law are pointed at beside the paths and not assessed; agreements with works councils are not looked at. Proposals of new law are not applied.",
     "a.own-domains": "{file}: {said}.",
+    "a.own-domains.said.one": "{n} robot is taken to be in a domain of its own; ROS 2 puts all into domain 0: {names}",
+    "a.own-domains.said.many": "{n} robots are taken to be in domains of their own; ROS 2 puts all into domain 0: {names}",
     "a.signed-by": "{file}: {said}.",
     "a.labels": "Labels are a person's word. The program cannot check what a node does inside, or what leaves it past ROS.",
     "t.closed": "Closed on somebody's word: without it, data would get on",
