@@ -113,7 +113,8 @@ class _Reading(NamedTuple):
             found = governed(enclave.governance, domains_of(enclave.permissions, self.domain))
             policies += self._granted(enclave.permissions, enclave.sources, found)
             said += governance_remarks(enclave.governance, enclave.permissions, self.domain)
-        return policies, [*said, *self._remarks([enclave.permissions for enclave in enclaves])]
+        said += self._remarks([enclave.permissions for enclave in enclaves])
+        return policies, sorted(said, key=lambda d: (d.place.file, d.place.line, d.message))
 
     def alone(self, names: Iterable[str]) -> _Found:
         """What files by themselves grant; each governance counts for the domains that its rules name."""
