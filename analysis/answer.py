@@ -269,16 +269,14 @@ class Analysis:
     types: Mapping[Element, tuple[str, ...]] = field(default_factory=dict)
 
 
-def _beside_open_channels(analysis: Analysis) -> Iterator[Element]:
-    """Who writes or reads a channel that is open."""
-    channels = {question.element.shown_as for question in analysis.open if question.element.is_channel}
-    elements = analysis.graph.elements
-    those = {vertex for vertex, element in enumerate(elements) if channels and element.shown_as in channels}
-    for flow in analysis.graph.flows if those else ():
-        if flow.source in those:
-            yield elements[flow.target]
-        elif flow.target in those:
-            yield elements[flow.source]
+def writers_and_readers(graph: FlowGraph, some: Iterable[Element]) -> Iterator[tuple[Element, Element]]:
+    """Yield the channels among some elements, each with who writes or reads it. O(flows); no flow without a channel."""
+    channels = {element.shown_as for element in some if element.is_channel}
+    those = {vertex for vertex, element in enumerate(graph.elements) if channels and element.shown_as in channels}
+    for flow in graph.flows if those else ():
+        for channel, other in ((flow.source, flow.target), (flow.target, flow.source)):
+            if channel in those:
+                yield graph.elements[channel], graph.elements[other]
 
 
 def robot_verdicts(
@@ -315,7 +313,8 @@ def robot_verdicts(
             robot_of(e) for finding in analysis.findings if finding.stands for e in (finding.source, finding.leak)
         }
     open_at = {robot_of(question.element) for question in analysis.open}
-    open_at |= {robot_of(element) for element in _beside_open_channels(analysis)}
+    channels = writers_and_readers(analysis.graph, (question.element for question in analysis.open))
+    open_at |= {robot_of(element) for _, element in channels}
     carrying = () if analysis.lacking else analysis.carried
     broken = {robot_of(e) for row in analysis.closed_by_shipped if row.rank is Rank.BREAKS for e in row.at}
     known = {robot_of(carried.element) for carried in carrying} - {*not_read, *broken}

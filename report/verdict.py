@@ -10,7 +10,7 @@ from collections import defaultdict
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.model import GOES_NOWHERE, MAY_REVEAL, NO_LEAK_NAMED, RESTRICTED
+from rosprivacy.analysis.model import GOES_NOWHERE, MAY_REVEAL, NO_LEAK_NAMED, RESTRICTED, Rank
 from rosprivacy.report.called_alike import both, named
 from rosprivacy.report.naming import shown_name
 from rosprivacy.report.words.words import IN_ENGLISH, Words
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 ALL = "all"
-BREAKS = "breaks"
 NAMED = 3  # elements or files of one sort of doubts
 
 
@@ -70,7 +69,7 @@ def doubts_of(document: Mapping[str, Any]) -> list[Mapping[str, Any]]:
 
 
 def _breaks(doubt: Mapping[str, Any]) -> bool:
-    return bool(doubt["rank"] == BREAKS)
+    return bool(doubt["rank"] == Rank.BREAKS)
 
 
 def doubt_phrases(document: Mapping[str, Any], words: Words) -> Iterator[str]:

@@ -56,7 +56,7 @@ def test_one_module_knows_which_bit_is_which() -> None:
 OPENERS = {"open", "fdopen", "read_bytes", "read_text"}
 WRITERS = {"write_bytes", "write_text", "mkstemp", "NamedTemporaryFile", "TemporaryFile", "rename", "truncate"}
 OF_ITS_OWN = {  # modules that touch files in another way, and why none of these is a user's
-    "ingest/reading/bounded_file.py": "notes what it reads",
+    "ingest/reading/bounded_file.py": "notes what it reads; what is only looked at is in no answer, and may be written",
     "ingest/bags/bounded_stream.py": "notes what it reads",
     "ontology/vocabulary.py": "notes what it reads; and what is shipped",
     "report/compare/earlier.py": "notes what it reads",
@@ -82,7 +82,6 @@ OF_ITS_OWN = {  # modules that touch files in another way, and why none of these
     "ontology/cache.py": "the cache of categories",
     "src/rosprivacy/running/watching.py": "a policy in a folder of its own, gone at once",
     "report/pictures/graphviz_worker.py": "a process that draws, with pipes only",
-    "ingest/reading/file_kinds.py": "looks how a file begins; nothing of it is in an answer, so it may be written",
     "src/rosprivacy/cli/diff.py": "looks how a file begins; what then reads it notes it",
     "src/rosprivacy/cli/output.py": "the null device, when standard output is gone",
     "src/rosprivacy/spark/session.py": "settings of Spark in a folder of its own, gone at its end",

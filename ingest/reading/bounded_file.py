@@ -31,8 +31,13 @@ def contents(path: Path, name: str = "") -> bytes:
         return noted(file, name or str(path)).read()
 
 
-def beginning(name: str, size: int) -> bytes:
+def beginning(name: str, size: int, *, passed_over: bool = False) -> bytes:
     """Read the first bytes of a regular file by the name that the user knows it by; none of anything else.
+
+    Parameters
+    ----------
+    passed_over
+        Whether nothing in it goes into an answer: then it is not noted, and may be written in this run.
 
     Raises
     ------
@@ -43,7 +48,7 @@ def beginning(name: str, size: int) -> bytes:
     if not path.is_file():
         return b""
     with path.open("rb") as file:
-        return noted(file, name).read(size)
+        return (file if passed_over else noted(file, name)).read(size)
 
 
 def nearest_file(path: Path) -> str:

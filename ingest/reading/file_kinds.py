@@ -10,10 +10,10 @@ import bz2
 import lzma
 import re
 import zlib
-from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import shown
+from rosprivacy.ingest.reading.bounded_file import beginning
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -91,18 +91,14 @@ def kind_of(data: bytes) -> FileKind | None:
 
 
 def kind_of_file(name: str) -> FileKind | None:
-    """Return what a regular file is by its beginning. It is looked at, not read: nothing in it goes into an answer.
+    """Return what a regular file is by its beginning; None of anything else.
 
     Raises
     ------
     OSError, ValueError
         If it cannot be read.
     """
-    path = Path(name)
-    if not path.is_file():
-        return None
-    with path.open("rb") as file:
-        return kind_of(file.read(MOST))
+    return kind_of(beginning(name, MOST, passed_over=True))
 
 
 def is_signed(data: bytes) -> bool:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.model import Rank
 from rosprivacy.report.compare.changes import scope
 from rosprivacy.report.compare.matching import compare
 
@@ -21,7 +22,7 @@ FORMAT = "rosprivacy.diff/1"
 SECTIONS = ("findings", "doubts", "robots", "grants", "elements")
 BETTER_FIRST = ("no-leak-found", "undetermined", "leak")
 SIDES = (("before", "before"), ("now", "after"))
-RANKS = ("rides", "breaks")
+RANKS = (Rank.RIDES, Rank.BREAKS)
 NAMES = {
     "findings": ("kind", "category", "source", "leak", "across", "beside"),
     "doubts": ("doubt", "robot", "kind", "name", "leg", "file", "message"),

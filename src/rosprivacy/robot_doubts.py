@@ -9,6 +9,7 @@ from collections import defaultdict
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.answer import writers_and_readers
 from rosprivacy.report.document.doubts import doubt_entry
 from rosprivacy.report.verdict import phrase
 from rosprivacy.report.words.words import IN_ENGLISH
@@ -59,7 +60,9 @@ def doubts_by_robot(
         for key in {(said.code, said.place.file, said.message) for said in diagnostics}:
             reported[key].append(name)
     doubts = tuple(doubts)
-    beside = _beside({doubt.element for doubt in doubts if doubt.element}, graph, robot_of)
+    beside: dict[tuple[str, ...], set[str]] = defaultdict(set)  # channel, as it is shown -> robots
+    for channel, other in writers_and_readers(graph, (doubt.element for doubt in doubts if doubt.element)):
+        beside[channel.shown_as].add(robot_of(other))
     told: dict[str, list[Doubt]] = {name: [] for name in robots}
     for doubt in doubts:
         element = doubt.element
@@ -74,20 +77,6 @@ def doubts_by_robot(
         for name in names:
             told[name].append(mine)
     return told
-
-
-def _beside(
-    some: Iterable[Element], graph: FlowGraph, robot_of: Callable[[Element], str]
-) -> defaultdict[tuple[str, ...], set[str]]:
-    """The robots that write or read some channels, by how these are shown."""
-    channels = {element.shown_as for element in some if element.is_channel}
-    found: defaultdict[tuple[str, ...], set[str]] = defaultdict(set)
-    for flow in graph.flows if channels else ():
-        ends = graph.elements[flow.source], graph.elements[flow.target]
-        for channel, other in (ends, ends[::-1]):
-            if channel.shown_as in channels:
-                found[channel.shown_as].add(robot_of(other))
-    return found
 
 
 def breaking(told: Mapping[str, Iterable[Doubt]]) -> list[str]:

@@ -48,6 +48,9 @@ IN_THE_OPEN = Exposure("not-encrypted", Place("governance.p7s", 9))
 ABSENT = Statement("sanitizer", (), (1, 0), Place("labels", 1), Method.ABSENT, why="sold")
 
 
+Ends = tuple[set[tuple[str, str, int, int, bool]], dict[int, tuple[set[str], bool]]]  # findings, and what is open
+
+
 def statement(role: str, *categories: str, method: Method | None = None, to: str = "") -> Statement:
     return Statement(role, categories, (1, 0), Place("labels", 1), method, to=to)
 
@@ -188,6 +191,29 @@ def analysed(system: System) -> Analysis | None:
         return system.analyse()
     except InputErrors:
         return None
+
+
+def sent(system: System, found: Analysis) -> set[tuple[int, int, tuple[str, bool]]]:
+    """What goes along each flow, as ``Brute.along`` has it."""
+    return {
+        (*system.edges[i], (name, bool(plane)))
+        for i in range(len(system.edges))
+        for plane, names in enumerate(found.spread.planes(found.spread.along(i)))
+        for name in names
+    }
+
+
+def findings_and_questions(system: System, found: Analysis) -> Ends:
+    """Findings, and what is open, by number of the element."""
+    number = index(system)
+    findings = {(f.kind, f.category, number[f.source], number[f.leak], f.dismissed) for f in found.findings}
+    return findings, {number[q.element]: (set(q.categories), q.frontier) for q in found.open}
+
+
+def those_of_brute_force(brute: Brute) -> Ends:
+    """The same, as brute force has it."""
+    findings = {(*key[:4], dismissed) for key, (_, dismissed, _) in brute.findings().items()}
+    return findings, {vertex: (names, frontier) for vertex, (names, _, frontier) in brute.open().items()}
 
 
 def index(system: System) -> dict[Element, int]:

@@ -22,7 +22,18 @@ from rosprivacy.analysis.model import (
 )
 from rosprivacy.analysis.modes import Paths
 from tests.helpers.more_systems import ranked, wildcards
-from tests.helpers.systems import HIERARCHY, PARENTS, WIDE, WIDE_HIERARCHY, System, analysed, index, statement, systems
+from tests.helpers.systems import (
+    HIERARCHY,
+    PARENTS,
+    WIDE,
+    WIDE_HIERARCHY,
+    System,
+    analysed,
+    index,
+    sent,
+    statement,
+    systems,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -50,13 +61,7 @@ def test_what_goes_along_each_flow_is_what_brute_force_sends(system: System) -> 
         return
     brute = system.brute()
     brute.spread(brute.sources())
-    got = {
-        (*system.edges[index], (name, bool(plane)))
-        for index in range(len(system.edges))
-        for plane, names in enumerate(found.spread.planes(found.spread.along(index)))
-        for name in names
-    }
-    assert got == brute.along
+    assert sent(system, found) == brute.along
 
 
 @given(st.one_of(systems(), wildcards()))

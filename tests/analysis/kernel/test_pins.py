@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.findings.answered_by_globs import answered_by_globs
 from tests.helpers.more_systems import ranked
-from tests.helpers.systems import PARENTS, System, index
+from tests.helpers.systems import PARENTS, System, analysed, findings_and_questions, index, sent, those_of_brute_force
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
@@ -63,13 +62,6 @@ def there(found: Analysis) -> list[set[str]]:
     return [{*found.spread.names(found.spread.present(v))} for v in range(len(found.graph.elements))]
 
 
-def analysed(system: System) -> Analysis | None:
-    try:
-        return system.analyse()
-    except InputErrors:
-        return None
-
-
 @given(pinned())
 def test_what_is_carried_and_refused_is_what_brute_force_says(system: System) -> None:
     found, brute = analysed(system), system.brute()
@@ -78,12 +70,7 @@ def test_what_is_carried_and_refused_is_what_brute_force_says(system: System) ->
         assert brute.refused() or with_pins(system, None).brute().refused()
         return
     brute.spread(brute.sources())
-    assert brute.along == {
-        (*system.edges[i], (name, bool(plane)))
-        for i in range(len(system.edges))
-        for plane, names in enumerate(found.spread.planes(found.spread.along(i)))
-        for name in names
-    }
+    assert sent(system, found) == brute.along
 
 
 @given(pinned())
@@ -91,11 +78,7 @@ def test_findings_and_open_questions_are_those_of_brute_force(system: System) ->
     found = analysed(system)
     if found is None:
         return
-    number, brute = index(system), system.brute()
-    expected = {(*key[:4], dismissed) for key, (_, dismissed, _) in brute.findings().items()}
-    assert {(f.kind, f.category, number[f.source], number[f.leak], f.dismissed) for f in found.findings} == expected
-    got = {number[q.element]: (set(q.categories), q.frontier) for q in found.open}
-    assert got == {vertex: (names, frontier) for vertex, (names, _, frontier) in brute.open().items()}
+    assert findings_and_questions(system, found) == those_of_brute_force(system.brute())
 
 
 @given(ranked())

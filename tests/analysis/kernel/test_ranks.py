@@ -2,23 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from hypothesis import given
 
-from rosprivacy.analysis.errors import InputErrors
 from tests.helpers.more_systems import ranked
-from tests.helpers.systems import System, index
-
-if TYPE_CHECKING:
-    from rosprivacy.analysis.answer import Analysis
-
-
-def analysed(system: System) -> Analysis | None:
-    try:
-        return system.analyse()
-    except InputErrors:
-        return None
+from tests.helpers.systems import System, analysed, findings_and_questions, index, sent, those_of_brute_force
 
 
 @given(ranked())
@@ -46,13 +33,7 @@ def test_what_goes_along_each_flow_is_what_brute_force_sends(system: System) -> 
         return
     brute = system.brute()
     brute.spread(brute.sources())
-    got = {
-        (*system.edges[i], (name, bool(plane)))
-        for i in range(len(system.edges))
-        for plane, names in enumerate(found.spread.planes(found.spread.along(i)))
-        for name in names
-    }
-    assert got == brute.along
+    assert sent(system, found) == brute.along
 
 
 @given(ranked())
@@ -60,11 +41,7 @@ def test_findings_and_open_questions_are_those_of_brute_force(system: System) ->
     found = analysed(system)
     if found is None:
         return
-    number, brute = index(system), system.brute()
-    expected = {(*key[:4], dismissed) for key, (_, dismissed, _) in brute.findings().items()}
-    assert {(f.kind, f.category, number[f.source], number[f.leak], f.dismissed) for f in found.findings} == expected
-    got = {number[q.element]: (set(q.categories), q.frontier) for q in found.open}
-    assert got == {vertex: (names, frontier) for vertex, (names, _, frontier) in brute.open().items()}
+    assert findings_and_questions(system, found) == those_of_brute_force(system.brute())
 
 
 @given(ranked())
