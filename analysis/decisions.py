@@ -201,9 +201,9 @@ class Decisions:
         used: set[Acceptance] = set()
         decided = []
         for doubt in doubts:
-            entry = next((entry for entry in self.doubts if _is_about(entry, doubt)), None)
-            valid = next((e for e in self.doubts if _is_about(e, doubt) and self.state(e) is State.VALID), None)
-            used.update([entry] if entry else [])
+            about = [entry for entry in self.doubts if _is_about(entry, doubt)]
+            used.update(about)
+            valid = next((entry for entry in about if self.state(entry) is State.VALID), None)
             decided.append(replace(doubt, accepted=valid))
         return tuple(decided), tuple(self._of_doubts(used, everything=everything))
 

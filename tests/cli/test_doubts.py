@@ -89,6 +89,14 @@ class TestAccepting:
         assert done.returncode == 4
         assert "expired on 2020-01-01" in done.stdout
 
+    def test_what_was_decided_anew_counts_and_is_not_orphaned(self, cli: Cli, robot: Path) -> None:
+        entry = "{{doubt: no-reader, decision: accept, reason: r, owner: o, expires: {}}}"
+        both = ", ".join(map(entry.format, ("2020-01-01", "2999-01-01")))
+        (robot / "d.yaml").write_text(f"decisions: 1\ndoubts: [{both}]\n")
+        done = cli("analyze", "p.xml", "-l", "l.yaml", "--decisions", "d.yaml", "--fail-on", "doubt", cwd=robot)
+        assert (done.returncode, "orphaned" in done.stdout) == (0, False)
+        assert "expired on 2020-01-01" in done.stdout
+
     @pytest.mark.parametrize("left_out", ["reason", "owner", "expires"])
     def test_without_what_a_person_signs_it_is_an_error(self, cli: Cli, robot: Path, left_out: str) -> None:
         entry = {"doubt": "no-reader", "decision": "accept", "reason": "r", "owner": "o", "expires": "2999-01-01"}
