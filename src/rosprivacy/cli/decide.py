@@ -120,6 +120,7 @@ def decide(
     from rosprivacy.clock import today
     from rosprivacy.ingest.decisions.decision_writer import DOUBTS, FINDINGS, text_in, with_decision
     from rosprivacy.ontology.vocabulary import load
+    from rosprivacy.report.compare.earlier import read_earlier
     from rosprivacy.report.editing import editing
 
     names = {"category": category, "source": source, "leak": leak, "robot": robot, "from_robot": from_robot}
@@ -129,8 +130,9 @@ def decide(
         pattern = _doubt_pattern(choice, in_doubt, pattern)
     _check_target(ids, pattern)
     _check_expiry(expires)
-    findings = _findings(report) if report else None
-    doubts = _doubts(report) if report else {}
+    document = read_earlier(str(report)).document if report else None
+    findings = _findings(document) if document else None
+    doubts = _doubts(document) if document else {}
     targets = _targets(ids, None if findings is None else findings | doubts, str(report)) if ids else [pattern]
     entry = {
         "decision": choice.value,
@@ -195,11 +197,8 @@ def _targets(ids: list[str], findings: dict[str, dict[str, Any]] | None, report:
     return [{"id": one} for one in ids]
 
 
-def _findings(report: Path) -> dict[str, dict[str, Any]]:
+def _findings(document: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     """The findings of a JSON report by id, those of a fleet by the ids of their patterns."""
-    from rosprivacy.report.compare.earlier import read_earlier
-
-    document = read_earlier(str(report)).document
     findings = {finding["id"]: {**finding, "view": document["view"]} for finding in document["findings"]}
     if "fleet" not in document:
         return findings
@@ -207,11 +206,9 @@ def _findings(report: Path) -> dict[str, dict[str, Any]]:
     return {p["id"]: findings[p["finding"]] | _all_of(p, robots) for p in document["fleet"]["patterns"]}
 
 
-def _doubts(report: Path) -> dict[str, dict[str, Any]]:
+def _doubts(document: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     """The doubts of a JSON report by id."""
-    from rosprivacy.report.compare.earlier import read_earlier
-
-    return {doubt["id"]: doubt for doubt in read_earlier(str(report)).document.get("doubts", ())}
+    return {doubt["id"]: doubt for doubt in document.get("doubts", ())}
 
 
 def _doubt_remark(doubt: Mapping[str, Any] | None) -> str:
