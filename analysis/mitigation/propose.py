@@ -50,6 +50,8 @@ class System:
         Makes the graph and its statements anew with some grants set to DENY.
     open_ended
         Says of a graph, per kind of channel, which wildcards cover a channel whatever it is called.
+    judge
+        Gives an analysis of it the verdict that its doubts leave (rule S11).
     """
 
     graph: FlowGraph
@@ -59,6 +61,7 @@ class System:
     denials: Callable[[Collection[int]], Sequence[Denial]]
     deny: Callable[[Collection[Grant]], tuple[FlowGraph, Bound]]
     open_ended: Callable[[FlowGraph], Mapping[str, frozenset[int]]] = lambda _: {}
+    judge: Callable[[Analysis], Analysis] = lambda analysis: analysis
 
 
 def open_findings(analysis: Analysis) -> tuple[Finding, ...]:
@@ -268,7 +271,7 @@ class _Work:
         exposed = {v: tuple(one for one in some if one not in changed_lines) for v, some in bound.exposed.items()}
         bound = replace(bound, exposed=exposed)
         changed = with_changes(graph, bound, steps, self.system.open_ended(graph))
-        return analyse(*changed, self.system.hierarchy, self.system.options)
+        return self.system.judge(analyse(*changed, self.system.hierarchy, self.system.options))
 
 
 def _protect(bound: Bound, vertex: Mapping[Element, int], findings: Iterable[Finding]) -> tuple[Protect, ...]:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.report.compare.identity import Identity
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Collection, Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.model import Policy
     from rosprivacy.report.compare.matching import Key, Record
@@ -93,15 +93,17 @@ def _grants(policies: Iterable[Policy], *, named: bool) -> Facts:
 
 
 def _doubts(document: Mapping[str, Any], identity: Identity) -> Facts:
-    """A line may move, and is not compared; what is wrong with a file is."""
+    """A line may move, nor is the name of the only policy compared; what is wrong with a file is."""
     rows = (row for row in document["doubts"] if not row["accepted"])
-    return {(row["doubt"], *_about(row, identity)): {"rank": row["rank"]} for row in rows}
+    policies = {row["file"] for row in document["assumptions"]["policies"]}
+    alone = policies if len(policies) == 1 and "fleet" not in document else set()
+    return {(row["doubt"], *_about(row, identity, alone)): {"rank": row["rank"]} for row in rows}
 
 
-def _about(row: Mapping[str, Any], identity: Identity) -> Key:
+def _about(row: Mapping[str, Any], identity: Identity, unnamed: Collection[str]) -> Key:
     if row["element"]:
         return (*identity.element(row["element"]), "", "")
-    return ("", "", "", "", row["file"], row["message"])
+    return ("", "", "", "", "" if row["file"] in unnamed else row["file"], row["message"])
 
 
 def _elements(document: Mapping[str, Any], identity: Identity) -> Facts:

@@ -8,7 +8,7 @@ from rosprivacy.report.contract.analysis import Assumptions
 from rosprivacy.report.contract.records import ElementEntry, LineEntry
 
 if TYPE_CHECKING:
-    from rosprivacy.report.contract.records import DiagnosticEntry
+    from rosprivacy.report.contract.records import DiagnosticEntry, DoubtEntry
 
 
 class Marks(TypedDict, total=False):
@@ -136,6 +136,7 @@ class MitigationDocument(TypedDict):
 
     format: str
     verdict: str
+    doubts: list[DoubtEntry]
     view: str
     proposals: list[ProposalEntry]
     patch: str

@@ -61,6 +61,7 @@ def mitigation_document(
     return {
         "format": FORMAT,
         "verdict": report["verdict"],
+        "doubts": report["doubts"],
         "view": report["view"],
         "proposals": [_proposal(proposal, critical) for proposal in proposals],
         "patch": patch,

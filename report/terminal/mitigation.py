@@ -19,6 +19,8 @@ from rosprivacy.analysis.model.reason import NOT_ENCRYPTED, STRANGERS
 from rosprivacy.analysis.text import counted
 from rosprivacy.report.document.analysis import SECTIONS
 from rosprivacy.report.naming import kind_of, shown_name
+from rosprivacy.report.verdict import doubt_phrases
+from rosprivacy.report.words.words import IN_ENGLISH
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -50,14 +52,15 @@ def print_mitigation(console: Console, report: Mapping[str, Any]) -> None:
 
 def _lines(report: Mapping[str, Any]) -> Iterator[Line]:
     proposals = report["proposals"]
+    doubts = [*doubt_phrases(report, IN_ENGLISH)]
     if not proposals:
-        yield f"{report['verdict']}: no open finding, nothing to remove", "bold"
+        yield f"{report['verdict']}: {'; '.join(['no open finding, nothing to remove', *doubts])}", "bold"
     for number, proposal in enumerate(proposals):
         if number:
             yield "", ""
         yield from _of_proposal(proposal)
     yield "", ""
-    yield from _closing(report)
+    yield from _closing(report, doubts if proposals else [])
 
 
 def _of_proposal(proposal: Mapping[str, Any]) -> Iterator[Line]:
@@ -219,7 +222,7 @@ def _kept(one: Mapping[str, Any]) -> str:
     return f"{one['category']} on {way}: no change is allowed anywhere on this way   [{one['finding']}]"
 
 
-def _closing(report: Mapping[str, Any]) -> Iterator[Line]:
+def _closing(report: Mapping[str, Any], doubts: Sequence[str]) -> Iterator[Line]:
     assumed = report["assumptions"]
     weights = ", ".join(f"{name} {cost}" for name, cost in assumed["weights"].items())
     yield "Assumed", "bold"
@@ -229,6 +232,8 @@ def _closing(report: Mapping[str, Any]) -> Iterator[Line]:
         yield f"   nothing on the way to {critical} is touched: time-critical", ""
     for note in report["notes"]:
         yield f"   {note}", "yellow"
+    if doubts:
+        yield f"   in doubt before the changes: {'; '.join(doubts)}", "yellow"
     for line in report["labels_without_element"]:
         yield f"   after the DENY, a label names nothing: {line}", "yellow"
     if report["why_no_patch"]:

@@ -6,9 +6,11 @@ In: a ``Result`` of one robot. Out: ``Mitigation``.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.bounds import BOUNDS
+from rosprivacy.analysis.findings.doubts import doubts, judged
 from rosprivacy.analysis.mitigation.limits import CHANGES, DENY, Limits
 from rosprivacy.analysis.mitigation.propose import System, mitigate, open_findings
 from rosprivacy.analysis.model import UNPROTECTED
@@ -25,6 +27,7 @@ from rosprivacy.report.document.whole import document
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable
 
+    from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.bounds import Bounds
     from rosprivacy.analysis.mitigation.proposals import Proposal
     from rosprivacy.analysis.model import Bound, FlowGraph, Grant
@@ -102,7 +105,7 @@ def run_mitigation(
 
     system = System(
         graph, result.bound, result.vocabulary.hierarchy, result.options,
-        lambda flows: denials(result.policies, graph, flows), deny, open_ended,
+        lambda flows: denials(result.policies, graph, flows), deny, open_ended, partial(_judged, result),
     )  # fmt: skip
     proposals = mitigate(system, result.analysis, limits)
     grants = list(_denied(proposals[-1:]))
@@ -111,6 +114,14 @@ def run_mitigation(
     changed = build(with_denied(result.policies, grants), view, bounds)
     unmatched = tuple(str(problem) for problem in join(changed, result.labels, bounds)[1])
     return Mitigation(result, limits, proposals, patch(result.policies, grants), unmatched, notes)
+
+
+def _judged(result: Result, analysis: Analysis) -> Analysis:
+    """Return an analysis with changes under its doubts: those of what was read stay, and what is accepted stays so."""
+    accepted = {doubt.id: doubt.accepted for doubt in result.doubts}
+    stay = (doubt for doubt in result.doubts if doubt.element is None)
+    anew = (replace(doubt, accepted=accepted.get(doubt.id)) for doubt in doubts(analysis, ()))
+    return judged(analysis, (*stay, *anew))
 
 
 def proposed(result: Result) -> MitigationDocument | str:

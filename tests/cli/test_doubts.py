@@ -117,6 +117,31 @@ class TestAccepting:
         assert "1 doubt accepted" in done.stdout
 
 
+class TestMitigate:
+    """What is proposed leaves doubts where they are: no verdict is better than they let it be."""
+
+    def test_a_file_that_nobody_read_is_in_the_verdict_with_the_changes(self, cli: Cli, robot: Path) -> None:
+        (robot / "d").mkdir()
+        (robot / "d" / "p.xml").write_text(SEEN)
+        (robot / "l.yaml").write_text(SEES.replace("{leak: none, conduit: [Video]}", "{leak: [Video]}"))
+        assert "the verdict is then no-leak-found" in cli("mitigate", "d", "-l", "l.yaml", cwd=robot).stdout
+        (robot / "d" / "up.policy").write_text(UP)
+        done = cli("mitigate", "d", "-l", "l.yaml", cwd=robot)
+        assert "the verdict is then undetermined" in done.stdout
+        assert "in doubt before the changes: d/up.policy was not read" in done.stdout
+        for then, expires in (("undetermined", "2020-01-01"), ("no-leak-found", "2999-01-01")):
+            entry = f"{{doubt: unread-file, decision: accept, reason: r, owner: o, expires: {expires}}}"
+            (robot / "d.yaml").write_text(f"decisions: 1\ndoubts: [{entry}]\n")
+            done = cli("mitigate", "d", "-l", "l.yaml", "--decisions", "d.yaml", cwd=robot)
+            assert f"the verdict is then {then}" in done.stdout
+
+    def test_where_there_is_nothing_to_remove_the_doubts_are_named(self, cli: Cli, robot: Path) -> None:
+        done = cli("mitigate", "p.xml", "-l", "l.yaml", cwd=robot)
+        first, _, doubts = done.stdout.partition("\n")[0].partition("; ")
+        assert first == "no-leak-found: no open finding, nothing to remove"
+        assert document(cli, "p.xml", "-l", "l.yaml")["sentence"].endswith(f"; {doubts}")
+
+
 class TestDiff:
     """Verdicts and doubts are compared; what is no comparison is said (S12)."""
 
@@ -200,6 +225,15 @@ class TestNothingEnforced:
         assert document(cli, "r.xml", "-l", "l.yaml")["verdict"] == "no-leak-found"
         found = document(cli, "r.xml", "-l", "l.yaml", "--view", "enforced")["findings"]
         assert "network" in [row["leak"]["name"] for row in found]
+
+    def test_another_name_of_the_only_policy_is_no_new_doubt(self, cli: Cli, observed: Path) -> None:
+        (observed / "later.xml").write_text((observed / "r.xml").read_text())
+        done = cli("diff", "r.xml", "later.xml", "-l", "l.yaml", cwd=observed)
+        assert (done.returncode, "made-without-warnings" in done.stdout) == (0, False)
+        (observed / "more.txt").write_text((observed / "g.txt").read_text() + node_info("/new", "", "/clean"))
+        cli("observe", "--text", "more.txt", "--at", "2026-11-22T10:00:00Z", "-o", "more.xml", cwd=observed)
+        done = cli("diff", "r.xml", "more.xml", "-l", "l.yaml", cwd=observed)  # of one node more nothing is enforced
+        assert (done.returncode, "+ nothing-enforced" in done.stdout) == (1, True)
 
     def test_a_policy_of_a_person_for_the_enclave_secures_it(self, cli: Cli, observed: Path) -> None:
         text = enclaves("/camera>/image").replace("/e0", "/camera")
