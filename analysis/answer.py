@@ -270,7 +270,15 @@ class Analysis:
 
 
 def writers_and_readers(graph: FlowGraph, some: Iterable[Element]) -> Iterator[tuple[Element, Element]]:
-    """Yield the channels among some elements, each with who writes or reads it. O(flows); no flow without a channel."""
+    """Yield the channels among some elements, each with who writes or reads it. O(flows); no flow without a channel.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import CAMERA, FILTERED, factory
+    >>> graph, _, _ = factory()
+    >>> [other.name for _, other in writers_and_readers(graph, (graph.elements[FILTERED], graph.elements[CAMERA]))]
+    ['/filter', '/archive']
+    """
     channels = {element.shown_as for element in some if element.is_channel}
     those = {vertex for vertex, element in enumerate(graph.elements) if channels and element.shown_as in channels}
     for flow in graph.flows if those else ():

@@ -136,7 +136,7 @@ class MitigationDocument(TypedDict):
 
     format: str
     verdict: str
-    doubts: list[DoubtEntry]
+    doubts: NotRequired[list[DoubtEntry]]
     view: str
     proposals: list[ProposalEntry]
     patch: str

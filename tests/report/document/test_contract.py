@@ -37,7 +37,7 @@ def published(name: str) -> Schema:
         for key in ("properties", "required"):
             also, own = whole["properties"]["assumptions"][key], schema["properties"]["assumptions"][key]
             schema["properties"]["assumptions"][key] = also | own if isinstance(own, dict) else also + own
-        schema["properties"]["diagnostics"] = whole["properties"]["diagnostics"]
+        schema["properties"] |= {key: whole["properties"][key] for key in ("diagnostics", "doubts")}
     return schema
 
 
