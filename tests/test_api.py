@@ -17,8 +17,8 @@ import pytest
 import yaml
 
 import rosprivacy
+from rosprivacy import settings
 from rosprivacy.analysis import errors
-from rosprivacy.cli.options import Format
 from rosprivacy.formats import FORMATS
 from rosprivacy.report.document import why_not
 from rosprivacy.settings import Settings
@@ -64,17 +64,21 @@ def test_every_error_is_exported_and_drawn() -> None:
     assert {name for _, name in here} <= set(rosprivacy.__all__)
 
 
-@pytest.mark.parametrize(("function", "without"), [("analyze", FLEET_ONLY), ("analyze_fleet", ROBOT_ONLY)])
-def test_every_setting_is_a_typed_keyword_with_its_default(function: str, without: set[str]) -> None:
-    parameters = inspect.signature(getattr(rosprivacy, function)).parameters.values()
-    assert not {p.kind for p in parameters} & {inspect.Parameter.VAR_KEYWORD, inspect.Parameter.VAR_POSITIONAL}
-    assert all(p.annotation is not inspect.Parameter.empty for p in parameters)
-    keywords = {p.name: p.default for p in parameters if p.kind is inspect.Parameter.KEYWORD_ONLY}
-    assert keywords.keys() == {field.name for field in fields(Settings)} - without
-    plain = Settings()
-    assert all(getattr(plain, name) == value for name, value in keywords.items() if name != "progress")
-    documented = inspect.getdoc(getattr(rosprivacy, function)) or ""
-    assert all(re.search(rf"^(\w+, )*{name}\b", documented, re.MULTILINE) for name in keywords)
+@pytest.mark.parametrize(("function", "group"), [("analyze", "RobotOptions"), ("analyze_fleet", "FleetOptions")])
+def test_every_setting_is_an_option_with_a_type_and_a_text(function: str, group: str) -> None:
+    named = getattr(settings, group)
+    without = FLEET_ONLY if group == "RobotOptions" else ROBOT_ONLY
+    assert named.__annotations__.keys() == {field.name for field in fields(Settings)} - without
+    documented = f"{inspect.getdoc(settings.Options)}\n{inspect.getdoc(named)}"
+    assert all(re.search(rf"^{name}$", documented, re.MULTILINE) for name in named.__annotations__)
+    taken = inspect.signature(getattr(rosprivacy, function)).parameters["options"]
+    assert taken.annotation == f"Unpack[{group}]"
+
+
+def test_what_a_fleet_file_names_is_no_option_of_a_fleet() -> None:
+    for name in ROBOT_ONLY:
+        with pytest.raises(TypeError, match=name):
+            rosprivacy.analyze_fleet("fleet.yaml", **{name: "file"})  # type: ignore[arg-type]
 
 
 def test_type_checkers_see_what_comes_out() -> None:
@@ -199,9 +203,9 @@ def test_every_format_is_written_by_its_name(
     care: rosprivacy.Result, name: str, cli: Cli, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
-    command = "analyze" if name in set(Format) else "report"
-    done = cli(command, POLICY, "-l", LABELS, "--format", name)
-    assert care.to(name).splitlines() == done.stdout.splitlines()  # CSV ends lines as RFC 4180 says; text pipes do not
+    for command in ("analyze", "report"):
+        done = cli(command, POLICY, "-l", LABELS, "--format", name)
+        assert care.to(name).splitlines() == done.stdout.splitlines()  # RFC 4180 ends lines of CSV otherwise than pipes
 
 
 def test_a_format_that_is_none_is_an_error_with_all_that_are(care: rosprivacy.Result) -> None:

@@ -183,11 +183,11 @@ def test_the_document_has_it_beside_the_declared_answer(cli: Cli) -> None:
 
 
 @pytest.mark.usefixtures("example")
-@pytest.mark.parametrize("more", [("-f", "turtle"), ("--per-policy",), ("-f", "cnil-pia")])
+@pytest.mark.parametrize("more", [("-f", "turtle"), ("--per-policy",), ("-f", "cnil-pia"), ("-f", "article30")])
 def test_formats_that_do_not_tell_it_are_refused(cli: Cli, more: tuple[str, ...]) -> None:
     done = cli("analyze", "p.xml", "-l", "l.yaml", "--view", "both", *more)
     assert done.returncode == 2
-    assert "--view both writes text, json and sarif" in done.stderr
+    assert "--view both writes text, json, sarif, html, markdown, docx" in done.stderr
 
 
 @pytest.mark.usefixtures("example")

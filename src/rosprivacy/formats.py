@@ -66,11 +66,30 @@ class Style(NamedTuple):
 
 
 class Format(NamedTuple):
-    """A format: its name on the command line, what its files end in, and what writes it."""
+    """A format in which an answer is written.
+
+    Attributes
+    ----------
+    name
+        On the command line.
+    suffix
+        What its files end in.
+    write
+        What makes it.
+    styles
+        Fields of ``Style`` that it heeds; others mean nothing to it.
+    both_views
+        Whether it tells what the enforced view adds (rule S6).
+    page
+        What it is called where it is refused at a terminal; empty of what people read there.
+    """
 
     name: str
     suffix: str
     write: Callable[[Answer, Style], str | bytes | Iterator[str]]
+    styles: tuple[str, ...] = ()
+    both_views: bool = False
+    page: str = ""
 
 
 @overload
@@ -247,19 +266,21 @@ def _told(
     return copies[0], earlier, copies[-1] if also else proposals, aliases_of(told, copies[0])
 
 
+_REPORT = ("language", "title", "since", "redact", "assessment")
+_LINKED = ("base", "redact")
 FORMATS = {
     known.name: known
     for known in (
-        Format("text", ".txt", _text),
-        Format("json", ".json", _json),
-        Format("sarif", ".sarif", _sarif),
-        Format("cnil-pia", ".json", _cnil_pia),
-        Format("turtle", ".ttl", _linked_data("turtle")),
-        Format("json-ld", ".jsonld", _linked_data("json-ld")),
-        Format("html", ".html", _html),
-        Format("markdown", ".md", _markdown),
-        Format("docx", ".docx", _docx),
-        Format("article30", ".csv", _article30),
-        Format("works-council", ".html", _works_council),
+        Format("text", ".txt", _text, ("language", "verbose", "quiet"), both_views=True),
+        Format("json", ".json", _json, both_views=True),
+        Format("sarif", ".sarif", _sarif, both_views=True),
+        Format("cnil-pia", ".json", _cnil_pia, ("language",)),
+        Format("turtle", ".ttl", _linked_data("turtle"), _LINKED),
+        Format("json-ld", ".jsonld", _linked_data("json-ld"), _LINKED),
+        Format("html", ".html", _html, _REPORT, both_views=True, page="a page"),
+        Format("markdown", ".md", _markdown, _REPORT, both_views=True),
+        Format("docx", ".docx", _docx, _REPORT, both_views=True, page="a Word document"),
+        Format("article30", ".csv", _article30, ("language", "redact")),
+        Format("works-council", ".html", _works_council, _REPORT, page="a page"),
     )
 }

@@ -43,7 +43,7 @@ from rosprivacy.cli.options import (
 from rosprivacy.cli.output import progress_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable
+    from collections.abc import Callable, Collection, Iterable, Iterator
 
     from rosprivacy.result import Result
     from rosprivacy.settings import Settings
@@ -152,7 +152,6 @@ OF_FILES = (
     "policies", "labels", "add", "fleet", "standard_channels", "no_standard_channels", "types", "domain",
     "allow_unsigned", "permissions_ca", "include_root", "max_bytes", "category", "view",
 )  # fmt: skip
-OPTIONS = get_type_hints(Inputs, include_extras=True)
 DEFAULTS = Inputs._field_defaults
 WRITTEN = {name: f"--{name.replace('_', '-')}" for name in DEFAULTS} | {"policies": "POLICY"}
 
@@ -167,35 +166,42 @@ def refuse(who: str, takes: str, options: Iterable[str]) -> None:
 def reads_system(
     takes: str = "", *, without: Collection[str] = ()
 ) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """Give a command all options of ``Inputs``, in the place of its parameter ``inputs``.
+    """Give a command the options of its parameters that are groups of options, such as ``inputs: Inputs``.
 
-    A parameter of its own with the name of such an option is kept instead.
+    A group is a named tuple; a field is an option, and its annotation is what typer needs. A parameter of the command
+    with the name of such an option is taken instead.
 
     Parameters
     ----------
     takes
         What the command takes, for those who give it an option that it does not take.
     without
-        Names of options that make no sense for the command: they are refused, and help does not show them.
+        Names of options of ``Inputs`` that make no sense for the command: they are refused, and help does not show
+        them.
     """
 
     def decorated(command: Callable[..., None]) -> Callable[..., None]:
         own = inspect.signature(command, eval_str=True).parameters
-        shared = [name for name in DEFAULTS if name not in own and (name, name in without) != ("policies", True)]
+        kinds = {name: each.annotation for name, each in own.items() if hasattr(each.annotation, "_field_defaults")}
+        others = {field for kind in kinds.values() if kind is not Inputs for field in kind._fields}
+        left_out = {*own, *others, *(["policies"] if "policies" in without else [])}
+        groups = {
+            name: [each for each in _parameters(kind, without) if kind is not Inputs or each.name not in left_out]
+            for name, kind in kinds.items()
+        }
 
         @wraps(command)
         def run(**values: Any) -> None:
-            inputs = Inputs(**{name: values.pop(name) for name in shared})
+            for name, fields in groups.items():
+                values[name] = kinds[name](**{field.name: values.pop(field.name) for field in fields})
+            inputs = values["inputs"]
             refuse(command.__name__.replace("_", "-"), takes, inputs.given(*without))
             inputs.check()
-            command(inputs=inputs, **values)
+            command(**values)
 
         parameters = []
         for name, parameter in own.items():
-            if name == "inputs":
-                parameters += [_parameter(each, hidden=each in without) for each in shared]
-            else:
-                parameters.append(parameter.replace(kind=inspect.Parameter.KEYWORD_ONLY))
+            parameters += groups.get(name) or [parameter.replace(kind=inspect.Parameter.KEYWORD_ONLY)]
         vars(run)["__signature__"] = inspect.Signature(parameters)  # typer reads it
         run.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
         return run
@@ -203,10 +209,11 @@ def reads_system(
     return decorated
 
 
-def _parameter(name: str, *, hidden: bool) -> inspect.Parameter:
-    kind, information = get_args(OPTIONS[name])
-    information = copy(information)
-    information.hidden = hidden
-    return inspect.Parameter(
-        name, inspect.Parameter.KEYWORD_ONLY, default=DEFAULTS[name], annotation=Annotated[kind, information]
-    )
+def _parameters(group: Any, hidden: Collection[str]) -> Iterator[inspect.Parameter]:
+    hints = get_type_hints(group, include_extras=True)
+    for name, default in group._field_defaults.items():
+        kind, information = get_args(hints[name])
+        information = copy(information)
+        information.hidden = name in hidden
+        parameter = inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default)
+        yield parameter.replace(annotation=Annotated[kind, information])

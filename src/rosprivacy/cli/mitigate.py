@@ -11,7 +11,7 @@ import typer
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.cli.inputs import Inputs, reads_system
-from rosprivacy.cli.options import Format, Output
+from rosprivacy.cli.options import Output, TextOrJson
 from rosprivacy.cli.output import emit, on_console
 
 
@@ -38,7 +38,7 @@ def mitigate(
         Path | None,
         typer.Option(metavar="FILE", help="Write the lines to be set to DENY as a unified diff.", show_default=False),
     ] = None,
-    format: Annotated[Format, typer.Option("--format", "-f", help="Of the answer.")] = Format.text,  # noqa: A002 - the option's name
+    format: Annotated[TextOrJson, typer.Option("--format", "-f", help="Of the answer.")] = TextOrJson.text,  # noqa: A002 - the option's name
     output: Output = None,
 ) -> None:
     """Propose the cheapest changes that remove the open findings, proven by a new analysis.
@@ -56,7 +56,7 @@ def mitigate(
     found = run_mitigation(result, str(limits) if limits else None, kinds, settings.bounds)
     report = found.document()
     texts = {patch: found.patch.diff or None} if patch else {}
-    if format is Format.json:
+    if format is TextOrJson.json:
         emit(as_text(report), output, texts)
     else:
         emit(on_console(lambda console: print_mitigation(console, report), colour=output is None), output, texts)

@@ -12,17 +12,6 @@ from rosprivacy.analysis.bounds import WHAT
 from rosprivacy.analysis.modes import View
 
 
-class Format(StrEnum):
-    """Of the report."""
-
-    text = "text"
-    json = "json"
-    turtle = "turtle"
-    json_ld = "json-ld"
-    sarif = "sarif"
-    cnil_pia = "cnil-pia"
-
-
 class TextOrJson(StrEnum):
     """For people, or for programs."""
 

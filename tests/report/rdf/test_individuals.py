@@ -112,4 +112,4 @@ def test_the_command_line_takes_one_and_says_where_it_makes_no_sense(cli: Cli, t
     assert cli(*asked, "-f", "turtle", "--base", "").returncode == 2
     other = cli(*asked, "--base", "urn:example:r2#")
     assert other.returncode == 2
-    assert "--base is for --format turtle and json-ld" in other.stderr
+    assert "--base is for --format turtle, json-ld" in other.stderr

@@ -90,7 +90,7 @@ def test_the_command_takes_a_language(cli: Cli) -> None:
     done = cli("analyze", *files, "--lang", "de", "-q")
     assert done.stdout == "leak: Daten können an einen Ausgang gelangen\n"
     done = cli("analyze", *files, "--lang", "fr", "-f", "json")
-    assert "--lang is for --format text and cnil-pia" in " ".join(done.stderr.split())
+    assert "--lang is for --format text, cnil-pia, html" in " ".join(done.stderr.split())
 
 
 def test_the_look_finds_english() -> None:

@@ -1,0 +1,310 @@
+"""What ``analyze`` and ``report`` have in common: what is asked, how the answer is written, how the command ends.
+
+In: groups of options, as typer fills them. Out: an answer in one of ``FORMATS``, and an exit code.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, NamedTuple
+
+import click
+import typer
+
+from rosprivacy.analysis.modes import Article9Level, Paths
+from rosprivacy.cli.exit_code import FailOn, exit_code
+from rosprivacy.cli.inputs import Inputs, refuse
+from rosprivacy.cli.options import ASKED, Engine, HangsOn, Language, Output, ViewOrBoth, ViewOrBothChosen
+from rosprivacy.cli.output import emit, not_for_a_terminal
+from rosprivacy.formats import FORMATS, Style, in_pieces
+
+if TYPE_CHECKING:
+    from rosprivacy.result import Result
+    from rosprivacy.settings import Settings
+
+COMPUTED = "Where it is computed"  # panels of help
+WRITTEN = "How the answer is written"
+
+
+class Asked(NamedTuple):
+    """What is asked of a system."""
+
+    view: ViewOrBothChosen = ViewOrBoth.declared
+    article9: Annotated[
+        bool,
+        typer.Option(
+            "--article9", help="Answer for what can fall under Article 9(1) or 10 GDPR only.", rich_help_panel=ASKED
+        ),
+    ] = False
+    article9_level: Annotated[
+        Article9Level | None,
+        typer.Option(
+            help="The same, up to this level: always, on a condition too, or also what may reveal such data.",
+            rich_help_panel=ASKED,
+            show_default=False,
+        ),
+    ] = None
+    data_type: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="TYPE",
+            show_default=False,
+            help="Answer for video, audio, … only; may be repeated.",
+            rich_help_panel=ASKED,
+        ),
+    ] = None
+    identity_factor: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="FACTOR",
+            show_default=False,
+            help="Answer for data that tell of this factor of Article 4(1) GDPR only: economic, …; may be repeated.",
+            rich_help_panel=ASKED,
+        ),
+    ] = None
+    paths: Annotated[Paths, typer.Option(help="Ways to list for each finding.", rich_help_panel=ASKED)] = Paths.witness
+    max_paths: Annotated[
+        int, typer.Option(min=1, metavar="N", help="Bound on the listed ways of a finding.", rich_help_panel=ASKED)
+    ] = 100
+    hangs_on: HangsOn = False
+
+    def settings(self, read: Settings) -> Settings:
+        """Return how the system is read, with what is asked of it."""
+        return replace(
+            read,
+            article9=self.article9,
+            article9_level=self.article9_level and self.article9_level.value,
+            data_types=tuple(self.data_type or ()),
+            identity_factors=tuple(self.identity_factor or ()),
+            paths=self.paths.value,
+            max_paths=self.max_paths,
+            hangs_on=self.hangs_on,
+        )
+
+
+class Computed(NamedTuple):
+    """Where the answer about a fleet is computed."""
+
+    engine: Annotated[
+        Engine,
+        typer.Option(
+            help=r"Of a fleet: in memory here, or in parts on Apache Spark (the \[spark] extra).",
+            rich_help_panel=COMPUTED,
+        ),
+    ] = Engine.memory
+    master: Annotated[
+        str | None,
+        typer.Option(
+            metavar="URL",
+            show_default=False,
+            help="Spark cluster, such as spark://host:7077; by default the cores of this machine.",
+            rich_help_panel=COMPUTED,
+        ),
+    ] = None
+    results: Annotated[
+        str | None,
+        typer.Option(
+            metavar="DIR",
+            help="With --engine spark: write every robot there, for load.",
+            show_default=False,
+            rich_help_panel=COMPUTED,
+        ),
+    ] = None
+
+
+class Written(NamedTuple):
+    """How the answer is written, and where to."""
+
+    format: Annotated[
+        str | None,
+        typer.Option(
+            "--format",
+            "-f",
+            click_type=click.Choice([*FORMATS]),
+            show_default="as the output's name ends, else html; of analyze text",
+            help="For a terminal, for programs, for code scanning; linked data; the CNIL's tool; a page, a text, a "
+            "Word document; rows for the record of processing (Article 30 GDPR); one page for works councils.",
+            rich_help_panel=WRITTEN,
+        ),
+    ] = None
+    output: Output = None
+    lang: Annotated[
+        Language | None,
+        typer.Option(
+            help="Language of what people read; by default English.", show_default=False, rich_help_panel=WRITTEN
+        ),
+    ] = None
+    title: Annotated[
+        str | None,
+        typer.Option(
+            metavar="TEXT",
+            show_default=False,
+            help="Of a report: name of the system; by default its policy files.",
+            rich_help_panel=WRITTEN,
+        ),
+    ] = None
+    since: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="OLD.json",
+            show_default=False,
+            help="Of a report: tell what changed since this document of 'analyze --format json'.",
+            rich_help_panel=WRITTEN,
+        ),
+    ] = None
+    assessment: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE.json",
+            show_default=False,
+            help="Of a report: fill in the answers that the page of an earlier report saved.",
+            rich_help_panel=WRITTEN,
+        ),
+    ] = None
+    base: Annotated[
+        str | None,
+        typer.Option(
+            metavar="IRI",
+            show_default=False,
+            help="Of Turtle and JSON-LD: what the IRIs of elements and findings begin with; by default a UUID of the "
+            "system.",
+            rich_help_panel=WRITTEN,
+        ),
+    ] = None
+    redact: Annotated[
+        bool,
+        typer.Option(
+            "--redact",
+            help="Of a report, Turtle and JSON-LD: replace names of elements, files, robots and persons, to show it to "
+            "others.",
+            rich_help_panel=WRITTEN,
+        ),
+    ] = False
+    quiet: Annotated[
+        bool, typer.Option("--quiet", "-q", help="Of text: the verdict only.", rich_help_panel=WRITTEN)
+    ] = False
+    verbose: Annotated[
+        bool, typer.Option("--verbose", "-v", help="Of text: every open element and notice.", rich_help_panel=WRITTEN)
+    ] = False
+
+    def style(self, format_name: str) -> Style:
+        """Return how the answer is shown; an option that means nothing to the format is refused."""
+        for option, field in STYLES.items():
+            if getattr(self, option) not in (None, False) and field not in FORMATS[format_name].styles:
+                heeding = ", ".join(name for name, known in FORMATS.items() if field in known.styles)
+                raise typer.BadParameter(f"--{option} is for --format {heeding}")
+        return Style(
+            verbose=self.verbose,
+            quiet=self.quiet,
+            colour=self.output is None,
+            language=(self.lang or Language.en).value,
+            title=self.title or "",
+            since=str(self.since) if self.since else None,
+            assessment=str(self.assessment) if self.assessment else None,
+            base=self.base,
+            redact=self.redact,
+        )
+
+
+STYLES = {"lang": "language"} | {name: name for name in ("title", "since", "assessment", "base", "redact")}
+PerPolicy = Annotated[
+    bool, typer.Option("--per-policy", help="Analyse each policy alone; by default several make one graph.")
+]
+SaveGraph = Annotated[
+    Path | None, typer.Option(metavar="GRAPH.json", help="Save what the policies grant.", show_default=False)
+]
+FailsOn = Annotated[
+    list[FailOn] | None,
+    typer.Option(
+        "--fail-on",
+        show_default="undetermined; of report never",
+        help="Exit with 1 on a finding that is not accepted, and with 4 if undetermined. doubt: with 4 on a doubt "
+        "that is not accepted, too; leak: not with 4, unless no data was followed; undecided: with 1 only where "
+        "nobody has decided; never: with 0. May be repeated: the strictest counts.",
+    ),
+]
+
+
+def answer(
+    inputs: Inputs,
+    asked: Asked,
+    computed: Computed,
+    written: Written,
+    format_name: str,
+    fail_on: tuple[FailOn, ...],
+    *,
+    per_policy: bool,
+    save_graph: Path | None,
+) -> None:
+    """Read the system, answer, write the answer in a format, and end with the exit code."""
+    if FailOn.never in fail_on and len(set(fail_on)) > 1:
+        raise typer.BadParameter("--fail-on never stands alone")
+    both = asked.view is ViewOrBoth.both
+    inputs = inputs.viewed(asked.view)
+    settings = asked.settings(inputs.settings)
+    _check(inputs, computed, save_graph=bool(save_graph), per_policy=per_policy)
+    style, known = written.style(format_name), FORMATS[format_name]
+    if both and (per_policy or computed.engine is Engine.spark or not known.both_views):
+        able = ", ".join(name for name, each in FORMATS.items() if each.both_views)
+        raise typer.BadParameter(f"--view both writes {able}, and takes neither --per-policy nor --engine spark")
+    if known.page:
+        not_for_a_terminal(known.page, written.output)
+    if per_policy:
+        raise typer.Exit(_each_alone(inputs, settings, format_name, style, written.output, fail_on))
+    if computed.results and written.output:
+        from rosprivacy.report.atomic import check_outputs
+
+        check_outputs([Path(computed.results), written.output])
+    if inputs.fleet and computed.engine is Engine.spark:
+        from rosprivacy.spark.fleet_on_spark import run_on_spark
+
+        result = run_on_spark(inputs.fleet, settings, computed.master, computed.results)
+    else:
+        result = inputs.result(settings, both=both)
+    graphs = {save_graph: _saved_graph(result)} if save_graph else {}
+    text = in_pieces(result, format_name, style)
+    if isinstance(text, str) and format_name != "text":
+        text = text.encode()  # a file says of itself that it is UTF-8, whatever the terminal understands
+    emit(text, written.output, graphs)
+    raise typer.Exit(exit_code(result, fail_on))
+
+
+def _check(inputs: Inputs, computed: Computed, *, save_graph: bool, per_policy: bool) -> None:
+    """Refuse options that make no sense beside others."""
+    saved = ["--save-graph"] if save_graph else []
+    both = [*saved, *(["--per-policy"] if per_policy else [])]
+    if inputs.from_database:
+        refuse("--from-database", "what is in the database", both)
+    if inputs.fleet:
+        refuse("--fleet", "what the fleet file names", both)
+    if computed.engine is Engine.spark:
+        refuse("--engine spark", "a fleet that nobody has decided about", inputs.given("decisions"))
+        if not inputs.fleet:
+            raise typer.BadParameter("--engine spark is for fleets: give --fleet too")
+    elif computed.master or computed.results:
+        raise typer.BadParameter("--master and --results are for --engine spark")
+    if per_policy:
+        refuse("--per-policy", "policies by themselves", [*inputs.given("add"), *saved])
+
+
+def _saved_graph(result: Result) -> str:
+    from rosprivacy.ingest.policies.saved_graph import as_dict
+    from rosprivacy.report.json_text import as_text
+
+    return as_text(as_dict(result.policies, result.diagnostics, result.types))
+
+
+def _each_alone(
+    inputs: Inputs, settings: Settings, form: str, style: Style, output: Path | None, fail_on: tuple[FailOn, ...]
+) -> int:
+    from rosprivacy.cli import per_policy
+    from rosprivacy.reading.robot_system import answer_each
+    from rosprivacy.report.json_text import as_text
+
+    if form not in ("text", "json"):
+        raise typer.BadParameter("--per-policy writes text and json")
+    each = answer_each(inputs.named, tuple(inputs.labels or ()), settings)
+    emit(per_policy.texts(each, style) if form == "text" else as_text(per_policy.document(each)), output)
+    codes = (exit_code(result, fail_on) for _, result in each)
+    return int(per_policy.worst_of(codes, per_policy.CODES_WORST_FIRST))
