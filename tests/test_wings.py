@@ -46,7 +46,6 @@ SAME_PART = {
     "robots": {"report", "report/sarif"},  # which robots a finding stands for, in words and in SARIF
     "why_not": {"analysis/findings", "cli", "report/document", "report/terminal"},  # the question, and its answer
     "session": {"explorer", "spark"},  # what lasts from its begin to its end: of a person, and of a cluster
-    "typed_channels": {"report/page", "report/rdf"},  # types of channels, as rows and as triples
 }
 
 

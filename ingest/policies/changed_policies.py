@@ -9,10 +9,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.model import Grant, Place
-from rosprivacy.ingest.policies.split_enclaves import own_enclave, split
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Collection, Iterable, Iterator
 
     from rosprivacy.analysis.findings.beyond import DenyLine
     from rosprivacy.analysis.model import Policy
@@ -80,3 +79,42 @@ def _denied(policy: Policy, deny: frozenset[DenyLine]) -> Policy:
         if one.policy == policy.file
     )  # fmt: skip
     return replace(policy, grants=(*policy.grants, *new))
+
+
+def split(policies: Iterable[Policy], enclaves: Collection[str]) -> tuple[Policy, ...]:
+    """Return policies with some enclaves split.
+
+    Notes
+    -----
+    Linear, but for the DENY lines of an enclave, which are there once for each of its nodes.
+    """
+    policies = tuple(policies)
+    nodes: dict[str, set[str]] = {enclave: set() for enclave in enclaves}
+    for profile in (profile for policy in policies for profile in policy.profiles):
+        if profile.enclave in nodes:
+            nodes[profile.enclave].add(profile.node)
+    return tuple(
+        replace(
+            policy,
+            profiles=tuple(
+                one._replace(enclave=own_enclave(one.enclave, one.node)) if one.enclave in nodes else one
+                for one in policy.profiles
+            ),
+            grants=tuple(of_node for one in policy.grants for of_node in _split(one, nodes)),
+        )
+        for policy in policies
+    )
+
+
+def _split(grant: Grant, nodes: dict[str, set[str]]) -> Iterator[Grant]:
+    if grant.enclave not in nodes:
+        yield grant
+        return
+    of = {grant.node} if grant.allow else {grant.node, *nodes[grant.enclave]}
+    for node in sorted(of):
+        yield grant._replace(enclave=own_enclave(grant.enclave, node), node=node)
+
+
+def own_enclave(enclave: str, node: str) -> str:
+    """Return the path of the enclave that a node gets for itself."""
+    return f"{enclave} {node}"  # no enclave has a space

@@ -13,16 +13,16 @@ from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.model import REFUSED_NAME, SHARED_ENCLAVE, Diagnostic, Place, Severity
+from rosprivacy.analysis.model import REFUSED_NAME, SEEN_ALTHOUGH_DENIED, SHARED_ENCLAVE, Diagnostic, Place, Severity
 from rosprivacy.analysis.written_names import did_you_mean, nearest
-from rosprivacy.ingest.policies.names import is_pattern
-from rosprivacy.ingest.policies.seen_although_denied import seen_although_denied
+from rosprivacy.ingest.policies.names import covers, endpoints, is_pattern
 from rosprivacy.ingest.policies.unsecured import is_observed, unsecured_notices
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Sequence
 
     from rosprivacy.analysis.model import Grant, Policy
+
 
 LONGEST = 247  # characters that the middlewares of ROS 2 take
 NAMED = 3  # of the enclaves that two files share
@@ -131,3 +131,34 @@ def _nearest(name: str, good: set[str], *, compare: bool) -> list[str]:
     if mended in good:
         return [mended]
     return nearest(name, sorted(good)) if compare else []
+
+
+def seen_although_denied(policies: Iterable[Policy]) -> Iterator[Diagnostic]:
+    """Return a warning for each observed grant that a DENY of another policy covers, for an enclave of its node."""
+    policies = tuple(policies)
+    seen = [grant for policy in policies for grant in policy.grants if grant.seen]
+    if not seen:
+        return
+    denials: dict[tuple[str, bool], list[tuple[str, Grant]]] = defaultdict(list)
+    for policy in policies:
+        nodes: dict[str, set[str]] = defaultdict(set)
+        for profile in policy.profiles:
+            nodes[profile.enclave].add(profile.node)
+        for grant in policy.grants:
+            if grant.allow or grant.dead:
+                continue
+            for end in endpoints(grant.role, grant.kind, grant.name):
+                for node in nodes[grant.enclave]:
+                    denials[node, end.writes].append((end.dds, grant))
+    for grant in seen:
+        lines = [
+            line
+            for end in endpoints(grant.role, grant.kind, grant.name)
+            for dds, line in denials.get((grant.node, end.writes), ())
+            if line.policy != grant.policy and covers(dds, end.dds)
+        ]
+        if lines and grant.seen:
+            first = min(lines, key=lambda line: (line.place.file, line.place.line))
+            message = f"seen although denied: {grant.node} {grant.role} {grant.name}, from {grant.seen.first} to "
+            message += f"{grant.seen.last}; {shown(str(first.place))} denies it; see why it runs all the same"
+            yield Diagnostic(grant.place, Severity.WARNING, shown(message), SEEN_ALTHOUGH_DENIED)

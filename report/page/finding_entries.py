@@ -17,14 +17,14 @@ from rosprivacy.report.page.decision_texts import Decision, decision_of
 from rosprivacy.report.page.entries_of_robots import finding_pattern, grouped
 from rosprivacy.report.page.index import anchor, kind_anchor, state
 from rosprivacy.report.page.look_at import revealed
-from rosprivacy.report.page.shares import share
 from rosprivacy.report.robots import forms_in_words
 from rosprivacy.report.words.reasons import reason_told
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.report.page.index import Index
+
 
 LINES = 4  # policy lines shown of one step
 NAMED = 3  # robots of one form that are named beside their number
@@ -333,3 +333,21 @@ def _lines(step: Mapping[str, Any], index: Index) -> Iterator[Line]:
     for grant in step["policy"]:
         of = index.words("policy.of", enclave=fit(grant["enclave"]), profile=fit(grant["profile"]))
         yield Line(line(grant), of if grant["enclave"] or grant["profile"] else "")
+
+
+MOST = 2_000  # paths that one page tells one by one, some 8 MB
+
+
+def share(numbers: Iterable[int], most: int = MOST) -> int:
+    """Return how many of each kind are told at most, so that the page tells ``most``: what a kind lacks, others get.
+
+    >>> share([5, 400, 3000], 1000), share([5, 400], 1000)
+    (595, 400)
+    """
+    counts = sorted(numbers)
+    for position, number in enumerate(counts):
+        each = most // (len(counts) - position)
+        if number > each:
+            return max(each, 1)
+        most -= number
+    return counts[-1] if counts else 0

@@ -21,11 +21,11 @@ from rosprivacy.report.page import assumed, elements, rights, sanitizers, tables
 from rosprivacy.report.page.assessment import Assessment, assessment
 from rosprivacy.report.page.assessment_file import Answers
 from rosprivacy.report.page.beyond_entries import Beyond, beyond_entries, beyond_said
-from rosprivacy.report.page.closed import Closed, closed
 from rosprivacy.report.page.closing import Closing, closing
 from rosprivacy.report.page.criteria import Criterion, criteria
 from rosprivacy.report.page.decision_texts import Decision, orphans
 from rosprivacy.report.page.doubts import Sort, doubts, in_doubt
+from rosprivacy.report.page.entries_of_robots import grouped
 from rosprivacy.report.page.finding_entries import Entry, finding_entries
 from rosprivacy.report.page.fleet_section import Fleet, fleet_told
 from rosprivacy.report.page.index import Index, state
@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from rosprivacy.report.compare.earlier import Earlier
+
 
 DECIDE = "decide"  # its heading is what there is to decide
 SECTIONS = (
@@ -386,3 +387,46 @@ def _scope(differ: Changes, words: Words) -> Iterator[str]:
     for what, before, now in differ.scope:
         assert what in ASKED
         yield words(f"ch.scope.{what}", before=plain.get(before, before), now=plain.get(now, now))
+
+
+@dataclass(frozen=True, slots=True)
+class Closed:
+    """One row: where data ends, which data, on whose word, and where it would get to."""
+
+    where: str
+    data: str
+    said: str
+    lines: tuple[str, ...]
+    behind: str
+
+
+def closed(index: Index) -> tuple[Closed, ...]:
+    """Return the rows that closed a path; older documents have none."""
+    rows = [row for row in index.document.get("taken_away", ()) if row["leak"] or row["open"] or row["perhaps"]]
+    rows.sort(key=lambda row: row["leak"] is None)
+    return tuple(_closed(group, index) for group in grouped(rows, _same))
+
+
+def _same(row: Mapping[str, Any]) -> Any:
+    ends = [(row[end] or {}).get("name", "") for end in ("element", "to", "leak", "open")]
+    places = tuple((place["file"], place["line"]) for place in row["places"])
+    return row["by"], tuple(ends), tuple(row["categories"]), places, row["note"]
+
+
+def _closed(rows: list[Mapping[str, Any]], index: Index) -> Closed:
+    words, row = index.words, rows[0]
+
+    def of(end: str) -> str:
+        elements = [row[end] for row in rows if row[end]]
+        return words.row(index.names(elements)) if elements else ""
+
+    behind = [words("k.leak", element=of("leak"))] if row["leak"] else []
+    behind += [words("k.open", element=of("open"))] if row["open"] else []
+    said = words(f"k.{row['by']}")
+    return Closed(
+        where=" → ".join(end for end in (of("element"), of("to")) if end),
+        data=index.all_data(row["categories"]),
+        said=words("k.glob", said=said) if row["glob"] else said,
+        lines=tuple(f"{fit(place['file'])}:{place['line']}" for place in row["places"]),
+        behind=words.row(behind) if behind else words("k.perhaps"),
+    )

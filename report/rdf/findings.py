@@ -6,20 +6,23 @@ which ``serialise.py`` writes. Nothing here is a legal verdict: a provision is o
 
 from __future__ import annotations
 
+import hashlib
+import json
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rdflib import DCTERMS, OWL, RDF, RDFS, SKOS, XSD, Graph, Literal
 from rdflib.namespace import PROV
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.findings.processed import of_end
+from rosprivacy.report.document.message_types import typed_channels
 from rosprivacy.report.document.whole import document
+from rosprivacy.report.element_counts import count_elements
 from rosprivacy.report.rdf.concepts import texts
 from rosprivacy.report.rdf.facts import changes, emitted_by, kinds_along, label_of, legal_of
-from rosprivacy.report.rdf.individuals import below, names_of
+from rosprivacy.report.rdf.individuals import below, entries_of, files_read, names_of
 from rosprivacy.report.rdf.process import Processes
-from rosprivacy.report.rdf.provenance import by_path, digest_of, provenance
 from rosprivacy.report.rdf.terms import (
     DPV,
     RISK,
@@ -30,20 +33,22 @@ from rosprivacy.report.rdf.terms import (
     text,
 )
 from rosprivacy.report.rdf.things import Things
-from rosprivacy.report.rdf.typed_channels import type_triples
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
     from datetime import datetime
 
     from rdflib import URIRef
 
-    from rosprivacy.analysis.answer import Analysis, Finding
+    from rosprivacy.analysis.answer import Analysis, ClosedByTypes, Finding, OpenQuestion
     from rosprivacy.analysis.contexts import Contexts
     from rosprivacy.analysis.fleet.patterns import FleetView
     from rosprivacy.analysis.model import Element
     from rosprivacy.report.answer import Answer
     from rosprivacy.report.rdf.individuals import Names
+
+    Files = Mapping[str, Sequence[URIRef]]  # path -> what was read there
+
 
 PREFIXES: dict[str, object] = {
     "dpv": DPV, "risk": RISK, "pd": "https://w3id.org/dpv/pd#", "eu-gdpr": "https://w3id.org/dpv/legal/eu/gdpr#",
@@ -244,3 +249,174 @@ class _Findings:
             )
         if finding.paths:
             yield iri, RP.pathsBounded, Literal(finding.bounded)
+
+
+NO_VERDICT = "Labels are a person's word, and a path can be lawful. This is no legal verdict."
+
+
+def by_path(assumptions: Mapping[str, Any], names: Names) -> dict[str, tuple[URIRef, ...]]:
+    """Return path -> IRIs of what was read there; several where robots were loaded at different times."""
+    found: dict[str, dict[URIRef, None]] = {}
+    for _, file, sha256 in files_read(assumptions):
+        found.setdefault(file, {})[names.file(file, sha256)] = None
+    return {file: tuple(iris) for file, iris in found.items()}
+
+
+def provenance(
+    analysis: Analysis, document: Mapping[str, Any], names: Names, things: Things, when: datetime | None
+) -> Iterator[Triple]:
+    """Say what the run was, what it rests on and what it concluded.
+
+    Parameters
+    ----------
+    document
+        The JSON document of the analysis.
+    when
+        The time to tell, or None.
+    """
+    digest = digest_of(document)
+    run, answer, assumptions = names.of("run", digest), names.of("analysis", digest), document["assumptions"]
+    read = files_read(assumptions)
+    moment = [Literal(when)] if when else []
+    yield from about(
+        answer,
+        (RDF.type, [RP.Analysis, PROV.Entity]),
+        (RDFS.comment, [text(NO_VERDICT, "en")]),
+        (RP.outcome, [text(document["verdict"])]),
+        (RP.view, [text(document["view"])]),
+        (RP.followed, things.categories(analysis.emitted)),
+        (RP.found, [names.finding(finding) for finding in analysis.findings]),
+        (RP.lookAt, things.pointed(one["provision"] for one in document["look_at"] if not one["categories"])),
+        (RP.openElements, [Literal(count_elements(q.element for q in analysis.open).elements)]),
+        (PROV.wasGeneratedBy, [run]),
+        (PROV.generatedAtTime, moment),
+    )
+    yield from about(
+        run,
+        (RDF.type, [PROV.Activity]),
+        (PROV.used, {names.file(file, sha256) for _, file, sha256 in read}),
+        (PROV.endedAtTime, moment),
+    )
+    yield from _tool(run, assumptions, names)
+    for kind, file, sha256 in read:
+        yield from about(
+            names.file(file, sha256),
+            (RDF.type, [PROV.Entity, RP.SourceFile]),
+            (RP.file, [text(file)]),
+            (RP.sha256, [Literal(sha256)]),
+            (RP.readAs, [Literal(kind)]),
+        )
+    for finding in analysis.findings:
+        yield names.finding(finding), PROV.wasGeneratedBy, run
+    yield from _assumptions(answer, assumptions)
+    for number, diagnostic in enumerate(document["diagnostics"], 1):
+        yield from _diagnostic(answer, number, diagnostic)
+    for number, question in enumerate(analysis.open, 1):
+        yield from _open(answer, number, question, things)
+
+
+def digest_of(document: Mapping[str, Any]) -> str:
+    """Return what names the run and its answer."""
+    return hashlib.sha256(json.dumps(document, sort_keys=True).encode()).hexdigest()[:16]
+
+
+def _tool(run: URIRef, assumptions: Mapping[str, Any], names: Names) -> Iterator[Triple]:
+    version = assumptions["rosprivacy"]
+    tool = names.of("tool", version)
+    yield from about(run, (PROV.wasAssociatedWith, [tool]))
+    yield from about(
+        tool,
+        (RDF.type, [PROV.SoftwareAgent]),
+        (RDFS.label, [text(f"rosprivacy {version}")]),
+        (RP.version, [text(version)]),
+    )
+
+
+def _assumptions(answer: URIRef, assumptions: Mapping[str, Any]) -> Iterator[Triple]:
+    """Every assumption of the document but lists of files; what is not text stands there as JSON."""
+    for name, value in sorted(assumptions.items()):
+        if isinstance(value, list) and any(entries_of(value)):
+            continue
+        iri = below(answer, "assumption", name)
+        shown = value if isinstance(value, str) else json.dumps(value, ensure_ascii=False, sort_keys=True)
+        yield from about(answer, (RP.assumes, [iri]))
+        yield from about(iri, (RDF.type, [RP.Assumption]), (RP.name, [text(name)]), (RP.value, [text(shown)]))
+
+
+def _diagnostic(answer: URIRef, number: int, diagnostic: Mapping[str, Any]) -> Iterator[Triple]:
+    iri = below(answer, "diagnostic", number)
+    yield from about(answer, (RP.diagnostic, [iri]))
+    yield from about(
+        iri,
+        (RDF.type, [RP.Diagnostic]),
+        (RP.severity, [text(diagnostic["severity"])]),
+        (RP.message, [text(diagnostic["message"])]),
+        (RP.file, [text(diagnostic["file"])]),
+        (RP.line, [Literal(diagnostic["line"])]),
+    )
+
+
+def _open(answer: URIRef, number: int, question: OpenQuestion, things: Things) -> Iterator[Triple]:
+    """An element that no label covers for what gets to it (rule S11), in the order of review."""
+    iri = below(answer, "open", number)
+    yield from about(answer, (RP.open, [iri]))
+    yield from about(
+        iri,
+        (RDF.type, [RP.OpenQuestion]),
+        (RP.position, [Literal(number)]),
+        (RP.element, [things.element(question.element)]),
+        (RP.openFor, things.categories(question.categories)),
+        (RP.distance, [Literal(question.distance)]),
+        (RP.frontier, [Literal(question.frontier)]),
+        (RP.notStated, map(text, question.missing)),
+    )
+
+
+def type_triples(answer: Answer, iri: URIRef, files: Files, things: Things) -> Iterator[Triple]:
+    """Return the types of each channel, from where each is known; the limits that closed something, and what.
+
+    Parameters
+    ----------
+    iri
+        Of the answer.
+    """
+    for number, (channel, types) in enumerate(typed_channels(answer), 1):
+        for position, one in enumerate(types, 1):
+            link = below(iri, "type", number, position)
+            yield things.element(channel), RP.hasType, link
+            yield from about(
+                link,
+                (RDF.type, [RP.ChannelType]),
+                (RP.messageType, [text(one.name)]),
+                (RP.stated, [Literal(one.stated)]),
+                (RP.file, [text(one.place.file)]),
+                (RP.line, [Literal(one.place.line)]),
+                (RP.inFile, files.get(one.place.file, ())),
+            )
+    if answer.shown.closed:
+        yield from _closed(answer.shown.closed, iri, things)
+
+
+def _closed(closed: ClosedByTypes, iri: URIRef, things: Things) -> Iterator[Triple]:
+    for number, (channel, kinds) in enumerate(closed.channels, 1):
+        link = below(iri, "limit", number)
+        yield iri, RP.limitedBy, link
+        yield from about(
+            link,
+            (RDF.type, [RP.TypeLimit]),
+            (RP.element, [things.element(channel)]),
+            (RP.cannotCarry, things.categories(kinds)),
+        )
+    for number, finding in enumerate(closed.findings, 1):
+        link = below(iri, "closed", number)
+        yield iri, RP.closedByTypes, link
+        yield from about(
+            link,
+            (RDF.type, [RP.ClosedFinding]),
+            (RP.id, [Literal(finding.id)]),
+            (RP.kind, [Literal(finding.kind)]),
+            (RP.category, things.categories([finding.category])),
+            (RP.dataSource, [things.element(finding.source)]),
+            (RP.leak, [things.element(finding.leak)]),
+            (RP.dismissed, [Literal(finding.dismissed)]),
+        )

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 NAME = "/bedroom_of_mrs_smith"
 ERRORS = [KeyError, RecursionError, MemoryError, EOFError, ValueError, OSError, StopIteration, NotImplementedError]
 LINE = re.compile(
-    r"rosprivacy: an error of the program itself, and no answer: (\w+) in cli/analyze\.py:\d+; "
+    r"rosprivacy: an error of the program itself, and no answer: (\w+) in cli/answer_command\.py:\d+; "
     r"please send us (\S+), which has no text of your files, and, if you may, what was read: p\.xml\n"
 )
 
@@ -59,7 +59,7 @@ def test_it_is_told_in_one_line_that_names_the_file_to_send(
     cli: Cli, system: Path, temporary: Path, monkeypatch: pytest.MonkeyPatch, error: type[Exception]
 ) -> None:
     there = everything(system)
-    monkeypatch.setattr("rosprivacy.formats.in_pieces", raising(error))
+    monkeypatch.setattr("rosprivacy.cli.answer_command.in_pieces", raising(error))
     done = cli("analyze", "p.xml", "-f", "json", "-o", "out.json", "--save-graph", "g.json", cwd=system)
     assert (done.returncode, done.stdout) == (70, "")
     line = LINE.fullmatch(done.stderr)
@@ -80,10 +80,10 @@ def test_where_no_report_can_be_written_the_line_has_to_do(
     cli: Cli, system: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("tempfile.tempdir", str(system / "absent"))
-    monkeypatch.setattr("rosprivacy.cli.analyze.exit_code", raising(ZeroDivisionError))
+    monkeypatch.setattr("rosprivacy.cli.answer_command.exit_code", raising(ZeroDivisionError))
     done = cli("analyze", "p.xml", "-q", cwd=system)
     assert done.returncode == 70
-    assert "ZeroDivisionError in cli/analyze.py:" in done.stderr
+    assert "ZeroDivisionError in cli/answer_command.py:" in done.stderr
     assert done.stderr.endswith("; please send us this line, and, if you may, what was read: p.xml\n")
 
 
@@ -93,7 +93,7 @@ def test_who_ends_it_is_no_finding_either(
     cli: Cli, system: Path, monkeypatch: pytest.MonkeyPatch, error: type[BaseException], code: int
 ) -> None:
     """The library of the command line ends with 1 where a pipe is closed: that says 'leak'."""
-    monkeypatch.setattr("rosprivacy.formats.in_pieces", raising(error))
+    monkeypatch.setattr("rosprivacy.cli.answer_command.in_pieces", raising(error))
     done = cli("analyze", "p.xml", cwd=system)
     assert (done.returncode, done.stdout, done.stderr) == (code, "", "")
 

@@ -17,7 +17,7 @@ from contextlib import ExitStack
 from pathlib import Path
 
 READERS = [
-    "rosprivacy.ingest", "rosprivacy.ontology.own", "rosprivacy.ontology.lines", "rosprivacy.ontology.turtle",
+    "rosprivacy.ingest", "rosprivacy.ontology.own", "rosprivacy.ontology.own", "rosprivacy.ontology.turtle",
     "rosprivacy.analysis.durations", "rosprivacy.analysis.text", "rosprivacy.analysis.written_names",
     "rosprivacy.queries.library", "rosprivacy.report.compare", "rosprivacy.spark.parquet",
 ]  # fmt: skip

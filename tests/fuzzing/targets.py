@@ -37,7 +37,7 @@ from rosprivacy.ingest.language_model.answer_text import answers_in
 from rosprivacy.ingest.language_model.exchange_file import read_exchanges
 from rosprivacy.ingest.mitigation.limits_file import read_limits
 from rosprivacy.ingest.packages.package_file import read_package
-from rosprivacy.ingest.policies import common_names, names
+from rosprivacy.ingest.policies import comparisons, names
 from rosprivacy.ingest.policies.policy_xml import read_policy
 from rosprivacy.ingest.policies.saved_graph import read_saved
 from rosprivacy.ingest.suggestions.accepting import accept
@@ -280,7 +280,7 @@ def _names() -> None:
             assert meet == names.overlaps(b, a), f"overlap of {a!r} and {b!r} is not symmetric"
             if not names.is_pattern(b) and names.covers(a, b):
                 assert meet, f"{a!r} covers {b!r}, and does not overlap it"
-    common_names.some_name(tuple(some[:2]), tuple(some[2:]))
+    comparisons.some_name(tuple(some[:2]), tuple(some[2:]))
 
 
 def _with_base(*more: str) -> tuple[str, ...]:

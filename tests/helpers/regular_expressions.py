@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 from rdflib import Graph
 
 import rosprivacy
-from rosprivacy.ontology.lines import Lines
+from rosprivacy.ontology.own import Lines
 from rosprivacy.ontology.turtle import RP
 from tests.helpers.paths import TESTS
 

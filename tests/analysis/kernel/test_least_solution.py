@@ -15,9 +15,8 @@ from rosprivacy.analysis.kernel import least_solution as chosen
 from rosprivacy.analysis.kernel.arrays import solved
 from rosprivacy.analysis.kernel.backward import Opened, backward
 from rosprivacy.analysis.kernel.labelled_graph import LabelledGraph
-from rosprivacy.analysis.kernel.least_solution import SMALL, least_solution
+from rosprivacy.analysis.kernel.least_solution import SMALL, least_solution, worklist
 from rosprivacy.analysis.kernel.spreading import spread
-from rosprivacy.analysis.kernel.worklist import worklist
 from tests.helpers.systems import System, systems
 
 

@@ -15,9 +15,8 @@ from rosprivacy.report.page import figures as module
 from rosprivacy.report.page import inline
 from rosprivacy.report.page.figures import Figures, figures, page_legend
 from rosprivacy.report.page.html import html
-from rosprivacy.report.page.inline import Wishes, picture_of, pictures_of
+from rosprivacy.report.page.inline import DRAWS, SAYS, Wishes, page_svg, picture_of, pictures_of
 from rosprivacy.report.page.outline import outline
-from rosprivacy.report.page.page_svg import DRAWS, SAYS, page_svg
 from rosprivacy.report.page.redacted_pictures import aliases_of, renamed
 from rosprivacy.report.pictures import dot as dot_module
 from rosprivacy.report.pictures import graphviz

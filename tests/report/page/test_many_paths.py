@@ -9,8 +9,8 @@ from lxml import html as lxml_html
 
 import rosprivacy
 from rosprivacy.report.page.assessment_file import Answers
+from rosprivacy.report.page.finding_entries import MOST, share
 from rosprivacy.report.page.html import html
-from rosprivacy.report.page.shares import MOST, share
 from rosprivacy.report.words.typography import plain
 from rosprivacy.report.words.words import Words
 from tests.helpers.daily import one_in

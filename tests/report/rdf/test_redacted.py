@@ -173,4 +173,4 @@ def test_it_is_one_option_and_always_the_same(cli: Cli, form: str) -> None:
 def test_other_formats_say_where_it_is(cli: Cli) -> None:
     done = cli("analyze", *SYSTEM, "--redact", cwd=ROOT)
     assert done.returncode == 2
-    assert "'report' has it too" in " ".join(done.stderr.replace("│", " ").split())
+    assert "--redact is for --format turtle, json-ld, html" in " ".join(done.stderr.replace("│", " ").split())
