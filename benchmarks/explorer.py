@@ -31,8 +31,8 @@ from rosprivacy.explorer.session import Session
 from rosprivacy.explorer.web.application import Site
 from rosprivacy.explorer.web.guard import Door
 from rosprivacy.explorer.web.serving import collect_garbage
+from rosprivacy.report.catalogs.words import Words
 from rosprivacy.report.explorer.pictures import Pictures
-from rosprivacy.report.words.words import Words
 from rosprivacy.settings import Settings
 
 if TYPE_CHECKING:

@@ -12,8 +12,8 @@ from rosprivacy.analysis.errors import shown
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
+    from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.element_counts import ElementCount
-    from rosprivacy.report.words.words import Words
 
 NAMED = 5  # names in a row
 
@@ -34,7 +34,7 @@ def kind_in(element: Mapping[str, Any], words: Words) -> str:
 def named(names: Iterable[str], words: Words) -> str:
     """Return some names, and how many more there are.
 
-    >>> from rosprivacy.report.words.words import IN_ENGLISH
+    >>> from rosprivacy.report.catalogs.words import IN_ENGLISH
     >>> named(["a", "b", "c", "d", "e", "f"], IN_ENGLISH)
     'a, b, c, d, e and 1 more'
     """

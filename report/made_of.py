@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import Finding
     from rosprivacy.analysis.model import Element as GraphElement
-    from rosprivacy.report.words.words import Words
+    from rosprivacy.report.catalogs.words import Words
 
 Element = TypeVar("Element")
 

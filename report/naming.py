@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.text import fit, printable
-from rosprivacy.report.words.typography import spaced
+from rosprivacy.report.catalogs.words import spaced
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -14,7 +14,7 @@ from rosprivacy.analysis.model import ASSUMED, OWN_DOMAINS, observed_when
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from rosprivacy.report.words.words import Words
+    from rosprivacy.report.catalogs.words import Words
 
 NAMED = 3  # of files that say the same, and of what files of a fleet say of one thing
 

@@ -32,6 +32,7 @@ def test_the_rooms_import_from_the_package_and_bring_their_data() -> None:
     assert files("rosprivacy.explorer.web").joinpath("templates", "page.html.j2").is_file()
     assert files("rosprivacy.explorer.web").joinpath("static", "explore.js").is_file()
     assert files("rosprivacy.explorer.web").joinpath("static", "review.css").is_file()
+    assert files("rosprivacy.report.catalogs").joinpath("en.json").is_file()
     assert files("rosprivacy.report.rdf").joinpath("findings.shapes.ttl").is_file()
 
 

@@ -11,13 +11,12 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import KINDS, MAY_REVEAL, NO_BASIS
 from rosprivacy.analysis.non_ros import ADEQUATE, INSIDE, retention_of
+from rosprivacy.report.catalogs.words import plain, reason_text
 from rosprivacy.report.cnil.lawfulness import purposes_of
 from rosprivacy.report.cnil.markup import Html, bullets, escaped, harmless, joined, paragraph, prose, strong
 from rosprivacy.report.cnil.told import NAMES
 from rosprivacy.report.element_counts import count_elements
 from rosprivacy.report.made_of import making
-from rosprivacy.report.words.reasons import why_told
-from rosprivacy.report.words.typography import plain
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -306,7 +305,7 @@ def _threat(finding: Finding, known: Known) -> str:
         what = told.bare("cnil.threat.made", data=data, **made, **ends)
     else:
         what = told.bare("cnil.threat", data=data, **ends)
-    why = f"; {harmless(plain(why_told(finding.why, told.words, told.data)))}" if finding.why else ""
+    why = f"; {harmless(plain(reason_text(finding.why, told.words, told.data)))}" if finding.why else ""
     accepted = known.accepted.get(finding.id)
     decided = f", {told.bare('cnil.accepted', why=accepted)}" if accepted else ""
     return f"{what}{why} ({told.bare('cnil.threat.id', id=finding.id)}{decided})"

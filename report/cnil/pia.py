@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import Method
 from rosprivacy.analysis.modes import View
+from rosprivacy.report.catalogs.words import Words, plain
 from rosprivacy.report.cnil import answers as cnil_answers
 from rosprivacy.report.cnil import lawfulness
 from rosprivacy.report.cnil.answers import Known
@@ -26,8 +27,6 @@ from rosprivacy.report.document.doubts import verdict_facts
 from rosprivacy.report.element_counts import count_elements
 from rosprivacy.report.inventory import kinds_of
 from rosprivacy.report.verdict import verdict_sentence
-from rosprivacy.report.words.typography import plain
-from rosprivacy.report.words.words import Words
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

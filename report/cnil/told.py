@@ -10,14 +10,14 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import TYPE_CHECKING
 
+from rosprivacy.report.catalogs.words import plain, spaced
 from rosprivacy.report.cnil.markup import Html, bullets, escaped, harmless, prose
-from rosprivacy.report.words.typography import plain, spaced
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
 
     from rosprivacy.analysis.model import Category, Element
-    from rosprivacy.report.words.words import Words
+    from rosprivacy.report.catalogs.words import Words
 
 NAMES = 30  # named in a row
 

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.report.catalogs.words import IN_ENGLISH
 from rosprivacy.report.document.element_entry import element_dict
 from rosprivacy.report.verdict import doubts_of, phrase, verdict_sentence
-from rosprivacy.report.words.words import IN_ENGLISH
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.model import Doubt

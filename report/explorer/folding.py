@@ -10,18 +10,18 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosprivacy.report.catalogs.words import plain
 from rosprivacy.report.pictures.flow_lines import Lines
 from rosprivacy.report.pictures.looks import DATA, LEAK, OPEN, REVIEWED, SOURCE, UNTOUCHED
 from rosprivacy.report.pictures.picture import GROUP, Box, Line
-from rosprivacy.report.words.typography import plain
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping
 
     from rosprivacy.analysis.model import Element
+    from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.explorer.joined import Joined
     from rosprivacy.report.pictures.picture import Key
-    from rosprivacy.report.words.words import Words
 
 TOLD = {
     UNTOUCHED: "pic.explore.element",

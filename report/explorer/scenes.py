@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.text import shortened
+from rosprivacy.report.catalogs.words import plain
 from rosprivacy.report.explorer.choice import choose
 from rosprivacy.report.explorer.folding import folded_by_place
 from rosprivacy.report.explorer.joined import Joined
@@ -20,7 +21,6 @@ from rosprivacy.report.pictures.picture import PRIVACY, Picture, sorted_boxes, s
 from rosprivacy.report.pictures.privacy import Reached
 from rosprivacy.report.pictures.views import in_words, pairs
 from rosprivacy.report.pictures.wording import listed
-from rosprivacy.report.words.typography import plain
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping

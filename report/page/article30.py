@@ -19,6 +19,7 @@ from rosprivacy.analysis.legal_bases import transfer_of
 from rosprivacy.analysis.model import NO_BASIS
 from rosprivacy.analysis.non_ros import ADEQUATE, INSIDE, PARTLY, THIRD
 from rosprivacy.analysis.text import fit
+from rosprivacy.report.catalogs.words import Words
 from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import key, name, whole
 from rosprivacy.report.page import purposes
@@ -29,7 +30,6 @@ from rosprivacy.report.page.non_ros import kept, states_retention
 from rosprivacy.report.page.tables import OUTSIDE
 from rosprivacy.report.spreadsheet import as_csv
 from rosprivacy.report.verdict import verdict_sentence
-from rosprivacy.report.words.words import Words
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence

@@ -15,9 +15,9 @@ from rosprivacy.analysis.text import fit
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
+    from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.page.assessment_file import Answers
     from rosprivacy.report.page.opening import ToDecide
-    from rosprivacy.report.words.words import Words
 
 GENERAL = (  # what Article 35(7) asks for of the whole, 35(2), 35(9), 36, and who answers for it
     "purpose", "controller", "basis", "necessity", "risks", "measures", "residual", "advice", "views", "consultation",

@@ -18,7 +18,7 @@ NOBODY: Mapping[str, Collection[str]] = MappingProxyType({})
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Hashable, Iterable, Mapping
 
-    from rosprivacy.report.words.words import Words
+    from rosprivacy.report.catalogs.words import Words
 
 
 def grouped(rows: Iterable[Row], pattern: Callable[[Row], Hashable]) -> list[list[Row]]:
@@ -63,7 +63,7 @@ def names_of(
     alike
         A robot that stands for others -> these and itself.
 
-    >>> from rosprivacy.report.words.words import Words
+    >>> from rosprivacy.report.catalogs.words import Words
     >>> names_of([{"robot": r, "kind": "node", "name": "/camera"} for r in ("r1", "r2")], Words("en"))
     ('/camera (2 robots)',)
     """

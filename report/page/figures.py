@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
+from rosprivacy.report.catalogs.words import plain
 from rosprivacy.report.page.inline import Inline, Wishes, picture_of_all, pictures_of
 from rosprivacy.report.page.redacted_pictures import renamed
 from rosprivacy.report.pictures.added_flows import marking
@@ -15,16 +16,15 @@ from rosprivacy.report.pictures.graphviz import available
 from rosprivacy.report.pictures.looks import BEYOND, CLEANED, INK, LINE_LOOKS, ROLE_LOOKS, SHORTEST, WAY, Look
 from rosprivacy.report.pictures.overview import drawable
 from rosprivacy.report.pictures.phrases import Phrases
-from rosprivacy.report.words.typography import plain
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.report.answer import Answer
+    from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.page.outline import Outline
     from rosprivacy.report.pictures.picture import Key
-    from rosprivacy.report.words.words import Words
 
 ROOM = 5 * 2**20  # bytes of all pictures together
 OVERVIEW = 24  # elements of the first picture

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.text import fit
+from rosprivacy.report.catalogs.words import finding_reason
 from rosprivacy.report.finding_order import in_order
 from rosprivacy.report.made_of import made_of
 from rosprivacy.report.naming import key, line, name
@@ -18,7 +19,6 @@ from rosprivacy.report.page.entries_of_robots import finding_pattern, grouped
 from rosprivacy.report.page.index import anchor, kind_anchor, state
 from rosprivacy.report.page.look_at import revealed
 from rosprivacy.report.robots import forms_in_words
-from rosprivacy.report.words.reasons import reason_told
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
@@ -270,7 +270,7 @@ def sentence_of(finding: Mapping[str, Any], index: Index) -> str:
 
 def _notes(finding: Mapping[str, Any], index: Index) -> Iterator[str]:
     words = index.words
-    if reason := reason_told(finding, words, index.data):
+    if reason := finding_reason(finding, words, index.data):
         yield words("f.because", reason=reason)
     yield from revealed(finding, index)
     if finding["dismissed"]:

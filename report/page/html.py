@@ -21,8 +21,8 @@ from rosprivacy.report.page.spaced_templates import SpacedTemplates
 from rosprivacy.report.pictures.looks import INK
 
 if TYPE_CHECKING:
+    from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.page.outline import Outline
-    from rosprivacy.report.words.words import Words
 
 
 class _Escaped:

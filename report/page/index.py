@@ -18,8 +18,8 @@ from rosprivacy.report.page.entries_of_robots import names_of
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
 
+    from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.naming import Key
-    from rosprivacy.report.words.words import Words
 
 
 @dataclass(frozen=True)

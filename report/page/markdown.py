@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any
 from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 
+from rosprivacy.report.catalogs.words import NARROW, WIDE
 from rosprivacy.report.page.outline import PARAGRAPHS
 from rosprivacy.report.page.spaced_templates import SpacedTemplates
-from rosprivacy.report.words.typography import NARROW, WIDE
 
 if TYPE_CHECKING:
     from rosprivacy.report.page.outline import Outline

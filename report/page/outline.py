@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.model import SPECIAL
 from rosprivacy.analysis.text import fit
+from rosprivacy.report.catalogs.words import Words
 from rosprivacy.report.compare.changes import ASKED, Changes, changes
 from rosprivacy.report.document.ledger import by_globs
 from rosprivacy.report.element_counts import count_rows
@@ -38,7 +39,6 @@ from rosprivacy.report.page.reliance import Hanging, hanging
 from rosprivacy.report.page.review import Group, review
 from rosprivacy.report.page.typed_channels import Typed, only_by_types, typed
 from rosprivacy.report.verdict import verdict_meaning, verdict_sentence
-from rosprivacy.report.words.words import Words
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence

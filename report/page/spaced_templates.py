@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from jinja2 import PackageLoader
 
-from rosprivacy.report.words.typography import NARROW, WIDE
+from rosprivacy.report.catalogs.words import NARROW, WIDE
 
 if TYPE_CHECKING:
     from collections.abc import Callable

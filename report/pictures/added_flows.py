@@ -10,10 +10,10 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.findings.beyond import granted
+from rosprivacy.report.catalogs.words import plain
 from rosprivacy.report.pictures.looks import BEYOND, ONWARD
 from rosprivacy.report.pictures.picture import PRIVACY, sorted_boxes, sorted_lines
 from rosprivacy.report.pictures.views import PER_BOX, FindingViews
-from rosprivacy.report.words.typography import plain
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable

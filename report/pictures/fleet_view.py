@@ -9,10 +9,9 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from rosprivacy.report.catalogs.words import IN_ENGLISH, Words, plain
 from rosprivacy.report.pictures.looks import DATA, DERIVATION, LEAK, OPEN, REVIEWED, SANITIZER, SHORTEST, SOURCE, WAY
 from rosprivacy.report.pictures.picture import Box, Line, Picture, sorted_boxes, sorted_lines
-from rosprivacy.report.words.typography import plain
-from rosprivacy.report.words.words import IN_ENGLISH, Words
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -6,8 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.text import shortened
-from rosprivacy.report.words.typography import plain
-from rosprivacy.report.words.words import IN_ENGLISH, Words
+from rosprivacy.report.catalogs.words import IN_ENGLISH, Words, plain
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

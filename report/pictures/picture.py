@@ -11,8 +11,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import CHANNELS, KINDS
-from rosprivacy.report.words.typography import plain
-from rosprivacy.report.words.words import IN_ENGLISH, Words
+from rosprivacy.report.catalogs.words import IN_ENGLISH, Words, plain
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping

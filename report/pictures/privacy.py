@@ -10,18 +10,18 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.kernel.vertices import by_identity
 from rosprivacy.analysis.many_flows import one_by_one
 from rosprivacy.analysis.model import CHANNELS, DISCLOSURE
+from rosprivacy.report.catalogs.words import plain
 from rosprivacy.report.pictures.looks import DERIVATION, END, LEAK, OPEN, REVIEWED, SANITIZER, SOURCE, UNTOUCHED
 from rosprivacy.report.pictures.phrases import Phrases
 from rosprivacy.report.pictures.picture import Box
 from rosprivacy.report.pictures.wording import listed
-from rosprivacy.report.words.typography import plain
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Sequence
 
     from rosprivacy.analysis.answer import Analysis, OpenQuestion
+    from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.pictures.picture import Key
-    from rosprivacy.report.words.words import Words
 
 MOST = 4  # categories that are named on a box
 
@@ -176,7 +176,7 @@ class Reached:
         notes = []
         if ended:
             names = listed(ended, longest=40, words=words)
-            notes.append(words("pic.ended.one" if len(ended) == 1 else "pic.ended.many", names=names))
+            notes.append(words.count(len(ended), "pic.ended", names=names))
         if apart:
             notes.append(words.count(apart, "pic.apart"))
         return tuple(map(plain, notes))

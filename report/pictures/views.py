@@ -19,6 +19,7 @@ from rosprivacy.analysis.kernel.states import Net
 from rosprivacy.analysis.many_flows import one_by_one
 from rosprivacy.analysis.model import DISCLOSURE, GOES_NOWHERE, NO_LEAK_NAMED
 from rosprivacy.analysis.text import shortened
+from rosprivacy.report.catalogs.words import IN_ENGLISH, Words, plain
 from rosprivacy.report.element_counts import count_elements
 from rosprivacy.report.made_of import making
 from rosprivacy.report.pictures.flow_lines import Lines, data_lines, ends_of_flow
@@ -27,8 +28,6 @@ from rosprivacy.report.pictures.phrases import Phrases
 from rosprivacy.report.pictures.picture import PRIVACY, ROS, Box, Line, Picture, order, sorted_boxes
 from rosprivacy.report.pictures.privacy import Reached
 from rosprivacy.report.pictures.wording import listed
-from rosprivacy.report.words.typography import plain
-from rosprivacy.report.words.words import IN_ENGLISH, Words
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator

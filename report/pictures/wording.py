@@ -6,7 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.text import printable, shortened
-from rosprivacy.report.words.words import IN_ENGLISH, Words
+from rosprivacy.report.catalogs.words import IN_ENGLISH, Words
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence

@@ -16,6 +16,7 @@ from rosprivacy.analysis.legal import strongest_first
 from rosprivacy.analysis.model import NO_LEAK_NAMED, Place, Rank, Severity
 from rosprivacy.analysis.policy_lines import in_a_file
 from rosprivacy.analysis.text import counted, utf8
+from rosprivacy.report.catalogs.words import IN_ENGLISH
 from rosprivacy.report.document.doubts import verdict_facts
 from rosprivacy.report.element_counts import ElementCount, count_elements
 from rosprivacy.report.places import Places, to_review
@@ -35,7 +36,6 @@ from rosprivacy.report.sarif.rules import (
     rule_of_doubt,
 )
 from rosprivacy.report.verdict import phrase, verdict_sentence
-from rosprivacy.report.words.words import IN_ENGLISH
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence

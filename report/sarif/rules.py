@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import ACCESS_GAP, BAG_GAP, OBSERVATION_GAP, UNREAD_FILE
-from rosprivacy.report.words.words import IN_ENGLISH
+from rosprivacy.report.catalogs.words import IN_ENGLISH
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

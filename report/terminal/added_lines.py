@@ -12,8 +12,8 @@ from rosprivacy.report.terminal.finding_lines import details
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.terminal.wrapped import Line
-    from rosprivacy.report.words.words import Words
 
 
 def enforced_lines(report: Mapping[str, Any], words: Words) -> Iterator[Line]:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import ASSUMED, MERGED
 from rosprivacy.report.called_alike import legs
+from rosprivacy.report.catalogs.words import IN_ENGLISH, Words
 from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import shown_name
 from rosprivacy.report.observed_lines import observed_lines
@@ -30,7 +31,6 @@ from rosprivacy.report.terminal.review import review_lines
 from rosprivacy.report.terminal.types_told import type_lines
 from rosprivacy.report.terminal.wrapped import wrapped
 from rosprivacy.report.verdict import verdict_sentence
-from rosprivacy.report.words.words import IN_ENGLISH, Words
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping

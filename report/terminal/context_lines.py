@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.text import blanked
+from rosprivacy.report.catalogs.words import spaced
 from rosprivacy.report.looked_at import looked_at
 from rosprivacy.report.naming import shown_name
-from rosprivacy.report.words.typography import spaced
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from rosprivacy.report.words.words import Words
+    from rosprivacy.report.catalogs.words import Words
 
 Line = tuple[str, str]  # text, style
 

@@ -12,7 +12,7 @@ from rosprivacy.analysis.errors import shown
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from rosprivacy.report.words.words import Words
+    from rosprivacy.report.catalogs.words import Words
 
 
 def decision_lines(finding: Mapping[str, Any], words: Words) -> Iterator[tuple[str, str]]:

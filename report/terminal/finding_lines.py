@@ -12,6 +12,7 @@ from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import CHANNELS
 from rosprivacy.analysis.text import blanked
 from rosprivacy.report.called_alike import kind_in
+from rosprivacy.report.catalogs.words import IN_ENGLISH, Words, finding_reason, spaced
 from rosprivacy.report.finding_order import in_order
 from rosprivacy.report.made_of import data_made
 from rosprivacy.report.naming import key, shown_name
@@ -20,9 +21,6 @@ from rosprivacy.report.terminal.decision_lines import decision_lines
 from rosprivacy.report.terminal.fleet import on_robots, robots_of
 from rosprivacy.report.terminal.open_channels import by_line, group_line
 from rosprivacy.report.terminal.restriction import may_be_asked
-from rosprivacy.report.words.reasons import reason_told
-from rosprivacy.report.words.typography import spaced
-from rosprivacy.report.words.words import IN_ENGLISH, Words
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
@@ -111,7 +109,7 @@ def details(
 
 def _reason(finding: Mapping[str, Any], words: Words) -> str:
     """Why it is one: in English with durations as they are stated."""
-    return shown(finding["reason"]) if words.language == "en" else reason_told(finding, words, str)
+    return shown(finding["reason"]) if words.language == "en" else finding_reason(finding, words, str)
 
 
 def law_lines(

@@ -13,7 +13,7 @@ from rosprivacy.report.naming import infrastructure_file, shown_name
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from rosprivacy.report.words.words import Words
+    from rosprivacy.report.catalogs.words import Words
 
 SHIPPED = "rosprivacy:standard"
 Line = tuple[str, str]  # text, style

@@ -15,7 +15,7 @@ from rosprivacy.report.naming import shown_name
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from rosprivacy.report.words.words import Words
+    from rosprivacy.report.catalogs.words import Words
 
 Line = tuple[str, str]  # text, style
 
@@ -42,8 +42,8 @@ def hanging_lines(report: Mapping[str, Any], most: int | None, words: Words) -> 
         ]
         left_out = len(said) - most if most is not None else 0
         more = words("tty.more.verbose", n=left_out) if left_out > 0 else ""
-        key = "tty.hanging.one" if len(said) == 1 else "tty.hanging.many"
-        yield f"   {words(key, n=len(said), labels=', '.join(said[:most]) + more)}", "bold yellow"
+        labels = ", ".join(said[:most]) + more
+        yield f"   {words.count(len(said), 'tty.hanging', labels=labels)}", "bold yellow"
 
 
 def _says(row: Mapping[str, Any], words: Words) -> str:

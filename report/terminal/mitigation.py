@@ -17,10 +17,10 @@ from rosprivacy.analysis.model import STATED as STATED_FLOW
 from rosprivacy.analysis.model import STORAGE_LIMITATION, THIRD_COUNTRY
 from rosprivacy.analysis.model.reason import NOT_ENCRYPTED, STRANGERS
 from rosprivacy.analysis.text import counted
+from rosprivacy.report.catalogs.words import IN_ENGLISH
 from rosprivacy.report.document.analysis import SECTIONS
 from rosprivacy.report.naming import kind_of, shown_name
 from rosprivacy.report.verdict import doubt_phrases
-from rosprivacy.report.words.words import IN_ENGLISH
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.model import GOES_NOWHERE, NO_LEAK_NAMED
 from rosprivacy.report.called_alike import named
+from rosprivacy.report.catalogs.words import IN_ENGLISH, Words
 from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import shown_name
 from rosprivacy.report.review_groups import next_round
 from rosprivacy.report.verdict import doubts_of, lacking, restriction, subject
-from rosprivacy.report.words.words import IN_ENGLISH, Words
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

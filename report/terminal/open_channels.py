@@ -13,7 +13,7 @@ from rosprivacy.report.naming import key
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from rosprivacy.report.words.words import Words
+    from rosprivacy.report.catalogs.words import Words
 
 NAMED = 4  # kinds of data in one line
 

@@ -14,7 +14,7 @@ from rosprivacy.report.naming import shown_name
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from rosprivacy.report.words.words import Words
+    from rosprivacy.report.catalogs.words import Words
 
 Line = tuple[str, str]  # text, style
 WORST = 3

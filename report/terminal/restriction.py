@@ -14,7 +14,7 @@ from rosprivacy.report.verdict import ALL, asked_factors, asked_level, asked_typ
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from rosprivacy.report.words.words import Words
+    from rosprivacy.report.catalogs.words import Words
 
 Line = tuple[str, str]  # text, style
 

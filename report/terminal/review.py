@@ -9,10 +9,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.report.called_alike import both, kind_in, legs
+from rosprivacy.report.catalogs.words import IN_ENGLISH, Words
 from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import key, label_name, shown_name
 from rosprivacy.report.review_groups import SHOWN, review_groups, sources_of
-from rosprivacy.report.words.words import IN_ENGLISH, Words
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence

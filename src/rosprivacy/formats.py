@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, overload
 from rosprivacy.analysis.errors import InputError, shown
 from rosprivacy.clock import source_date, today
 from rosprivacy.outputs.terminal_width import terminal_width
-from rosprivacy.report.words import LANGUAGES
+from rosprivacy.report.catalogs import LANGUAGES
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -129,8 +129,8 @@ def _text(answer: Answer, style: Style) -> str:
 
 def text_of(told: Mapping[str, Any], style: Style) -> str:
     """Return a document as text, for a terminal if the style says so."""
+    from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.terminal.analysis import print_report, report_text
-    from rosprivacy.report.words.words import Words
 
     words = Words(style.language)
     width = terminal_width() if style.colour else None
@@ -239,8 +239,8 @@ def _outline(answer: Answer, style: Style, proposals: Mapping[str, Any] | str) -
 
 def _title(answer: Answer, style: Style) -> str:
     """The policies that were named, without what they include; empty where that is not known."""
+    from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.page.outline import title_of
-    from rosprivacy.report.words.words import Words
 
     return title_of(list(dict.fromkeys(Path(file).name for file in answer.named)), Words(style.language))
 

@@ -10,9 +10,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.answer import writers_and_readers
+from rosprivacy.report.catalogs.words import IN_ENGLISH
 from rosprivacy.report.document.doubts import doubt_entry
 from rosprivacy.report.verdict import phrase
-from rosprivacy.report.words.words import IN_ENGLISH
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping

@@ -18,7 +18,7 @@ from rosprivacy.explorer.web.application import Site
 from rosprivacy.explorer.web.guard import Door
 from rosprivacy.explorer.web.review.review_site import ReviewSite
 from rosprivacy.explorer.web.serving import bound_socket, server
-from rosprivacy.report.words.words import Words
+from rosprivacy.report.catalogs.words import Words
 from rosprivacy.settings import Settings
 from tests.helpers.paths import ROOT
 

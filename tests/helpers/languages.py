@@ -6,8 +6,7 @@ import re
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.report.words.typography import plain
-from rosprivacy.report.words.words import table
+from rosprivacy.report.catalogs.words import plain, table
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping

@@ -7,17 +7,18 @@ from typing import TYPE_CHECKING, Any
 
 from lxml import html as lxml_html
 
+from rosprivacy.report import catalogs
+from rosprivacy.report.catalogs.words import plain
 from rosprivacy.report.compare.earlier import Earlier
 from rosprivacy.report.page.html import html
 from rosprivacy.report.page.markdown import markdown
 from rosprivacy.report.page.outline import Outline, outline
-from rosprivacy.report.words.typography import plain
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
 
-LANGUAGES = ["en", "de", "fr"]
+LANGUAGES = catalogs.LANGUAGES
 
 
 def told(document: dict[str, Any], language: str = "en", **options: Any) -> Outline:

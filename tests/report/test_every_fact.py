@@ -18,7 +18,7 @@ from rosprivacy.formats import FORMATS, Style, written
 from rosprivacy.private_neo4j import connection
 from rosprivacy.question import question_of
 from rosprivacy.reading.fleet_system import fleet_system, rows_of_fleet
-from rosprivacy.report.words.words import Words
+from rosprivacy.report.catalogs.words import Words
 from rosprivacy.settings import Settings
 from tests.helpers.paths import ROOT
 from tests.helpers.word import text_of

@@ -17,10 +17,10 @@ from hypothesis import strategies as st
 
 from rosprivacy.analysis.legal import recognises
 from rosprivacy.ontology.vocabulary import load
+from rosprivacy.report.catalogs.words import Words
 from rosprivacy.report.cnil.pia import cnil_pia
 from rosprivacy.report.document.whole import document
 from rosprivacy.report.page import article30
-from rosprivacy.report.words.words import Words
 from tests.helpers.answers import answer_of
 from tests.helpers.systems import analysed, systems
 

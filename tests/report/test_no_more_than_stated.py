@@ -23,8 +23,8 @@ from hypothesis import strategies as st
 import rosprivacy
 from rosprivacy.analysis.findings import processed
 from rosprivacy.ingest.labels.countries import countries
+from rosprivacy.report.catalogs.words import Words
 from rosprivacy.report.page import article30, purposes
-from rosprivacy.report.words.words import Words
 from tests.helpers.fleet_files import policy
 
 if TYPE_CHECKING:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from rosprivacy.report.catalogs.words import IN_ENGLISH
 from rosprivacy.report.observed_lines import observed_lines
-from rosprivacy.report.words.words import IN_ENGLISH
 
 
 def test_many_files_are_few_lines() -> None:

@@ -16,9 +16,8 @@ from lxml import html as lxml_html
 
 import rosprivacy
 from rosprivacy.formats import Style, written
+from rosprivacy.report.catalogs.words import Words, plain
 from rosprivacy.report.page import article30
-from rosprivacy.report.words.typography import plain
-from rosprivacy.report.words.words import Words
 from tests.helpers.fleet_files import policy
 from tests.helpers.pages import LANGUAGES
 

@@ -64,7 +64,7 @@ def explore(
     from rosprivacy.explorer.web.guard import Door
     from rosprivacy.explorer.web.review.review_site import ReviewSite
     from rosprivacy.explorer.web.serving import bound_socket
-    from rosprivacy.report.words.words import Words
+    from rosprivacy.report.catalogs.words import Words
 
     if review and inputs.from_database:
         hint = "leave --review away, or review the policies and label files of a robot, or a fleet"

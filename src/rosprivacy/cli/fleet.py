@@ -51,7 +51,7 @@ def fleet(
 
 def _lines(fleet: Fleet, groups: tuple[Alike, ...]) -> Iterator[str]:
     from rosprivacy.report.called_alike import named
-    from rosprivacy.report.words.words import IN_ENGLISH
+    from rosprivacy.report.catalogs.words import IN_ENGLISH
 
     kinds = sum(not group.fixed for group in groups)
     yield f"{len(fleet.robots):,} robots of {kinds:,} kinds, infrastructure: {len(fleet.infrastructure):,}"

@@ -235,10 +235,10 @@ def _format(given: PictureFormat | None, output: Path | None) -> PictureFormat:
 def _view(
     result: Result, show: Shown, part: Part, language: Language, *, carried_only: bool, standard: bool
 ) -> Picture:
+    from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.pictures import narrow, views
     from rosprivacy.report.pictures.added_flows import with_added
     from rosprivacy.report.pictures.phrases import Phrases
-    from rosprivacy.report.words.words import Words
 
     words, kinds = Words(language.value), result.vocabulary.categories
     titles = {name: category.text("title", language.value) for name, category in kinds.items()}

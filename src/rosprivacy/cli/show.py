@@ -30,10 +30,10 @@ def show(
     """Show one finding hop by hop: which policy line allows each step, and what the law says of such data."""
     from rich.text import Text
 
+    from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.json_text import as_text
     from rosprivacy.report.terminal.finding_lines import details, law_lines
     from rosprivacy.report.terminal.wrapped import wrapped
-    from rosprivacy.report.words.words import Words
 
     report = inputs.result(inputs.settings).document()
     chosen = _chosen(report, finding)

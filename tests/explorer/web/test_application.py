@@ -14,7 +14,7 @@ import rosprivacy
 from rosprivacy.explorer.element_ids import element_id
 from rosprivacy.ingest.labels.label_file import parse_labels
 from rosprivacy.ontology.vocabulary import load
-from rosprivacy.report.words.words import Words
+from rosprivacy.report.catalogs.words import Words
 from tests.helpers.explorers import BARE, FACTORY, Explorer, copied, label, node, version
 from tests.helpers.languages import english_in
 from tests.helpers.paths import ROOT

@@ -16,7 +16,7 @@ from rosprivacy.explorer.web.guard import Door
 from rosprivacy.explorer.web.serving import bound_socket, server
 from rosprivacy.ingest.database.loading import load
 from rosprivacy.private_neo4j import connection
-from rosprivacy.report.words.words import Words
+from rosprivacy.report.catalogs.words import Words
 from rosprivacy.settings import Settings
 from tests.helpers import browser as chrome
 from tests.helpers.browser import DESKTOP, PHONE, axe

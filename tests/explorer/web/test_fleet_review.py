@@ -12,7 +12,7 @@ from rosprivacy.explorer.element_ids import element_id
 from rosprivacy.explorer.web.left_open import left_of
 from rosprivacy.explorer.web.review.review_questions import asked
 from rosprivacy.reading.fleet_system import answer_fleet
-from rosprivacy.report.words.words import Words
+from rosprivacy.report.catalogs.words import Words
 from rosprivacy.settings import Settings
 from tests.helpers.languages import english_in
 from tests.helpers.paths import ROOT

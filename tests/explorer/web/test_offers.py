@@ -9,7 +9,7 @@ from lxml import html
 
 from rosprivacy.explorer.element_ids import element_id
 from rosprivacy.explorer.web.review.review_questions import asked
-from rosprivacy.report.words.words import Words
+from rosprivacy.report.catalogs.words import Words
 from tests.helpers.explorers import Explorer, label, node
 from tests.helpers.little_robots import policy_of
 

@@ -15,8 +15,8 @@ from rosprivacy.explorer.web.standing import Standing
 from rosprivacy.labelling.knowledge import what_is_known
 from rosprivacy.labelling.suggesting import suggested_by
 from rosprivacy.labelling.suggesting_on_demand import Suggester
+from rosprivacy.report.catalogs.words import Words
 from rosprivacy.report.document.analysis import label_key
-from rosprivacy.report.words.words import Words
 from rosprivacy.settings import Settings
 from tests.helpers.explorers import FACTORY, Explorer, copied
 

@@ -10,7 +10,7 @@ from lxml import html
 from rosprivacy.explorer.element_ids import element_id
 from rosprivacy.explorer.web.left_open import left_of
 from rosprivacy.explorer.web.review.review_questions import asked
-from rosprivacy.report.words.words import Words
+from rosprivacy.report.catalogs.words import Words
 from tests.helpers.explorers import BARE, FACTORY, Explorer, copied, node
 from tests.helpers.languages import english_in
 from tests.helpers.paths import ROOT
@@ -187,9 +187,11 @@ def test_what_is_missing_is_told_and_what_was_written_stays(explore: Explore, tm
     explorer = explore(CARE, tmp_path / "new.labels.yaml", language=language, review=True)
     client, words = explorer.client(), Words(language)
     for role, fields, missing in [
-        ("", {"note": "w"}, "rv.need.role"), ("absent", {}, "rv.need.note"), ("none", {"note": " "}, "rv.need.note"),
+        ("", {"note": "w"}, "rv.need.role"),
+        ("absent", {}, "rv.need.note"),
+        ("none", {"note": " "}, "rv.need.note"),
         ("source", {"by": "", "note": "w"}, "rv.need.by"),
-    ]:  # fmt: skip
+    ]:
         refused = answer(client, role, **fields)
         assert refused.status_code == 422
         whole = html.fromstring(refused.text)

@@ -13,7 +13,7 @@ from rosprivacy.explorer.web.guard import Door
 from rosprivacy.ingest.database.loading import load
 from rosprivacy.private_neo4j import connection
 from rosprivacy.reading.stored_system import answer_unwritten
-from rosprivacy.report.words.words import Words
+from rosprivacy.report.catalogs.words import Words
 from rosprivacy.settings import Settings
 from tests.helpers.explorers import PORT
 from tests.helpers.graphs import care_home, rows_of

@@ -26,9 +26,9 @@ from rosprivacy.ontology.vocabulary import Vocabulary, load
 from rosprivacy.private_neo4j import connection
 from rosprivacy.reading.robot_system import robot_of
 from rosprivacy.reading.stored_system import answer_stored
+from rosprivacy.report.catalogs.words import plain
 from rosprivacy.report.cnil import told
 from rosprivacy.report.cnil.pia import cnil_pia
-from rosprivacy.report.words.typography import plain
 from rosprivacy.settings import Settings
 from tests.helpers.additions import ADD_STORAGE
 from tests.helpers.answers import accepting, answer_of, as_json

@@ -9,6 +9,7 @@ import pytest
 from lxml import etree
 
 from rosprivacy.analysis.text import printable
+from rosprivacy.report.catalogs.words import Words
 from rosprivacy.report.explorer import drawing as module
 from rosprivacy.report.explorer.drawing import Drawing
 from rosprivacy.report.explorer.legend import legend
@@ -19,7 +20,6 @@ from rosprivacy.report.explorer.style_sheet import style_sheet
 from rosprivacy.report.explorer.unnamed_dot import unnamed_dot
 from rosprivacy.report.pictures.looks import DRAWN_ROLES, LINE_LOOKS, PALE
 from rosprivacy.report.pictures.phrases import TEXTS, Phrases
-from rosprivacy.report.words.words import Words
 from tests.helpers.graphs import care_home, factory
 from tests.helpers.pictures import HOSTILE, hostile
 

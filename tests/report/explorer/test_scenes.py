@@ -11,12 +11,12 @@ from hypothesis import strategies as st
 
 from rosprivacy.analysis.findings.why_carried import WhyCarried
 from rosprivacy.analysis.findings.witness import Witness
+from rosprivacy.report.catalogs.words import IN_ENGLISH
 from rosprivacy.report.explorer.choice import choose
 from rosprivacy.report.explorer.folding import folded_by_place
 from rosprivacy.report.explorer.joined import Joined
 from rosprivacy.report.explorer.scenes import Scenes
 from rosprivacy.report.pictures.looks import ALLOWED, UNTOUCHED
-from rosprivacy.report.words.words import IN_ENGLISH
 from tests.helpers.graphs import care_home, factory
 from tests.helpers.more_systems import wildcards
 from tests.helpers.pictures import names_of

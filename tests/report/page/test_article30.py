@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from rosprivacy.report.catalogs.words import Words
 from rosprivacy.report.page import article30
 from rosprivacy.report.spreadsheet import FORMULA
-from rosprivacy.report.words.words import Words
 from tests.helpers.reports import care, hostile, run, with_outside
 
 if TYPE_CHECKING:

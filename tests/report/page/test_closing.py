@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import rosprivacy
 from rosprivacy.formats import Style, written
 from rosprivacy.mitigation import run_mitigation
+from rosprivacy.report.catalogs.words import Words
 from rosprivacy.report.page.closing import closing
 from rosprivacy.report.page.index import Index
-from rosprivacy.report.words.words import Words
 from tests.helpers.pages import told
 from tests.helpers.paths import ROOT
 from tests.helpers.reports import care

@@ -10,6 +10,7 @@ from lxml import etree
 from lxml import html as lxml_html
 
 from rosprivacy.analysis.errors import DrawingError
+from rosprivacy.report.catalogs.words import Words
 from rosprivacy.report.finding_order import in_order
 from rosprivacy.report.page import figures as module
 from rosprivacy.report.page import inline
@@ -24,7 +25,6 @@ from rosprivacy.report.pictures.looks import ROLE_LOOKS
 from rosprivacy.report.pictures.privacy import Reached
 from rosprivacy.report.pictures.views import FindingViews, finding_view
 from rosprivacy.report.redact import redacted
-from rosprivacy.report.words.words import Words
 from tests.helpers.graphs import care_home, factory
 from tests.helpers.pictures import hostile
 from tests.helpers.reports import care

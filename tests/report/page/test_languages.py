@@ -15,10 +15,9 @@ import rosprivacy
 from rosprivacy.analysis.errors import InputError
 from rosprivacy.analysis.model import REASONS
 from rosprivacy.ingest.labels.countries import countries
+from rosprivacy.report.catalogs.words import Words, plain, table
 from rosprivacy.report.page.article30 import record
 from rosprivacy.report.page.markdown import markdown
-from rosprivacy.report.words.typography import plain
-from rosprivacy.report.words.words import Words, table
 from tests.helpers.graphs import care_home, hospital
 from tests.helpers.languages import OTHERS, english_in, users_texts
 from tests.helpers.pages import earlier, page, told

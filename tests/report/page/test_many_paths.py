@@ -8,11 +8,10 @@ import pytest
 from lxml import html as lxml_html
 
 import rosprivacy
+from rosprivacy.report.catalogs.words import Words, plain
 from rosprivacy.report.page.assessment_file import Answers
 from rosprivacy.report.page.finding_entries import MOST, share
 from rosprivacy.report.page.html import html
-from rosprivacy.report.words.typography import plain
-from rosprivacy.report.words.words import Words
 from tests.helpers.daily import one_in
 from tests.helpers.pages import LANGUAGES, texts, texts_of, told
 from tests.helpers.reports import care, policy

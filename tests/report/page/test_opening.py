@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rosprivacy.report.catalogs.words import plain
 from rosprivacy.report.document.ledger import by_globs
-from rosprivacy.report.words.typography import plain
 from tests.helpers.graphs import hospital
 from tests.helpers.pages import page, texts, told
 from tests.helpers.reports import care, decide, fleet, run, with_decisions, with_outside

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import re
-import string
 from typing import Any
 
 import pytest
 
-from rosprivacy.report.words import LANGUAGES as WRITTEN
-from rosprivacy.report.words.words import table
+from rosprivacy.report.catalogs.words import table
 from tests.helpers.pages import LANGUAGES, texts, told
-from tests.helpers.paths import ROOT
 from tests.helpers.reports import care, run
 
 # what a report never says: verdicts of law, promises
@@ -21,34 +18,6 @@ FORBIDDEN = re.compile(
     r"viol\w*|enfrein\w*|illégal\w*|illicit\w*|conform\w*|infraction\w*|manquement\w*|sans danger|fuites?)\b",
     re.IGNORECASE,
 )
-
-
-def test_every_language_has_the_same_words_with_the_same_places() -> None:
-    def places(text: str) -> set[str]:
-        return {name for _, name, _, _ in string.Formatter().parse(text) if name}
-
-    def shared(key: str) -> bool:  # whom a decision covers stands in English in the list of countries
-        return not key.startswith("adequacy.")
-
-    tables = [{key: places(text) for key, text in table(name).items() if shared(key)} for name in LANGUAGES]
-    assert all(one == tables[0] for one in tables)
-    assert tuple(LANGUAGES) == WRITTEN
-
-
-def test_every_word_is_used_and_every_use_has_a_word() -> None:
-    folders = [ROOT / "report" / wing for wing in ("page", "docx", "cnil", "terminal", "pictures", "explorer", "words")]
-    folders.append(ROOT / "src" / "rosprivacy" / "explorer" / "web")
-    files = [ROOT / "analysis" / "durations.py", *(ROOT / "report").glob("*.py")]  # the first has the units
-    files += [file for folder in folders for file in (*folder.rglob("*.py"), *(folder / "templates").glob("*.j2"))]
-    source = "\n".join(file.read_text("utf-8") for file in files if not file.name.startswith("words_"))
-    used = set(re.findall(r"[\"']([a-z0-9-]+(?:\.[a-z0-9_-]+)+)[\"']", source))
-    ends = {".one", ".many"}
-    families = set(re.findall(r"f?[\"']([a-z0-9.-]+\.)(?:[\"'] ~|\{)", source))
-    for key in table("en"):
-        stem = re.sub(r"\.(one|many)$", "", key)
-        known = key in used or f'"{key}"' in source or f"'{key}'" in source or any(key.startswith(f) for f in families)
-        counted = any(key.endswith(end) for end in ends) and (f'"{stem}"' in source or f"'{stem}'" in source)
-        assert known or counted, key
 
 
 @pytest.mark.parametrize("language", LANGUAGES)

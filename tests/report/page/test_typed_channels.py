@@ -10,9 +10,9 @@ import pytest
 
 import rosprivacy
 from rosprivacy.formats import Style, written
+from rosprivacy.report.catalogs import LANGUAGES
+from rosprivacy.report.catalogs.words import Words
 from rosprivacy.report.page.outline import outline
-from rosprivacy.report.words import LANGUAGES
-from rosprivacy.report.words.words import Words
 from tests.helpers.bags import rosbag2
 from tests.helpers.fleet_files import policy
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from rosprivacy.report.catalogs.words import Words
 from rosprivacy.report.pictures import narrow, views
 from rosprivacy.report.pictures.dot import dot, hover, line_hover
 from rosprivacy.report.pictures.fleet_view import represented
@@ -16,7 +17,6 @@ from rosprivacy.report.pictures.legible import legible
 from rosprivacy.report.pictures.mermaid import mermaid
 from rosprivacy.report.pictures.phrases import Phrases
 from rosprivacy.report.pictures.svg import alt_text
-from rosprivacy.report.words.words import Words
 from tests.helpers.graphs import care_home, factory, hospital
 from tests.helpers.languages import OTHERS, english_in
 from tests.helpers.paths import ROOT

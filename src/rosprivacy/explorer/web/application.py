@@ -49,7 +49,7 @@ if TYPE_CHECKING:
     from rosprivacy.explorer.web.forms import Answer, Form
     from rosprivacy.explorer.web.guard import Door
     from rosprivacy.explorer.web.view import View
-    from rosprivacy.report.words.words import Words
+    from rosprivacy.report.catalogs.words import Words
     from rosprivacy.settings import Settings
 
 STATIC = {
@@ -277,7 +277,7 @@ class Site:
         if isinstance(done, Conflict):
             text = self._words("x.conflict", file=shown(done.file))
             return Told(409, Message(PROBLEM, text, diff=done.diff))
-        text = self._words(f"x.saved.{'one' if done.lines == 1 else 'many'}", file=shown(done.file), n=done.lines)
+        text = self._words("x.saved_one" if done.lines == 1 else "x.saved_other", file=shown(done.file), n=done.lines)
         return Told(200, Message(DONE, text, detail=done.remarks))
 
     def _merge(self, _: Form) -> Told:

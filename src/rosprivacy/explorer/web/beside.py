@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rosprivacy.explorer.web.trials.kept_trials import Trials
     from rosprivacy.explorer.web.trials.trial_offers import Offers
     from rosprivacy.explorer.web.trials.trial_pane import Kept, TrialPane
-    from rosprivacy.report.words.words import Words
+    from rosprivacy.report.catalogs.words import Words
 
 
 class Beside(NamedTuple):

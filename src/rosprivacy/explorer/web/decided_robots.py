@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from rosprivacy.explorer.decision_scope import Scope
     from rosprivacy.explorer.session import Session
     from rosprivacy.explorer.web.forms import Form
-    from rosprivacy.report.words.words import Words
+    from rosprivacy.report.catalogs.words import Words
 
 NAMED = 100  # robots whose names are told
 OFFERED = 40  # choices on a page

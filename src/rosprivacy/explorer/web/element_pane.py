@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.suggesting.evidence import Proposal
     from rosprivacy.explorer.web.standing import Standing
     from rosprivacy.explorer.web.view import View
-    from rosprivacy.report.words.words import Words
+    from rosprivacy.report.catalogs.words import Words
 
 REASONS = 2  # of a suggestion
 FINDINGS = 3  # that a suggestion could close

@@ -23,9 +23,9 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Finding
     from rosprivacy.explorer.web.standing import Standing
     from rosprivacy.explorer.web.view import View
+    from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.page.finding_entries import Entry
     from rosprivacy.report.page.finding_entries import Hop as Told
-    from rosprivacy.report.words.words import Words
 
 
 class Hop(NamedTuple):

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.explorer.edits import ROLES
-from rosprivacy.report.words.words import Words
+from rosprivacy.report.catalogs.words import Words
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.suggesting.evidence import Proposal
     from rosprivacy.explorer.web.standing import Standing
     from rosprivacy.explorer.web.view import View
-    from rosprivacy.report.words.words import Words
+    from rosprivacy.report.catalogs.words import Words
 
 FIRST_ROWS = 60  # of a group of the list; the others are found by name
 MOST_FOUND = 40

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from rosprivacy.explorer.web.page import Page
     from rosprivacy.explorer.web.standing import Standing
     from rosprivacy.ontology.vocabulary import Vocabulary
+    from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.explorer.pictures import Shown
-    from rosprivacy.report.words.words import Words
 
 NO_KIND = "-"  # all are switched off; none named would mean all
 ROOM = (540.0, 560.0)  # of the page's pane on a common screen, in pixels

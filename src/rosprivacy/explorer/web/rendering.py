@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from rosprivacy.explorer.remembering import Unsaved
     from rosprivacy.explorer.web.beside import Beside
     from rosprivacy.explorer.web.page import Page
+    from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.explorer.pictures import Shown
-    from rosprivacy.report.words.words import Words
 
 
 class Message(NamedTuple):

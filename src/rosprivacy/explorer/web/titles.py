@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from rosprivacy.ontology.vocabulary import Vocabulary
-    from rosprivacy.report.words.words import Words
+    from rosprivacy.report.catalogs.words import Words
 
 
 def title_of(kind: str, vocabulary: Vocabulary, words: Words) -> str:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from rosprivacy.explorer.label_targets import Target
     from rosprivacy.explorer.session import Session
     from rosprivacy.explorer.web.standing import Standing
-    from rosprivacy.report.words.words import Words
+    from rosprivacy.report.catalogs.words import Words
 
 MODEL, ROBOT = "model", "robot"
 WHOSE = ("", MODEL, ROBOT)  # what a form can say; the first where it says nothing
@@ -48,7 +48,7 @@ def target_told(target: Target, words: Words) -> str:
     """Return in words of which robots it is said what goes to a label file.
 
     >>> from rosprivacy.explorer.label_targets import Target
-    >>> from rosprivacy.report.words.words import IN_ENGLISH
+    >>> from rosprivacy.report.catalogs.words import IN_ENGLISH
     >>> target_told(Target("carrier.labels.yaml", ("carrier_1", "carrier_2"), ("carrier",), alone=False), IN_ENGLISH)
     'of model carrier: 2 robots'
     """
@@ -63,7 +63,7 @@ def robots_told(session: Session, robots: Sequence[str], words: Words) -> str:
     """Return in words on which robots something is tried: those of one model, or one.
 
     >>> from rosprivacy.explorer.fleet_session import FleetSession
-    >>> from rosprivacy.report.words.words import IN_ENGLISH
+    >>> from rosprivacy.report.catalogs.words import IN_ENGLISH
     >>> session = FleetSession.open_fleet("examples/fleet/fleet.yaml")
     >>> robots_told(session, session.robots_like("guide_01"), IN_ENGLISH)
     'of model guide: 12 robots'

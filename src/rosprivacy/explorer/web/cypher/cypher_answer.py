@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from rosprivacy.queries.graph_values import GraphValue
     from rosprivacy.queries.library import Query
     from rosprivacy.queries.run import Rows
+    from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.pictures.phrases import Phrases
     from rosprivacy.report.pictures.picture import Picture
-    from rosprivacy.report.words.words import Words
 
 ROWS = 200
 LONGEST_CELL = 2_000  # letters

@@ -48,8 +48,8 @@ if TYPE_CHECKING:
     from rosprivacy.explorer.web.cypher.cypher_answer import Table
     from rosprivacy.explorer.web.guard import Door
     from rosprivacy.explorer.web.standing import Standing
+    from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.explorer.pictures import Shown
-    from rosprivacy.report.words.words import Words
     from rosprivacy.settings import Settings
 
 CYPHER = "/cypher"

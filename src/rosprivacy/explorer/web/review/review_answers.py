@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.model import Element
     from rosprivacy.explorer.web.standing import Standing
-    from rosprivacy.report.words.words import Words
+    from rosprivacy.report.catalogs.words import Words
 
 
 class NotYet(forms.FormError):

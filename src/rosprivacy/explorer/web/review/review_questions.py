@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Element
     from rosprivacy.explorer.web.element_pane import Hop, Line, Pane
     from rosprivacy.explorer.web.standing import Standing
-    from rosprivacy.report.words.words import Words
+    from rosprivacy.report.catalogs.words import Words
 
 ROS_STEPS = ("publish", "subscribe", "matches")  # that have a sentence of their own; data goes along all others
 
@@ -149,7 +149,7 @@ def named(element: Element, words: Words) -> str:
     """Return the name of an element and what it is, in plain words.
 
     >>> from rosprivacy.analysis.model import Element
-    >>> from rosprivacy.report.words.words import IN_ENGLISH
+    >>> from rosprivacy.report.catalogs.words import IN_ENGLISH
     >>> named(Element("topic", "/video"), IN_ENGLISH)
     '“/video” (channel)'
     """

@@ -13,7 +13,7 @@ from rosprivacy.explorer.web.review.review_questions import named_with_robots
 
 if TYPE_CHECKING:
     from rosprivacy.explorer.web.standing import Standing
-    from rosprivacy.report.words.words import Words
+    from rosprivacy.report.catalogs.words import Words
 
 MOST = 40  # rows; the others are found by name
 LONGEST = 200  # letters of what is looked for

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
     from rosprivacy.explorer.web.review.review_questions import Asked
     from rosprivacy.explorer.web.standing import Standing
+    from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.page.kinds import Kind
-    from rosprivacy.report.words.words import Words
 
 
 class Decided(NamedTuple):

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Element
     from rosprivacy.explorer.web.forms import Form
     from rosprivacy.explorer.web.standing import Standing
-    from rosprivacy.report.words.words import Words
+    from rosprivacy.report.catalogs.words import Words
 
 TOGETHER = "together"  # of two trials that are kept
 ALL_STEPS = ""  # in the place of one change of a proposal

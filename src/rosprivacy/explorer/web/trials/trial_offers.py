@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Element, Flow, Place
     from rosprivacy.explorer.session import Session
     from rosprivacy.explorer.web.standing import Standing
-    from rosprivacy.report.words.words import Words
+    from rosprivacy.report.catalogs.words import Words
 
 MOST = 60  # of one list; a line or a flow further away has an element nearer to it
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from rosprivacy.explorer.web.standing import Standing
     from rosprivacy.explorer.web.trials.kept_trials import Trials
     from rosprivacy.explorer.web.view import View
-    from rosprivacy.report.words.words import Words
+    from rosprivacy.report.catalogs.words import Words
 
 MOST = 40  # sentences of one list
 NAMED = 3  # robots

@@ -1,46 +1,42 @@
-"""The words of a report in a language: sentences with places for names and numbers.
+"""The words of outputs for people, in a language: sentences with places for names and numbers.
 
-In: a key and values. Out: plain text; whoever writes a format escapes it. The tables are ``words_en.py``,
-``words_de.py`` and ``words_fr.py``; a test holds that all have the same keys and places.
+In: a key and values. Out: plain text; whoever writes a format escapes it. The catalogues ``en.json``, ``de.json`` and
+``fr.json`` are in the style of i18next, which translators' tools read: one entry a line, sorted, plural forms as
+``KEY_one`` and ``KEY_other``, places as ``{name}``. A test holds that all have the same keys and places.
 """
 
 from __future__ import annotations
 
+import json
 import re
 from dataclasses import dataclass
 from functools import cache
-from importlib import import_module
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.durations import parts
+from rosprivacy.analysis.text import printable
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
+
+    from rosprivacy.analysis.model import Reason
 
 DATE = 3  # parts of one
 _ARTICLE = re.compile(r"(?P<article>\d+)(?:\((?P<paragraph>\d+)\))?(?:\((?P<point>[a-z])\))?")
-PARTS = (
-    "",
-    "cnil_",
-    "terminal_",
-    "pictures_",
-    "explorer_",
-    "review_",
-    "trials_",
-    "cypher_",
-    "doubts_",
-)  # a module each
+WIDE, NARROW = "\u00a0", "\u202f"  # as the Imprimerie nationale has them: before a colon and in quotes; before ; ? !
+_FRENCH = ((re.compile(r" (?=[:»])|(?<=«) "), WIDE), (re.compile(r" (?=[;?!])"), NARROW))
 
 
 @cache
 def table(language: str) -> Mapping[str, str]:
-    """Return all words of a language; those of the others are not imported.
+    """Return all words of a language; those of the others are not read.
 
     >>> table("de")["thousands"]
     '.'
     """
-    modules = (import_module(f"rosprivacy.report.words.words_{part}{language}") for part in PARTS)
-    return {key: text for module in modules for key, text in module.WORDS.items()}
+    words: dict[str, str] = json.loads(Path(__file__).with_name(f"{language}.json").read_text("utf-8"))
+    return words
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,8 +47,8 @@ class Words:
 
     def __call__(self, key: str, **values: Any) -> str:
         """Return a sentence with its values in place; numbers as the language writes them."""
-        said = {name: self.number(value) if isinstance(value, int) else value for name, value in values.items()}
-        return table(self.language)[key].format(**said)
+        written = {name: self.number(value) if isinstance(value, int) else value for name, value in values.items()}
+        return table(self.language)[key].format(**written)
 
     def places(self, key: str) -> str:
         """Return a sentence with its places still open."""
@@ -106,21 +102,21 @@ class Words:
         return self(f"cite.{list(places)[-1]}", **places)
 
     def count(self, number: int, thing: str, **values: Any) -> str:
-        """Return how many of a thing there are; its key ends in ``.one`` or ``.many``. In French, none is as one.
+        """Return how many of a thing there are; its key ends in ``_one`` or ``_other``. In French, none is as one.
 
         >>> Words("en").count(1, "robot"), Words("de").count(2, "robot"), Words("fr").count(0, "robot")
         ('1 robot', '2 Roboter', '0 robot')
         """
         one = number == 1 or (number == 0 and self.language == "fr")
-        return self(f"{thing}.{'one' if one else 'many'}", n=number, **values)
+        return self(f"{thing}_{'one' if one else 'other'}", n=number, **values)
 
-    def pair(self, what: str, said: str) -> str:
+    def pair(self, name: str, value: str) -> str:
         """Return what something is, after its name.
 
         >>> Words("en").pair("name", "value")
         'name: value'
         """
-        return self("pair", what=what, said=said)
+        return self("pair", name=name, value=value)
 
     def row(self, texts: Iterable[str]) -> str:
         """Return texts in a row."""
@@ -151,3 +147,55 @@ class Words:
 
 
 IN_ENGLISH = Words("en")
+
+
+def finding_reason(finding: Mapping[str, Any], words: Words, title: Callable[[str], str]) -> str:
+    """Return why something is a finding; empty for a disclosure. Documents of earlier versions say it in English only.
+
+    Parameters
+    ----------
+    title
+        Category -> what it is called.
+    """
+    because = finding.get("because")
+    return _reason(because["key"], because["values"], words, title) if because else printable(finding.get("reason", ""))
+
+
+def reason_text(reason: Reason, words: Words, title: Callable[[str], str]) -> str:
+    """Return a reason in words."""
+    return _reason(reason.key, dict(reason.values), words, title)
+
+
+def _reason(key: str, values: Mapping[str, str], words: Words, title: Callable[[str], str]) -> str:
+    writers = {
+        "kept": words.duration,
+        "backups": words.duration,
+        "limit": words.duration,
+        "until": words.date,
+        "since": words.date,
+        "ended": words.date,
+        "category": title,
+    }
+    written = {place: writers.get(place, str)(printable(value)) for place, value in values.items()}
+    if "recipients" in written:  # whom a decision covers: what the list of countries says, in English
+        otherwise = words.known("adequacy.other", written["recipients"])
+        written["recipients"] = words.known(f"adequacy.{written['country']}", otherwise)
+    return words(f"reason.{key}", **written)
+
+
+def spaced(text: str, language: str) -> str:
+    """Return a text, typed with plain spaces, with those of its language: in French, marks keep to their word.
+
+    >>> spaced("Source : « oui » ; non ?", "fr").encode("ascii", "namereplace").count(b"NO-BREAK SPACE")
+    5
+    >>> spaced("Source : yes", "en")
+    'Source : yes'
+    """
+    for mark, space in _FRENCH if language == "fr" else ():
+        text = mark.sub(space, text)
+    return text
+
+
+def plain(text: str) -> str:
+    """Return a text with plain spaces, for a picture: it breaks its lines itself, and shows other spaces escaped."""
+    return text.replace(WIDE, " ").replace(NARROW, " ")
