@@ -67,7 +67,7 @@ OF_ITS_OWN = {  # modules that touch files in another way, and why none of these
     "ingest/observe/earlier_files.py": "asks xinclude.py to open",
     "ingest/lint/include_rules.py": "asks xinclude.py to open what a policy was read from",
     "ingest/mitigation/deny_patch.py": "copies in a folder of its own, gone at once",
-    "ingest/keystore/openssl.py": "a certificate that was read, in a folder of its own, gone at once",
+    "ingest/deployed/signatures.py": "a certificate that was read, in a folder of its own, gone at once",
     "ingest/labels/label_file.py": "what is shipped",
     "ontology/own.py": "what is shipped",
     "ontology/provisions.py": "what is shipped",

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from rosprivacy.analysis.model import ACCESS_GAP
-from rosprivacy.ingest.zenoh_access.zenoh_inputs import read_zenoh
+from rosprivacy.ingest.deployed.zenoh_grants import read_zenoh
 from tests.helpers.command import cli
 
 if TYPE_CHECKING:

@@ -26,12 +26,11 @@ from rosprivacy.explorer.journal import read_journal
 from rosprivacy.explorer.session import Session
 from rosprivacy.ingest.bags.bag_folders import read_bags
 from rosprivacy.ingest.decisions.decisions_file import read_decisions
+from rosprivacy.ingest.deployed.governance import open_topics, read_governance
+from rosprivacy.ingest.deployed.permissions import policy_of, read_permissions
+from rosprivacy.ingest.deployed.zenoh_grants import read_zenoh
 from rosprivacy.ingest.doors.text_files import TextFiles
 from rosprivacy.ingest.fleet.fleet_file import read_fleet
-from rosprivacy.ingest.keystore.governance_file import read_governance
-from rosprivacy.ingest.keystore.grants import policy_of
-from rosprivacy.ingest.keystore.open_topics import open_topics
-from rosprivacy.ingest.keystore.permissions_file import read_permissions
 from rosprivacy.ingest.labels.label_file import parse_labels, read_labels
 from rosprivacy.ingest.language_model.answer_text import answers_in
 from rosprivacy.ingest.language_model.exchange_file import read_exchanges
@@ -44,7 +43,6 @@ from rosprivacy.ingest.suggestions.accepting import accept
 from rosprivacy.ingest.suggestions.comments import taken_apart
 from rosprivacy.ingest.suggestions.library_file import read_library_rules
 from rosprivacy.ingest.suggestions.name_file import read_name_rules
-from rosprivacy.ingest.zenoh_access.zenoh_inputs import read_zenoh
 from rosprivacy.labelling.annotating import annotated, differences
 from rosprivacy.mitigation import run_mitigation
 from rosprivacy.ontology.own import with_own

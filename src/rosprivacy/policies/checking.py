@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import ACCESS_GAP, UNREAD_FILE
 from rosprivacy.analysis.model.reason import NOT_ENCRYPTED, STRANGERS
-from rosprivacy.ingest.keystore.deployed_rights import differences
-from rosprivacy.ingest.keystore.generator_losses import generator_losses
+from rosprivacy.ingest.deployed.differences import differences, generator_losses
 from rosprivacy.reading.granted import ZENOH, read_granted
 from rosprivacy.version import __version__
 
@@ -19,8 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from rosprivacy.analysis.model import Diagnostic, Grant, Place, Policy
-    from rosprivacy.ingest.keystore.deployed_rights import Difference
-    from rosprivacy.ingest.keystore.generator_losses import Loss
+    from rosprivacy.ingest.deployed.differences import Difference, Loss
     from rosprivacy.report.contract.deployment import CheckDocument, DifferenceEntry
     from rosprivacy.settings import Settings
 

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.findings.beyond import Added, DenyLine, beyond, enclaves_of, rights
+from rosprivacy.ingest.deployed.zenoh_grants import ANY_SESSION
 from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, Change
 from rosprivacy.ingest.policies.names import DDS, writable
-from rosprivacy.ingest.zenoh_access.open_sessions import ANY_SESSION
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
