@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from rosprivacy.analysis.errors import InputErrors, PolicyError, noting, shown
 from rosprivacy.analysis.model import SIGNED_BY, Diagnostic, Place, Severity
 from rosprivacy.analysis.modes import View
-from rosprivacy.ingest.deployed.exposures import protection
+from rosprivacy.ingest.deployed.deployed_paths import is_keystore
 from rosprivacy.ingest.deployed.governance import (
     apart_remarks,
     domains_of,
@@ -28,13 +28,13 @@ from rosprivacy.ingest.deployed.governance import (
     governed,
     joint_remarks,
     open_topics,
+    protection,
     read_governance,
     rule_remarks,
 )
 from rosprivacy.ingest.deployed.permissions import enclave_of, expired, policy_of, read_permissions
 from rosprivacy.ingest.deployed.security_xml import section_of, warning
 from rosprivacy.ingest.deployed.signatures import given_by, pinned, read_authority, read_certificate, read_signed
-from rosprivacy.ingest.deployed.told_apart import is_keystore
 from rosprivacy.ingest.policies.folders import Contents, beside_keystore, contents
 
 if TYPE_CHECKING:
@@ -224,7 +224,9 @@ class _Keystore:
     def _signers(self) -> Iterator[Diagnostic]:
         """Which CA the signatures are of."""
         authority = self.authorities.get(PERMISSIONS_CA)
-        for fingerprint in authority.fingerprints if authority and self.verified else ():
+        if authority is None or not self.verified:
+            return
+        for fingerprint in authority.fingerprints:
             message = f"the CA of the signatures, SHA-256 {fingerprint}: {PINNED if self.how.pins else NOT_PINNED}"
             yield Diagnostic(Place(authority.file, 0), Severity.NOTICE, message, SIGNED_BY)
 

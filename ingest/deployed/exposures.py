@@ -1,6 +1,6 @@
-"""Rules of a governance -> what is encrypted and who may join; and the channels of a graph that lie in the open (S10).
+"""The channels of a graph that a governance leaves in the open (rule S10).
 
-In: domain rules; policies and a graph. Out: ``Protection``s; ``Exposure``s by vertex. Only ``ENCRYPT`` and
+In: policies with what their governance protects, and a graph. Out: ``Exposure``s by vertex. Only ``ENCRYPT`` and
 ``ENCRYPT_WITH_ORIGIN_AUTHENTICATION`` hide what is sent, of a message, of the data in it or of all of a domain; what
 is signed can be read. Where an expression of a wildcard may meet a rule, it is taken to.
 
@@ -22,19 +22,12 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator
 
     from rosprivacy.analysis.model import Bound, FlowGraph, Grant, Policy
-    from rosprivacy.ingest.deployed.governance import DomainRule
 
 
 def with_exposed(graph: FlowGraph, bound: Bound, policies: Iterable[Policy]) -> Bound:
     """Return what is bound to a graph with the channels that a governance leaves in the open (rule S10)."""
     protected = [policy for policy in policies if policy.protections]
     return replace(bound, exposed=exposed_channels(graph, protected)) if protected else bound
-
-
-def protection(rule: DomainRule) -> Protection:
-    """Return what a domain rule says of protection on the wire."""
-    topics = (TopicProtection(topic.expression, rule.encrypted(topic), topic.place) for topic in rule.in_force())
-    return Protection(tuple(topics), rule.place if rule.unauthenticated else None)
 
 
 def exposed_channels(graph: FlowGraph, policies: Iterable[Policy]) -> dict[int, tuple[Exposure, ...]]:

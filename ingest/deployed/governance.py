@@ -15,8 +15,7 @@ from dataclasses import dataclass
 from itertools import combinations, pairwise, product
 from typing import TYPE_CHECKING, NamedTuple
 
-from rosprivacy.analysis.model import ACCESS_GAP, Diagnostic, Place, Policy
-from rosprivacy.ingest.deployed.exposures import protection
+from rosprivacy.analysis.model import ACCESS_GAP, Diagnostic, Place, Policy, Protection, TopicProtection
 from rosprivacy.ingest.deployed.permissions import DIRECTIONS, NOWHERE, dds_grant
 from rosprivacy.ingest.deployed.security_xml import (
     LAST_OF_ROS,
@@ -209,6 +208,12 @@ def differing(governances: Iterable[Governance], spans: Spans) -> Iterator[tuple
             shared = common(one.spans, other.spans)
             if shared and one.rule.says() != other.rule.says():
                 yield one, other, shared
+
+
+def protection(rule: DomainRule) -> Protection:
+    """Return what a domain rule says of protection on the wire."""
+    topics = (TopicProtection(topic.expression, rule.encrypted(topic), topic.place) for topic in rule.in_force())
+    return Protection(tuple(topics), rule.place if rule.unauthenticated else None)
 
 
 def open_topics(

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputErrors, PolicyError
 from rosprivacy.clock import today
-from rosprivacy.ingest.deployed.told_apart import deployed
+from rosprivacy.ingest.deployed.deployed_paths import deployed
 from rosprivacy.ingest.policies.policy_files import read_policies
 from rosprivacy.ingest.reading.confined import WIDEN, leaves, what_leaves
 

@@ -27,20 +27,6 @@ def read(text: str) -> Governance:
 
 
 @pytest.mark.parametrize(
-    ("rtps", "metadata", "data", "encrypted"),
-    [
-        *(("ENCRYPT", "SIGN", "SIGN", True), ("SIGN", "ENCRYPT", "SIGN", True), ("SIGN", "SIGN", "ENCRYPT", True)),
-        *(("NONE", "NONE", "NONE", False), ("SIGN_WITH_ORIGIN_AUTHENTICATION", "SIGN", "SIGN", False)),
-    ],
-)
-def test_one_of_three_protections_encrypts_and_a_signature_hides_nothing(
-    rtps: str, metadata: str, data: str, *, encrypted: bool
-) -> None:
-    (rule,) = read(governance(topic_rule(metadata=metadata, data=data), rtps=rtps)).rules
-    assert rule.encrypted(rule.topics[0]) == encrypted
-
-
-@pytest.mark.parametrize(
     ("old", "new", "problem"),
     [
         ("<domains><id>0</id></domains>", "", "<domain_rule> without <domains>"),

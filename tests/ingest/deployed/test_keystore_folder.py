@@ -20,11 +20,14 @@ from rosprivacy.ingest.deployed.deployed_inputs import read_deployed
 from tests.helpers.keystores import Keystore, governance, grant, permissions, rule, topic_rule
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from rosprivacy.ingest.deployed.deployed_inputs import Read
     from tests.helpers.command import Cli
 
 TODAY = (datetime.now(UTC) + timedelta(days=1)).date().isoformat()  # the certificates are given today
 CA = "public/permissions_ca.cert.pem"
+PERMISSIONS = "enclaves/camera/permissions.p7s"
 CAMERA = permissions(grant("/camera", rule("allow", publish=("rt/video",))))
 VIEWER = permissions(grant("/viewer", rule("allow", subscribe=("rt/video",))))
 
@@ -61,16 +64,13 @@ def test_a_keystore_gives_the_grants_of_all_its_enclaves(keystore: Keystore) -> 
     assert names == [*(f"enclaves/{name}" for name in files), "public/identity_ca.cert.pem", CA]
 
 
-def test_every_file_that_was_read_is_told_with_the_hash_that_it_has_on_the_disk(keystore: Keystore) -> None:
-    for policy in read(keystore)[0]:
+def test_files_have_the_hash_of_the_disk_and_grants_their_line_of_the_signed_file(keystore: Keystore) -> None:
+    policies = read(keystore)[0]
+    for policy in policies:
         for name, sha256 in policy.sources:
             assert hashlib.sha256(Path(name).read_bytes()).hexdigest() == sha256, name
-
-
-def test_a_grant_stands_at_its_line_of_the_signed_file(keystore: Keystore) -> None:
-    place = read(keystore)[0][0].grants[0].place
-    lines = (keystore.folder / "enclaves/camera/permissions.p7s").read_text().splitlines()
-    assert "rt/video" in lines[place.line - 1]
+    lines = (keystore.folder / PERMISSIONS).read_text().splitlines()
+    assert "rt/video" in lines[policies[0].grants[0].place.line - 1]
 
 
 def test_no_private_key_is_opened(keystore: Keystore) -> None:
@@ -80,22 +80,52 @@ def test_no_private_key_is_opened(keystore: Keystore) -> None:
     assert len(read(keystore)[0]) == 2
 
 
-def test_a_changed_byte_is_refused(keystore: Keystore) -> None:
-    file = keystore.folder / "enclaves/camera/permissions.p7s"
+def changed(keystore: Keystore) -> None:
+    file = keystore.folder / PERMISSIONS
     file.write_bytes(file.read_bytes().replace(b"rt/video", b"rt/audio"))
-    problem = "it was changed after it was signed by public/permissions_ca.cert.pem"
-    assert refused(keystore) == [("enclaves/camera/permissions.p7s", problem)]
 
 
-def test_another_ca_is_refused(keystore: Keystore) -> None:
-    keystore.sign(CAMERA, keystore.folder / "enclaves/camera/permissions.p7s", "identity_ca")
-    problem = "it was signed by somebody else than public/permissions_ca.cert.pem"
-    assert refused(keystore) == [("enclaves/camera/permissions.p7s", problem)]
+def swapped(keystore: Keystore) -> None:
+    camera, viewer = (keystore.folder / f"enclaves/{name}/permissions.p7s" for name in ("camera", "viewer"))
+    first, second = camera.read_bytes(), viewer.read_bytes()
+    camera.write_bytes(second)
+    viewer.write_bytes(first)
+
+
+REFUSED: dict[str, tuple[Callable[[Keystore], object], list[tuple[str, str]]]] = {
+    "changed": (changed, [(PERMISSIONS, f"it was changed after it was signed by {CA}")]),
+    "of another CA": (
+        lambda made: made.sign(CAMERA, made.folder / PERMISSIONS, "identity_ca"),
+        [(PERMISSIONS, f"it was signed by somebody else than {CA}")],
+    ),
+    "missing": (lambda made: (made.folder / PERMISSIONS).unlink(), [(PERMISSIONS, "file not found")]),
+    "swapped between enclaves": (
+        swapped,
+        [
+            (PERMISSIONS, "permissions of CN=/viewer, beside the certificate of CN=/camera"),
+            (
+                "enclaves/viewer/permissions.p7s",
+                "permissions of CN=/camera, beside the certificate of CN=/viewer",
+            ),
+        ],
+    ),
+    "certificates of another identity CA": (
+        lambda made: made.authority("identity_ca"),  # a new one, after the certificates were given
+        [(f"enclaves/{name}/cert.pem", "not given by public/identity_ca.cert.pem") for name in ("camera", "viewer")],
+    ),
+}
+
+
+@pytest.mark.parametrize("how", REFUSED)
+def test_what_does_not_hold_is_refused_by_name(keystore: Keystore, how: str) -> None:
+    damage, problems = REFUSED[how]
+    damage(keystore)
+    assert refused(keystore) == problems
 
 
 def test_what_is_not_signed_is_refused_and_read_only_where_that_is_asked_for(keystore: Keystore) -> None:
-    (keystore.folder / "enclaves/camera/permissions.p7s").write_text(CAMERA)
-    assert refused(keystore) == [("enclaves/camera/permissions.p7s", "not signed")]
+    (keystore.folder / PERMISSIONS).write_text(CAMERA)
+    assert refused(keystore) == [(PERMISSIONS, "not signed")]
     policies, said = read(keystore, allow_unsigned=True)
     assert [grant.name for grant in policies[0].grants] == ["rt/video"]
     assert [d.message for d in said if d.code != SIGNED_BY] == [
@@ -108,24 +138,6 @@ def test_a_file_that_is_missing_is_an_error_also_where_nothing_has_to_be_signed(
     assert refused(keystore) == [("enclaves/camera/governance.p7s", "file not found")]
     with pytest.raises(InputErrors, match="file not found"):
         read(keystore, allow_unsigned=True)
-
-
-def test_permissions_that_were_swapped_between_enclaves_are_refused(keystore: Keystore) -> None:
-    camera, viewer = (keystore.folder / f"enclaves/{name}/permissions.p7s" for name in ("camera", "viewer"))
-    first, second = camera.read_bytes(), viewer.read_bytes()
-    camera.write_bytes(second)
-    viewer.write_bytes(first)
-    assert refused(keystore) == [
-        ("enclaves/camera/permissions.p7s", "permissions of CN=/viewer, beside the certificate of CN=/camera"),
-        ("enclaves/viewer/permissions.p7s", "permissions of CN=/camera, beside the certificate of CN=/viewer"),
-    ]
-
-
-def test_a_certificate_of_another_identity_ca_is_refused(keystore: Keystore) -> None:
-    keystore.authority("identity_ca")  # a new one, after the certificates were given
-    assert refused(keystore) == [
-        (f"enclaves/{name}/cert.pem", "not given by public/identity_ca.cert.pem") for name in ("camera", "viewer")
-    ]
 
 
 def test_an_expired_certificate_and_an_expired_grant_are_told_and_read(keystore: Keystore) -> None:
@@ -146,11 +158,6 @@ def test_governance_tells_where_permissions_do_not_hold_and_what_is_sent_in_the_
     assert "DDS topics rt/open are sent without encryption: who is on the network can read them" in said
     assert "a participant without a certificate may join" in said
     assert "DDS topics * " not in said
-
-
-def test_permissions_that_are_missing_are_an_error(keystore: Keystore) -> None:
-    (keystore.folder / "enclaves/camera/permissions.p7s").unlink()
-    assert refused(keystore) == [("enclaves/camera/permissions.p7s", "file not found")]
 
 
 def test_a_policy_that_lies_in_a_keystore_is_told(keystore: Keystore) -> None:
@@ -198,8 +205,10 @@ def test_an_empty_keystore_is_an_error(tmp_path: Path) -> None:
 # ---------------------------------------------------------------- certificates are files like all others
 
 
-@pytest.mark.parametrize("name", [CA, "public/identity_ca.cert.pem", "enclaves/camera/cert.pem"])
-@pytest.mark.parametrize("what", ["a pipe", "without end"])
+@pytest.mark.parametrize(
+    ("name", "what"),
+    [(CA, "a pipe"), ("public/identity_ca.cert.pem", "without end"), ("enclaves/camera/cert.pem", "a pipe")],
+)
 def test_a_certificate_that_is_no_file_of_its_size_is_refused_at_once(keystore: Keystore, name: str, what: str) -> None:
     file = keystore.folder / name
     file.unlink()
@@ -225,7 +234,7 @@ def test_an_openssl_that_does_not_end_is_told_of_the_file(
     program.chmod(0o755)
     monkeypatch.setenv("PATH", str(program.parent), prepend=os.pathsep)
     monkeypatch.setattr(signatures, "SECONDS", 0.2)
-    assert ("enclaves/camera/permissions.p7s", "not verified: openssl did not end in 0.2 s") in refused(keystore)
+    assert (PERMISSIONS, "not verified: openssl did not end in 0.2 s") in refused(keystore)
 
 
 # ---------------------------------------------------------------- whose signatures
@@ -277,7 +286,7 @@ def test_a_second_certificate_beside_the_pinned_one_is_refused(keystore: Keystor
 
 def test_what_nobody_signed_is_refused_beside_a_pin(cli: Cli, keystore: Keystore, tmp_path: Path) -> None:
     (tmp_path / "p.policy.xml").write_text('<policy version="0.2.0"><enclaves/></policy>')
-    alone = keystore.folder / "enclaves/camera/permissions.p7s"
+    alone = keystore.folder / PERMISSIONS
     for name in (tmp_path / "p.policy.xml", alone):
         done = cli("analyze", name, "--permissions-ca", keystore.folder / CA, "--allow-unsigned")
         assert (done.returncode, str(name) in done.stderr) == (2, True)
