@@ -27,12 +27,13 @@ command line turns errors into exit codes::
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.text import cut, printable
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
 
 LONGEST_SHOWN = 200
 
@@ -136,6 +137,24 @@ class InputErrors(RosPrivacyError):  # noqa: N818 - it is several
         distinct = {str(error): error for error in errors}.values()
         self.errors = tuple(sorted(distinct, key=lambda e: (e.file, e.line, str(e))))
         super().__init__("\n".join(str(error) for error in self.errors))
+
+
+@contextmanager
+def noting(problems: list[InputError]) -> Iterator[None]:
+    """Note what is wrong with a part of the input, and go on with the next part.
+
+    >>> problems: list[InputError] = []
+    >>> with noting(problems):
+    ...     raise PolicyError("a.xml", 1, "not XML", "correct it")
+    >>> [error.file for error in problems]
+    ['a.xml']
+    """
+    try:
+        yield
+    except InputError as error:
+        problems.append(error)
+    except InputErrors as error:
+        problems += error.errors
 
 
 class QueryError(RosPrivacyError):

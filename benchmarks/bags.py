@@ -17,8 +17,7 @@ from mcap.reader import make_reader
 from mcap.writer import CompressionType, Writer
 from measure import Measured, NotMeasured, Row, timed
 
-from rosprivacy.ingest.bags.bag_folders import read_bags
-from rosprivacy.ingest.bags.bag_reader import read_bag
+from rosprivacy.ingest.running.bag_folders import read_bag, read_bags
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

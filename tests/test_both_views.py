@@ -17,9 +17,8 @@ from hypothesis import strategies as st
 
 import rosprivacy
 from rosprivacy.analysis.modes import View
+from rosprivacy.both_views import TRIED, both_views
 from rosprivacy.settings import Settings
-from rosprivacy.views.both_views import both_views
-from rosprivacy.views.remedies import TRIED
 from tests.helpers.command import cli
 from tests.helpers.paths import ROOT
 from tests.helpers.sarif import checked

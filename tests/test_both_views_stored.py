@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from rosprivacy.both_views import both_views_of_fleet
 from rosprivacy.private_neo4j import connection
 from rosprivacy.queries.library import pack
 from rosprivacy.settings import Settings
-from rosprivacy.views.both_views import both_views_of_fleet
 from tests.helpers.command import cli
 from tests.helpers.shared_enclaves import EXAMPLE, EXAMPLE_LABELS, FLEET, THREE, apart, policy
 

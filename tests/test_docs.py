@@ -26,7 +26,7 @@ from rosprivacy.cli.inputs import WRITTEN
 from rosprivacy.cli.options import ASKED, READ
 from rosprivacy.ingest.database.schema import NODES, RELATIONSHIPS, Property
 from rosprivacy.ingest.labels.label_file import read_labels
-from rosprivacy.ingest.lint.rule_table import RULES
+from rosprivacy.ingest.lint import RULES
 from rosprivacy.ontology.vocabulary import TOP, load
 from rosprivacy.queries.library import pack
 from rosprivacy.report.catalogs.words import IN_ENGLISH

@@ -15,6 +15,7 @@ from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.findings.beyond import DenyLine
 from rosprivacy.analysis.modes import View
 from rosprivacy.answering import answer
+from rosprivacy.both_views import Trials, both_views
 from rosprivacy.ingest.policies.changed_graph import changed_graph
 from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, Change, changed
 from rosprivacy.ingest.policies.flow_graph import build
@@ -22,8 +23,6 @@ from rosprivacy.ingest.policies.policy_xml import read_policy
 from rosprivacy.question import question_of
 from rosprivacy.reading.robot_system import system_reader
 from rosprivacy.settings import Settings
-from rosprivacy.views.both_views import both_views
-from rosprivacy.views.trials import Trials
 from tests.helpers.enclaves import PATHS, RIGHTS, Enclaves, systems, write
 
 if TYPE_CHECKING:

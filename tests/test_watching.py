@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from rosprivacy.running.watching import Watch
 from rosprivacy.settings import Settings
+from rosprivacy.watching import Watch
 from tests.helpers.observed import endpoint, saw
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from rosprivacy.ingest.observe.observation import Observation, ObservedEndpoint
+    from rosprivacy.ingest.running.observation import Observation, ObservedEndpoint
 
 BOOL, IMAGE = "std_msgs/msg/Bool", "sensor_msgs/msg/Image"
 LABELS = "labels: 1\nnodes:\n  /camera: {source: [Video]}\n  /uplink: {leak: [Video]}\n"

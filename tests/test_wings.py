@@ -24,13 +24,14 @@ SAME_PART = {
         "report/terminal",
     },  # the answer about one system: keys, document, lines
     "answer": {"analysis", "report"},  # the answer, and the one that every format is made of
-    "bags": {"recordings", "report/contract"},  # the answer about bags, and its keys
+    "bags": {"", "report", "report/contract"},  # the answer about bags, its outputs, and its keys
     "categories": {"cli", "report/terminal"},  # the command, and what it prints
     "decisions": {"analysis", "report/document"},  # what they mean, and how the document tells them
     "doubts": {"analysis/findings", "report/document", "report/page"},  # the list of doubts, and how it is told
     "findings": {"analysis/findings", "report/rdf"},  # findings, and findings as RDF
     "fleet": {"cli", "report/contract", "report/document", "report/terminal"},  # what is told of a fleet
     "law": {"cli", "report/terminal"},  # the command, and what it prints
+    "lint": {"cli", "ingest", "report"},  # the command, the rules, and what it prints
     "labels": {"cli", "report/terminal"},  # the command, and what was said of labels
     "reliance": {  # what the answer hangs on, and how it is told
         "analysis/findings",

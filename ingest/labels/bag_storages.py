@@ -41,7 +41,7 @@ def bags_of(file: str, root: str, value: Value) -> tuple[Bag, ...]:
     LabelError
         If that is no path, leaves the folder, or is no bag.
     """
-    from rosprivacy.ingest.bags.bag_folders import read_bags  # noqa: PLC0415 - light start: few files name a bag
+    from rosprivacy.ingest.running.bag_folders import read_bags  # noqa: PLC0415 - light start: few files name a bag
 
     whole = value.kind == "text" and value.text.isprintable()
     written = value.text if whole else ""

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, overload
 
 from rosprivacy.analysis.errors import InputError, shown
 from rosprivacy.clock import source_date, today
-from rosprivacy.outputs.terminal_width import terminal_width
 from rosprivacy.report.catalogs import LANGUAGES
+from rosprivacy.terminal_width import terminal_width
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping

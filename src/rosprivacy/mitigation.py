@@ -14,7 +14,7 @@ from rosprivacy.analysis.findings.doubts import doubts, judged
 from rosprivacy.analysis.mitigation.limits import CHANGES, DENY, Limits
 from rosprivacy.analysis.mitigation.propose import System, mitigate, open_findings
 from rosprivacy.analysis.model import UNPROTECTED
-from rosprivacy.ingest.keystore.exposed import with_exposed
+from rosprivacy.ingest.deployed.exposures import with_exposed
 from rosprivacy.ingest.labels.binding import join
 from rosprivacy.ingest.mitigation.deny_lines import denials, with_denied
 from rosprivacy.ingest.mitigation.deny_patch import Patch, patch

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Element, Policy
     from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.ingest.types.types_file import TypesFile
-    from rosprivacy.outputs.finding_table import Findings
+    from rosprivacy.outputs import Findings
 
 
 class Shown(TypedDict, total=False):
@@ -83,7 +83,7 @@ class Result(Answer):
         >>> [(finding.source.name, finding.leak.name) for finding in result.findings]
         [('/robot_camera', '/archive_server'), ('/safety_camera', '/archive_server')]
         """
-        from rosprivacy.outputs.finding_table import Findings  # noqa: PLC0415 - light start
+        from rosprivacy.outputs import Findings  # noqa: PLC0415 - light start
 
         return Findings(self.shown.findings, self.fleet, self._verdict)
 
@@ -173,7 +173,7 @@ class Result(Answer):
 
         Of a fleet one robot stands in it for all that are alike. What a DENY takes away is not in it (rule S5).
         """
-        from rosprivacy.outputs.network import to_networkx  # noqa: PLC0415 - networkx, only where it is used
+        from rosprivacy.outputs import to_networkx  # noqa: PLC0415 - networkx, only where it is used
 
         return to_networkx(self.analysis)
 
@@ -192,7 +192,7 @@ class Result(Answer):
         InputError
             If nothing is called so, or nothing emits the category.
         """
-        from rosprivacy.outputs.explanation import explained  # noqa: PLC0415 - light start
+        from rosprivacy.outputs import explained  # noqa: PLC0415 - light start
 
         return explained(self.analysis, self.vocabulary, source, leak, categories)
 

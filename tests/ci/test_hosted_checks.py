@@ -50,7 +50,7 @@ def test_before_a_commit_runs_what_ci_runs_from_the_same_environment() -> None:
 @pytest.mark.parametrize(("option", "taken"), [("--slow", False), ("--thorough", True)])
 def test_only_the_run_of_each_week_builds_for_minutes(option: str, taken: bool) -> None:  # noqa: FBT001 - a row
     """What is not taken is not skipped either: CI calls a skip a failure."""
-    file = "tests/ingest/observe/test_ros2_client.py"
+    file = "tests/ingest/running/test_ros2_client.py"
     command = [sys.executable, "-m", "pytest", "-n0", "--collect-only", "-q", option, file]
     environment = os.environ | {"PYTEST_ADDOPTS": ""}  # another verbosity lists them otherwise
     done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=ROOT, env=environment)

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from rosprivacy.outputs.browser_files import QUERIES, STYLE
 from rosprivacy.private_neo4j import connection
+from rosprivacy.private_neo4j.browser_files import QUERIES, STYLE
 from rosprivacy.queries.library import pack
 from rosprivacy.queries.run import run as ask
 from rosprivacy.queries.saved import saved

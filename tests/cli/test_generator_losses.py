@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import jsonschema
 import pytest
 
-from rosprivacy.ingest.keystore.generator_losses import FAULTS
+from rosprivacy.ingest.deployed.differences import FAULTS
 from tests.helpers.command import cli
 from tests.helpers.lossy_lists import lossy_lists
 from tests.helpers.paths import ROOT

@@ -204,9 +204,9 @@ def told(lines: list[str], what: str, seconds: float) -> None:
 
 def discovered(domain: int, node: str) -> Generator[bool]:
     """Whether the middleware itself has told of a node by now: nothing but its readers, asked again and again."""
-    from rosprivacy.ingest.doors.dds_door import configuration
-    from rosprivacy.ingest.doors.dds_graph import DdsGraph
-    from rosprivacy.ingest.doors.dds_participant import joined
+    from rosprivacy.ingest.running.dds_door import configuration
+    from rosprivacy.ingest.running.dds_graph import DdsGraph
+    from rosprivacy.ingest.running.dds_participant import joined
 
     graph = DdsGraph()
     with joined(domain, configuration(domain, (), "lo")) as readers:

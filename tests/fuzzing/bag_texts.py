@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from mcap.writer import CompressionType, Writer
 
-from rosprivacy.ingest.bags.bag_metadata import TOP
+from rosprivacy.ingest.running.bag_folders import TOP
 from tests.fuzzing.words import ODD_TEXT, with_fault
 
 if TYPE_CHECKING:

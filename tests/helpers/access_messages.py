@@ -52,7 +52,7 @@ Seen = set[tuple[str, str]]
 
 def with_all_messages(random: Random, access: dict[str, Any]) -> dict[str, Any]:
     """An access list whose rules are about any of the messages."""
-    from rosprivacy.ingest.zenoh_access.access_file import MESSAGES
+    from rosprivacy.ingest.deployed.access_file import MESSAGES
 
     rules = [
         {**one, "messages": random.sample(MESSAGES, random.randint(3, len(MESSAGES)))} for one in access["rules"][1:]

@@ -1,4 +1,4 @@
-"""A DDS participant that is not ours: the program of ``tests/ingest/observe/peers``, built once, told what to be."""
+"""A DDS participant that is not ours: the program of ``tests/ingest/running/peers``, built once, told what to be."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-PEERS = ROOT / "tests" / "ingest" / "observe" / "peers"
+PEERS = ROOT / "tests" / "ingest" / "running" / "peers"
 
 
 def built(folder: Path, source: Path = PEERS / "fastdds_peer.cpp") -> Path:

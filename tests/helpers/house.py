@@ -25,7 +25,7 @@ MODEL = {"", "model"}
 FACTS = MODEL | {"kernel", "answer", "case", "decisions", "legal"}
 READING = {"reading", "policies"}
 ANSWERS = {"", "result", "answering"}
-WORK = ANSWERS | {"formats", "outputs", "mitigation", "reading", "views", "policies", "labelling"}
+WORK = ANSWERS | {"formats", "outputs", "mitigation", "reading", "both_views", "checking", "linting", "labelling"}
 WINGS: dict[str, dict[str, set[str]]] = {
     "analysis": {
         "durations": set(),
@@ -51,16 +51,13 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "packages": {"reading"},
         "policies": {"reading", "types"},
         "decisions": {"reading"},
-        "bags": {"reading"},
-        "labels": READING | {"bags"},
+        "running": READING | {"types"},
+        "labels": READING | {"running"},
         "annotations": READING | {"labels"},
         "mitigation": READING,
         "language_model": {"reading"},
-        "keystore": READING,
-        "zenoh_access": READING,
+        "deployed": READING,
         "lint": READING,
-        "observe": READING | {"labels", "bags", "types"},
-        "doors": READING | {"observe"},
         "fleet": READING | {"labels", "types"},
         "database": READING | {"labels", "fleet"},
     },
@@ -94,15 +91,17 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "reading": ANSWERS,
         "api": {"", "result", "reading", "labelling", "explorer"},
         "__init__": {"", "result", "api", "labelling", "explorer"},
-        "views": ANSWERS | {"reading"},
-        "policies": ANSWERS | {"reading"},
+        "both_views": ANSWERS | {"reading"},
+        "checking": ANSWERS | {"reading"},
+        "linting": ANSWERS | {"reading"},
         "labelling": ANSWERS | {"reading"},
-        "recordings": ANSWERS | {"reading"},
-        "running": ANSWERS | {"reading"},
+        "bags": ANSWERS | {"reading"},
+        "observing": {""},
+        "watching": ANSWERS | {"reading", "observing"},
         "spark": ANSWERS | {"reading"},
         "private_neo4j": {""},
         "explorer": WORK,
-        "cli": WORK | {"recordings", "running", "private_neo4j", "spark", "explorer"},
+        "cli": WORK | {"bags", "observing", "watching", "private_neo4j", "spark", "explorer"},
         "__main__": {"cli"},
     },
 }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rosprivacy.ingest.observe.observation import Observation, ObservedEndpoint, ObservedNode, Span
+from rosprivacy.ingest.running.observation import Observation, ObservedEndpoint, ObservedNode, Span
 
 AT = "2026-11-22T10:00:00Z"
 EMPTY = ("Subscribers", "Publishers", "Service Servers", "Service Clients", "Action Servers", "Action Clients")

@@ -1,6 +1,6 @@
 """Robots that are not ours: ros2-client, a ROS 2 in Rust, on DDS and on Zenoh, and what they declare.
 
-The programs of ``tests/ingest/observe/peers/ros2_client`` are built once, which takes minutes: for the thorough run.
+The programs of ``tests/ingest/running/peers/ros2_client`` are built once, which takes minutes: for the thorough run.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from tests.helpers.paths import ROOT
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-SOURCE = ROOT / "tests" / "ingest" / "observe" / "peers" / "ros2_client"
+SOURCE = ROOT / "tests" / "ingest" / "running" / "peers" / "ros2_client"
 NODES = {"/head/camera_driver", "/face_recognizer", "/archive", "/navigator"}
 ENDPOINTS = {  # what the programs state: node, role, name, type
     ("/head/camera_driver", "publish", "/head/camera/image_raw", "sensor_msgs/msg/Image"),

@@ -16,6 +16,7 @@ import pytest
 from rosprivacy.analysis.findings.findings import analyse
 from rosprivacy.analysis.model import Category, Confidence, Element, Flow, FlowGraph, Legal, Place, Suggestion
 from rosprivacy.analysis.model.recording import Bag, BagTopic, JudgedBag, TopicKinds
+from rosprivacy.both_views import both_views
 from rosprivacy.ingest.database.bag_loading import load_bags
 from rosprivacy.ingest.database.bag_rows import bag_rows
 from rosprivacy.ingest.database.loading import load
@@ -33,7 +34,6 @@ from rosprivacy.reading.robot_system import beyond_of, read_system
 from rosprivacy.report.stored import StoredNames
 from rosprivacy.report.terminal.graph_words import GraphWords
 from rosprivacy.settings import Settings
-from rosprivacy.views.both_views import both_views
 from tests.helpers.daily import one_in
 from tests.helpers.paths import ROOT
 

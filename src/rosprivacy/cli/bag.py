@@ -14,7 +14,7 @@ from rosprivacy.cli.options import READ, Output
 from rosprivacy.cli.output import emit, progress_of
 
 if TYPE_CHECKING:
-    from rosprivacy.recordings.bags import BagsAnswer
+    from rosprivacy.bags import BagsAnswer
 
 
 class BagFormat(StrEnum):
@@ -63,9 +63,8 @@ def bag(
 
     Ends with 1 if a kind of personal data can be in a bag, with 4 if that is not known.
     """
-    from rosprivacy.recordings.bags import answer_bags
-    from rosprivacy.report.bags.bag_lines import bag_lines
-    from rosprivacy.report.bags.bag_table import bag_table
+    from rosprivacy.bags import answer_bags
+    from rosprivacy.report.bags import bag_lines, bag_table
     from rosprivacy.report.json_text import as_text
 
     if not load:

@@ -51,7 +51,7 @@ def check(
 
     Ends with 1 if there is a difference, with 4 if there is none but more may be allowed than can be compared.
     """
-    from rosprivacy.policies.checking import check_document
+    from rosprivacy.checking import check_document
     from rosprivacy.report.compare.deployment_lines import deployment_lines
     from rosprivacy.report.json_text import as_text
 

@@ -76,8 +76,8 @@ def browser(
     ] = True,
 ) -> None:
     """Open the Neo4j Browser on the private Neo4j, with the program's colours and its questions as files to drop."""
-    from rosprivacy.outputs.browser_files import QUERIES, STYLE, address
     from rosprivacy.private_neo4j import connection
+    from rosprivacy.private_neo4j.browser_files import QUERIES, STYLE, address
     from rosprivacy.private_neo4j.state import keep_private
 
     made = _browser_files(connection.start())
@@ -104,7 +104,7 @@ def browser(
 def _browser_files(to: Connection) -> Mapping[str, str | bytes]:
     """Make the files, for the categories of the program and of what is loaded."""
     from rosprivacy.ontology.vocabulary import load
-    from rosprivacy.outputs.browser_files import CATEGORIES, browser_files
+    from rosprivacy.private_neo4j.browser_files import CATEGORIES, browser_files
     from rosprivacy.private_neo4j.connection import open_driver
     from rosprivacy.queries.run import run
 

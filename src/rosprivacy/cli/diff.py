@@ -110,7 +110,7 @@ def _usage(
     granted: str, observed: str, inputs: Inputs, form: DiffFormat, output: Path | None, patch: Path | None
 ) -> NoReturn:
     """What is granted against what was seen in use."""
-    from rosprivacy.policies.usage import usage_document
+    from rosprivacy.checking import usage_document
     from rosprivacy.report.compare.usage_lines import usage_lines, usage_markdown
     from rosprivacy.report.json_text import as_text
 

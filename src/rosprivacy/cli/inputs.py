@@ -141,7 +141,7 @@ class Inputs(NamedTuple):
         return answer_robot(self.named, tuple(self.labels or ()), settings)
 
     def _both(self, settings: Settings) -> Result:
-        from rosprivacy.views.both_views import both_views, both_views_of_fleet
+        from rosprivacy.both_views import both_views, both_views_of_fleet
 
         if self.fleet:
             return both_views_of_fleet(self.fleet, settings)

@@ -47,17 +47,16 @@ def lint(
     Ends with 1 if a rule is broken that is no mere notice. With labels it also tells of enclaves that mix sources and
     leaks.
     """
-    from rosprivacy.policies.linting import lint_policies
+    from rosprivacy.linting import lint_policies
     from rosprivacy.report.json_text import as_text
-    from rosprivacy.report.lint.lint_document import lint_document
-    from rosprivacy.report.lint.lint_lines import lint_lines
+    from rosprivacy.report.lint import lint_document, lint_lines
     from rosprivacy.version import __version__
 
     found = lint_policies(
         inputs.named, tuple(map(str, inputs.labels or ())), inputs.settings, select or (), ignore or ()
     )
     if format is LintFormat.sarif:
-        from rosprivacy.report.lint.lint_sarif import lint_sarif
+        from rosprivacy.report.lint import lint_sarif
         from rosprivacy.report.sarif.artifacts import repository_root
 
         root = repository_root(file for file, _ in found.files)

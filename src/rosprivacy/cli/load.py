@@ -137,7 +137,7 @@ def _load_fleet(file: str, settings: Settings, neo4j: str | None, *, both: bool)
     system = fleet_system(file, question)
     result = answer(system, question)
     if both:
-        from rosprivacy.views.both_views import both_views_of_fleet
+        from rosprivacy.both_views import both_views_of_fleet
 
         result = replace(result, enforced=both_views_of_fleet(file, settings).enforced)
     rows = rows_of_fleet(system, question, result)

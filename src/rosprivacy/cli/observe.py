@@ -17,9 +17,8 @@ from rosprivacy.cli.output import emit
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from rosprivacy.ingest.doors.doors import Door
-    from rosprivacy.ingest.doors.polling import Wait
-    from rosprivacy.ingest.observe.observation import Observation
+    from rosprivacy.ingest.running.doors import Door, Wait
+    from rosprivacy.ingest.running.observation import Observation
 
 THROUGH = "Through which door"  # panel of help
 SHORTEST = "10s"  # what most middlewares need until all is found
@@ -149,9 +148,9 @@ def observe(
 
     What was not seen proves nothing: the policy says from when to when somebody looked, and which gaps are known.
     """
-    from rosprivacy.ingest.doors.stopping import Stop
-    from rosprivacy.running.observing import keeps_what_is_there, seconds_of
-    from rosprivacy.running.observing import observe as looked
+    from rosprivacy.ingest.running.doors import Stop
+    from rosprivacy.observing import keeps_what_is_there, seconds_of
+    from rosprivacy.observing import observe as looked
 
     stop = Stop()
     wait = stop.wait if watch else time.sleep
@@ -185,10 +184,9 @@ def observe(
 
 def _doors(text: list[str] | None, earlier: list[str] | None, at: str | None, wait: Wait, *, ros2: bool) -> list[Door]:
     """The doors that a user named, those that have looked already first."""
-    from rosprivacy.ingest.doors.ros2_program import Ros2Program
-    from rosprivacy.ingest.doors.text_files import TextFiles
-    from rosprivacy.ingest.observe.earlier_files import EarlierFiles
-    from rosprivacy.running.observing import now, time_of, types_file
+    from rosprivacy.ingest.running.node_info import Ros2Program, TextFiles
+    from rosprivacy.ingest.running.observed_files import EarlierFiles
+    from rosprivacy.observing import now, time_of, types_file
 
     doors: list[Door] = []
     if earlier:
@@ -201,21 +199,21 @@ def _doors(text: list[str] | None, earlier: list[str] | None, at: str | None, wa
 
 
 def _zenoh_door(domain: int, router: str, session_file: Path | None, wait: Wait) -> Door:
-    from rosprivacy.ingest.doors.zenoh_door import ZenohDoor
-    from rosprivacy.running.observing import now
+    from rosprivacy.ingest.running.zenoh_door import ZenohDoor
+    from rosprivacy.observing import now
 
     return ZenohDoor(now, domain, router, session_file, wait)
 
 
 def _dds_door(domain: int, peers: tuple[str, ...], interface: str, wait: Wait) -> Door:
-    from rosprivacy.ingest.doors.dds_door import DdsDoor
-    from rosprivacy.running.observing import now
+    from rosprivacy.ingest.running.dds_door import DdsDoor
+    from rosprivacy.observing import now
 
     return DdsDoor(now, domain, peers, interface, wait)
 
 
 def _watching(inputs: Inputs) -> Callable[[Observation | None, Observation], None]:
-    from rosprivacy.running.watching import Watch
+    from rosprivacy.watching import Watch
 
     watch = Watch(tuple(inputs.labels or ()), inputs.settings)
 
@@ -228,7 +226,7 @@ def _watching(inputs: Inputs) -> Callable[[Observation | None, Observation], Non
 
 def _write(seen: Observation | None, output: Path | None) -> None:
     """The policy and the types, both or none; what there is to say goes to standard error."""
-    from rosprivacy.running.observing import declared_file, types_file, written
+    from rosprivacy.observing import declared_file, types_file, written
 
     made = written(seen) if seen else None
     if made is None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError
 from rosprivacy.cli.exit_code import SIGPIPE
-from rosprivacy.outputs.terminal_width import terminal_width
+from rosprivacy.terminal_width import terminal_width
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence

@@ -11,7 +11,7 @@ from rosprivacy.analysis.written_names import did_you_mean, nearest
 from rosprivacy.cli.inputs import Inputs, reads_system
 from rosprivacy.cli.options import Language, Output, TextOrJson
 from rosprivacy.cli.output import emit, on_console
-from rosprivacy.outputs.terminal_width import terminal_width
+from rosprivacy.terminal_width import terminal_width
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from rosprivacy.explorer.label_files import LabelFiles
     from rosprivacy.explorer.remembering import Unsaved
     from rosprivacy.explorer.saving import Conflict, Saved
-    from rosprivacy.outputs.finding_table import Findings
+    from rosprivacy.outputs import Findings
     from rosprivacy.question import Question as Asked
     from rosprivacy.result import Result
     from rosprivacy.system import System

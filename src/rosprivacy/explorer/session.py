@@ -186,7 +186,7 @@ class Session(Trying):
         >>> session.picture("/navigator").title
         'How Video gets to /navigator, and where it can go from there'
         """
-        from rosprivacy.outputs.explanation import vertices_called  # noqa: PLC0415 - light start
+        from rosprivacy.outputs import vertices_called  # noqa: PLC0415 - light start
         from rosprivacy.report.explorer.pictures import picture_alone  # noqa: PLC0415 - light start
 
         shown = self.uncounted.shown

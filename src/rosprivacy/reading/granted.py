@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputErrors, PolicyError
 from rosprivacy.clock import today
-from rosprivacy.ingest.keystore.told_apart import deployed
+from rosprivacy.ingest.deployed.deployed_paths import deployed
 from rosprivacy.ingest.policies.policy_files import read_policies
 from rosprivacy.ingest.reading.confined import WIDEN, leaves, what_leaves
 
@@ -68,14 +68,14 @@ def read_granted(names: Iterable[str], settings: Settings, within: str | None = 
 
 
 def _zenoh(names: list[str], settings: Settings, within: str | None) -> tuple[Policy, ...]:
-    from rosprivacy.ingest.zenoh_access.zenoh_inputs import read_zenoh  # noqa: PLC0415 - light start
+    from rosprivacy.ingest.deployed.zenoh_grants import read_zenoh  # noqa: PLC0415 - light start
 
     _confined(names, within)
     return read_zenoh(names, settings.domain, view=settings.view)
 
 
 def _deployed(names: list[str], settings: Settings, within: str | None, besides: Iterable[str]) -> Iterator[Policy]:
-    from rosprivacy.ingest.keystore.deployed_inputs import read_deployed  # noqa: PLC0415 - light start
+    from rosprivacy.ingest.deployed.deployed_inputs import read_deployed  # noqa: PLC0415 - light start
 
     _confined(names, within)
     on = settings.today or today(os.environ)

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.analysis.suggesting.outdated_reasons import outdated_reasons
+from rosprivacy.ingest.deployed.exposures import with_exposed
 from rosprivacy.ingest.fleet.alike_robots import digest
 from rosprivacy.ingest.fleet.dds_domains import Member, stripped
-from rosprivacy.ingest.keystore.exposed import with_exposed
 from rosprivacy.ingest.labels.add_non_ros import extended
 from rosprivacy.ingest.labels.bag_storages import told_of_bags
 from rosprivacy.ingest.labels.binding import join, remarks

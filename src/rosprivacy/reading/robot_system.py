@@ -15,7 +15,7 @@ from rosprivacy.analysis.model import MERGED, REFUSED_NAME, SEEN_ALTHOUGH_DENIED
 from rosprivacy.analysis.suggesting.outdated_reasons import outdated_reasons
 from rosprivacy.answering import answer
 from rosprivacy.assumptions import files_read, remembered, types_read
-from rosprivacy.ingest.keystore.exposed import with_exposed
+from rosprivacy.ingest.deployed.exposures import with_exposed
 from rosprivacy.ingest.labels.add_non_ros import extend, extended
 from rosprivacy.ingest.labels.bag_storages import told_of_bags
 from rosprivacy.ingest.labels.binding import bind, join, remarks

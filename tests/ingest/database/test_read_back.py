@@ -20,8 +20,8 @@ from rosprivacy.ingest.database.read_back import read_stored
 from rosprivacy.ingest.database.rows import robot_rows
 from rosprivacy.ingest.database.write_back import write_back
 from rosprivacy.ingest.labels.entries import EXACT
-from rosprivacy.ingest.observe.node_info import read_node_info
-from rosprivacy.ingest.observe.observed_policy import policy_xml, prepared
+from rosprivacy.ingest.running.node_info import read_node_info
+from rosprivacy.ingest.running.observed_files import policy_xml, prepared
 from rosprivacy.ontology.vocabulary import load as load_vocabulary
 from rosprivacy.private_neo4j import connection
 from rosprivacy.reading.robot_system import robot_of

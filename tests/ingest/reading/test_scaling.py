@@ -15,23 +15,22 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from rosprivacy.bags import answer_bags
 from rosprivacy.ingest.annotations.cpp_code import read_cpp
 from rosprivacy.ingest.annotations.python_code import read_python
 from rosprivacy.ingest.decisions.decisions_file import read_decisions
-from rosprivacy.ingest.doors.text_files import TextFiles
+from rosprivacy.ingest.deployed.governance import read_governance
+from rosprivacy.ingest.deployed.permissions import policy_of, read_permissions
+from rosprivacy.ingest.deployed.zenoh_grants import read_zenoh
 from rosprivacy.ingest.fleet.fleet_file import read_fleet
-from rosprivacy.ingest.keystore.governance_file import read_governance
-from rosprivacy.ingest.keystore.grants import policy_of
-from rosprivacy.ingest.keystore.permissions_file import read_permissions
 from rosprivacy.ingest.labels.label_file import read_labels
 from rosprivacy.ingest.policies.policy_xml import read_policy
 from rosprivacy.ingest.policies.saved_graph import read_saved
+from rosprivacy.ingest.running.node_info import TextFiles
 from rosprivacy.ingest.types.types_file import read_types
-from rosprivacy.ingest.zenoh_access.zenoh_inputs import read_zenoh
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.queries.library import parse
 from rosprivacy.queries.reading import refuse_too_much
-from rosprivacy.recordings.bags import answer_bags
 from rosprivacy.settings import Settings
 from tests.helpers.keystores import governance, grant, permissions, rule, topic_rule
 from tests.helpers.observed import node_info

@@ -1,0 +1,145 @@
+"""One file of a bag: opened so that only so much of it is read, and what it says, put together with what others say.
+
+In: a path; parts. Out: ``BoundedStream``, which no length in a stranger's file gets past; topics with all that is said
+of each. What a reader skips is not read: a bag of a terabyte costs what its summary costs.
+"""
+
+from __future__ import annotations
+
+import os
+from collections import defaultdict
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.errors import BagError, reason
+from rosprivacy.analysis.files_read import noted
+from rosprivacy.analysis.model.recording import BagTopic
+from rosprivacy.ingest.reading.bounded_file import nearest_file
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+    from typing import BinaryIO
+
+MOST_READ = 32 * 2**20  # bytes of one bag: the summary of an MCAP file of about 300 GB
+
+
+class TooMuchError(ValueError):
+    """More would have to be read than the bound."""
+
+
+class EndedError(ValueError):
+    """The file ends within what is read."""
+
+
+class BoundedStream:
+    """A file that is open.
+
+    Attributes
+    ----------
+    size
+        Bytes of the file.
+    left
+        Bytes that may still be read.
+    """
+
+    def __init__(self, file: BinaryIO, most: int) -> None:
+        self._file = file
+        self.size = os.fstat(file.fileno()).st_size
+        self.left = most
+
+    def read(self, size: int = -1) -> bytes:
+        """Read exactly so many bytes.
+
+        Raises
+        ------
+        TooMuchError, EndedError
+            Before anything is read.
+        """
+        if size < 0 or size > self.size - self._file.tell():
+            raise EndedError("the file ends within a record")
+        if size > self.left:
+            raise TooMuchError("more than is read of a bag")
+        self.left -= size
+        return self._file.read(size)
+
+    def skip(self, size: int) -> None:
+        """Pass over bytes without reading them."""
+        if not 0 <= size <= self.size - self._file.tell():
+            raise EndedError("the file ends within a record, or a record within itself")
+        self._file.seek(size, os.SEEK_CUR)
+
+    def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
+        """Go to a place of the file."""
+        return self._file.seek(offset, whence)
+
+    def tell(self) -> int:
+        """Return the place in the file."""
+        return self._file.tell()
+
+
+@contextmanager
+def bounded_stream(file: str, most: int = MOST_READ) -> Iterator[BoundedStream]:
+    """Open a regular file, and note that it is read.
+
+    Raises
+    ------
+    BagError
+        If it is none, or the system refuses it.
+    """
+    path = Path(file)
+    try:
+        if not path.exists():
+            raise BagError(file, 0, "file not found", nearest_file(path))
+        if not path.is_file():
+            raise BagError(file, 0, "not a regular file", "name a regular file")
+        with path.open("rb") as opened:
+            yield BoundedStream(noted(opened, file), most)
+    except OSError as error:
+        raise BagError(file, 0, f"cannot be read: {reason(error)}", "check the path and its permissions") from None
+
+
+LAST_TIME = 253_402_300_799 * 10**9  # of the year 9999, in nanoseconds
+
+
+@dataclass(frozen=True, slots=True)
+class Recorded:
+    """What a file, or the ``metadata.yaml`` of a folder, says; see ``Bag``."""
+
+    storage: str
+    topics: tuple[BagTopic, ...] = ()
+    start: int | None = None
+    end: int | None = None
+    distro: str = ""
+    compression: str = ""
+    gaps: tuple[str, ...] = ()
+    beside: tuple[str, ...] = ()
+
+
+def united(topics: Iterable[BagTopic]) -> tuple[BagTopic, ...]:
+    """Return topics by name, each once; a count that one of them does not say is not known.
+
+    >>> [topic.messages for topic in united([BagTopic("/a", messages=1), BagTopic("/a", messages=2)])]
+    [3]
+    """
+    by_name: dict[str, list[BagTopic]] = defaultdict(list)
+    for topic in topics:
+        by_name[topic.name].append(topic)
+    return tuple(_one(name, same) for name, same in sorted(by_name.items()))
+
+
+def _one(name: str, same: list[BagTopic]) -> BagTopic:
+    types = tuple(sorted({kind for topic in same for kind in topic.types}))
+    hashes = tuple(sorted({digest for topic in same for digest in topic.hashes}))
+    counts = [topic.messages for topic in same if topic.messages is not None]
+    return BagTopic(name, types, hashes, sum(counts) if len(counts) == len(same) else None)
+
+
+def moment(nanoseconds: int) -> int | None:
+    """Return a time; None for one that nothing can have been recorded at.
+
+    >>> moment(5), moment(-1), moment(10**21)
+    (5, None, None)
+    """
+    return nanoseconds if 0 < nanoseconds <= LAST_TIME else None

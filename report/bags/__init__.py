@@ -1,1 +1,0 @@
-"""What is known of bags in, out come the JSON document, lines for the terminal and a table."""

@@ -1,1 +1,0 @@
-"""Broken rules in, out come lines for the terminal, the JSON document and SARIF."""

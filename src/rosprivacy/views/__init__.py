@@ -1,1 +1,0 @@
-"""Both views beside each other: files and settings in, out comes what the enforced one adds and what ends it (S6)."""
