@@ -39,8 +39,7 @@ SAME_PART = {
         "report/terminal",
     },
     "review": {"report/page", "report/terminal"},  # what nobody has reviewed, for each kind of reader
-    "globs": {"analysis/findings", "report/terminal"},  # what globs of label files decide, and how it is told
-    "ledger": {"analysis/findings", "report/document", "report/terminal"},  # what was taken away, and how it is told
+    "ledger": {"analysis/whatif", "report/document", "report/terminal"},  # what was taken away, and how it is told
     "mitigation": {"", "report/contract", "report/document", "report/terminal"},  # what is told of proposals
     "non_ros": {"analysis", "report/document", "report/page"},  # what is told of non-ROS elements
     "robots": {"report", "report/sarif"},  # which robots a finding stands for, in words and in SARIF

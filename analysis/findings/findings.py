@@ -18,7 +18,7 @@ from rosprivacy.analysis.answer import Analysis, Carried, Finding, Verdict
 from rosprivacy.analysis.bounds import BOUNDS, Tally
 from rosprivacy.analysis.case import Case
 from rosprivacy.analysis.findings.arrival import shown_arrivals
-from rosprivacy.analysis.findings.closed_by_shipped import closed_by_shipped
+from rosprivacy.analysis.findings.closures import closed_by_shipped
 from rosprivacy.analysis.findings.concerns import concerns
 from rosprivacy.analysis.findings.grounds import grounds, lacking
 from rosprivacy.analysis.findings.open_questions import open_questions

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 import numpy as np
 
 from rosprivacy.analysis.errors import InputErrors
-from rosprivacy.analysis.findings.closed_by_shipped import closed_by_shipped
+from rosprivacy.analysis.findings.closures import closed_by_shipped
 from rosprivacy.analysis.findings.concerns import concerns
 from rosprivacy.analysis.findings.grounds import Grounds, grounds
 from rosprivacy.analysis.findings.open_questions import open_bits
