@@ -33,7 +33,7 @@ SAME_PART = {
     "law": {"cli", "report/terminal"},  # the command, and what it prints
     "labels": {"cli", "report/terminal"},  # the command, and what was said of labels
     "reliance": {  # what the answer hangs on, and how it is told
-        "analysis/findings",
+        "analysis/whatif",
         "report/document",
         "report/page",
         "report/terminal",
