@@ -43,7 +43,7 @@ SAME_PART = {
     "mitigation": {"", "report/contract", "report/document", "report/terminal"},  # what is told of proposals
     "non_ros": {"analysis", "report/document", "report/page"},  # what is told of non-ROS elements
     "robots": {"report", "report/sarif"},  # which robots a finding stands for, in words and in SARIF
-    "why_not": {"analysis/findings", "cli", "report/document", "report/terminal"},  # the question, and its answer
+    "why_not": {"analysis/whatif", "cli", "report/document", "report/terminal"},  # the question, and its answer
     "session": {"explorer", "spark"},  # what lasts from its begin to its end: of a person, and of a cluster
     "typed_channels": {"report/page", "report/rdf"},  # types of channels, as rows and as triples
 }

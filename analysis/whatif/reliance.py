@@ -297,7 +297,7 @@ class _Today:
         places = self.places._replace(spread=spread, concerns=tuple(concerns(spread, bound, self.hierarchy)))
         reaches = zip(self.reaches, _reaches(places, bound), strict=True)
         ends = sorted(self.ends | places.vertices())
-        pairs = [(before.states(v), after.states(v)) for before, after in reaches for v in ends]
+        pairs: list[Pair] = [(before.states(v), after.states(v)) for before, after in reaches for v in ends]
         return pairs, open_bits(spread, self.unknown)
 
     def _worse(self, pairs: Iterable[Pair]) -> tuple[Opening, ...]:

@@ -5,14 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, shown
-from rosprivacy.analysis.findings.why_not import why_not
+from rosprivacy.analysis.whatif.why_not import why_not
 from rosprivacy.analysis.written_names import A_LITTLE, FEW, did_you_mean, meant, nearest
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from rosprivacy.analysis.answer import Analysis
-    from rosprivacy.analysis.findings.why_not import WhyNot
+    from rosprivacy.analysis.whatif.why_not import WhyNot
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 

@@ -110,7 +110,7 @@ def compared(system: Any, options: Options) -> int:
 
 
 def test_where_no_statement_takes_anything_away_no_data_is_followed() -> None:
-    """On a fleet that would be most of all that is done (review of performance)."""
+    """On a fleet that would be most of all that is done."""
     graph, bound, hierarchy = factory()
     brings_in = {v: tuple(s for s in said if s.role in BRINGS_IN) for v, said in bound.elements.items()}
     only = replace(bound, elements=brings_in, flows={})
