@@ -109,7 +109,7 @@ def _denied(spread: Spread) -> Iterator[Closure]:
     """Flows that a DENY takes back, with data at their start (rule S5)."""
     for flow in spread.graph.taken_back:
         if bits := spread.leaves.get(flow.source, 0):
-            yield Closure(DENY, flow.source, flow.target, bits, tuple(sorted({one.place for one in flow.denials})))
+            yield Closure(DENY, flow.source, flow.target, bits, tuple(sorted({denial.place for denial in flow.denials})))
 
 
 def behind(spread: Spread, closed: Sequence[Closure], places: Mapping[int, int]) -> dict[int, int]:
@@ -243,8 +243,8 @@ def closed_by_shipped(
     [('/faces', '/archive', None)]
     """
     elements, onward = spread.graph.elements, leaving(spread.graph.flows) if spread.standard else {}
-    ended = (one for one in _elements(spread, spread.standard) if one.by == STANDARD_CHANNEL)
-    closed = [one for one in ended if one.bits & mask and one.vertex in onward]
+    standard = (closure for closure in _elements(spread, spread.standard) if closure.by == STANDARD_CHANNEL)
+    closed = [closure for closure in standard if closure.bits & mask and closure.vertex in onward]
     if not closed:
         return ()
     ends = {v: bits & mask for v, bits in spread.leaks.items()}

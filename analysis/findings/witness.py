@@ -50,8 +50,8 @@ def witness_of(net: Net, path: Iterable[tuple[int, int, int]]) -> Witness:
     >>> from rosprivacy.analysis.kernel.spreading import spread
     >>> net, reach = from_sources(spread(*factory()))
     >>> templates = net.spread.bits.plain(net.spread.categories.index("FaceTemplate"))
-    >>> told = witness_of(net, path_to(net, reach, FACES, templates))
-    >>> [(one.source.name, one.role, one.category) for one in told.steps]
+    >>> witness = witness_of(net, path_to(net, reach, FACES, templates))
+    >>> [(step.source.name, step.role, step.category) for step in witness.steps]
     [('/camera', 'publish', 'Video'), ('/video', 'subscribe', 'Video'), ('/face_id', 'publish', 'FaceTemplate')]
     """
     graph, categories, bits = net.spread.graph, net.spread.categories, net.spread.bits

@@ -107,8 +107,8 @@ def why_not(analysis: Analysis, source: Sequence[int], leak: Sequence[int], cate
     spread, elements = analysis.spread, analysis.spread.graph.elements
     first, last = elements[source[0]], elements[leak[0]]
     ends = first.identity, last.identity, category
-    found = (f for f in analysis.findings if (f.source.identity, f.leak.identity, f.category) == ends)
-    finding = next(found, None)
+    between = (f for f in analysis.findings if (f.source.identity, f.leak.identity, f.category) == ends)
+    finding = next(between, None)
     path, obstacles = (finding.witness, ()) if finding else _easiest(spread, source, leak, category)
     reached = sum(bool(spread.present(v) & spread.both(category)) for v in range(len(elements)))
     return WhyNot(category, first, last, finding, path, obstacles, reached)
