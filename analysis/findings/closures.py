@@ -109,7 +109,8 @@ def _denied(spread: Spread) -> Iterator[Closure]:
     """Flows that a DENY takes back, with data at their start (rule S5)."""
     for flow in spread.graph.taken_back:
         if bits := spread.leaves.get(flow.source, 0):
-            yield Closure(DENY, flow.source, flow.target, bits, tuple(sorted({denial.place for denial in flow.denials})))
+            places = {denial.place for denial in flow.denials}
+            yield Closure(DENY, flow.source, flow.target, bits, tuple(sorted(places)))
 
 
 def behind(spread: Spread, closed: Sequence[Closure], places: Mapping[int, int]) -> dict[int, int]:
