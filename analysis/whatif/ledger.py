@@ -123,14 +123,19 @@ def ledger(
     spread = analysis.spread
     asked = sum(spread.both(category) for category in analysis.emitted)
     leaks = _leaks(spread, bound, hierarchy)
+    unread = (diagnostic for diagnostic in dict.fromkeys(diagnostics) if diagnostic.code == UNREAD)
     rows = [
         *_closed(spread, {v: bits & asked for v, bits in leaks.items()}, _unlabelled(spread, bound, asked)),
         *_outdone(spread),
         *_reviewed(spread, asked),
-        *_decided(analysis),
+        *(
+            TakenAway(DECISION, finding.source, None, (finding.category,), (), leak=finding.leak, note=finding.id)
+            for finding in analysis.findings
+            if finding.accepted
+        ),
         *_restricted(spread, leaks, asked),
-        *_unread(diagnostics),
-        *_unknown(analysis),
+        *(TakenAway(UNREAD, None, None, (), (d.place,), note=d.message) for d in unread),
+        *(TakenAway(UNKNOWN_READER, e.element, None, e.categories, (), note=e.what) for e in analysis.unknown_ends),
     ]
     return tuple(sorted(rows, key=_order))
 
@@ -226,12 +231,6 @@ def _reviewed_by(
         yield tuple(categories), tuple(sorted({line.place for line in lines})), all(line.glob for line in lines)
 
 
-def _decided(analysis: Analysis) -> Iterator[TakenAway]:
-    for finding in analysis.findings:
-        if finding.accepted:
-            yield TakenAway(DECISION, finding.source, None, (finding.category,), (), leak=finding.leak, note=finding.id)
-
-
 def _restricted(spread: Spread, leaks: Mapping[int, int], asked: int) -> Iterator[TakenAway]:
     """Kinds of data that are emitted and that the answer is not about."""
     for category in spread.categories:
@@ -240,17 +239,6 @@ def _restricted(spread: Spread, leaks: Mapping[int, int], asked: int) -> Iterato
             reached = (v for v, leaking in sorted(leaks.items()) if leaking & bits & spread.present(v))
             leak = next((spread.graph.elements[v] for v in reached), None)
             yield TakenAway(RESTRICTION, None, None, (category,), (), leak=leak)
-
-
-def _unread(diagnostics: Iterable[Diagnostic]) -> Iterator[TakenAway]:
-    for diagnostic in dict.fromkeys(diagnostics):
-        if getattr(diagnostic, "code", "") == UNREAD:
-            yield TakenAway(UNREAD, None, None, (), (diagnostic.place,), note=diagnostic.message)
-
-
-def _unknown(analysis: Analysis) -> Iterator[TakenAway]:
-    for end in analysis.unknown_ends:
-        yield TakenAway(UNKNOWN_READER, end.element, None, end.categories, (), note=end.what)
 
 
 def _order(row: TakenAway) -> tuple[object, ...]:
