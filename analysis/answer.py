@@ -206,6 +206,27 @@ class ClosedByShipped(NamedTuple):
         return (self.channel, self.end) if self.end else (self.channel,)
 
 
+class ByGlobs(NamedTuple):
+    """An element, or a flow, that only globs answer for (rule S11).
+
+    Attributes
+    ----------
+    element
+        The start of a flow; of a service or action one of its legs.
+    to
+        The end of a flow; None of an element.
+    categories
+        Kinds that get there, as they are emitted, sorted; those that end there are among them.
+    places
+        The lines of the globs, sorted.
+    """
+
+    element: Element
+    to: Element | None
+    categories: tuple[str, ...]
+    places: tuple[Place, ...]
+
+
 @dataclass(frozen=True, slots=True)
 class Analysis:
     """The answer: what was found, what is open, what every element carries.

@@ -14,7 +14,7 @@ from measure import Row, corpus, timed_or_counted
 from turtlebot import POLICY, labels_of
 
 from rosprivacy.analysis.findings.findings import analyse
-from rosprivacy.analysis.findings.ledger import ledger
+from rosprivacy.analysis.whatif.ledger import ledger
 from rosprivacy.reading.robot_system import answer_robot
 from rosprivacy.settings import Settings
 

@@ -16,7 +16,7 @@ from measure import Row, corpus, timed_or_counted
 from turtlebot import POLICY, chosen_categories, labels_of
 
 from rosprivacy.analysis.findings.findings import analyse
-from rosprivacy.analysis.findings.reliance import reliances
+from rosprivacy.analysis.whatif.reliance import reliances
 from rosprivacy.reading.robot_system import answer_robot
 from rosprivacy.settings import Settings
 

@@ -10,13 +10,12 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.contexts import Contexts
-from rosprivacy.analysis.findings.globs import GlobUse, globs
-from rosprivacy.analysis.findings.ledger import ledger
 from rosprivacy.analysis.findings.processed import processed
-from rosprivacy.analysis.findings.reliance import Reliance, reliances
 from rosprivacy.analysis.findings.review_order import Behind, review_order
 from rosprivacy.analysis.findings.ways import Ways, ways
 from rosprivacy.analysis.fleet.likeness import NO_ROBOTS
+from rosprivacy.analysis.whatif.ledger import GlobUse, globs, ledger
+from rosprivacy.analysis.whatif.reliance import Reliance, reliances
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
@@ -26,11 +25,11 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.decisions import Decided, Decision
     from rosprivacy.analysis.durations import Duration
     from rosprivacy.analysis.findings.beyond import Added
-    from rosprivacy.analysis.findings.ledger import TakenAway
     from rosprivacy.analysis.findings.processed import Processed
     from rosprivacy.analysis.fleet.counts import Counts
     from rosprivacy.analysis.fleet.patterns import FleetView
     from rosprivacy.analysis.model import Bound, Diagnostic, Doubt, Element, NonRosFacts, Surroundings
+    from rosprivacy.analysis.whatif.ledger import TakenAway
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 

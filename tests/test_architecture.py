@@ -116,7 +116,7 @@ LABELS = ["analyze", "examples/factory/after.policy.xml", "-l", "examples/factor
 FOR_SOME = [  # of ours, needed where there is such a thing: a decision, a bag, an observation, a type, a wildcard
     *("analysis.decisions", "analysis.remembered", "analysis.model.recording", "ingest.reading.legal_basis"),
     *("ingest.policies.observed_metadata", "ingest.types.type_table"),
-    *("analysis.kernel.type_limits", "analysis.findings.held_by_types", "ontology.known"),
+    *("analysis.kernel.type_limits", "ontology.known"),
 ]
 
 

@@ -34,18 +34,17 @@ SAME_PART = {
     "lint": {"cli", "ingest", "report"},  # the command, the rules, and what it prints
     "labels": {"cli", "report/terminal"},  # the command, and what was said of labels
     "reliance": {  # what the answer hangs on, and how it is told
-        "analysis/findings",
+        "analysis/whatif",
         "report/document",
         "report/page",
         "report/terminal",
     },
     "review": {"report/page", "report/terminal"},  # what nobody has reviewed, for each kind of reader
-    "globs": {"analysis/findings", "report/terminal"},  # what globs of label files decide, and how it is told
-    "ledger": {"analysis/findings", "report/document", "report/terminal"},  # what was taken away, and how it is told
+    "ledger": {"analysis/whatif", "report/document", "report/terminal"},  # what was taken away, and how it is told
     "mitigation": {"", "report/contract", "report/document", "report/terminal"},  # what is told of proposals
     "non_ros": {"analysis", "report/document", "report/page"},  # what is told of non-ROS elements
     "robots": {"report", "report/sarif"},  # which robots a finding stands for, in words and in SARIF
-    "why_not": {"analysis/findings", "cli", "report/document", "report/terminal"},  # the question, and its answer
+    "why_not": {"analysis/whatif", "cli", "report/document", "report/terminal"},  # the question, and its answer
     "session": {"explorer", "spark"},  # what lasts from its begin to its end: of a person, and of a cluster
 }
 

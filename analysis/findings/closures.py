@@ -1,7 +1,7 @@
-"""Where data ends on a label's or a DENY's word, and what lies behind.
+"""Where data ends on the word of a label, a DENY or a shipped file, and what lies behind (rules S5, S7, S11, S13).
 
-In: a ``Spread``. Out: ``Closure`` facts, and for each the nearest of some places that data would get to if what closes
-it were not there. Used by the ledger.
+In: a ``Spread``. Out: ``Closure`` facts; for each the nearest of some places that data would get to if what closes it
+were not there; and ``ClosedByShipped`` facts: what nobody but a shipped file keeps from a leak.
 """
 
 from __future__ import annotations
@@ -9,19 +9,22 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import TYPE_CHECKING, NamedTuple
 
+from rosprivacy.analysis.answer import ClosedByShipped
 from rosprivacy.analysis.kernel.backward import NOTHING_OPENED, Opened, backward
 from rosprivacy.analysis.kernel.nearest import Nearest
-from rosprivacy.analysis.model import CANNOT, Method, Place, Statement
+from rosprivacy.analysis.many_flows import leaving
+from rosprivacy.analysis.model import CANNOT, NON_ROS, STANDARD, Method, Place, Rank, Statement
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.kernel.backward import Backward
     from rosprivacy.analysis.kernel.roles import Facts
     from rosprivacy.analysis.kernel.spread import Spread
+    from rosprivacy.analysis.model import Element
 
 Line = Statement | Place
-DENY, STANDARD, ABSENT, TYPE = "deny", "standard-channel", "absent", "type"
+DENY, STANDARD_CHANNEL, ABSENT, TYPE = "deny", "standard-channel", "absent", "type"
 ROUNDS = 64  # lines about several elements that are opened one by one; of others it is said that they may close a path
 PERHAPS = -2  # in place of a vertex, where it was not worked out
 
@@ -32,7 +35,7 @@ class Closure(NamedTuple):
     Attributes
     ----------
     by
-        Role of the statement, ``DENY``, ``STANDARD``, or ``TYPE`` where nothing but the type of a channel says so.
+        Role of the statement, ``DENY``, ``STANDARD_CHANNEL``, or ``TYPE`` where only the type of a channel says so.
     vertex, to
         The element; or the start of a flow and its end (-1 otherwise).
     bits
@@ -62,67 +65,52 @@ def closures(spread: Spread) -> list[Closure]:
     return [*_elements(spread, spread.keeps), *_flows(spread), *_denied(spread)]
 
 
-def standard_closures(spread: Spread) -> list[Closure]:
-    """Return where data ends on the word of shipped files alone.
-
-    >>> from rosprivacy.analysis.example import NAMES, factory
-    >>> from rosprivacy.analysis.kernel.spreading import spread
-    >>> [NAMES[closure.vertex] for closure in standard_closures(spread(*factory()))]
-    ['/rosout']
-    """
-    return [closure for closure in _elements(spread, spread.standard) if closure.by == STANDARD]
-
-
 def _elements(spread: Spread, vertices: Iterable[int]) -> Iterator[Closure]:
-    alike: dict[tuple[int, int], list[tuple[int, tuple[Line, ...], bool]]] = {}  # the same is said of many elements
+    alike: dict[tuple[int, int], list[Closure]] = {}  # the same is said of many elements
     for vertex in sorted(vertices):
         decided = spread.facts[vertex]
         stopped = spread.arrives.get(vertex, 0) & ~spread.keeps[vertex]
         if (id(decided), stopped) not in alike:
-            alike[id(decided), stopped] = [
-                (stopped & sum(map(spread.both, categories)), lines, any(_alone(decided[c]) for c in categories))
-                for lines, categories in _by_lines(spread, decided, stopped).items()
-            ]
-        for bits, lines, itself in alike[id(decided), stopped]:
-            yield Closure(_said_by(lines), vertex, -1, bits, lines, itself)
+            alike[id(decided), stopped] = list(_by_lines(spread, decided, stopped, vertex))
+        for closure in alike[id(decided), stopped]:
+            yield Closure(closure.by, vertex, -1, closure.bits, closure.lines, closure.itself)
 
 
 def _flows(spread: Spread) -> Iterator[Closure]:
     for index, keeps in sorted(spread.flow_keeps.items()):
         flow = spread.graph.flows[index]
         stopped = (spread.sent.get(flow.source, 0) | spread.flow_emits.get(index, 0)) & ~keeps
-        for lines, categories in _by_lines(spread, spread.flow_facts[index], stopped).items():
-            yield Closure(_said_by(lines), flow.source, flow.target, stopped & sum(map(spread.both, categories)), lines)
+        yield from _by_lines(spread, spread.flow_facts[index], stopped, flow.source, flow.target)
+
+
+def _by_lines(
+    spread: Spread, decided: Mapping[str, Facts], stopped: int, vertex: int, to: int = -1
+) -> Iterator[Closure]:
+    """What is stopped, by the statements that stop it."""
+    by_lines: dict[tuple[Statement, ...], list[str]] = defaultdict(list)
+    for category in spread.names(stopped) if stopped else ():
+        by_lines[decided[category].closers].append(category)
+    for lines, categories in by_lines.items():
+        facts = [decided[category] for category in categories]
+        itself = to < 0 and any(not (fact.reviewers or fact.leaks or fact.emits) for fact in facts)
+        yield Closure(_role(lines), vertex, to, stopped & sum(map(spread.both, categories)), lines, itself)
+
+
+def _role(lines: tuple[Statement, ...]) -> str:
+    statements = [line for line in lines if line.role != CANNOT]
+    if not statements:
+        return TYPE
+    if all(line.shipped for line in statements):
+        return STANDARD_CHANNEL
+    return ABSENT if statements[0].method is Method.ABSENT else statements[0].role
 
 
 def _denied(spread: Spread) -> Iterator[Closure]:
     """Flows that a DENY takes back, with data at their start (rule S5)."""
     for flow in spread.graph.taken_back:
-        bits = spread.leaves.get(flow.source, 0)
-        if bits:
-            lines = {denial.place: None for denial in sorted(flow.denials, key=lambda denial: line_key(denial.place))}
-            yield Closure(DENY, flow.source, flow.target, bits, tuple(lines))
-
-
-def _by_lines(spread: Spread, decided: Mapping[str, Facts], stopped: int) -> dict[tuple[Line, ...], list[str]]:
-    """What is stopped, by the statements that stop it."""
-    by_lines: dict[tuple[Line, ...], list[str]] = defaultdict(list)
-    for category in spread.names(stopped) if stopped else ():
-        by_lines[decided[category].closers].append(category)
-    return by_lines
-
-
-def _alone(fact: Facts) -> bool:
-    return not fact.reviewers and not fact.leaks and not fact.emits
-
-
-def _said_by(lines: tuple[Line, ...]) -> str:
-    statements = [line for line in lines if isinstance(line, Statement) and line.role != CANNOT]
-    if not statements:
-        return TYPE
-    if all(line.shipped for line in statements):
-        return STANDARD
-    return ABSENT if statements[0].method is Method.ABSENT else statements[0].role
+        if bits := spread.leaves.get(flow.source, 0):
+            places = {denial.place for denial in flow.denials}
+            yield Closure(DENY, flow.source, flow.target, bits, tuple(sorted(places)))
 
 
 def behind(spread: Spread, closed: Sequence[Closure], places: Mapping[int, int]) -> dict[int, int]:
@@ -151,40 +139,38 @@ def behind(spread: Spread, closed: Sequence[Closure], places: Mapping[int, int])
     """
     if not closed or not any(places.values()):
         return {}
-    plain = backward(spread, places)
-    behind = {number: closure for number, closure in enumerate(closed) if _led(closure, plain)}
-    result = _nearest(spread, behind, places, plain, NOTHING_OPENED)
-    left = {number: closure for number, closure in enumerate(closed) if number not in behind}
+    result = _behind_opened(spread, dict(enumerate(closed)), places, NOTHING_OPENED)
+    left = {number: closure for number, closure in enumerate(closed) if number not in result}
     extents = _extents(spread, {line for closure in left.values() for line in closure.lines})
     if not extents:
         return result
     together = backward(spread, places, Opened.of(extents.values()))
-    left = {number: closure for number, closure in left.items() if _led(closure, together)}
+    left = {number: closure for number, closure in left.items() if _leading(closure, together)}
     lines = [line for line in extents if any(line in closure.lines for closure in left.values())]
     for line in lines[:ROUNDS]:
-        by = backward(spread, places, extents[line])
-        behind = {n: c for n, c in left.items() if line in c.lines and n not in result and _led(c, by)}
-        result |= _nearest(spread, behind, places, by, extents[line])
-    untold = set(lines[ROUNDS:])
-    return {number: PERHAPS for number, closure in left.items() if untold.intersection(closure.lines)} | result
+        by_it = {number: c for number, c in left.items() if line in c.lines and number not in result}
+        result |= _behind_opened(spread, by_it, places, extents[line])
+    not_opened = set(lines[ROUNDS:])
+    return {number: PERHAPS for number, closure in left.items() if not_opened.intersection(closure.lines)} | result
 
 
-def _led(closure: Closure, by: Backward) -> int:
+def _behind_opened(
+    spread: Spread, closed: Mapping[int, Closure], places: Mapping[int, int], opened: Opened
+) -> dict[int, int]:
+    """The nearest place behind each closure that has one, if some of what lines close is open."""
+    by = backward(spread, places, opened)
+    leading = {number: bits for number, closure in closed.items() if (bits := _leading(closure, by))}
+    if not leading:
+        return {}
+    near = Nearest.of(spread, places, opened)
+    ends = ((number, closed[number], bits) for number, bits in leading.items())
+    return {n: near.after(c.vertex, bits) if c.to < 0 else near.at(c.to, bits) for n, c, bits in ends}
+
+
+def _leading(closure: Closure, by: Backward) -> int:
     """The bits that would get to a place from here: from the element on, or by the end of the flow."""
     leading = by.leaving.get(closure.vertex, 0) if closure.to < 0 else by.entering.get(closure.to, 0)
     return closure.bits & leading
-
-
-def _nearest(
-    spread: Spread, behind: Mapping[int, Closure], places: Mapping[int, int], by: Backward, opened: Opened
-) -> dict[int, int]:
-    if not behind:
-        return {}
-    near = Nearest.of(spread, places, opened)
-    return {
-        number: near.after(c.vertex, _led(c, by)) if c.to < 0 else near.at(c.to, _led(c, by))
-        for number, c in behind.items()
-    }
 
 
 def _extents(spread: Spread, lines: set[Line]) -> dict[Line, Opened]:
@@ -223,6 +209,93 @@ def line_key(line: Line) -> tuple[str, int, str]:
     >>> [str(line) for line in sorted(lines, key=line_key)]
     ['a.yaml:3', 'a.yaml:20', 'b.yaml:1']
     """
-    if isinstance(line, Place):
-        return (line.file, line.line, "")
-    return (line.place.file, line.place.line, repr(line))
+    return (*line, "") if isinstance(line, Place) else (*line.place, repr(line))
+
+
+def closed_by_shipped(
+    spread: Spread, mask: int, beyond: Collection[int] = (), unit: Sequence[int] = ()
+) -> tuple[ClosedByShipped, ...]:
+    """Return what shipped statements alone close, one for both legs and sides of a channel, in the order of channels.
+
+    Parameters
+    ----------
+    mask
+        Bits of the categories that the answer is about.
+    beyond
+        Of a part of a graph, the vertices through which data gets to other parts: a leak may lie behind each.
+    unit
+        Of a part of a graph, by vertex: what a node has to have in common with its services; empty for nothing.
+
+    Notes
+    -----
+    Nothing where nobody reads what was closed; else a few runs of the kernel, as for the ledger.
+
+    Examples
+    --------
+    >>> from dataclasses import replace
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> graph, bound, hierarchy = factory()
+    >>> faces = [element.name for element in graph.elements].index("/faces")
+    >>> mundane = Statement("mundane", (), (STANDARD, 0), Place("rosprivacy:standard", 7), shipped=True)
+    >>> bound = replace(bound, elements={**bound.elements, faces: (mundane,)})
+    >>> carried = spread(graph, bound, hierarchy)
+    >>> [(row.channel.name, row.end.name, row.rank) for row in closed_by_shipped(carried, carried.all_bits)]
+    [('/faces', '/archive', None)]
+    """
+    elements, onward = spread.graph.elements, leaving(spread.graph.flows) if spread.standard else {}
+    standard = (closure for closure in _elements(spread, spread.standard) if closure.by == STANDARD_CHANNEL)
+    closed = [closure for closure in standard if closure.bits & mask and closure.vertex in onward]
+    if not closed:
+        return ()
+    ends = {v: bits & mask for v, bits in spread.leaks.items()}
+    ends |= {v: mask for v, element in enumerate(elements) if element.kind in NON_ROS}
+    ends |= dict.fromkeys(beyond, mask)
+    nodes: dict[int, set[str]] = defaultdict(set)
+    for v, element in enumerate(elements):
+        if element.is_node and v not in spread.absent:
+            nodes[unit[v] if unit else 0].add(element.name)
+    rows: dict[tuple[str, str, str], list[ClosedByShipped]] = defaultdict(list)
+    for number, end in sorted(behind(spread, closed, ends).items()):
+        closure = closed[number]
+        lines = [line for line in closure.lines if isinstance(line, Statement) and line.shipped]
+        by_standard = any(line.rank[0] == STANDARD for line in lines)
+        channel = elements[closure.vertex]
+        outside = Rank.BREAKS if not in_its_place(channel, nodes[unit[closure.vertex] if unit else 0]) else None
+        row = ClosedByShipped(
+            channel,
+            spread.names(closure.bits & mask),
+            None if end == PERHAPS or (end in beyond and elements[end].kind not in NON_ROS) else elements[end],
+            tuple(sorted({line.place for line in lines})),
+            outside if by_standard else Rank.RIDES,
+        )
+        rows[channel.identity].append(row)
+    return tuple(_joined(rows[key]) for key in sorted(rows))
+
+
+def in_its_place(channel: Element, nodes: Collection[str]) -> bool:
+    """Return whether a standard channel is where ROS has it: a topic at the root, a service of a node that is there.
+
+    >>> from rosprivacy.analysis.model import Element
+    >>> [in_its_place(Element("topic", name), ()) for name in ("/clock", "/patient/clock")]
+    [True, False]
+    >>> [in_its_place(Element("service", "/cloud/get_parameters"), nodes) for nodes in (["/cloud"], ["/camera"])]
+    [True, False]
+
+    Versions of rclcpp before Foxy name ``parameter_events`` below the namespace of the node:
+
+    >>> [in_its_place(Element("topic", "/map/parameter_events"), nodes) for nodes in (["/map/server"], ["/camera"])]
+    [True, False]
+    """
+    owner, _, last = channel.name.rpartition("/")
+    if channel.kind == "service":
+        return owner in nodes
+    return not owner or (last == "parameter_events" and any(node.rpartition("/")[0] == owner for node in nodes))
+
+
+def _joined(rows: list[ClosedByShipped]) -> ClosedByShipped:
+    """Legs and sides of a channel as one, with what weighs most."""
+    first = min(rows, key=lambda row: (row.rank is None, row.rank or "", row.end is None))
+    categories = {name for row in rows for name in row.categories}
+    places = {place for row in rows for place in row.places}
+    return first._replace(categories=tuple(sorted(categories)), places=tuple(sorted(places)))

@@ -1,8 +1,13 @@
-"""Where a category is kept too long, leaves the EEA or can be read on the network, and why (rules S9, S10)."""
+"""What makes a finding: where a category must not get and why, and which of the ways it gets there are shown (S9, S10).
+
+In: a spread and what is stated of elements; then whether data of a source gets to a leak in each way. Out: ``Concern``
+facts; of each ``Arrival`` whether a finding shows it.
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from enum import IntEnum
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 from rosprivacy.analysis.model import DISCLOSURE, STORAGE_LIMITATION, THIRD_COUNTRY, UNPROTECTED, Reason
 from rosprivacy.analysis.model.reason import NOT_ENCRYPTED, NOT_ENCRYPTED_NOR_CLOSED, STRANGERS
@@ -11,9 +16,14 @@ from rosprivacy.analysis.non_ros import kept_too_long, transferred
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
+    import numpy as np
+    from numpy.typing import NDArray
+
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Bound, Exposure
+
+Flags = TypeVar("Flags", "NDArray[np.bool_]", int)
 
 
 class Concern(NamedTuple):
@@ -71,3 +81,39 @@ def unprotected(exposures: Iterable[Exposure]) -> Reason | None:
         joining = {"joining_file": joined_at.file, "joining_line": joined_at.line}
         return Reason.of(NOT_ENCRYPTED_NOR_CLOSED, file=open_at.file, line=open_at.line, **joining)
     return next((Reason.of(cause, file=at.file, line=at.line) for cause, at in first.items()), None)
+
+
+class Arrival(IntEnum):
+    """Best first: past no other leak of the category before through one, and as it is before pseudonymised."""
+
+    PLAIN = 0
+    PSEUDONYMISED = 1
+    PLAIN_THROUGH = 2
+    PSEUDONYMISED_THROUGH = 3
+
+    @property
+    def dismissed(self) -> bool:
+        """Whether a disclosure that is shown so is dismissed."""
+        return self >= Arrival.PLAIN_THROUGH
+
+    @property
+    def pseudonymised(self) -> bool:
+        """Whether the data arrives pseudonymised."""
+        return self in (Arrival.PSEUDONYMISED, Arrival.PSEUDONYMISED_THROUGH)
+
+
+def shown_arrivals(plain: Flags, hidden: Flags, plain_through: Flags, hidden_through: Flags) -> tuple[Flags, ...]:
+    """Return of each ``Arrival`` whether a finding shows it: the best, and what stands beside it; 0 or 1, or arrays.
+
+    Where only pseudonymised data gets there past no other leak, data as it is that gets there through one is shown
+    beside it. What gets there past no other leak may count as going through one, too.
+
+    >>> shown_arrivals(0, 1, 1, 1)
+    (0, 1, 1, 0)
+    """
+    return (
+        plain,
+        hidden & ~plain,
+        plain_through & ~plain,
+        hidden_through & ~(plain | hidden | plain_through),
+    )

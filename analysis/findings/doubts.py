@@ -30,8 +30,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
     from collections.abc import Set as AbstractSet
 
-    from rosprivacy.analysis.answer import Analysis
-    from rosprivacy.analysis.findings.answered_by_globs import ByGlobs
+    from rosprivacy.analysis.answer import Analysis, ByGlobs
     from rosprivacy.analysis.model import Diagnostic, Element, Place
 
 ENDS = {"reader": NO_READER, "flow": NO_FLOW}

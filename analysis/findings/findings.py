@@ -17,13 +17,10 @@ from typing import TYPE_CHECKING, NamedTuple
 from rosprivacy.analysis.answer import Analysis, Carried, Finding, Verdict
 from rosprivacy.analysis.bounds import BOUNDS, Tally
 from rosprivacy.analysis.case import Case
-from rosprivacy.analysis.findings.arrival import shown_arrivals
-from rosprivacy.analysis.findings.closed_by_shipped import closed_by_shipped
-from rosprivacy.analysis.findings.concerns import concerns
-from rosprivacy.analysis.findings.grounds import grounds, lacking
-from rosprivacy.analysis.findings.open_questions import open_questions
+from rosprivacy.analysis.findings.closures import closed_by_shipped
+from rosprivacy.analysis.findings.concerns import concerns, shown_arrivals
+from rosprivacy.analysis.findings.open_questions import grounds, lacking, open_questions, unknown_ends
 from rosprivacy.analysis.findings.paths_of_source import PathsOfSource
-from rosprivacy.analysis.findings.unknown_ends import unknown_ends
 from rosprivacy.analysis.findings.witness import witness_of
 from rosprivacy.analysis.kernel import spreading, standard_channels
 from rosprivacy.analysis.kernel.bits import bits_of

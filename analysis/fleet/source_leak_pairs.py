@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rosprivacy.analysis.findings.arrival import shown_arrivals
+from rosprivacy.analysis.findings.concerns import shown_arrivals
 from rosprivacy.analysis.kernel.arrays import GraphArrays, as_bits
 from rosprivacy.analysis.kernel.fixpoint import WORD, fixpoint
 from rosprivacy.analysis.model import DISCLOSURE

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rosprivacy.analysis.findings.arrival import Arrival, shown_arrivals
+from rosprivacy.analysis.findings.concerns import Arrival, shown_arrivals
 from rosprivacy.analysis.fleet.source_leak_pairs import CategoryRun, unpacked
 from rosprivacy.analysis.model import DISCLOSURE
 

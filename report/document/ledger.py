@@ -10,14 +10,13 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.answer import Verdict
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.findings.closures import ABSENT
-from rosprivacy.analysis.findings.ledger import BY, REVIEW
+from rosprivacy.analysis.whatif.ledger import BY, REVIEW
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping
 
-    from rosprivacy.analysis.findings.globs import GlobUse
-    from rosprivacy.analysis.findings.ledger import TakenAway
     from rosprivacy.analysis.model import Element
+    from rosprivacy.analysis.whatif.ledger import GlobUse, TakenAway
     from rosprivacy.report.contract.records import ElementEntry, GlobEntry, LedgerRow
 
     Shown = Callable[[Element], ElementEntry]

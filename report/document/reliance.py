@@ -12,8 +12,8 @@ from rosprivacy.analysis.model import STANDARD
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-    from rosprivacy.analysis.findings.reliance import Reliance
     from rosprivacy.analysis.model import Element
+    from rosprivacy.analysis.whatif.reliance import Reliance
     from rosprivacy.report.contract.records import ElementEntry, RelianceEntry
 
 

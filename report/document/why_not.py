@@ -12,7 +12,7 @@ from rosprivacy.report.document.element_entry import element_dict
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from rosprivacy.analysis.findings.why_not import WhyNot
+    from rosprivacy.analysis.whatif.why_not import WhyNot
 
 FORMAT = "rosprivacy.why-not/1"
 

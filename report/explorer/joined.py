@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.findings.why_carried import WhyCarried
+from rosprivacy.analysis.findings.witness import WhyCarried
 from rosprivacy.analysis.kernel.vertices import by_identity
 from rosprivacy.analysis.many_flows import number, parted
 

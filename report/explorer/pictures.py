@@ -22,8 +22,7 @@ if TYPE_CHECKING:
     from markupsafe import Markup
 
     from rosprivacy.analysis.answer import Analysis
-    from rosprivacy.analysis.findings.why_carried import WhyCarried
-    from rosprivacy.analysis.findings.witness import Witness
+    from rosprivacy.analysis.findings.witness import WhyCarried, Witness
     from rosprivacy.report.explorer.live_svg import Links
     from rosprivacy.report.pictures.picture import Key, Picture
 

@@ -26,8 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.answer import Analysis
-    from rosprivacy.analysis.findings.why_carried import WhyCarried
-    from rosprivacy.analysis.findings.witness import Witness
+    from rosprivacy.analysis.findings.witness import WhyCarried, Witness
     from rosprivacy.report.explorer.choice import Choice
     from rosprivacy.report.pictures.picture import Box, Key, Line
 

@@ -8,13 +8,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.findings.why_not import NO_LEAK, NO_SOURCE, THROUGH
 from rosprivacy.analysis.model import CANNOT
+from rosprivacy.analysis.whatif.why_not import NO_LEAK, NO_SOURCE, THROUGH
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from rosprivacy.analysis.findings.why_not import Obstacle, WhyNot
+    from rosprivacy.analysis.whatif.why_not import Obstacle, WhyNot
 
 SILENT = {
     NO_SOURCE: "no label says that it brings in {category}",

@@ -10,15 +10,15 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.answer import ClosedByTypes
+from rosprivacy.analysis.answer import ClosedByTypes, Verdict
 from rosprivacy.analysis.contexts import Contexts
-from rosprivacy.analysis.findings.answered_by_globs import answered_by_globs
 from rosprivacy.analysis.findings.doubts import doubts, judged
 from rosprivacy.analysis.findings.findings import Options, analyse, chosen_findings
 from rosprivacy.analysis.findings.processed import lacks, processed
 from rosprivacy.analysis.fleet.likeness import pattern_id
 from rosprivacy.analysis.kernel.states import Net
 from rosprivacy.analysis.modes import Paths, View
+from rosprivacy.analysis.whatif.answered_by_globs import answered_by_globs
 from rosprivacy.assumptions import assumptions_of
 from rosprivacy.decided import accepts, doubts_decided, joined_to, law_of
 from rosprivacy.ingest.labels.shipped import infrastructure_of
@@ -77,7 +77,7 @@ def answer(system: System, question: Question, *, count_paths: bool = True, befo
     earlier = before.analysis.spread if before else None
     analysis = analyse(system.graph, bound, system.vocabulary.hierarchy, options, earlier)
     if bound is not system.bound:
-        analysis = _beside(system, options, analysis)
+        analysis = _under_types(system, options, analysis)
     elif limits and system.graph.view == View.declared:
         analysis = replace(analysis, closed=ClosedByTypes())
     view = _view(system, analysis, groups) if system.is_fleet else None
@@ -86,15 +86,25 @@ def answer(system: System, question: Question, *, count_paths: bool = True, befo
     return concluded(replace(system, bound=bound), question, analysis, view, options)
 
 
-def _beside(system: System, options: Options, analysis: Analysis) -> Analysis:
-    """An analysis under what types cannot carry, with what only this closes: the whole is analysed without it, too."""
-    from rosprivacy.analysis.findings.held_by_types import held_by_types  # noqa: PLC0415 - light start
+def _under_types(system: System, options: Options, under: Analysis) -> Analysis:
+    """An analysis under what types cannot carry, with what only this closes, by an analysis of the whole without it.
 
-    closed = _closed(system, analysis) if options.choose else None
+    A type reviews nothing: what lies behind a limit is as open as before (rule S15). The verdict follows from that.
+    """
+    from rosprivacy.analysis.kernel.type_limits import closed  # noqa: PLC0415 - light start
+
+    chosen = _closed(system, under) if options.choose else None
     hierarchy = system.vocabulary.hierarchy
-    without = analyse(system.graph, system.bound, hierarchy, options._replace(choose=closed, paths=Paths.witness))
-    gone = closed.of(without.findings) if closed else _gone(system, analysis, without)
-    return held_by_types(analysis, without, gone)
+    without = analyse(system.graph, system.bound, hierarchy, options._replace(choose=chosen, paths=Paths.witness))
+    gone = chosen.of(without.findings) if chosen else _gone(system, under, without)
+    mask = sum(under.spread.both(category) for category in under.emitted)
+    leak = any(finding.stands for finding in under.findings)
+    return replace(
+        under,
+        open=without.open,
+        verdict=Verdict.of(leak=leak, is_open=bool(without.open), known=not under.lacking),
+        closed=ClosedByTypes(*closed(under.spread, mask), gone),
+    )
 
 
 def _gone(system: System, under: Analysis, without: Analysis) -> tuple[Finding, ...]:

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
     import networkx as nx
 
-    from rosprivacy.analysis.findings.why_not import WhyNot
     from rosprivacy.analysis.model import Element, Policy
+    from rosprivacy.analysis.whatif.why_not import WhyNot
     from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.ingest.types.types_file import TypesFile
     from rosprivacy.outputs import Findings

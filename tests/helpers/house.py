@@ -38,6 +38,7 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "legal": MODEL | {"answer"},
         "contexts": MODEL | {"answer"},
         "findings": FACTS,
+        "whatif": FACTS | {"findings"},
         "fleet": FACTS | {"findings"},
         "mitigation": FACTS | {"findings"},
         "parts": FACTS | {"findings", "fleet"},

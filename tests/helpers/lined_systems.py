@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 from hypothesis import strategies as st
 
 from rosprivacy.analysis.findings.findings import analyse
-from rosprivacy.analysis.findings.ledger import ledger
 from rosprivacy.analysis.model import GLOB, Bound, Flow, FlowGraph, Grant, Place, Statement
+from rosprivacy.analysis.whatif.ledger import ledger
 from tests.helpers.systems import System, statement, systems
 
 if TYPE_CHECKING:
-    from rosprivacy.analysis.findings.ledger import TakenAway
+    from rosprivacy.analysis.whatif.ledger import TakenAway
     from tests.helpers.brute import Brute
 
 ADDS = {"source", "leak"}

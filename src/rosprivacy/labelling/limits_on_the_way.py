@@ -19,11 +19,11 @@ from rosprivacy.ingest.suggestions.choosing import overlap
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
-    from rosprivacy.analysis.findings.ledger import TakenAway
     from rosprivacy.analysis.kernel.search import Search
     from rosprivacy.analysis.meeting import Meeting
     from rosprivacy.analysis.model import Element, Statement
     from rosprivacy.analysis.suggesting.written import WrittenLabel
+    from rosprivacy.analysis.whatif.ledger import TakenAway
     from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.ingest.suggestions.accepting import NewLabel
     from rosprivacy.ontology.vocabulary import Vocabulary

@@ -15,8 +15,8 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputErrors, LabelError
-from rosprivacy.analysis.findings.answered_by_globs import answered_by_globs
 from rosprivacy.analysis.model import Place
+from rosprivacy.analysis.whatif.answered_by_globs import answered_by_globs
 from rosprivacy.answering import answer
 from rosprivacy.ingest.fleet.dds_domains import called_in_fleet
 from rosprivacy.ingest.labels.edited_entries import Said
@@ -35,7 +35,7 @@ from rosprivacy.reading.robot_system import answer_robot, read_label_files
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from rosprivacy.analysis.findings.answered_by_globs import ByGlobs
+    from rosprivacy.analysis.answer import ByGlobs
     from rosprivacy.ingest.labels.pins import Spot
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.reading.fleet_system import FleetSystem

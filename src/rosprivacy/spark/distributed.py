@@ -17,7 +17,7 @@ import numpy as np
 
 from rosprivacy.analysis.answer import Verdict
 from rosprivacy.analysis.errors import FleetError, InputError, InputErrors
-from rosprivacy.analysis.findings.grounds import grounds
+from rosprivacy.analysis.findings.open_questions import grounds
 from rosprivacy.analysis.fleet.counts import Counts, counted
 from rosprivacy.analysis.fleet.patterns import different
 from rosprivacy.analysis.fleet.source_leak_pairs import forms

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.answer import Verdict
 from rosprivacy.analysis.findings.findings import Options, analyse
-from rosprivacy.analysis.findings.grounds import lacking
+from rosprivacy.analysis.findings.open_questions import lacking
 from rosprivacy.analysis.fleet.patterns import FleetView, patterns_of
 from rosprivacy.ingest.fleet.fleet_graph import place_chosen
 from rosprivacy.spark.units import split

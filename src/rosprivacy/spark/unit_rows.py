@@ -11,10 +11,10 @@ from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.answer import robot_verdicts
-from rosprivacy.analysis.findings.answered_by_globs import answered_by_globs
 from rosprivacy.analysis.findings.doubts import doubts
 from rosprivacy.analysis.findings.findings import Options, analyse
 from rosprivacy.analysis.fleet.source_leak_pairs import pairs
+from rosprivacy.analysis.whatif.answered_by_globs import answered_by_globs
 from rosprivacy.assumptions import assumptions_of, files_read, remembered, types_read
 from rosprivacy.ingest.database.fleet_rows import FleetRows
 from rosprivacy.ingest.database.rows import rows_of

@@ -12,10 +12,9 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 import numpy as np
 
 from rosprivacy.analysis.errors import InputErrors
-from rosprivacy.analysis.findings.closed_by_shipped import closed_by_shipped
+from rosprivacy.analysis.findings.closures import closed_by_shipped
 from rosprivacy.analysis.findings.concerns import concerns
-from rosprivacy.analysis.findings.grounds import Grounds, grounds
-from rosprivacy.analysis.findings.open_questions import open_bits
+from rosprivacy.analysis.findings.open_questions import Grounds, grounds, open_bits
 from rosprivacy.analysis.fleet.counts import Counts, counted
 from rosprivacy.analysis.kernel.arrays import of_elements
 from rosprivacy.analysis.kernel.spreading import fill, meaning

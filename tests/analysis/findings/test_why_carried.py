@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from rosprivacy.analysis.example import ARCHIVE, CAMERA, ROSOUT, factory
 from rosprivacy.analysis.findings.findings import analyse
-from rosprivacy.analysis.findings.why_carried import WhyCarried, why_carried
+from rosprivacy.analysis.findings.witness import WhyCarried, why_carried
 from tests.helpers.more_systems import wildcards
 from tests.helpers.systems import analysed, systems
 

@@ -13,7 +13,7 @@ from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.example import ARCHIVE, CAMERA, factory
 from rosprivacy.analysis.findings.findings import Options, analyse
 from rosprivacy.analysis.findings.review_order import review_order
-from rosprivacy.analysis.findings.why_carried import WhyCarried
+from rosprivacy.analysis.findings.witness import WhyCarried
 from rosprivacy.analysis.kernel.spreading import spread
 from rosprivacy.analysis.model import Method
 from tests.helpers.more_systems import ranked, wildcards

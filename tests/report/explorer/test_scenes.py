@@ -9,8 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rosprivacy.analysis.findings.why_carried import WhyCarried
-from rosprivacy.analysis.findings.witness import Witness
+from rosprivacy.analysis.findings.witness import WhyCarried, Witness
 from rosprivacy.report.catalogs.words import IN_ENGLISH
 from rosprivacy.report.explorer.choice import choose
 from rosprivacy.report.explorer.folding import folded_by_place

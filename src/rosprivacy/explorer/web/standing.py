@@ -8,7 +8,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.findings.why_carried import WhyCarried
+from rosprivacy.analysis.findings.witness import WhyCarried
 from rosprivacy.analysis.kernel.vertices import by_identity
 from rosprivacy.analysis.suggesting.reached_kinds import reached_kinds
 from rosprivacy.explorer.element_ids import by_id, element_id

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rosprivacy.analysis.findings.answered_by_globs import answered_by_globs
+from rosprivacy.analysis.whatif.answered_by_globs import answered_by_globs
 from tests.helpers.more_systems import ranked
 from tests.helpers.systems import PARENTS, System, analysed, findings_and_questions, index, sent, those_of_brute_force
 

@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.findings.findings import analyse
-from rosprivacy.analysis.findings.ledger import ledger
 from rosprivacy.analysis.model import Place
+from rosprivacy.analysis.whatif.ledger import ledger
 from tests.helpers.lined_systems import ADDS, stated
 from tests.helpers.random_fleets import Case, fleets, found_in
 from tests.helpers.systems import HIERARCHY, System
@@ -24,7 +24,7 @@ from tests.helpers.systems import HIERARCHY, System
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from rosprivacy.analysis.findings.ledger import TakenAway
+    from rosprivacy.analysis.whatif.ledger import TakenAway
     from tests.helpers.brute import Brute
     from tests.helpers.lined_systems import Stated
 

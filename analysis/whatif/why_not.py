@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections import defaultdict
 from dataclasses import dataclass
 from heapq import heappop, heappush
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.kernel.bits import bits_of
 from rosprivacy.analysis.kernel.roles import NOTHING_SAID
@@ -20,11 +20,13 @@ from rosprivacy.analysis.kernel.states import made
 from rosprivacy.analysis.model import CANNOT
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.answer import Analysis, Finding
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Element, Place, Statement
+
+    State = tuple[int, int]  # vertex, bit with which data is about to leave
 
 NO_SOURCE, NO_LEAK, THROUGH = "no-source", "no-leak", "other-channels"
 
@@ -80,9 +82,6 @@ class WhyNot:
     reached: int
 
 
-State = tuple[int, int]  # vertex, bit with which data is about to leave
-
-
 def why_not(analysis: Analysis, source: Sequence[int], leak: Sequence[int], category: str) -> WhyNot:
     """Return what is between two elements for one category.
 
@@ -105,28 +104,21 @@ def why_not(analysis: Analysis, source: Sequence[int], leak: Sequence[int], cate
     >>> [(obstacle.by, obstacle.element.name, *map(str, obstacle.places)) for obstacle in answer.obstacles]
     [('no-source', '/face_id'), ('only', '/faces', 'labels.yaml:5')]
     """
-    spread = analysis.spread
-    elements = spread.graph.elements
+    spread, elements = analysis.spread, analysis.spread.graph.elements
     first, last = elements[source[0]], elements[leak[0]]
-    finding = next(
-        (
-            f for f in analysis.findings
-            if (f.source.identity, f.leak.identity) == (first.identity, last.identity) and category == f.category
-        ),
-        None,
-    )  # fmt: skip
-    path, obstacles = ((), ()) if finding else _easiest(spread, source, leak, category)
-    return WhyNot(
-        category, first, last, finding, finding.witness if finding else path, obstacles,
-        sum(bool(spread.present(v) & spread.both(category)) for v in range(len(elements))),
-    )  # fmt: skip
+    ends = first.identity, last.identity, category
+    between = (f for f in analysis.findings if (f.source.identity, f.leak.identity, f.category) == ends)
+    finding = next(between, None)
+    path, obstacles = (finding.witness, ()) if finding else _easiest(spread, source, leak, category)
+    reached = sum(bool(spread.present(v) & spread.both(category)) for v in range(len(elements)))
+    return WhyNot(category, first, last, finding, path, obstacles, reached)
 
 
 def _easiest(
     spread: Spread, source: Sequence[int], leak: Sequence[int], category: str
 ) -> tuple[tuple[Element, ...], tuple[Obstacle, ...]]:
     """The path with the fewest obstacles, then the shortest; ties fall to the lower vertex (rule S14)."""
-    steps = _Steps.of(spread)
+    steps = _Steps(spread, _flows(spread), frozenset(leak))
     bit = spread.bits.plain(spread.categories.index(category))
     queue: list[tuple[int, int, State]] = []
     best: dict[State, tuple[int, int]] = {}
@@ -138,16 +130,15 @@ def _easiest(
             heappush(queue, (*cost, state))
 
     for vertex in source:
-        obstacles = steps.begins(vertex, bit)
-        reach((vertex, bit), (len(obstacles), 0), None, obstacles)
-    ends = set(leak)
+        missing = () if spread.begins(vertex) >> bit & 1 else (steps.obstacle(NO_SOURCE, bit, vertex),)
+        reach((vertex, bit), (len(missing), 0), None, missing)
     while queue:
         closed, length, state = heappop(queue)
         if (closed, length) != best[state]:
             continue
-        if state[0] in ends and (state[0] not in source or length):
+        if state[0] in steps.ends and (state[0] not in source or length):
             return _read_back(spread, came, state)
-        for following, obstacles in steps.after(state, ends):
+        for following, obstacles in steps.after(*state):
             reach(following, (closed + len(obstacles), length + 1), state, obstacles)
     return (), ()
 
@@ -156,65 +147,49 @@ def _read_back(
     spread: Spread, came: Mapping[State, tuple[State | None, tuple[Obstacle, ...]]], state: State
 ) -> tuple[tuple[Element, ...], tuple[Obstacle, ...]]:
     path: list[Element] = []
-    obstacles: list[Obstacle] = []
+    obstacles: tuple[Obstacle, ...] = ()
     at: State | None = state
     while at is not None:
-        path.append(spread.graph.elements[at[0]])
-        before, here = came[at]
-        obstacles = [*here, *obstacles]
-        at = before
-    path.reverse()
-    shown = [element for i, element in enumerate(path) if not i or element.shown_as != path[i - 1].shown_as]
-    return tuple(shown), tuple(obstacles)
+        element = spread.graph.elements[at[0]]
+        at, here = came[at]
+        obstacles = (*here, *obstacles)
+        if path and element.shown_as == path[-1].shown_as:  # the sides of a wildcard are one: the first is shown
+            path.pop()
+        path.append(element)
+    return tuple(reversed(path)), obstacles
 
 
-@dataclass(frozen=True, slots=True)
-class _Steps:
-    """Where data could go from a state, and what stands against it.
+def _flows(spread: Spread) -> dict[int, list[tuple[int, int, tuple[Place, ...]]]]:
+    """Vertex -> (target, index of the flow or -1, lines of the DENY that takes it back)."""
+    flows: dict[int, list[tuple[int, int, tuple[Place, ...]]]] = defaultdict(list)
+    for index, flow in enumerate(spread.graph.flows):
+        flows[flow.source].append((flow.target, index, ()))
+    for flow in spread.graph.taken_back:
+        flows[flow.source].append((flow.target, -1, tuple(denial.place for denial in flow.denials)))
+    return flows
 
-    Attributes
-    ----------
-    flows
-        Vertex -> (target, index of the flow or -1, lines of the DENY).
-    """
+
+class _Steps(NamedTuple):
+    """Where data could go from a state, and what stands against it; ``ends`` are vertices that are asked about."""
 
     spread: Spread
-    flows: Mapping[int, list[tuple[int, int, tuple[Place, ...]]]]
+    flows: Mapping[int, Sequence[tuple[int, int, tuple[Place, ...]]]]
+    ends: Collection[int]
 
-    @classmethod
-    def of(cls, spread: Spread) -> _Steps:
-        flows: dict[int, list[tuple[int, int, tuple[Place, ...]]]] = defaultdict(list)
-        for index, flow in enumerate(spread.graph.flows):
-            flows[flow.source].append((flow.target, index, ()))
-        for flow in spread.graph.taken_back:
-            flows[flow.source].append((flow.target, -1, _sorted(denial.place for denial in flow.denials)))
-        return cls(spread, flows)
-
-    def begins(self, vertex: int, bit: int) -> tuple[Obstacle, ...]:
-        """What is missing for an element to be a source."""
-        if self.spread.begins(vertex) >> bit & 1:
-            return ()
-        name = self._name(bit)
-        return (Obstacle(NO_SOURCE, self.spread.graph.elements[vertex], None, name),)
-
-    def after(self, state: State, ends: set[int]) -> Iterator[tuple[State, tuple[Obstacle, ...]]]:
+    def after(self, vertex: int, bit: int) -> Iterator[tuple[State, tuple[Obstacle, ...]]]:
         """The states that follow, with the obstacles of the step and of the element where it ends."""
-        vertex, bit = state
-        elements, name = self.spread.graph.elements, self._name(bit)
+        spread = self.spread
         for target, index, denials in self.flows.get(vertex, ()):
             along: tuple[Obstacle, ...] = ()
             if denials:
-                along = (Obstacle("deny", elements[vertex], elements[target], name, denials),)
-            elif not self.spread.flow_keeps.get(index, -1) >> bit & 1:
-                lines = self.spread.flow_facts[index][name].closers
-                along = (self._closed(lines, vertex, target, name),)
+                along = (self.obstacle("deny", bit, vertex, target, denials),)
+            elif not spread.flow_keeps.get(index, -1) >> bit & 1:
+                closers = spread.flow_facts[index][self._name(bit)].closers
+                along = (self._closed(closers, bit, vertex, target),)
             elif self._elsewhere(vertex, bit, index):
-                along = (Obstacle(THROUGH, elements[vertex], elements[target], name),)
-            for onward, here in self._arriving(target, bit, end=target in ends):
+                along = (self.obstacle(THROUGH, bit, vertex, target),)
+            for onward, here in self._arriving(target, bit):
                 yield (target, onward), (*along, *here)
-
-    def _name(self, bit: int) -> str:
-        return self.spread.categories[self.spread.bits.category(bit)]
 
     def _elsewhere(self, vertex: int, bit: int, index: int) -> bool:
         """Whether a source names other channels than this one for what it emits."""
@@ -223,28 +198,31 @@ class _Steps:
         arrives = spread.arrives.get(vertex, 0) | spread.emits.get(vertex, 0)
         return bool(single) and not arrives >> bit & 1 and not spread.flow_emits.get(index, 0) >> bit & 1
 
-    def _arriving(self, vertex: int, bit: int, *, end: bool) -> Iterator[tuple[int, tuple[Obstacle, ...]]]:
+    def _arriving(self, vertex: int, bit: int) -> Iterator[tuple[int, tuple[Obstacle, ...]]]:
         """What goes on from an element that data arrives at (or ends there): as it is, and as what is made of it."""
         spread = self.spread
-        element, name = spread.graph.elements[vertex], self._name(bit)
-        if end:
-            leaks = spread.leaks.get(vertex, 0) >> bit & 1
-            yield bit, () if leaks else (Obstacle(NO_LEAK, element, None, name),)
+        if vertex in self.ends:
+            yield bit, self._no_leak(vertex, bit)
         elif spread.keeps.get(vertex, -1) >> bit & 1:
             yield bit, ()
         else:
-            lines = spread.facts[vertex].get(name, NOTHING_SAID).closers
-            yield bit, (self._closed(lines, vertex, -1, name),)
+            closers = spread.facts[vertex].get(self._name(bit), NOTHING_SAID).closers
+            yield bit, (self._closed(closers, bit, vertex),)
         for after in bits_of(spread.bits.planes(made(spread, vertex, 1 << bit))[0]):
-            leaks = not end or spread.leaks.get(vertex, 0) >> after & 1
-            yield after, () if leaks else (Obstacle(NO_LEAK, element, None, self._name(after)),)
+            yield after, self._no_leak(vertex, after) if vertex in self.ends else ()
 
-    def _closed(self, lines: tuple[Statement, ...], vertex: int, target: int, name: str) -> Obstacle:
+    def _no_leak(self, vertex: int, bit: int) -> tuple[Obstacle, ...]:
+        return () if self.spread.leaks.get(vertex, 0) >> bit & 1 else (self.obstacle(NO_LEAK, bit, vertex),)
+
+    def _closed(self, lines: tuple[Statement, ...], bit: int, vertex: int, target: int = -1) -> Obstacle:
+        role = next((line.role for line in lines if line.role != CANNOT), CANNOT)
+        return self.obstacle(role, bit, vertex, target, (line.place for line in lines))
+
+    def obstacle(self, by: str, bit: int, vertex: int, target: int = -1, places: Iterable[Place] = ()) -> Obstacle:
+        """Return what is in the way of a bit at an element, or along a flow where a target is named."""
         elements = self.spread.graph.elements
         to = elements[target] if target >= 0 else None
-        role = next((line.role for line in lines if line.role != CANNOT), CANNOT)
-        return Obstacle(role, elements[vertex], to, name, _sorted(line.place for line in lines))
+        return Obstacle(by, elements[vertex], to, self._name(bit), tuple(sorted(set(places))))
 
-
-def _sorted(places: Iterator[Place]) -> tuple[Place, ...]:
-    return tuple(sorted(set(places), key=lambda place: (place.file, place.line)))
+    def _name(self, bit: int) -> str:
+        return self.spread.categories[self.spread.bits.category(bit)]

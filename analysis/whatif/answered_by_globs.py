@@ -8,41 +8,21 @@ something else with it, or be open. What is pinned has been seen, and is not her
 from __future__ import annotations
 
 from collections import defaultdict
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.answer import ByGlobs
 from rosprivacy.analysis.findings.closures import closures
 from rosprivacy.analysis.kernel.ranks import by_line, closes
 from rosprivacy.analysis.kernel.roles import facts
 from rosprivacy.analysis.model import STANDARD
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.kernel.roles import Facts
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Bound, Element, Place, Statement
-
-
-class ByGlobs(NamedTuple):
-    """An element, or a flow, that only globs answer for.
-
-    Attributes
-    ----------
-    element
-        The start of a flow; of a service or action one of its legs.
-    to
-        The end of a flow; None of an element.
-    categories
-        Kinds that get there, as they are emitted, sorted; those that end there are among them.
-    places
-        The lines of the globs, sorted.
-    """
-
-    element: Element
-    to: Element | None
-    categories: tuple[str, ...]
-    places: tuple[Place, ...]
 
 
 def answered_by_globs(spread: Spread, bound: Bound, hierarchy: Hierarchy) -> tuple[ByGlobs, ...]:
@@ -56,29 +36,29 @@ def answered_by_globs(spread: Spread, bound: Bound, hierarchy: Hierarchy) -> tup
     [('/faces', ('FaceTemplate', 'Video'), 'labels.yaml:5')]
     """
     answers = _Answers(spread, hierarchy)
-    vertices = {vertex for vertex, said in bound.elements.items() if answers.asked(spread.facts[vertex], said)}
-    flows = {index for index, said in bound.flows.items() if answers.asked(spread.flow_facts[index], said)}
-    if not vertices and not flows:
+    at = [v for v, said in sorted(bound.elements.items()) if answers.asked(spread.facts[v], said)]
+    along = [index for index, said in sorted(bound.flows.items()) if answers.asked(spread.flow_facts[index], said)]
+    if not at and not along:
         return ()
     ends: dict[int, int] = defaultdict(int)
-    for closure in closures(spread) if vertices else ():
+    for closure in closures(spread) if at else ():
         if closure.to < 0:
             ends[closure.vertex] |= closure.bits
     elements = spread.graph.elements
     rows: dict[tuple[Element, Element | None, tuple[Place, ...]], set[str]] = defaultdict(set)
-    first: dict[tuple[str, str, str], Element] = {}
-    for vertex in sorted(vertices):
+    first: dict[tuple[str, str, str], Element] = {}  # the legs and sides of a channel are one
+    for vertex in at:
         here = spread.present(vertex) | ends[vertex] | _taken_back(spread, vertex)
         named = spread.named.get(vertex, 0)
         for places, kinds in answers.of(spread.facts[vertex], bound.elements[vertex], here, named).items():
             rows[first.setdefault(elements[vertex].identity, elements[vertex]), None, places].update(kinds)
-    for index in sorted(flows):
+    for index in along:
         flow = spread.graph.flows[index]
         sent = spread.sent.get(flow.source, 0) | spread.flow_emits.get(index, 0)
         source, target = (first.setdefault(elements[v].identity, elements[v]) for v in (flow.source, flow.target))
         for places, kinds in answers.of(spread.flow_facts[index], bound.flows[index], sent, flow=True).items():
             rows[source, target, places].update(kinds)
-    return tuple(ByGlobs(one, to, tuple(sorted(kinds)), places) for (one, to, places), kinds in rows.items())
+    return tuple(ByGlobs(at, to, tuple(sorted(kinds)), places) for (at, to, places), kinds in rows.items())
 
 
 def _unseen(statement: Statement) -> bool:
@@ -120,25 +100,26 @@ class _Answers:
         """
         key = id(decided), here, named
         if key not in self._known:
-            found: dict[tuple[Place, ...], set[str]] = defaultdict(set)
+            by_places: dict[tuple[Place, ...], set[str]] = defaultdict(set)
             makes = {made for fact in decided.values() for made in fact.derives}  # who makes it knows of it
             for category in self._spread.names(here):
-                some = said
+                holding = said
                 if named & self._spread.both(category):
-                    some = [s for s in said if s.by_name or not closes(s, category, self._hierarchy)]
-                if places := self._by(some, category, known=flow or category in makes):
-                    found[places].add(category)
-            self._known[key] = found
+                    holding = [s for s in said if s.by_name or not closes(s, category, self._hierarchy)]
+                if places := self._by(holding, category, known=flow or category in makes):
+                    by_places[places].add(category)
+            self._known[key] = by_places
         return self._known[key]
 
     def _by(self, said: Sequence[Statement], category: str, *, known: bool) -> tuple[Place, ...]:
         """The lines of globs without which something else would be done with a category; none if nothing would."""
-        without = tuple(s._replace(pinned=()) if _unseen(s) else s for s in said)
-        now, then = (facts("", some, category, self._hierarchy) for some in (tuple(said), without))
+        without = [s._replace(pinned=()) if _unseen(s) else s for s in said]
+        now, then = (facts("", statements, category, self._hierarchy) for statements in (said, without))
         if _does(now, known=known) == _does(then, known=known):
             return ()
         globs = [s for s in said if _unseen(s)]
-        return _places([s for s in globs if s in now.accepted] or globs)
+        lines = sorted([s for s in globs if s in now.accepted] or globs, key=by_line)
+        return tuple(dict.fromkeys(s.place for s in lines))
 
 
 def _does(fact: Facts, *, known: bool) -> tuple[object, ...]:
@@ -146,7 +127,3 @@ def _does(fact: Facts, *, known: bool) -> tuple[object, ...]:
     through = fact.through if fact.emits else ()
     flows = (fact.emits, through, fact.passes, fact.pseudonymises, fact.derives, fact.method)
     return (*flows, fact.leaks, known or fact.covered)
-
-
-def _places(globs: Iterable[Statement]) -> tuple[Place, ...]:
-    return tuple(dict.fromkeys(s.place for s in sorted(globs, key=by_line)))

@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.example import ARCHIVE, CAMERA, DISK, FACES, FILTER, FILTERED, ROSOUT, factory
-from rosprivacy.analysis.findings import reliance
 from rosprivacy.analysis.findings.findings import Options, analyse
-from rosprivacy.analysis.findings.reliance import BRINGS_IN, Opening, Reliance, reliances
 from rosprivacy.analysis.model import GLOB, NOWHERE, Place, Statement
+from rosprivacy.analysis.whatif import reliance
+from rosprivacy.analysis.whatif.reliance import BRINGS_IN, Opening, Reliance, reliances
 from tests.helpers.lined_systems import stated
 from tests.helpers.more_systems import ranked, wildcards
 from tests.helpers.systems import systems
@@ -110,7 +110,7 @@ def compared(system: Any, options: Options) -> int:
 
 
 def test_where_no_statement_takes_anything_away_no_data_is_followed() -> None:
-    """On a fleet that would be most of all that is done (review of performance)."""
+    """On a fleet that would be most of all that is done."""
     graph, bound, hierarchy = factory()
     brings_in = {v: tuple(s for s in said if s.role in BRINGS_IN) for v, said in bound.elements.items()}
     only = replace(bound, elements=brings_in, flows={})

@@ -1,9 +1,10 @@
-"""What was taken away on the data's side, and on whose word: the ledger of an answer.
+"""What was taken away on the data's side, on whose word, and what lies behind: the ledger of an answer, and its globs.
 
 In: an ``Analysis`` with its labels. Out: ``TakenAway`` rows. Whatever keeps data from going on, or an element from
 being asked about, stands in a row: a DENY, a label, a standard channel, a decision, a restriction, a file that was not
-read, a channel that nobody known reads. A row says which leak or open element lies behind it. Nothing that a person
-says can make a finding vanish without a row; a property test holds that on random systems.
+read, a channel that nobody known reads. Nothing that a person says can make a finding vanish without a row; a property
+test holds that on random systems. Then ``GlobUse`` rows: a person who writes a glob sees one line; what it answers for
+can be most of a system.
 
 Source: rules S5, S7, S8, S11 and S13: what stops data must be stated by somebody, by name, and told.
 """
@@ -13,25 +14,41 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import TYPE_CHECKING, NamedTuple
 
-from rosprivacy.analysis.findings.closures import ABSENT, PERHAPS, TYPE, Closure, behind, closures, line_key
+from rosprivacy.analysis.answer import Verdict
+from rosprivacy.analysis.findings.closures import (
+    ABSENT,
+    DENY,
+    PERHAPS,
+    STANDARD_CHANNEL,
+    TYPE,
+    behind,
+    closures,
+    line_key,
+)
 from rosprivacy.analysis.findings.concerns import concerns
 from rosprivacy.analysis.kernel.roles import NOTHING_SAID
-from rosprivacy.analysis.model import Place, Statement
+from rosprivacy.analysis.model import STANDARD, Statement
 from rosprivacy.analysis.non_ros import unanswered
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Collection, Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.kernel.roles import Facts
     from rosprivacy.analysis.kernel.spread import Spread
-    from rosprivacy.analysis.model import Bound, Diagnostic, Element
+    from rosprivacy.analysis.model import Bound, Diagnostic, Element, Place
+
+    Identity = tuple[str, str, str]
 
 OUTDONE, REVIEW, DECISION, RESTRICTION = "outdone", "review", "decision", "restriction"
 UNREAD, UNKNOWN_READER = "unread-file", "unknown-reader"
-BY = ("deny", "standard-channel", TYPE, "mundane", "only", "never", "sanitizer", ABSENT, OUTDONE, REVIEW, DECISION,
+BY = (DENY, STANDARD_CHANNEL, TYPE, "mundane", "only", "never", "sanitizer", ABSENT, OUTDONE, REVIEW, DECISION,
       RESTRICTION, UNREAD, UNKNOWN_READER)  # fmt: skip
+
+LAST = "last-path"
+CLOSERS = frozenset({"mundane", "only", "never", "sanitizer", ABSENT})
+WATCHED = frozenset({"mundane", "conduit", "sanitizer"})  # what one word too much turns into a wrong 'nothing found'
 
 
 class TakenAway(NamedTuple):
@@ -106,14 +123,19 @@ def ledger(
     spread = analysis.spread
     asked = sum(spread.both(category) for category in analysis.emitted)
     leaks = _leaks(spread, bound, hierarchy)
+    unread = (diagnostic for diagnostic in dict.fromkeys(diagnostics) if diagnostic.code == UNREAD)
     rows = [
         *_closed(spread, {v: bits & asked for v, bits in leaks.items()}, _unlabelled(spread, bound, asked)),
         *_outdone(spread),
         *_reviewed(spread, asked),
-        *_decided(analysis),
+        *(
+            TakenAway(DECISION, finding.source, None, (finding.category,), (), leak=finding.leak, note=finding.id)
+            for finding in analysis.findings
+            if finding.accepted
+        ),
         *_restricted(spread, leaks, asked),
-        *_unread(diagnostics),
-        *_unknown(analysis),
+        *(TakenAway(UNREAD, None, None, (), (d.place,), note=d.message) for d in unread),
+        *(TakenAway(UNKNOWN_READER, e.element, None, e.categories, (), note=e.what) for e in analysis.unknown_ends),
     ]
     return tuple(sorted(rows, key=_order))
 
@@ -131,41 +153,31 @@ def _unlabelled(spread: Spread, bound: Bound, asked: int) -> dict[int, int]:
     """Vertex -> the bits for which it is or would be open (rule S11)."""
     elements = spread.graph.elements
     unknown = unanswered(elements, bound.outside)
-    covered = {v: bits for v, bits in spread.covered.items() if v not in unknown}
-    return {v: asked & ~covered.get(v, 0) for v in range(len(elements))}
+    return {v: asked & ~(0 if v in unknown else spread.covered.get(v, 0)) for v in range(len(elements))}
 
 
 def _closed(spread: Spread, leaks: Mapping[int, int], unlabelled: Mapping[int, int]) -> Iterator[TakenAway]:
     """What labels and DENY lines close, with what lies behind."""
-    closed = closures(spread)
+    closed, elements = closures(spread), spread.graph.elements
     to_leak, to_open = behind(spread, closed, leaks), behind(spread, closed, unlabelled)
-    elements = spread.graph.elements
     for number, closure in enumerate(closed):
-        ends = {to_leak.get(number), to_open.get(number)}
-        leak, question = (ends_at.get(number) for ends_at in (to_leak, to_open))
+        leak, question = to_leak.get(number), to_open.get(number)
+        perhaps = PERHAPS in (leak, question)
         if closure.to < 0 and elements[closure.vertex].is_channel and leaks.get(closure.vertex, 0) & closure.bits:
             leak = closure.vertex  # others could read it there (rule S10)
+        lines = closure.lines
         yield TakenAway(
             closure.by,
             elements[closure.vertex],
             None if closure.to < 0 else elements[closure.to],
             spread.names(closure.bits),
-            _places(closure),
-            glob=bool(closure.lines) and all(isinstance(line, Statement) and line.glob for line in closure.lines),
-            leak=elements[leak] if leak is not None and leak != PERHAPS else None,
-            open=elements[question] if question is not None and question != PERHAPS else None,
+            tuple(sorted({line.place if isinstance(line, Statement) else line for line in lines})),
+            glob=bool(lines) and all(isinstance(line, Statement) and line.glob for line in lines),
+            leak=None if leak in (None, PERHAPS) else elements[leak],
+            open=None if question in (None, PERHAPS) else elements[question],
             itself=closure.itself,
-            perhaps=PERHAPS in ends,
+            perhaps=perhaps,
         )
-
-
-def _places(closure: Closure) -> tuple[Place, ...]:
-    places = {line.place if isinstance(line, Statement) else line for line in closure.lines}
-    return tuple(sorted(places, key=_line))
-
-
-def _line(place: Place) -> tuple[str, int]:
-    return (place.file, place.line)
 
 
 def _outdone(spread: Spread) -> Iterator[TakenAway]:
@@ -173,9 +185,9 @@ def _outdone(spread: Spread) -> Iterator[TakenAway]:
     elements = spread.graph.elements
     rows: dict[tuple[int, Place, Place], tuple[set[str], str, bool]] = {}
     alike = {id(decided): decided for decided in spread.facts.values()}  # the same is said of many elements
-    some = {one for one, decided in alike.items() if any(fact.outdone for fact in decided.values())}
-    for vertex, decided in sorted(spread.facts.items()) if some else ():
-        if id(decided) not in some:
+    with_outdone = {key for key, decided in alike.items() if any(fact.outdone for fact in decided.values())}
+    for vertex, decided in sorted(spread.facts.items()) if with_outdone else ():
+        if id(decided) not in with_outdone:
             continue
         here = spread.names(spread.present(vertex))
         for category, fact in sorted(decided.items()):
@@ -186,10 +198,10 @@ def _outdone(spread: Spread) -> Iterator[TakenAway]:
                     key = (vertex, statement.place, by.place)
                     rows.setdefault(key, (set(), statement.role, by.glob))[0].add(category)
     for (vertex, place, by_place), (categories, role, glob) in rows.items():
-        element, said = elements[vertex], f"of {place}" if place.line else "by its kind"
+        element, by_whom = elements[vertex], f"of {place}" if place.line else "by its kind"
         yield TakenAway(
             OUTDONE, element, None, tuple(sorted(categories)), (by_place,), glob=glob,
-            leak=element if role == "leak" else None, perhaps=role == "source", note=f"{role} {said}",
+            leak=element if role == "leak" else None, perhaps=role == "source", note=f"{role} {by_whom}",
         )  # fmt: skip
 
 
@@ -216,38 +228,126 @@ def _reviewed_by(
         if reviewers and not fact.leaks and not fact.emits:
             by_lines[tuple(sorted(reviewers, key=line_key))].append(category)
     for lines, categories in by_lines.items():
-        places = tuple(sorted({line.place for line in lines}, key=_line))
-        yield tuple(categories), places, all(line.glob for line in lines)
-
-
-def _decided(analysis: Analysis) -> Iterator[TakenAway]:
-    for finding in analysis.findings:
-        if finding.accepted:
-            yield TakenAway(DECISION, finding.source, None, (finding.category,), (), leak=finding.leak, note=finding.id)
+        yield tuple(categories), tuple(sorted({line.place for line in lines})), all(line.glob for line in lines)
 
 
 def _restricted(spread: Spread, leaks: Mapping[int, int], asked: int) -> Iterator[TakenAway]:
     """Kinds of data that are emitted and that the answer is not about."""
     for category in spread.categories:
         bits = spread.both(category)
-        if bits & asked:
-            continue
-        reached = [v for v, leaking in sorted(leaks.items()) if leaking & bits & spread.present(v)]
-        leak = spread.graph.elements[reached[0]] if reached else None
-        yield TakenAway(RESTRICTION, None, None, (category,), (), leak=leak)
-
-
-def _unread(diagnostics: Iterable[Diagnostic]) -> Iterator[TakenAway]:
-    for diagnostic in dict.fromkeys(diagnostics):
-        if getattr(diagnostic, "code", "") == UNREAD:
-            yield TakenAway(UNREAD, None, None, (), (diagnostic.place,), note=diagnostic.message)
-
-
-def _unknown(analysis: Analysis) -> Iterator[TakenAway]:
-    for end in analysis.unknown_ends:
-        yield TakenAway(UNKNOWN_READER, end.element, None, end.categories, (), note=end.what)
+        if not bits & asked:
+            reached = (v for v, leaking in sorted(leaks.items()) if leaking & bits & spread.present(v))
+            leak = next((spread.graph.elements[v] for v in reached), None)
+            yield TakenAway(RESTRICTION, None, None, (category,), (), leak=leak)
 
 
 def _order(row: TakenAway) -> tuple[object, ...]:
     ends = [element.sort_key() if element else () for element in (row.element, row.to, row.leak)]
-    return (BY.index(row.by), ends, [_line(place) for place in row.places], row.categories, row.note)
+    return (BY.index(row.by), ends, row.places, row.categories, row.note)
+
+
+class GlobUse(NamedTuple):
+    """What one line of labels does that names elements, or the ends of flows, by a glob.
+
+    Attributes
+    ----------
+    says
+        The roles that it gives, sorted.
+    elements
+        How many elements it decides: it is about them, and no label of higher rank says otherwise.
+    closed, reviewed
+        At how many of them data ends for it; how many are not asked about for it.
+    flows, flows_closed
+        How many flows between two elements it decides, and along how many data ends for it.
+    leak, open
+        A leak, and an open element, behind what it closes; None where there is none.
+    warning
+        ``LAST`` if without it the answer would not be that no leak was found; else empty.
+    """
+
+    place: Place
+    says: tuple[str, ...]
+    elements: int
+    closed: int
+    reviewed: int
+    leak: Element | None = None
+    open: Element | None = None
+    warning: str = ""
+    flows: int = 0
+    flows_closed: int = 0
+
+
+def globs(
+    analysis: Analysis, bound: Bound, taken: Iterable[TakenAway], left_out: Collection[str] = ()
+) -> tuple[GlobUse, ...]:
+    """Return a row for each line of a user's label files that names by a glob, in the order of the lines.
+
+    Parameters
+    ----------
+    taken
+        The ledger.
+    left_out
+        Robots that are not counted: another one stands for them.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.findings.findings import analyse
+    >>> graph, bound, hierarchy = factory()
+    >>> analysis = analyse(graph, bound, hierarchy)
+    >>> uses = globs(analysis, bound, ledger(analysis, bound, hierarchy))
+    >>> [(str(use.place), use.says, use.elements, use.closed, use.leak.name) for use in uses]
+    [('labels.yaml:5', ('only',), 1, 1, '/archive')]
+    """
+    says, ends = _said_by_globs(analysis.spread, bound, left_out)
+    rows: dict[Place, list[TakenAway]] = defaultdict(list)
+    for row in taken if says else ():
+        if row.glob and (row.by in CLOSERS or row.by == REVIEW):
+            for place in row.places:
+                rows[place].append(row)
+    return tuple(_use(place, says[place], ends[place], rows[place], analysis.verdict) for place in sorted(says))
+
+
+def _said_by_globs(
+    spread: Spread, bound: Bound, left_out: Collection[str]
+) -> tuple[dict[Place, set[str]], dict[Place, set[tuple[Identity, ...]]]]:
+    """What each line says, and the elements and flows at which it holds; all of them where nothing is emitted."""
+    elements, flows = spread.graph.elements, spread.graph.flows
+    at = [((v,), said, spread.facts.get(v, {})) for v, said in bound.elements.items()]
+    along = [
+        ((flows[index].source, flows[index].target), said, spread.flow_facts.get(index, {}))
+        for index, said in bound.flows.items()
+    ]
+    says: dict[Place, set[str]] = defaultdict(set)
+    ends: dict[Place, set[tuple[Identity, ...]]] = defaultdict(set)
+    for vertices, said, facts in (*at, *along):
+        by_users = [statement for statement in said if statement.glob and statement.rank[0] > STANDARD]
+        for statement in by_users if elements[vertices[0]].robot not in left_out else ():
+            says[statement.place].add(statement.role)
+            if not spread.categories or any(statement.line in fact.accepted for fact in facts.values()):
+                ends[statement.place].add(tuple(elements[vertex].identity for vertex in vertices))
+    return says, ends
+
+
+def _use(
+    place: Place, says: set[str], ends: set[tuple[Identity, ...]], rows: list[TakenAway], verdict: Verdict
+) -> GlobUse:
+    closed, reviewed = (
+        {tuple(end.identity for end in (row.element, row.to) if end) for row in rows if (row.by == REVIEW) is review}
+        for review in (False, True)
+    )
+    flows = sum(len(pair) > 1 for pair in ends)
+    watched = flows or not WATCHED.isdisjoint(says)
+    last = watched and verdict is Verdict.NO_LEAK_FOUND and any(row.closes or row.itself for row in rows)
+    return GlobUse(
+        place,
+        tuple(sorted(says)),
+        elements=len(ends) - flows,
+        closed=sum(len(there) == 1 for there in closed),
+        reviewed=len(reviewed),
+        leak=next((row.leak for row in rows if row.leak), None),
+        open=next((row.open for row in rows if row.open), None),
+        warning=LAST if last else "",
+        flows=flows,
+        flows_closed=sum(len(there) > 1 for there in closed),
+    )

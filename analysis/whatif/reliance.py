@@ -1,0 +1,465 @@
+"""What the answer hangs on: what each statement that takes data or a question away keeps from being found.
+
+In: an ``Analysis`` with its labels. Out: ``Reliance`` rows. A row says which findings, and which open questions, there
+would be if that one statement were wrong: if the system were analysed without it. It is a person's word, and this is
+what has to be checked first.
+
+The data of all sources is followed once, each source in a lane of its own (``Reach``). Where the system lets more pass
+without a statement and nothing less, only what is new is followed on from there; else the whole is followed again.
+
+Source: rules S7, S8, S10 and S11. Sanitizers, reviews (a conduit, ``mundane``, ``sensitive``, ``only``, ``never``),
+``absent``, ``none``; of the user's files and of shipped ones, by name or by glob. Sources, leaks and derivations bring
+in, and what is taken of an element by its kind is nobody's word.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from itertools import chain
+from typing import TYPE_CHECKING, NamedTuple
+
+from rosprivacy.analysis.case import Case
+from rosprivacy.analysis.errors import InputErrors
+from rosprivacy.analysis.findings.closures import line_key
+from rosprivacy.analysis.findings.concerns import concerns
+from rosprivacy.analysis.findings.findings import finding_id
+from rosprivacy.analysis.findings.open_questions import open_bits
+from rosprivacy.analysis.kernel import spreading
+from rosprivacy.analysis.kernel.bits import bits_of
+from rosprivacy.analysis.kernel.lanes import Doing, Flood
+from rosprivacy.analysis.model import CANNOT, DISCLOSURE, NOWHERE, Bound, Statement
+from rosprivacy.analysis.non_ros import unanswered
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+
+    from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.analysis.findings.concerns import Concern
+    from rosprivacy.analysis.hierarchy import Hierarchy
+    from rosprivacy.analysis.kernel.spread import Spread
+    from rosprivacy.analysis.model import Element
+
+    Key = tuple[str, int, int, int]  # kind, number of the category, source, leak
+    State = tuple[bool, bool]  # of a finding that is not accepted: whether it stands, whether plain data is in it
+    Pair = tuple[Mapping[Key, State], Mapping[Key, State]]  # findings at an element before and after
+    Same = tuple[Statement, tuple[str, ...]]  # a statement; of a name also the names, and the robots if typed by hand
+    Spots = tuple[list[int], list[int]]  # vertices and flows about which a statement is
+
+BRINGS_IN = frozenset({"source", "leak", "derivation"})
+TOGETHER = 64  # sources that are followed at once
+ROUNDS = 64  # statements for which the whole system is analysed again; of more it is said that it was not worked out
+
+
+class Opening(NamedTuple):
+    """A finding that there would be, or that would be worse.
+
+    Attributes
+    ----------
+    dismissed, pseudonymised
+        How it would be: only through another leak; in pseudonymised form only.
+    new
+        Whether there is none today; else it is dismissed or pseudonymised today, and would not be.
+    """
+
+    kind: str
+    category: str
+    source: Element
+    leak: Element
+    dismissed: bool
+    pseudonymised: bool
+    new: bool
+
+
+class Reliance(NamedTuple):
+    """What hangs on one statement.
+
+    Attributes
+    ----------
+    statement
+        With its line, and the reason that a person gives.
+    elements
+        Where it is said and data is; of what is said of a flow its start.
+    to
+        The ends of these flows.
+    findings
+        That there would be without it, sorted as findings are: those that stand first.
+    questions
+        (element, categories) that would be open, sorted.
+    refused
+        Why the system could not be analysed without it: the other labels would contradict each other. Else empty.
+    perhaps
+        Whether it was not worked out: too many statements need a whole analysis.
+    """
+
+    statement: Statement
+    elements: tuple[Element, ...]
+    to: tuple[Element, ...] = ()
+    findings: tuple[Opening, ...] = ()
+    questions: tuple[tuple[Element, tuple[str, ...]], ...] = ()
+    refused: str = ""
+    perhaps: bool = False
+
+    @property
+    def hangs(self) -> bool:
+        """Whether anything hangs on it, or may."""
+        return bool(self.findings or self.questions or self.refused or self.perhaps)
+
+
+def reliances(
+    analysis: Analysis, bound: Bound, hierarchy: Hierarchy, accepts: Callable[[Case], bool] | None = None
+) -> tuple[Reliance, ...]:
+    """Return what hangs on each statement on which anything does, in the order of files and lines.
+
+    Parameters
+    ----------
+    accepts
+        As of ``Options``.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.findings.findings import analyse
+    >>> graph, bound, hierarchy = factory()
+    >>> rows = reliances(analyse(graph, bound, hierarchy), bound, hierarchy)
+    >>> for row in rows:
+    ...     leaks = sorted({(opening.category, opening.leak.name) for opening in row.findings})
+    ...     print(row.statement.place, leaks, [element.name for element, _ in row.questions])
+    labels.yaml:4 [('Video', '/archive'), ('Video', 'disk')] ['/filter']
+    labels.yaml:5 [('Video', '/archive'), ('Video', 'disk')] ['/faces']
+    standard:1 [] ['/rosout']
+    """
+    spread, elements = analysis.spread, analysis.graph.elements
+    on_that_day = {v: analysis.outside[e] for v, e in enumerate(elements) if e in analysis.outside}
+    bound = replace(bound, outside=on_that_day)
+    spots = _spots(spread, bound)
+    asked = sum(map(spread.both, analysis.emitted))
+    if not spots or not asked:
+        return ()
+    places = Places(spread, tuple(concerns(spread, bound, hierarchy)), asked, accepts)
+    today = _Today(bound, hierarchy, places, frozenset(unanswered(elements, bound.outside)))
+    order = sorted(spots, key=lambda same: (line_key(same[0]), same[1]))
+    rows = (today.without(same[0], *spots[same]) for same in order)
+    return tuple(row for row in rows if row.hangs)
+
+
+def _spots(spread: Spread, bound: Bound) -> dict[Same, Spots]:
+    """Where each statement is said that takes something away, if data is there."""
+    elements, flows = spread.graph.elements, spread.graph.flows
+    spots: dict[Same, Spots] = defaultdict(lambda: ([], []))
+    reached: set[Same] = set()
+    for vertex, said in bound.elements.items():
+        sources = any(statement.role == "source" for statement in said)
+        data = sources or vertex in spread.arrives or vertex in spread.leaves
+        for same in (_same(statement, elements[vertex]) for statement in said if _takes(statement)):
+            spots[same][0].append(vertex)
+            reached.update([same] if data else ())
+    for index, said in bound.flows.items():
+        source, target = flows[index].source, flows[index].target
+        data = bool(spread.sent.get(source, 0) | spread.flow_emits.get(index, 0))
+        for same in (_same(statement, elements[source], elements[target]) for statement in said if _takes(statement)):
+            spots[same][1].append(index)
+            reached.update([same] if data else ())
+    return {same: spots[same] for same in spots if same in reached}
+
+
+def _takes(statement: Statement) -> bool:
+    return statement.role not in BRINGS_IN and statement.place != NOWHERE
+
+
+def _same(statement: Statement, *ends: Element) -> Same:
+    """What is one statement: a glob with all that it is about, a name on all robots; by hand, of one robot."""
+    if statement.glob:
+        return statement.line, ()
+    robots = () if statement.place.line else tuple(end.robot for end in ends)
+    return statement, (*(end.name for end in ends), *robots)
+
+
+def _without(said: tuple[Statement, ...], statement: Statement) -> tuple[Statement, ...]:
+    return tuple(s for s in said if s.categories != statement.categories or s.line != statement)
+
+
+@dataclass(eq=False, repr=False)
+class _Today:
+    """The answer as it is, and what there would be without a statement.
+
+    Attributes
+    ----------
+    unknown
+        Vertices of which something has to be known and is not stated.
+    left
+        How many analyses of the whole are left.
+    """
+
+    bound: Bound
+    hierarchy: Hierarchy
+    places: Places
+    unknown: Collection[int]
+    left: int = field(default_factory=lambda: ROUNDS)
+
+    @cached_property
+    def ends(self) -> set[int]:
+        """Where findings can be."""
+        return self.places.vertices()
+
+    @cached_property
+    def reaches(self) -> tuple[Reach, ...]:
+        """What the sources' data gets to; not looked for where no statement asks for it."""
+        return _reaches(self.places, self.bound)
+
+    @cached_property
+    def open(self) -> Mapping[tuple[str, ...], int]:
+        """What a reader sees of an element -> numbers of the categories for which it is open."""
+        spread = self.places.spread
+        numbers: dict[tuple[str, ...], int] = defaultdict(int)
+        for vertex, bits in open_bits(spread, self.unknown).items():
+            numbers[spread.graph.elements[vertex].shown_as] |= spread.bits.merged(bits & self.places.asked)
+        return numbers
+
+    def without(self, statement: Statement, vertices: Sequence[int], indices: Sequence[int]) -> Reliance:
+        """Return what there would be without a statement about some elements and flows."""
+        spread, graph = self.places.spread, self.places.spread.graph
+        with_data = [v for v in vertices if v in spread.arrives or v in spread.leaves] or vertices
+        flows = [graph.flows[index] for index in indices]
+        row = Reliance(
+            statement,
+            _distinct(graph.elements[v] for v in (*with_data, *(flow.source for flow in flows))),
+            _distinct(graph.elements[flow.target] for flow in flows),
+        )
+        less = Bound(
+            {vertex: _without(self.bound.elements[vertex], statement) for vertex in vertices},
+            {index: _without(self.bound.flows[index], statement) for index in indices},
+        )
+        try:
+            now = self._letting_more_pass(statement, less)
+            if now is None and not self.left:
+                return row._replace(perhaps=True)
+            pairs, is_open = self._further(now) if now else self._anew(less)
+        except InputErrors as error:
+            return row._replace(refused=str(error.errors[0]))
+        # a type reviews nothing: what lies behind it is open as it is (rule S15)
+        questions = () if statement.role == CANNOT else self._new_questions(is_open)
+        return row._replace(findings=self._worse(pairs), questions=questions)
+
+    def _letting_more_pass(self, statement: Statement, less: Bound) -> Spread | None:
+        """What elements and flows do of which less is said, if that is more and nothing less; else None."""
+        spread, graph = self.places.spread, self.places.spread.graph
+        named = {*less.elements, *(graph.flows[index].target for index in less.flows)} & spread.named.keys()
+        if named or any(s.through for said in less.elements.values() for s in said):
+            return None
+        left_out = spreading.LeftOut(spread, statement)
+        now = spreading.meaning(graph, less, self.hierarchy, spread.categories, left_out)
+        more = all(self._does_more(now, vertex) for vertex in less.elements)
+        return now if more and not any(spread.flow_keeps[i] & ~now.flow_keeps[i] for i in less.flows) else None
+
+    def _does_more(self, now: Spread, vertex: int) -> bool:
+        """Whether an element does nothing less: what it pseudonymised may go on as it is, which is more."""
+        spread = self.places.spread
+        for name in ("emits", "leaks", "gone"):
+            if getattr(now, name).get(vertex, 0) != getattr(spread, name).get(vertex, 0):
+                return False
+        lost = set(spread.derives[vertex]) - set(now.derives[vertex])
+        plain_goes_on = all(
+            spread.bits.category(before) == spread.bits.category(after) and now.keeps[vertex] >> before & 1
+            for before, after in lost
+        )
+        same = set(now.derives[vertex]) <= set(spread.derives[vertex]) and plain_goes_on
+        return same and not spread.keeps[vertex] & ~now.keeps[vertex] and not (lost and self.places.accepts)
+
+    def _further(self, now: Spread) -> tuple[list[Pair], dict[int, int]]:
+        """Findings before and after, and what is open, where only more passes."""
+        spread, flows = self.places.spread, self.places.spread.graph.flows
+        opened = [v for v, keeps in now.keeps.items() if keeps & ~spread.keeps[v]]
+        along = [
+            (index, flows[index].source, flows[index].target)
+            for index, keeps in now.flow_keeps.items()
+            if keeps & ~spread.flow_keeps[index]
+        ]
+        pairs: list[Pair] = []
+        new = {v: spread.present(v) for v in now.facts}  # of others only what is more
+        for reach in self.reaches if opened or along else ():
+            more = reach.further(now, [v for v in opened if reach.whole.arrived(v)], along)
+            pairs += [(reach.states(v), more.states(v)) for v in more.touched & self.ends]
+            for vertex, bits in more.new().items():
+                new[vertex] = new.get(vertex, 0) | bits
+        covered = {v: now.covered.get(v, 0) if v in now.facts else spread.covered.get(v, 0) for v in new}
+        return pairs, {
+            v: bits & ~spread.gone.get(v, 0) & ~(0 if v in self.unknown else covered[v]) for v, bits in new.items()
+        }
+
+    def _anew(self, less: Bound) -> tuple[list[Pair], dict[int, int]]:
+        """The same by an analysis of the whole."""
+        self.left -= 1
+        elements, flows = {**self.bound.elements, **less.elements}, {**self.bound.flows, **less.flows}
+        bound = replace(self.bound, elements=elements, flows=flows)
+        spread = spreading.spread(self.places.spread.graph, bound, self.hierarchy)
+        places = self.places._replace(spread=spread, concerns=tuple(concerns(spread, bound, self.hierarchy)))
+        reaches = zip(self.reaches, _reaches(places, bound), strict=True)
+        ends = sorted(self.ends | places.vertices())
+        pairs: list[Pair] = [(before.states(v), after.states(v)) for before, after in reaches for v in ends]
+        return pairs, open_bits(spread, self.unknown)
+
+    def _worse(self, pairs: Iterable[Pair]) -> tuple[Opening, ...]:
+        """The findings that are new or worse."""
+        spread, elements = self.places.spread, self.places.spread.graph.elements
+        openings = []
+        for before, after in pairs:
+            for key, (stands, plain) in after.items():
+                kind, i, source, leak = key
+                stood, was_plain = before.get(key, (False, False))
+                if key not in before or (stands and not stood) or (plain and not was_plain):
+                    opening = Opening(
+                        kind, spread.categories[i], elements[source], elements[leak],
+                        dismissed=not stands, pseudonymised=not plain, new=key not in before,
+                    )  # fmt: skip
+                    openings.append(((not stands, i, source, leak, kind), opening))
+        return tuple(opening for _, opening in sorted(openings, key=lambda pair: pair[0]))
+
+    def _new_questions(self, is_open: Mapping[int, int]) -> tuple[tuple[Element, tuple[str, ...]], ...]:
+        """The elements that are open, with the categories for which they were not; the sides of a wildcard as one."""
+        spread, elements = self.places.spread, self.places.spread.graph.elements
+        asked: dict[tuple[str, ...], tuple[Element, set[str]]] = {}
+        for vertex, bits in sorted(is_open.items()):
+            numbers = spread.bits.merged(bits & self.places.asked)
+            if numbers and (new := numbers & ~self.open.get(shown := elements[vertex].shown_as, 0)):
+                asked.setdefault(shown, (elements[vertex], set()))[1].update(spread.names(new))
+        return tuple((element, tuple(sorted(names))) for element, names in asked.values())
+
+
+def _distinct(elements: Iterable[Element]) -> tuple[Element, ...]:
+    """One of each that a reader sees."""
+    return tuple({element.shown_as: element for element in elements}.values())
+
+
+class Places(NamedTuple):
+    """Where each kind of finding can be, and what people accepted there; ``asked``: what the answer is about."""
+
+    spread: Spread
+    concerns: tuple[Concern, ...]
+    asked: int
+    accepts: Callable[[Case], bool] | None
+
+    def vertices(self) -> set[int]:
+        """Return all of them."""
+        return {vertex for concern in self.concerns for vertex, bits in concern.bits.items() if bits & self.asked}
+
+    def accepted(self, kind: str, source: int, leak: int, bit: int) -> bool:
+        """Return whether a person has accepted that a source's data gets there in this form."""
+        if self.accepts is None:
+            return False
+        spread, elements = self.spread, self.spread.graph.elements
+        name, from_, to = spread.categories[spread.bits.category(bit)], elements[source], elements[leak]
+        form = spread.bits.is_pseudonymised(bit)
+        return self.accepts(Case(finding_id(name, from_, to, kind), kind, name, from_, to, form))
+
+
+class Reach(NamedTuple):
+    """What some sources' data gets to, told apart by source: which findings there are, and no paths.
+
+    Attributes
+    ----------
+    whole
+        Wherever it gets.
+    past
+        (Categories in both forms; where these get past no other leak of them), for what more than one leak lets out.
+    """
+
+    places: Places
+    whole: Flood
+    past: tuple[tuple[int, Flood], ...]
+
+    @classmethod
+    def of(cls, places: Places, sources: Sequence[int]) -> Reach:
+        """Follow the data of some sources."""
+        doing = Doing.of(places.spread, sources)
+        past = [(own, Flood.of(doing.stopped(stop, allowed))) for own, stop, allowed in _stops(places, doing)]
+        return cls(places, Flood.of(doing), tuple(past))
+
+    def further(self, now: Spread, vertices: Collection[int], flows: Collection[tuple[int, int, int]]) -> Reach:
+        """Return it where some elements and flows let more pass, as another spread says, and nothing lets less."""
+
+        def more(flood: Flood) -> Flood:
+            return flood.further(flood.doing.changed(now), vertices, flows)
+
+        return self._replace(whole=more(self.whole), past=tuple((own, more(flood)) for own, flood in self.past))
+
+    @property
+    def touched(self) -> set[int]:
+        """Where something is new, of one that was taken further."""
+        floods = (self.whole, *(flood for _, flood in self.past))
+        return {*chain.from_iterable((*flood.arrives, *flood.leaves) for flood in floods)}
+
+    def new(self) -> dict[int, int]:
+        """Return what there is at elements to which more gets, or from which it leaves, of one taken further."""
+        elements, merged = self.places.spread.graph.elements, self.whole.doing.lanes.merged
+        there = {v: merged(bits) for v, bits in self.whole.leaves.items()}
+        for vertex, bits in self.whole.arrives.items():
+            if not elements[vertex].is_channel:
+                there[vertex] = there.get(vertex, 0) | merged(bits)
+        return there
+
+    def states(self, vertex: int) -> dict[Key, State]:
+        """Return the findings that end at an element."""
+        states: dict[Key, State] = {}
+        spread, lanes = self.places.spread, self.whole.doing.lanes
+        begun = lanes.own(vertex, spread.begins(vertex))
+        for concern in self.places.concerns:
+            bits = concern.bits.get(vertex, 0) & self.places.asked & ~spread.gone.get(vertex, 0)
+            if not bits:
+                continue
+            is_channel = spread.graph.elements[vertex].is_channel  # it takes up only what it carries
+            present = self.whole.left(vertex) if is_channel else self.whole.present(vertex, begun)
+            there = present & lanes.every(bits)
+            past = self._past(vertex, begun, there) if concern.kind == DISCLOSURE else there
+            for source, arriving in lanes.apart(there):
+                standing = past >> lanes.width * lanes.number[source]
+                for i in bits_of(spread.bits.merged(arriving)):
+                    plain, hidden = spread.bits.forms(i)
+                    stands = standing >> plain & 1 or standing >> hidden & 1
+                    first = standing if stands else arriving
+                    shown = plain if first >> plain & 1 else hidden
+                    if not self.places.accepted(concern.kind, source, vertex, shown):
+                        states[concern.kind, i, source, vertex] = bool(stands), bool(arriving >> plain & 1)
+        return states
+
+    def _past(self, vertex: int, begun: int, there: int) -> int:
+        """What of the data at a leak got there past no other leak of its category."""
+        every = self.whole.doing.lanes.every
+        result = there
+        for own, flood in self.past:
+            result &= ~every(own) | flood.present(vertex, begun)
+        return result
+
+
+def _reaches(places: Places, bound: Bound) -> tuple[Reach, ...]:
+    """What the sources' data gets to, some of them at a time; also of those that another label takes away today."""
+    sources = [v for v, said in sorted(bound.elements.items()) if any(s.role == "source" for s in said)]
+    parts = (sources[begin : begin + TOGETHER] for begin in range(0, len(sources), TOGETHER))
+    return tuple(Reach.of(places, part) for part in parts)
+
+
+def _stops(places: Places, doing: Doing) -> Iterator[tuple[int, dict[int, int], int]]:
+    """(Categories in both forms, where they stop, what is followed): as for findings, once for what nothing makes."""
+    spread, every = places.spread, doing.lanes.every
+    leaks = {v: spread.bits.merged(bits) for v, bits in spread.leaks.items() if bits}
+    number = Counter(i for bits in leaks.values() for i in bits_of(bits))
+    several = [i for i in sorted(number) if number[i] > 1]
+    unmade = sum(spread.bits.both(i) for i in several if i not in spread.made)
+    runs = [(unmade, unmade)] if unmade else []
+    runs += [(spread.bits.both(i), spread.all_bits) for i in several if i in spread.made]
+    for own, allowed in runs:
+        stop = {v: every(spread.leaks[v] & own) & ~_accepted(places, doing, v, spread.leaks[v] & own) for v in leaks}
+        yield own, stop, every(allowed)
+
+
+def _accepted(places: Places, doing: Doing, leak: int, bits: int) -> int:
+    """What is accepted at a leak, in the lanes of the sources: it hides nothing behind it (rule S10)."""
+    if places.accepts is None:
+        return 0
+    return sum(
+        doing.lanes.own(source, 1 << bit)
+        for source in doing.lanes.number
+        for bit in bits_of(bits)
+        if places.accepted(DISCLOSURE, source, leak, bit)
+    )
