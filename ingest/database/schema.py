@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from rosprivacy.analysis.model import CONTEXTS
 
 SCHEMA = 5  # raised when what a load writes gains what an answer rests on, or changes its meaning; none was stored at 1
+DATABASE = "the database"  # where people write by hand, as the file of a problem or a statement
 _IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 STRING, INTEGER, BOOLEAN, STRINGS = "STRING", "INTEGER", "BOOLEAN", "LIST<STRING>"
 
@@ -389,46 +390,34 @@ CARRIED = RelationshipKind(
     "broader one does not stand for it. From an element to itself where it is both source and leak. Followed from a "
     "source to a leak, it finds what the analysis finds, dismissed findings included.",
 )
-ROLES = {
-    "source": RelationshipKind(
-        "SOURCE_OF",
-        "Element",
-        "DataCategory",
-        "It brings the category in.",
-        (*_PLACE, Property("through", STRINGS, "only through these channels")),
+_ROLES: tuple[tuple[str, str, str, tuple[Property, ...]], ...] = (
+    (
+        "source", "SOURCE_OF", "It brings the category in.",
+        (Property("through", STRINGS, "only through these channels"),),
     ),
-    "leak": RelationshipKind("LEAKS", "Element", "DataCategory", "It lets the category out.", _PLACE),
-    "no-source": RelationshipKind(
-        "NO_SOURCE_OF", "Element", "DataCategory", "Labels of lower rank do not make it a source.", _PLACE
-    ),
-    "no-leak": RelationshipKind(
-        "LEAKS_NOT", "Element", "DataCategory", "Labels of lower rank do not make it a leak.", _PLACE
-    ),
-    "sanitizer": RelationshipKind(
-        "SANITIZES",
-        "Element",
-        "DataCategory",
-        "It cleans the category.",
+    ("leak", "LEAKS", "It lets the category out.", ()),
+    ("no-source", "NO_SOURCE_OF", "Labels of lower rank do not make it a source.", ()),
+    ("no-leak", "LEAKS_NOT", "Labels of lower rank do not make it a leak.", ()),
+    (
+        "sanitizer", "SANITIZES", "It cleans the category.",
         (
-            *_PLACE,
             Property("method", STRING, "anonymise, aggregate, drop, absent or pseudonymise; none counts as the last"),
             Property("stated", BOOLEAN, "whether the label states the method"),
         ),
     ),
-    "conduit": RelationshipKind("PASSES", "Element", "DataCategory", "Reviewed: it passes the category on.", _PLACE),
-    "derivation": RelationshipKind(
-        "DERIVES",
-        "Element",
-        "DataCategory",
-        "It makes the category of another.",
-        (*_PLACE, Property("of", STRING, "name of the category that it is made of")),
+    ("conduit", "PASSES", "Reviewed: it passes the category on.", ()),
+    (
+        "derivation", "DERIVES", "It makes the category of another.",
+        (Property("of", STRING, "name of the category that it is made of"),),
     ),
-    "mundane": RelationshipKind("NEVER_HAS", "Element", "DataCategory", "A mundane channel.", _PLACE),
-    "sensitive": RelationshipKind("MAY_HAVE", "Element", "DataCategory", "A channel, reviewed.", _PLACE),
-    "only": RelationshipKind(
-        "HAS_ONLY", "Element", "DataCategory", "A channel carries what is named so at most.", _PLACE
-    ),
-    "never": RelationshipKind("HAS_NOT", "Element", "DataCategory", "A channel does not carry the category.", _PLACE),
+    ("mundane", "NEVER_HAS", "A mundane channel.", ()),
+    ("sensitive", "MAY_HAVE", "A channel, reviewed.", ()),
+    ("only", "HAS_ONLY", "A channel carries what is named so at most.", ()),
+    ("never", "HAS_NOT", "A channel does not carry the category.", ()),
+)  # fmt: skip
+ROLES = {
+    role: RelationshipKind(type_, "Element", "DataCategory", meaning, (*_PLACE, *more))
+    for role, type_, meaning, more in _ROLES
 }
 DERIVES_FROM = RelationshipKind(
     "DERIVES_FROM",
@@ -450,6 +439,7 @@ IN_ENCLAVE = RelationshipKind(
     "The node has a profile in the enclave.",
     (Property("file", STRING, "of the profile"), Property("line", INTEGER, "of the profile"), _OURS),
 )
+BROADER = RelationshipKind("BROADER", "DataCategory", "DataCategory", "The second is broader (skos:broader).")
 FALLS_UNDER = RelationshipKind(
     "FALLS_UNDER",
     "DataCategory",
@@ -495,7 +485,7 @@ RELATIONSHIPS = (
     DERIVES_FROM,
     RelationshipKind("OF_ROBOT", "Element", "Robot", "Whose element it is."),
     IN_ENCLAVE,
-    RelationshipKind("BROADER", "DataCategory", "DataCategory", "The second is broader (skos:broader)."),
+    BROADER,
     FALLS_UNDER,
     LOOK_AT,
     RelationshipKind("OF_CATEGORY", "Finding", "DataCategory", "What arrives; of an `AddedFinding` too."),

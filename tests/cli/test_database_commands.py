@@ -14,8 +14,8 @@ import pytest
 from lxml import etree
 
 from rosprivacy.analysis.errors import DatabaseError
+from rosprivacy.ingest.database.ids import schema_names
 from rosprivacy.ingest.database.loading import load
-from rosprivacy.ingest.database.schema_names import schema_names
 from rosprivacy.private_neo4j import connection
 from rosprivacy.queries.library import pack
 from rosprivacy.report.pictures import looks

@@ -15,9 +15,9 @@ from hypothesis import strategies as st
 
 import rosprivacy
 from rosprivacy.analysis.model import DISCLOSURE
+from rosprivacy.ingest.database.fleet_rows import robot_rows
 from rosprivacy.ingest.database.ids import carries
 from rosprivacy.ingest.database.loading import load
-from rosprivacy.ingest.database.rows import robot_rows
 from rosprivacy.private_neo4j import connection
 from rosprivacy.queries.run import run
 from tests.helpers.cases import CASES

@@ -12,7 +12,7 @@ from rosprivacy.answering import answer
 from rosprivacy.assumptions import put_together
 from rosprivacy.ingest.database.fleet_rows import MOST_ACROSS
 from rosprivacy.ingest.database.read_back import Stored, read_stored
-from rosprivacy.ingest.database.robot_notices import diagnostics_of
+from rosprivacy.ingest.database.robot_facts import diagnostics_of
 from rosprivacy.ingest.database.write_back import write_back
 from rosprivacy.question import question_of
 from rosprivacy.robot_doubts import breaking, doubt_lines, doubts_by_robot

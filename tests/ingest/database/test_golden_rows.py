@@ -13,10 +13,10 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 from rosprivacy.answering import answer
-from rosprivacy.ingest.database.bag_loading import load_bags
+from rosprivacy.ingest.database.bag_rows import load_bags
 from rosprivacy.ingest.database.loading import load
 from rosprivacy.question import question_of
 from rosprivacy.reading.fleet_system import fleet_system, rows_of_fleet
@@ -40,7 +40,7 @@ class _Written:
         self.lines: list[str] = []
         self._known = known
 
-    def __enter__(self) -> _Written:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:

@@ -16,9 +16,9 @@ from rosprivacy.analysis.errors import DatabaseError, InputError, InputErrors
 from rosprivacy.analysis.findings.findings import analyse
 from rosprivacy.analysis.model import Bound, Category, Element, Flow, FlowGraph, Place, Statement
 from rosprivacy.ingest.database import loading
+from rosprivacy.ingest.database.fleet_rows import robot_rows
 from rosprivacy.ingest.database.loading import Loaded, check_robot_name, load, unload
 from rosprivacy.ingest.database.read_back import read_stored
-from rosprivacy.ingest.database.rows import RobotRows, robot_rows
 from rosprivacy.ingest.database.schema import NODES, RELATIONSHIPS, ROLES, NodeKind, RelationshipKind
 from rosprivacy.ontology.vocabulary import Vocabulary
 from rosprivacy.ontology.vocabulary import load as load_vocabulary
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
     from neo4j import Driver
 
+    from rosprivacy.ingest.database.rows import RobotRows
     from rosprivacy.private_neo4j.connection import Connection
 
 VOCABULARY = load_vocabulary()

@@ -11,8 +11,8 @@ import pytest
 
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.ingest.database.loading import load
-from rosprivacy.ingest.database.other_schemas import of_other_schemas
 from rosprivacy.ingest.database.read_back import read_stored
+from rosprivacy.ingest.database.robot_facts import of_other_schemas
 from rosprivacy.ingest.database.schema import SCHEMA
 from rosprivacy.ontology.vocabulary import load as load_vocabulary
 from rosprivacy.private_neo4j import connection

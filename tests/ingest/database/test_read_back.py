@@ -14,10 +14,10 @@ from rosprivacy.analysis.errors import DatabaseError, InputErrors, LabelError
 from rosprivacy.analysis.findings.findings import analyse
 from rosprivacy.analysis.kernel.ranks import decided
 from rosprivacy.analysis.model import GLOB, NAME, Place, Statement
-from rosprivacy.ingest.database.flow_statements import HAND
+from rosprivacy.ingest.database.fleet_rows import robot_rows
 from rosprivacy.ingest.database.loading import load
 from rosprivacy.ingest.database.read_back import read_stored
-from rosprivacy.ingest.database.rows import robot_rows
+from rosprivacy.ingest.database.relationship_facts import HAND
 from rosprivacy.ingest.database.write_back import write_back
 from rosprivacy.ingest.labels.entries import EXACT
 from rosprivacy.ingest.observe.node_info import read_node_info
