@@ -117,7 +117,7 @@ def name_of(inputs: Inputs) -> str:
 
 
 def _tell_replaced(done: Loaded) -> None:
-    """Say which robots took the place of others of the same name (users.md, B8)."""
+    """Say which robots took the place of others of the same name."""
     names = [f"{shown(name)} ({', '.join(map(shown, files))})" for name, files in sorted(done.replaced.items())]
     if names:
         more = f" and {len(names) - NAMED:,} more" if len(names) > NAMED else ""
