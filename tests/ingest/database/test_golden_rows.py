@@ -9,8 +9,10 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import json
+import re
 import sys
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Self
@@ -18,6 +20,7 @@ from typing import TYPE_CHECKING, Any, Self
 from rosprivacy.answering import answer
 from rosprivacy.ingest.database.bag_rows import load_bags
 from rosprivacy.ingest.database.loading import load
+from rosprivacy.ingest.database.schema import NODES, RELATIONSHIPS
 from rosprivacy.question import question_of
 from rosprivacy.reading.fleet_system import fleet_system, rows_of_fleet
 from rosprivacy.reading.robot_system import answer_robot, robot_of
@@ -30,6 +33,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 HASHES = Path(__file__).with_name("golden_rows.tsv")
+KIND = re.compile(
+    r"(?:(?:MERGE|CREATE) \([nf]:|(?:CREATE|MERGE) \(a\)-\[r:|AS row MATCH \(r:(?=`Robot`.* SET r \+=))`(\w+)`"
+)
+TYPES = {"STRING": str, "INTEGER": int, "BOOLEAN": bool, "LIST<STRING>": list}
 VERSION = ("assumptions", "digest")  # they hold the version of the program
 
 
@@ -121,8 +128,13 @@ def _loaded(rows: Any, vocabulary: Any, known: tuple[str, ...] = ()) -> list[str
     return sorted(driver.lines)
 
 
+@cache
+def all_written() -> dict[str, list[str]]:
+    return dict(written())
+
+
 def hashes() -> Iterator[str]:
-    for name, lines in written():
+    for name, lines in all_written().items():
         yield f"{hashlib.sha256(chr(10).join(lines).encode()).hexdigest()[:16]}\t{len(lines)}\t{name}"
 
 
@@ -130,10 +142,25 @@ def test_rows_are_as_they_were() -> None:
     assert list(hashes()) == HASHES.read_text("utf-8").splitlines()
 
 
+def test_every_property_of_a_row_is_declared_with_its_type() -> None:
+    declared = {node.label: node.properties for node in NODES} | {kind.type: kind.properties for kind in RELATIONSHIPS}
+    seen = set()
+    for statement, _, row in map(json.loads, {line for lines in all_written().values() for line in lines}):
+        if isinstance(row, dict) and "row.properties" in statement:
+            match = KIND.search(statement)
+            assert match, statement
+            types = {field.name: TYPES[field.type] for field in declared[match[1]]}
+            seen.add(match[1])
+            for name, value in row["properties"].items():
+                assert value is None or type(value) is types[name], (match[1], name)
+                assert not isinstance(value, list) or all(isinstance(item, str) for item in value)
+    assert {"Element", "AddedFinding", "Robot", "Bag", "FLOWS_TO", "SANITIZES", "ACROSS"} <= seen
+
+
 if __name__ == "__main__":
     if sys.argv[1:]:
         folder = Path(sys.argv[1]).resolve()
-        for name, lines in written():
+        for name, lines in all_written().items():
             (folder / name.replace(" ", "-")).write_text("\n".join([*lines, ""]), "utf-8")
     else:
         HASHES.write_text("\n".join([*hashes(), ""]), "utf-8")
