@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import os
-import signal
 import subprocess
 import sys
 import threading
-import time
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -292,42 +289,6 @@ def all_whole(driver: Driver) -> int:
 @pytest.mark.slow
 @pytest.mark.database
 class TestFaults:
-    def test_the_client_is_killed_in_mid_load(self, driver: Driver) -> None:
-        load(driver, [rows_of("other", care_home()), rows_of("r001", factory(5))], VOCABULARY)
-        with loader(2, 60) as child:
-            assert child.stdout
-            for _ in range(5):
-                assert child.stdout.readline() == "+\n"
-            time.sleep(0.03)
-            os.kill(child.pid, signal.SIGKILL)
-        robots = all_whole(driver)
-        assert 5 < robots < 61
-        rows = [rows_of(f"r{i:03}", factory(2)) for i in range(60)]
-        done = load(driver, rows, VOCABULARY)
-        assert done.unchanged >= 5
-        assert all_whole(driver) == 61
-        assert load(driver, [*rows, rows_of("other", care_home())], VOCABULARY) == Loaded(0, 61)
-
-    def test_the_server_is_killed_in_mid_load(self, private_neo4j: Connection) -> None:
-        with connection.open_driver(private_neo4j) as driver:
-            driver.execute_query("MATCH (n) DETACH DELETE n")
-            load(driver, [rows_of("other", care_home())], VOCABULARY)
-        with loader(2, 60) as child:
-            assert child.stdout
-            for _ in range(5):
-                assert child.stdout.readline() == "+\n"
-            found = server.running(connection.state_folder())
-            assert found
-            os.kill(found.pid, signal.SIGKILL)
-            _, error = child.communicate(timeout=120)
-        assert child.returncode != 0
-        assert "DatabaseError: bolt://" in error
-        with connection.open_driver(connection.start()) as driver:
-            assert 5 < all_whole(driver) < 61
-            rows = [rows_of(f"r{i:03}", factory(2)) for i in range(60)]
-            load(driver, rows, VOCABULARY)
-            assert load(driver, [*rows, rows_of("other", care_home())], VOCABULARY) == Loaded(0, 61)
-
     def test_two_loads_at_once(self, driver: Driver) -> None:
         """Of the same robots, with different policies: each robot is one or the other, and whole."""
         with loader(2, 25) as one, loader(4, 25) as other:
