@@ -83,11 +83,6 @@ _ADDED = "SHOW FUNCTIONS YIELD name, isBuiltIn WHERE NOT isBuiltIn RETURN name O
 def refuse_too_much(text: str) -> None:
     """Let a query pass that a server can take apart in its time.
 
-    Raises
-    ------
-    QueryError
-        If it stands too deep in brackets, or has too many operators in a row.
-
     Examples
     --------
     >>> refuse_too_much("RETURN 1" + " + 1" * 100)
@@ -177,11 +172,6 @@ def refuse_unknown_names(transaction: Transaction, summary: ResultSummary, known
         Of the query's ``EXPLAIN``.
     known
         What the graph can have, whether the database has it or not.
-
-    Raises
-    ------
-    QueryError
-        With one line for each other name.
     """
     problems = []
     for kind, name in sorted(set(_unknown(summary))):

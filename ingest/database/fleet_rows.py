@@ -68,11 +68,6 @@ def robot_rows(
         As of ``FleetRows``.
     bound
         The statements that it rests on.
-
-    Raises
-    ------
-    InputErrors
-        If a category's label cannot be one.
     """
     placed = Placed(analysis.graph, bound, Likeness({"": (robot,)}), {"": analysis.graph.profiles})
     said = {"verdict": str(analysis.verdict), **(more or {})}

@@ -148,13 +148,7 @@ def unload(driver: Driver, names: Sequence[str]) -> list[str]:
 
 
 def check_robot_name(name: str) -> str:
-    """Return a name that a robot can have in the database.
-
-    Raises
-    ------
-    InputError
-        If it is empty, endless, or holds what cannot be seen.
-    """
+    """Return a name that a robot can have in the database."""
     if not name or len(name) > LONGEST_NAME or not name.isprintable():
         hint = f"use 1 to {LONGEST_NAME} printable characters"
         raise InputError("--robot", 0, f"{shown(name)!r} cannot name a robot", hint)

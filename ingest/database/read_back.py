@@ -106,13 +106,7 @@ class Stored:
 
 
 def read_stored(driver: Driver, vocabulary: Vocabulary) -> Stored:
-    """Read everything.
-
-    Raises
-    ------
-    InputErrors
-        With every element, flow or role that cannot be understood.
-    """
+    """Read everything; all elements, flows and roles that cannot be understood are one ``InputErrors``."""
     with driver.session() as session:
         return session.execute_read(_read, vocabulary)
 
