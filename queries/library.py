@@ -99,7 +99,7 @@ class Query:
         return any(COLUMN_TYPES[column.type] is Path for column in self.columns)
 
     def values(self, given: Mapping[str, str]) -> dict[str, Any]:
-        """Return the values of all parameters from text as the command line gives it; all that is wrong is one error."""
+        """Return the values of all parameters from text of the command line; all faults are one error."""
         known = {field.name: field for field in self.parameters}
         problems = []
         for name in sorted(set(given) - set(known)):
