@@ -19,7 +19,7 @@ from rosprivacy.analysis.model import (
     Profile,
     Statement,
 )
-from rosprivacy.ingest.database.rows import robot_rows
+from rosprivacy.ingest.database.fleet_rows import robot_rows
 from rosprivacy.ontology.vocabulary import Vocabulary
 
 if TYPE_CHECKING:

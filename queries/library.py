@@ -99,13 +99,7 @@ class Query:
         return any(COLUMN_TYPES[column.type] is Path for column in self.columns)
 
     def values(self, given: Mapping[str, str]) -> dict[str, Any]:
-        """Return the values of all parameters from text such as the command line gives.
-
-        Raises
-        ------
-        QueryError
-            With every parameter that is unknown, missing or not of its type.
-        """
+        """Return the values of all parameters from text of the command line; all faults are one error."""
         known = {field.name: field for field in self.parameters}
         problems = []
         for name in sorted(set(given) - set(known)):
@@ -154,13 +148,7 @@ def pack() -> dict[str, Query]:
 
 
 def find(name: str) -> Query:
-    """Return the query of that name.
-
-    Raises
-    ------
-    QueryError
-        If there is none, with the nearest names.
-    """
+    """Return the query of that name."""
     queries = pack()
     if name not in queries:
         hint = did_you_mean(nearest(name, queries, FEW, like=0.4), "see them with rosprivacy query")

@@ -1,21 +1,23 @@
 """What a query would do, by the server's own plan of it (``EXPLAIN``, which runs nothing), before it is run.
 
 In: an open transaction and the Cypher that is to run in it. Out: nothing, or why it is refused. What a server's parser
-would not survive is refused by its text, before the server gets it. The access mode of the
-session stops what writes to the graph. It does not stop ``LOAD CSV``, procedures, and what acts on the server; the
-plan shows these, whatever the text looks like. Only what is known to read the graph passes: a step that a newer server
-brings is refused until it stands here.
+would not survive is refused by its text, before the server gets it. The access mode of the session stops what writes to
+the graph. It does not stop ``LOAD CSV``, procedures, and what acts on the server; the plan shows these, whatever the
+text looks like. Only what is known to read the graph passes: a step that a newer server brings is refused until it
+stands here. So is a name that nothing has: Neo4j itself answers such a query with no rows (rule S11).
 """
 
 from __future__ import annotations
 
 import re
+from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import QueryError, shown
+from rosprivacy.analysis.written_names import FEW, did_you_mean, nearest
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator
 
     from neo4j import ResultSummary, Transaction
 
@@ -64,16 +66,22 @@ _STEP = re.compile(r"(?:Partitioned)?(?:Directed|Undirected)?([^(@]+).*", re.DOT
 # own words. What text of a user stands there too is refused with it if it looks the same.
 _LOADS = re.compile(r"\bLOAD\s+CSV\b", re.IGNORECASE)
 _CALLS = re.compile(r"\b(?:Unr|R)esolvedCall\b|\bCALL\s+[^\s({]|\b(?:TERMINATE|SHOW)\s+TRANSACTION", re.IGNORECASE)
+Known = Mapping[str, Collection[str]]  # by "label", "relationship type", "property"
+_LISTED = {
+    "label": "CALL db.labels()",
+    "relationship type": "CALL db.relationshipTypes()",
+    "property": "CALL db.propertyKeys()",
+}
+_UNKNOWN = {"01N50": "label", "01N51": "relationship type", "01N52": "property"}  # statuses of GQL
+_NAMED = re.compile(r"`(.+)` does not exist", re.DOTALL)
+_EARLIER = re.compile(
+    r"\(the missing (label|relationship type|property)(?: name)? is: (.+)\)", re.DOTALL
+)  # before 5.23
 _ADDED = "SHOW FUNCTIONS YIELD name, isBuiltIn WHERE NOT isBuiltIn RETURN name ORDER BY name"
 
 
 def refuse_too_much(text: str) -> None:
     """Let a query pass that a server can take apart in its time.
-
-    Raises
-    ------
-    QueryError
-        If it stands too deep in brackets, or has too many operators in a row.
 
     Examples
     --------
@@ -153,3 +161,35 @@ def _faults(step: Mapping[str, Any]) -> Iterator[str]:
         yield f"has the step {shown(name)}, which is not known to only read"
     if _CALLS.search(details):
         yield "calls a procedure inside an expression; call it in a clause of its own"
+
+
+def refuse_unknown_names(transaction: Transaction, summary: ResultSummary, known: Known) -> None:
+    """Let a query pass that names only what there can be.
+
+    Parameters
+    ----------
+    summary
+        Of the query's ``EXPLAIN``.
+    known
+        What the graph can have, whether the database has it or not.
+    """
+    problems = []
+    for kind, name in sorted(set(_unknown(summary))):
+        if name in known[kind]:
+            continue
+        there = set(known[kind]) | {str(record[0]) for record in transaction.run(_LISTED[kind])}
+        hint = did_you_mean(nearest(name, sorted(there), FEW), "see them with rosprivacy query --schema")
+        problems.append(f"nothing has the {kind} {shown(name)!r}; {hint}")
+    if problems:
+        raise QueryError("\n".join(problems))
+
+
+def _unknown(summary: ResultSummary) -> Iterator[tuple[str, str]]:
+    """(kind, name), as the server says it; in its own sentence where the name cannot be told."""
+    for status in summary.gql_status_objects:
+        said = status.status_description
+        if kind := _UNKNOWN.get(status.gql_status):
+            named = _NAMED.search(said)
+            yield kind, named.group(1) if named else said
+        elif earlier := _EARLIER.search(said):
+            yield earlier.group(1), earlier.group(2)

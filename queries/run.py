@@ -18,8 +18,7 @@ from rosprivacy.analysis.errors import QueryError, shown
 from rosprivacy.analysis.written_names import A_LITTLE, FEW, did_you_mean, nearest
 from rosprivacy.queries.graph_values import GraphValue, graph_values, nodes_in, plain, value_of, with_known
 from rosprivacy.queries.library import NAMES
-from rosprivacy.queries.reading import refuse_too_much, refuse_unless_reading
-from rosprivacy.queries.unknown_names import refuse_unknown_names
+from rosprivacy.queries.reading import refuse_too_much, refuse_unknown_names, refuse_unless_reading
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -27,7 +26,7 @@ if TYPE_CHECKING:
     from neo4j import Driver, Transaction
 
     from rosprivacy.queries.library import Query
-    from rosprivacy.queries.unknown_names import Known
+    from rosprivacy.queries.reading import Known
 
 LIMIT = 1000
 LISTED = 30  # names of a hint, where none is near

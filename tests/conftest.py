@@ -24,6 +24,8 @@ from tests.helpers.secured_dds import cyclone_judge, judge
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterator
 
+    from neo4j import Driver
+
     from rosprivacy.private_neo4j.connection import Connection
 
 __all__ = ["cli", "cyclone_judge", "fastdds", "judge", "other", "peer", "ros2_client"]  # fixtures
@@ -157,6 +159,15 @@ def neo4j_server(request: pytest.FixtureRequest) -> Connection:
     if not os.environ.get("NEO4J_URI"):
         request.getfixturevalue("_private_data")
     return database.connection(None)
+
+
+@pytest.fixture
+def driver(neo4j_server: Connection) -> Iterator[Driver]:
+    """Of an empty database."""
+    assert neo4j_server
+    with database.open_driver(database.connection(None)) as driver:  # with its password of now: tests start it again
+        driver.execute_query("MATCH (n) DETACH DELETE n")
+        yield driver
 
 
 @pytest.fixture

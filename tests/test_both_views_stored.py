@@ -9,18 +9,14 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from rosprivacy.both_views import both_views_of_fleet
-from rosprivacy.private_neo4j import connection
 from rosprivacy.queries.library import pack
 from rosprivacy.settings import Settings
 from tests.helpers.command import cli
 from tests.helpers.shared_enclaves import EXAMPLE, EXAMPLE_LABELS, FLEET, THREE, apart, policy
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from neo4j import Driver
 
-    from rosprivacy.private_neo4j.connection import Connection
     from tests.helpers.command import Cli
 
 __all__ = ["cli"]
@@ -36,13 +32,11 @@ NOT_ALIKE = dict.fromkeys(("beyond", "digest", "version"))
 
 
 @pytest.fixture
-def driver(neo4j_server: Connection, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Driver]:
+def driver(driver: Driver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Driver:
     monkeypatch.chdir(tmp_path)
     Path("p.xml").write_text(policy(THREE))
     Path("l.yaml").write_text(EXAMPLE_LABELS)
-    with connection.open_driver(neo4j_server) as opened:
-        opened.execute_query("MATCH (n) DETACH DELETE n")
-        yield opened
+    return driver
 
 
 def rows(driver: Driver, cypher: str) -> list[list[Any]]:

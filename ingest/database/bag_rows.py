@@ -1,7 +1,8 @@
-"""Bags with what can be in them -> the rows that Neo4j takes, as plain values.
+"""Bags with what can be in them -> rows -> Neo4j: each bag in place of what was there of it.
 
-In: judged bags, and the robot that was recorded where a user names one. Out: ``BagRows``. The properties are those of
-``schema.py``; a test holds this.
+In: judged bags, and the robot that was recorded where a user names one; a driver. Out: ``BagRows``, and
+``(:Bag)-[:HAS_TOPIC]->(:RecordedTopic)-[:RECORDS]->(:Element)`` as ``schema.py`` declares it, the last only where the
+robot is there and has a channel of that name. Loaded twice, nothing changes.
 """
 
 from __future__ import annotations
@@ -11,15 +12,22 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.errors import QueryError, shown
 from rosprivacy.analysis.model import Element
+from rosprivacy.ingest.database import cypher
 from rosprivacy.ingest.database.ids import element_id, topic_id
+from rosprivacy.ingest.database.loading import BATCH, refusals, write, write_vocabulary
+from rosprivacy.ingest.database.schema import constraints
 from rosprivacy.ingest.policies.names import recorded_channels
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+    from neo4j import Driver, ManagedTransaction
 
     from rosprivacy.analysis.model import Confidence
     from rosprivacy.analysis.model.recording import JudgedBag, TopicKinds
+    from rosprivacy.ontology.vocabulary import Vocabulary
 
 Row = dict[str, Any]
 
@@ -92,12 +100,63 @@ def _suggested(surest: Mapping[str, Confidence]) -> list[str]:
     return [f"{kind} ({sure})" for kind, sure in surest.items()]
 
 
-def in_batches(bags: Iterable[BagRows], most: int) -> Iterable[list[BagRows]]:
-    """Yield bags together, up to so many topics; a bag with more stands by itself."""
+def load_bags(driver: Driver, bags: Sequence[BagRows], robot: str, vocabulary: Vocabulary) -> int:
+    """Write bags and categories; return how many topics tell of a channel of the robot that was recorded.
+
+    Raises
+    ------
+    QueryError
+        If a robot is named that is not there: its channels would be linked to nothing in silence (S11).
+    DatabaseError
+        If the server refuses or is lost; each bag is there as a whole or as before.
+    """
+    with refusals(), driver.session() as session:
+        if robot and not session.execute_read(_is_there, robot):
+            raise QueryError(f"no robot {shown(robot)} in the database; load it first, or see rosprivacy query robots")
+        for statement in constraints():
+            session.run(statement).consume()
+        session.execute_write(write_vocabulary, vocabulary)
+        for batch in _in_batches(bags):
+            session.execute_write(_write, batch)
+        return session.execute_read(_linked, [rows.bag["id"] for rows in bags])
+
+
+def unload_bags(driver: Driver, path: str) -> list[str]:
+    """Remove the bag at a path, or all bags below it; return where they are, sorted."""
+    with refusals(), driver.session() as session:
+        return session.execute_write(_remove, str(Path(path).resolve()))
+
+
+def _is_there(transaction: ManagedTransaction, robot: str) -> bool:
+    return any(record["known"] for record in transaction.run(cypher.READ_ROBOTS, names=[robot]))
+
+
+def _write(transaction: ManagedTransaction, bags: list[BagRows]) -> None:
+    topics = [row for rows in bags for row in rows.topics]
+    write(transaction, cypher.MERGE_BAGS, [rows.bag for rows in bags])
+    write(transaction, cypher.DELETE_OLD_TOPICS, [rows.bag for rows in bags])
+    write(transaction, cypher.MERGE_TOPICS, topics)
+    ends = [{"source": r.bag["id"], "target": topic["id"], "properties": {}} for r in bags for topic in r.topics]
+    write(transaction, cypher.MERGE_HAS_TOPIC, ends)
+    write(transaction, cypher.DELETE_OLD_RECORDS, topics)
+    links = [{"source": row["id"], "target": to, "properties": {}} for row in topics for to in row["channels"]]
+    write(transaction, cypher.MERGE_RECORDS, links)
+
+
+def _linked(transaction: ManagedTransaction, ids: list[str]) -> int:
+    return sum(record["linked"] for record in transaction.run(cypher.COUNT_RECORDS, ids=ids))
+
+
+def _remove(transaction: ManagedTransaction, path: str) -> list[str]:
+    return [record["id"] for record in transaction.run(cypher.DELETE_BAGS, path=path)]
+
+
+def _in_batches(bags: Iterable[BagRows]) -> Iterator[list[BagRows]]:
+    """Bags together, up to ``BATCH`` topics; a bag with more stands by itself."""
     batch: list[BagRows] = []
     size = 0
     for rows in bags:
-        if batch and size + len(rows.topics) > most:
+        if batch and size + len(rows.topics) > BATCH:
             yield batch
             batch, size = [], 0
         batch.append(rows)

@@ -15,9 +15,8 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.errors import GraphError, shown
 from rosprivacy.analysis.text import counted
 from rosprivacy.analysis.written_names import FEW, did_you_mean, nearest
-from rosprivacy.ingest.database.flow_statements import DATABASE
 from rosprivacy.ingest.database.ids import category_labels
-from rosprivacy.ingest.database.schema import CARRIES, FLOWS_TO, KIND_LABELS, RELATIONSHIPS, RESERVED, ROLES
+from rosprivacy.ingest.database.schema import CARRIES, DATABASE, FLOWS_TO, KIND_LABELS, RELATIONSHIPS, RESERVED, ROLES
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping

@@ -1,8 +1,8 @@
-"""Analysis of a fleet -> the rows that Neo4j takes, robot by robot, also of those for which another one stands.
+"""Analysis -> ``RobotRows`` of a robot, or of every robot of a fleet, also of those for which another one stands.
 
-In: the analysis of the graph in which a robot stands for all that are alike. Out: ``RobotRows`` of every robot, and of
-what is shared, which is filed under names of its own. Each robot's rows name the elements of others at which its flows
-and findings end.
+In: the analysis of the graph in which a robot stands for all that are alike. Out: the rows of every robot, and of what
+is shared, which is filed under names of its own. Each robot's rows name the elements of others at which its flows and
+findings end.
 """
 
 from __future__ import annotations
@@ -14,45 +14,66 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.answer import robot_verdicts
 from rosprivacy.analysis.contexts import Contexts
 from rosprivacy.analysis.findings.derived_from import origins
-from rosprivacy.analysis.fleet.likeness import pattern_id
-from rosprivacy.ingest.database.beyond_rows import BeyondRows, add_beyond
+from rosprivacy.analysis.fleet.likeness import Likeness, pattern_id
+from rosprivacy.analysis.model import UNSTATED
 from rosprivacy.ingest.database.carrying import Carrying
-from rosprivacy.ingest.database.element_properties import (
+from rosprivacy.ingest.database.element_facts import processing_properties
+from rosprivacy.ingest.database.ids import category_labels, element_id, enclave_id
+from rosprivacy.ingest.database.relationship_facts import add_roles, allowed, denied, flow_row
+from rosprivacy.ingest.database.rows import (
+    BeyondRows,
     Names,
     Roles,
+    add_beyond,
     element_results,
-    finding_row,
-    flow_results,
-    origin_properties,
-)
-from rosprivacy.ingest.database.ids import category_labels, element_id, enclave_id
-from rosprivacy.ingest.database.rows import (
-    add_roles,
-    allowed,
-    denied,
     element_row,
     end_id,
-    flow_row,
+    finding_row,
+    flow_results,
     intake_row,
+    origin_properties,
     rows_of,
-    stated_of_robot,
 )
 from rosprivacy.ingest.database.schema import DOMAIN, FLEET, INFRASTRUCTURE
 from rosprivacy.ingest.fleet.dds_domains import is_domain
+from rosprivacy.ingest.fleet.fleet_graph import Placed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.answer import Analysis, Finding, Verdict
-    from rosprivacy.analysis.fleet.likeness import Likeness
-    from rosprivacy.analysis.model import Element, Flow
-    from rosprivacy.ingest.database.beyond_rows import Beyond
+    from rosprivacy.analysis.model import Bound, Element, Flow, Profile
     from rosprivacy.ingest.database.carrying import End
-    from rosprivacy.ingest.database.rows import RobotRows, Row
-    from rosprivacy.ingest.fleet.fleet_graph import Placed
+    from rosprivacy.ingest.database.rows import Beyond, RobotRows, Row
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 MOST_ACROSS = 10_000  # findings of one pattern that go from robot to robot and are written one by one
+
+
+def robot_rows(
+    robot: str,
+    analysis: Analysis,
+    bound: Bound,
+    vocabulary: Vocabulary,
+    more: Mapping[str, Any] | None = None,
+    beyond: Beyond | None = None,
+) -> RobotRows:
+    """Return the rows of one robot.
+
+    Parameters
+    ----------
+    robot
+        Name in the database.
+    analysis, more, beyond
+        As of ``FleetRows``.
+    bound
+        The statements that it rests on.
+    """
+    placed = Placed(analysis.graph, bound, Likeness({"": (robot,)}), {"": analysis.graph.profiles})
+    said = {"verdict": str(analysis.verdict), **(more or {})}
+    properties, parts = FleetRows(placed, analysis, vocabulary, {"": said}, beyond=beyond).parts("", robot)
+    del parts["foreign"]  # there is no other robot
+    return rows_of(robot, properties, parts)
 
 
 class FleetRows:
@@ -100,6 +121,8 @@ class FleetRows:
         self._vocabulary = vocabulary
         self._likeness = placed.likeness
         self._graph = analysis.graph
+        self._labels = category_labels(vocabulary)
+        self._names = Names(analysis.spread, vocabulary, self._labels)
         self._origins = origins(analysis.spread)
         across = [one for one in analysis.findings if self._likeness.across(one) and self._likeness.count(one)]
         self._at_either_end = counts is not None
@@ -124,11 +147,12 @@ class FleetRows:
         """Return the rows of all robots for which one of the graph stands."""
         if owner in self._owned and owner not in self._likeness.second:
             for name in self._likeness.members.get(owner, (owner,)):
-                yield self._rows(owner, name)
+                yield rows_of(name, *self.parts(owner, name))
 
-    def _rows(self, owner: str, name: str) -> RobotRows:
+    def parts(self, owner: str, name: str) -> tuple[Row, dict[str, Any]]:
+        """Return the properties of a robot, for which one of the graph stands, and its rows by part."""
         ids = _Ids(owner, name, self._likeness)
-        own = self._owned[owner]
+        own = self._owned.get(owner, [])
         elements, results = self._graph.elements, self._results
         profiles = self._placed.profiles.get(owner, ())
         roles: dict[str, list[Row]] = {}
@@ -169,18 +193,19 @@ class FleetRows:
         parts["foreign"] += [
             intake_row(robot, key, element) for key, (element, robot) in sorted(ids.foreign_intakes.items())
         ]
-        model, part = self._likeness.models.get(owner), self._part(owner)
+        part, stated = self._part(owner), self._placed.bound.of_robots.get(owner, UNSTATED)
         properties = {
-            "verdict": str(self._verdicts[owner]) if part != DOMAIN else None,
             "view": self._graph.view,
-            "model": model or None,
+            "model": self._likeness.models.get(owner) or None,
             "shared": True if part else None,
             "part": part,
-            **stated_of_robot(self._placed.bound, owner),
+            **processing_properties(stated),
             **self._more.get(owner, {}),
             **({"beyond": len(parts["beyond"].findings)} if self._beyond else {}),
         }
-        return rows_of(name, {key: value for key, value in properties.items() if value is not None}, parts)
+        if "verdict" not in properties and part != DOMAIN:
+            properties["verdict"] = str(self._verdicts[owner])
+        return {key: value for key, value in properties.items() if value is not None}, parts
 
     @cached_property
     def _owned(self) -> dict[str, list[int]]:
@@ -192,13 +217,12 @@ class FleetRows:
 
     @cached_property
     def _results(self) -> list[tuple[Row, list[str]]]:
-        labels = category_labels(self._vocabulary)
-        names, roles = Names(self._analysis.spread, self._vocabulary, labels), Roles(self._vocabulary, labels)
-        return list(element_results(self._analysis, self._placed.bound, names, roles))
+        roles = Roles(self._vocabulary, self._labels)
+        return list(element_results(self._analysis, self._placed.bound, self._names, roles))
 
     @cached_property
     def _carrying(self) -> Carrying:
-        return Carrying(self._analysis, [said for _, said in self._results], category_labels(self._vocabulary))
+        return Carrying(self._analysis, [labels for _, labels in self._results], self._labels)
 
     @cached_property
     def _steps(self) -> dict[str, list[tuple[End, End, list[str]]]]:
@@ -211,12 +235,10 @@ class FleetRows:
     @cached_property
     def _leaving(self) -> dict[str, list[tuple[Flow, Row]]]:
         """Flows by the robot that they leave, with their properties."""
-        names = Names(self._analysis.spread, self._vocabulary, category_labels(self._vocabulary))
         leaving: dict[str, list[tuple[Flow, Row]]] = defaultdict(list)
-        for index, (flow, result) in enumerate(
-            zip(self._graph.flows, flow_results(self._analysis, names), strict=True)
-        ):
-            properties = allowed(result, self._placed.bound.flows.get(index, ()), self._vocabulary)
+        results = flow_results(self._analysis, self._names)
+        for index, (flow, result) in enumerate(zip(self._graph.flows, results, strict=True)):
+            properties = allowed(result, self._placed.bound.flows.get(index, ()), self._vocabulary.hierarchy)
             leaving[self._graph.elements[flow.source].robot].append((flow, properties))
         for flow in self._graph.taken_back:
             leaving[self._graph.elements[flow.source].robot].append((flow, denied(flow)))
@@ -238,18 +260,15 @@ class FleetRows:
 
     def _memberships(self, owner: str, name: str, ids: _Ids) -> Iterator[Row]:
         """A node in an enclave, once; the first of its profiles there is named."""
-        nodes = {
-            self._graph.elements[v].name: self._graph.elements[v]
-            for v in self._owned[owner]
-            if self._graph.elements[v].is_node
-        }
-        seen = set()
+        own = [self._graph.elements[vertex] for vertex in self._owned.get(owner, ())]
+        nodes = {element.name: element for element in own if element.is_node}
+        first: dict[tuple[str, str], Profile] = {}
         for profile in self._placed.profiles.get(owner, ()):
-            if (profile.enclave, profile.node) not in seen:
-                seen.add((profile.enclave, profile.node))
-                place = {"file": profile.place.file, "line": profile.place.line, "robot": name}
-                key = ids.of(nodes[profile.node], name)
-                yield {"source": key, "target": enclave_id(name, profile.enclave), "properties": place}
+            first.setdefault((profile.enclave, profile.node), profile)
+        for profile in first.values():
+            place = {"file": profile.place.file, "line": profile.place.line, "robot": name}
+            key = ids.of(nodes[profile.node], name)
+            yield {"source": key, "target": enclave_id(name, profile.enclave), "properties": place}
 
     def _derived(self, owner: str, name: str, ids: _Ids) -> Iterator[Row]:
         elements = self._graph.elements
@@ -263,17 +282,12 @@ class FleetRows:
     def _findings(self, owner: str, name: str, ids: _Ids) -> tuple[list[Row], list[Row]]:
         rows: list[Row] = []
         across: list[Row] = []
-        contexts = Contexts.of(self._graph, self._placed.bound, self._vocabulary.categories)
         for finding in self._analysis.findings:
             if finding.source.robot != owner or not self._likeness.count(finding):
                 continue
-            pattern, apart = pattern_id(finding, self._likeness), self._likeness.across(finding)
             leaks = ids.expanded(finding.leak.robot)
             for robot in self._some(owner, name, leaks) if self._across_too_often(finding) else leaks:
-                placed = _Moved(finding, name, robot, self._likeness)
-                keys = {element: ids.of(element, placed.robot(element)) for element in placed.elements}
-                robots = {element: placed.robot(element) for element in placed.elements}
-                row, steps = finding_row(finding, pattern, self._vocabulary, keys, robots, contexts, across=apart)
+                row, steps = self._finding_row(finding, ids, _Moved(finding, name, robot, self._likeness))
                 rows.append(row)
                 across += steps
         return rows, across
@@ -281,20 +295,25 @@ class FleetRows:
     def _added(self, owner: str, name: str, ids: _Ids, beyond: Beyond) -> BeyondRows:
         """What the enforced view adds on one robot; of findings from robot to robot one for each source."""
         rows = BeyondRows([], [], [], [])
-        contexts = Contexts.of(self._graph, self._placed.bound, self._vocabulary.categories)
-        all_added = [(one, finding) for one in beyond.added for finding in one.findings]
-        for one, finding in all_added:
+        for added, finding in [(each, finding) for each in beyond.added for finding in each.findings]:
             if finding.source.robot != owner:
                 continue
-            leaks, apart = ids.expanded(finding.leak.robot), self._likeness.across(finding)
-            for robot in leaks[:1] if apart else leaks:
-                placed = _Moved(finding, name, robot, self._likeness)
-                keys = {element: ids.of(element, placed.robot(element)) for element in placed.elements}
-                robots = {element: placed.robot(element) for element in placed.elements}
-                pattern = pattern_id(finding, self._likeness)
-                row, _ = finding_row(finding, pattern, self._vocabulary, keys, robots, contexts, across=apart)
-                add_beyond(rows, row, one, finding, keys, robots, beyond.declared)
+            leaks = ids.expanded(finding.leak.robot)
+            for robot in leaks[:1] if self._likeness.across(finding) else leaks:
+                moved = _Moved(finding, name, robot, self._likeness)
+                row, _ = self._finding_row(finding, ids, moved)
+                add_beyond(rows, row, added, finding, moved.ids(ids), moved.robots, beyond.declared)
         return rows
+
+    def _finding_row(self, finding: Finding, ids: _Ids, moved: _Moved) -> tuple[Row, list[Row]]:
+        pattern, across = pattern_id(finding, self._likeness), self._likeness.across(finding)
+        return finding_row(
+            finding, pattern, self._vocabulary, moved.ids(ids), moved.robots, self._contexts, across=across
+        )
+
+    @cached_property
+    def _contexts(self) -> Contexts:
+        return Contexts.of(self._graph, self._placed.bound, self._vocabulary.categories)
 
     def _some(self, owner: str, name: str, leaks: list[str]) -> list[str]:
         """Some of the robots where data of one robot ends: one, or so that each of them has data of some robot."""
@@ -359,17 +378,15 @@ class _Moved:
     """A finding of the graph on robots of the fleet: those of its ends, and on the way any that there are."""
 
     def __init__(self, finding: Finding, source: str, leak: str, likeness: Likeness) -> None:
-        self.elements = [*finding.witness, finding.source, finding.leak]
-        self._names = {finding.source.robot: source, finding.leak.robot: leak}
+        names = {finding.source.robot: source, finding.leak.robot: leak}
         for element in finding.witness:
-            if element.robot not in self._names:
-                self._names[element.robot] = self._other(element.robot, likeness)
+            if element.robot not in names:
+                alike = likeness.members.get(likeness.second.get(element.robot, element.robot), (element.robot,))
+                taken = set(names.values())
+                names[element.robot] = next((name for name in alike if name not in taken), element.robot)
+        elements = (*finding.witness, finding.source, finding.leak)
+        self.robots = {element: names[element.robot] for element in elements}
 
-    def _other(self, robot: str, likeness: Likeness) -> str:
-        taken = set(self._names.values())
-        group = likeness.members.get(likeness.second.get(robot, robot), (robot,))
-        return next((name for name in group if name not in taken), robot)
-
-    def robot(self, element: Element) -> str:
-        """The robot of the fleet."""
-        return self._names[element.robot]
+    def ids(self, ids: _Ids) -> dict[Element, str]:
+        """The id of each of its elements."""
+        return {element: ids.of(element, robot) for element, robot in self.robots.items()}

@@ -1,4 +1,4 @@
-"""What identifies things in the database: ids of elements and enclaves, labels of categories.
+"""What identifies things in the database: ids of elements and enclaves, labels of categories, all names there can be.
 
 In: elements, enclave paths, a vocabulary. Out: strings that are the same for no two, checked where Cypher needs an
 identifier.
@@ -11,14 +11,15 @@ import re
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputErrors, OntologyError, shown
-from rosprivacy.ingest.database.schema import CARRIES, RESERVED, SUFFIXES, quoted
+from rosprivacy.ingest.database.schema import CARRIED, CARRIES, NODES, RELATIONSHIPS, RESERVED, SUFFIXES, quoted
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Collection, Iterable
 
     from rosprivacy.analysis.model import Element
     from rosprivacy.ontology.vocabulary import Vocabulary
 
+LABELS_OF_CATEGORIES = "MATCH (c:DataCategory) RETURN c.label"
 LONGEST_ID = 1000  # characters; an index key has room for 8 kB
 _WORDS = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 
@@ -89,3 +90,27 @@ def category_labels(vocabulary: Vocabulary) -> dict[str, str]:
     if problems:
         raise InputErrors(problems)
     return {category.name: category.label for category in vocabulary.categories.values()}
+
+
+def schema_names(stems: Collection[str]) -> dict[str, frozenset[str]]:
+    """Return the labels, relationship types and properties that there can be, of the schema and of categories.
+
+    Who asks in Cypher for a name that is none of these, and not in the database, has mistyped it.
+
+    Parameters
+    ----------
+    stems
+        Labels of categories.
+
+    >>> sorted(schema_names(["Video"])["label"] - schema_names([])["label"])
+    ['Video', 'VideoLeak', 'VideoSanitizer', 'VideoSource']
+    >>> schema_names(["Video"])["relationship type"] - schema_names([])["relationship type"]
+    frozenset({'CARRIES_VIDEO'})
+    """
+    types = {kind.type for kind in RELATIONSHIPS if kind is not CARRIED}
+    properties = [*(kind.properties for kind in NODES), *(kind.properties for kind in RELATIONSHIPS)]
+    return {
+        "label": RESERVED | {stem + suffix for stem in stems for suffix in SUFFIXES},
+        "relationship type": frozenset(types | {carries(stem) for stem in stems}),
+        "property": frozenset(field.name for fields in properties for field in fields),
+    }

@@ -9,13 +9,15 @@ from __future__ import annotations
 
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import DatabaseError, InputError, shown
 from rosprivacy.ingest.database import cypher
 from rosprivacy.ingest.database.ids import category_labels
-from rosprivacy.ingest.database.robot_notices import loaded_with, unreadable
+from rosprivacy.ingest.database.robot_facts import loaded_with, unreadable
 from rosprivacy.ingest.database.schema import (
+    BROADER,
     COULD_FLOW_TO,
     DERIVES_FROM,
     ENDED_BY_SPLITTING,
@@ -24,25 +26,35 @@ from rosprivacy.ingest.database.schema import (
     IN_ENCLAVE,
     LOOK_AT,
     MADE_POSSIBLE_BY,
-    RELATIONSHIPS,
     ROBOT,
     ROLES,
     SUFFIXES,
+    constraints,
 )
-from rosprivacy.ingest.database.schema import constraints as schema_statements
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 
     from neo4j import Driver, ManagedTransaction
 
-    from rosprivacy.ingest.database.beyond_rows import BeyondRows
     from rosprivacy.ingest.database.rows import RobotRows, Row
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 BATCH = 10_000  # rows per statement and, for robots smaller than that, about so many per transaction
 LONGEST_NAME = 200
-_BROADER = next(kind for kind in RELATIONSHIPS if kind.type == "BROADER")
+PARTS = {  # of ``RobotRows``: what writes them once elements are there, in this order
+    "enclaves": cypher.MERGE_ENCLAVES,
+    "memberships": cypher.create_relationships(IN_ENCLAVE),
+    "flows": cypher.create_relationships(FLOWS_TO),
+    "derived": cypher.create_relationships(DERIVES_FROM),
+    "carried": cypher.CREATE_CARRIES,
+    "findings": cypher.CREATE_FINDINGS,
+    "across": cypher.CREATE_ACROSS,
+    "beyond.findings": cypher.CREATE_ADDED,
+    "beyond.flows": cypher.create_relationships(COULD_FLOW_TO),
+    "beyond.possible": cypher.create_relationships(MADE_POSSIBLE_BY),
+    "beyond.split": cypher.create_relationships(ENDED_BY_SPLITTING),
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,7 +108,7 @@ def load(
     written = unchanged = 0
     replaced: dict[str, Collection[str]] = {}
     with refusals(), driver.session() as session:
-        for statement in schema_statements():
+        for statement in constraints():
             session.run(statement).consume()
         session.execute_write(write_vocabulary, vocabulary)
         for batch in _batches(robots):
@@ -126,10 +138,7 @@ def unload(driver: Driver, names: Sequence[str]) -> list[str]:
     def work(transaction: ManagedTransaction) -> list[str]:
         known = [record["name"] for record in transaction.run(cypher.READ_ROBOTS, names=sorted(set(names)))]
         run(transaction, cypher.LOCK_ROBOTS, names=known)
-        run(transaction, cypher.DELETE_FINDINGS, names=known)
-        delete_beyond(transaction, known)
-        run(transaction, cypher.DELETE_OURS, names=known)
-        _delete_elements(transaction, _element_ids(transaction, known))
+        _remove(transaction, known)
         run(transaction, cypher.DELETE_EMPTY_ENCLAVES, names=known)
         run(transaction, cypher.DELETE_ROBOTS, names=known)
         return sorted(known)
@@ -139,13 +148,7 @@ def unload(driver: Driver, names: Sequence[str]) -> list[str]:
 
 
 def check_robot_name(name: str) -> str:
-    """Return a name that a robot can have in the database.
-
-    Raises
-    ------
-    InputError
-        If it is empty, endless, or holds what cannot be seen.
-    """
+    """Return a name that a robot can have in the database."""
     if not name or len(name) > LONGEST_NAME or not name.isprintable():
         hint = f"use 1 to {LONGEST_NAME} printable characters"
         raise InputError("--robot", 0, f"{shown(name)!r} cannot name a robot", hint)
@@ -218,34 +221,22 @@ def _of_other_policies(there: Mapping[str, _There], robots: Iterable[RobotRows])
 def write_vocabulary(transaction: ManagedTransaction, vocabulary: Vocabulary) -> None:
     """Write the categories, with what is broader and under which provisions they fall."""
     categories = vocabulary.categories
-    rows = [
-        {
-            "id": c.iri,
-            "properties": {
-                "name": c.name,
-                "label": c.label,
-                "title": c.title,
-                "definition": c.definition,
-                "article9": c.article9,
-                "data_types": list(c.data_types),
-                "identity_factors": list(c.identity_factors),
-                "gdpr": c.gdpr or None,
-            },
+    kinds = {
+        c.iri: {
+            "name": c.name,
+            "label": c.label,
+            "title": c.title,
+            "definition": c.definition,
+            "article9": c.article9,
+            "data_types": list(c.data_types),
+            "identity_factors": list(c.identity_factors),
+            "gdpr": c.gdpr or None,
         }
         for c in categories.values()
-    ]
-    broader = [
-        {"source": c.iri, "target": categories[up].iri, "properties": {}}
-        for c in categories.values()
-        for up in c.broader
-    ]
-    run(transaction, cypher.MERGE_CATEGORIES, rows=rows)
-    run(transaction, cypher.DROP_CATEGORY_LINKS, iris=[row["id"] for row in rows])
-    run(transaction, cypher.create_relationships(_BROADER), rows=broader)
-    law = [(c.iri, legal) for c in categories.values() for legal in c.law]
-    names = {name for c in categories.values() for name in c.look_at}
-    pointed = {one.name: one for one in vocabulary.pointed.provisions if one.name in names}
-    provisions: dict[str, dict[str, str | None]] = {
+    }
+    looked_at = {name for c in categories.values() for name in c.look_at}
+    pointed = {one.name: one for one in vocabulary.pointed.provisions if one.name in looked_at}
+    provisions: dict[str, Row] = {
         one.iri: {
             "name": one.name,
             "title": one.meaning,
@@ -255,25 +246,31 @@ def write_vocabulary(transaction: ManagedTransaction, vocabulary: Vocabulary) ->
         }
         for one in pointed.values()
     }
+    law = [(c.iri, legal) for c in categories.values() for legal in c.law]
     provisions |= {legal.iri: {"name": legal.name, "title": legal.meaning, "as_of": legal.as_of} for _, legal in law}
-    run(transaction, cypher.MERGE_PROVISIONS, rows=[{"id": i, "properties": p} for i, p in sorted(provisions.items())])
+    broader = [_link(c.iri, categories[up].iri) for c in categories.values() for up in c.broader]
     under = [
-        {
-            "source": iri,
-            "target": legal.iri,
-            "properties": {
-                "verdict": legal.verdict,
-                "condition": legal.condition or None,
-                "stated_of": legal.stated_of,
-                "sources": list(legal.sources),
-            },
-        }
+        _link(
+            iri,
+            legal.iri,
+            verdict=legal.verdict,
+            condition=legal.condition or None,
+            stated_of=legal.stated_of,
+            sources=list(legal.sources),
+        )
         for iri, legal in law
     ]
+    at = [_link(c.iri, pointed[name].iri) for c in categories.values() for name in c.look_at if name in pointed]
+    run(transaction, cypher.MERGE_CATEGORIES, rows=[{"id": iri, "properties": p} for iri, p in kinds.items()])
+    run(transaction, cypher.DROP_CATEGORY_LINKS, iris=list(kinds))
+    run(transaction, cypher.create_relationships(BROADER), rows=broader)
+    run(transaction, cypher.MERGE_PROVISIONS, rows=[{"id": i, "properties": p} for i, p in sorted(provisions.items())])
     run(transaction, cypher.create_relationships(FALLS_UNDER), rows=under)
-    at = [(c.iri, pointed[name].iri) for c in categories.values() for name in c.look_at if name in pointed]
-    links = [{"source": source, "target": target, "properties": {}} for source, target in at]
-    run(transaction, cypher.create_relationships(LOOK_AT), rows=links)
+    run(transaction, cypher.create_relationships(LOOK_AT), rows=at)
+
+
+def _link(source: str, target: str, **properties: Any) -> Row:
+    return {"source": source, "target": target, "properties": properties}
 
 
 def _write_robots(transaction: ManagedTransaction, robots: list[RobotRows], labels: list[str]) -> None:
@@ -282,54 +279,32 @@ def _write_robots(transaction: ManagedTransaction, robots: list[RobotRows], labe
     run(transaction, cypher.LOCK_ROBOTS, names=names)
     known = [record["name"] for record in transaction.run(cypher.READ_ROBOTS, names=names) if record["known"]]
     if known:
-        run(transaction, cypher.DELETE_FINDINGS, names=known)
-        delete_beyond(transaction, known)
-        run(transaction, cypher.DELETE_OURS, names=known)
         new = {row["id"] for rows in robots for row in (*rows.elements, *rows.intakes)}
-        _delete_elements(transaction, [key for key in _element_ids(transaction, known) if key not in new])
+        _remove(transaction, known, new)
     fresh = [row for rows in robots for row in (*rows.elements, *rows.intakes) if rows.robot not in known]
     old = [row for rows in robots for row in (*rows.elements, *rows.intakes) if rows.robot in known]
     write(transaction, cypher.CREATE_ELEMENTS, fresh)
     write(transaction, cypher.REPLACE_ELEMENTS, old, labels=labels)
-    write(transaction, cypher.MERGE_FOREIGN, _foreign(robots))
-    write(transaction, cypher.MERGE_ENCLAVES, [row for rows in robots for row in rows.enclaves])
-    for kind, part in ((IN_ENCLAVE, "memberships"), (FLOWS_TO, "flows"), (DERIVES_FROM, "derived")):
-        statement = cypher.create_relationships(kind)
-        write(transaction, statement, [row for rows in robots for row in getattr(rows, part)])
-    write(transaction, cypher.CREATE_CARRIES, [row for rows in robots for row in rows.carried])
+    write(transaction, cypher.MERGE_FOREIGN, list({row["id"]: row for rows in robots for row in rows.foreign}.values()))
+    for part, statement in PARTS.items():
+        write(transaction, statement, [row for rows in robots for row in attrgetter(part)(rows)])
     for role, kind in ROLES.items():
-        statement = cypher.create_relationships(kind)
-        write(transaction, statement, [row for rows in robots for row in rows.roles.get(role, ())])
-    write(transaction, cypher.CREATE_FINDINGS, [row for rows in robots for row in rows.findings])
-    write(transaction, cypher.CREATE_ACROSS, [row for rows in robots for row in rows.across])
-    _write_beyond(transaction, [rows.beyond for rows in robots])
+        said = [row for rows in robots for row in rows.roles.get(role, ())]
+        write(transaction, cypher.create_relationships(kind), said)
     if known:
         run(transaction, cypher.DELETE_EMPTY_ENCLAVES, names=known)
     absent = {field.name: None for field in ROBOT.properties if field.name not in (ROBOT.key, "version")}
-    said = [{"robot": r.robot, "properties": absent | r.properties} for r in robots]
-    run(transaction, cypher.WRITE_ROBOTS, rows=said)
+    whole = [{"robot": r.robot, "properties": absent | r.properties} for r in robots]
+    run(transaction, cypher.WRITE_ROBOTS, rows=whole)
 
 
-def _write_beyond(transaction: ManagedTransaction, robots: list[BeyondRows]) -> None:
-    """Write what the enforced view adds, where somebody asked for both views."""
-    write(transaction, cypher.CREATE_ADDED, [row for rows in robots for row in rows.findings])
-    for kind, part in ((COULD_FLOW_TO, "flows"), (MADE_POSSIBLE_BY, "possible"), (ENDED_BY_SPLITTING, "split")):
-        statement = cypher.create_relationships(kind)
-        write(transaction, statement, [row for rows in robots for row in getattr(rows, part)])
-
-
-def _foreign(robots: list[RobotRows]) -> list[Row]:
-    """Elements that these robots name and that belong to others, each once."""
-    return list({row["id"]: row for rows in robots for row in rows.foreign}.values())
-
-
-def _element_ids(transaction: ManagedTransaction, names: list[str]) -> list[str]:
-    return [record["id"] for record in transaction.run(cypher.READ_ELEMENTS, names=names)]
-
-
-def _delete_elements(transaction: ManagedTransaction, ids: list[str]) -> None:
-    for start in range(0, len(ids), BATCH):
-        run(transaction, cypher.DELETE_ELEMENTS, rows=ids[start : start + BATCH])
+def _remove(transaction: ManagedTransaction, names: list[str], but: Collection[str] = ()) -> None:
+    """Remove what was written of some robots; elements that are to be written again stay."""
+    run(transaction, cypher.DELETE_FINDINGS, names=names)
+    delete_beyond(transaction, names)
+    run(transaction, cypher.DELETE_OURS, names=names)
+    ids = [record["id"] for record in transaction.run(cypher.READ_ELEMENTS, names=names)]
+    write(transaction, cypher.DELETE_ELEMENTS, [key for key in ids if key not in but])
 
 
 def delete_beyond(transaction: ManagedTransaction, names: list[str]) -> None:
@@ -338,7 +313,7 @@ def delete_beyond(transaction: ManagedTransaction, names: list[str]) -> None:
         run(transaction, statement, names=names)
 
 
-def write(transaction: ManagedTransaction, statement: str, rows: list[Row], **more: Any) -> None:
+def write(transaction: ManagedTransaction, statement: str, rows: Sequence[Row | str], **more: Any) -> None:
     """Run a statement over rows, ``BATCH`` at a time."""
     for start in range(0, len(rows), BATCH):
         run(transaction, statement, rows=rows[start : start + BATCH], **more)

@@ -11,55 +11,40 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.errors import GraphError, InputError, InputErrors, shown
+from rosprivacy.analysis.errors import GraphError, InputErrors, shown
 from rosprivacy.analysis.fleet.likeness import NO_ROBOTS, Likeness
-from rosprivacy.analysis.model import (
-    CHANNELS,
-    NON_ROS,
-    STANDARD,
-    Bound,
-    Element,
-    FlowGraph,
-    Place,
-    Profile,
-    Statement,
-)
+from rosprivacy.analysis.model import NON_ROS, Bound, Element, FlowGraph, Place, Profile, Statement
 from rosprivacy.analysis.non_ros import by_kind
 from rosprivacy.ingest.database.by_hand import Sealed, meaningless_relationships
-from rosprivacy.ingest.database.exposure_properties import exposures_of
-from rosprivacy.ingest.database.flow_statements import DATABASE, names_of, statements_of
-from rosprivacy.ingest.database.non_ros_properties import facts_of
-from rosprivacy.ingest.database.other_schemas import HINT, of_other_schemas
-from rosprivacy.ingest.database.processing_properties import processing_of
-from rosprivacy.ingest.database.robot_notices import unreadable
-from rosprivacy.ingest.database.row_facts import (
+from rosprivacy.ingest.database.element_facts import ELEMENT_FACTS, outside_facts, processing_of
+from rosprivacy.ingest.database.relationship_facts import (
     ADDED,
     MATCHES,
-    denied_flow_of,
+    FlowRow,
     flow_of,
     flows_through,
     grants_of,
-    role_facts_of,
-    subjects_of,
+    names_of,
+    role_of,
+    role_statements,
+    statements_of,
 )
-from rosprivacy.ingest.database.schema import KIND_LABELS, ROLES
-from rosprivacy.ingest.database.type_properties import types_of
-from rosprivacy.ingest.labels.log_text import is_log, without_text
+from rosprivacy.ingest.database.robot_facts import HINT, of_other_schemas, unreadable
+from rosprivacy.ingest.database.schema import DATABASE, KIND_LABELS, ROLES
 from rosprivacy.ingest.labels.stated_types import in_order
-from rosprivacy.ingest.labels.surroundings import surroundings_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Mapping
 
     from neo4j import Driver, ManagedTransaction, Record
 
-    from rosprivacy.analysis.model import Exposure, MessageType, NonRosFacts, Processing
+    from rosprivacy.analysis.errors import InputError
+    from rosprivacy.analysis.model import NonRosFacts, Processing
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 _FLOW_ROLES = {"publish", "subscribe", "request", "reply", "call", "execute", MATCHES}
 _KIND_OF = {label: kind for kind, label in KIND_LABELS.items()}
 _ROLE_OF = {kind.type: role for role, kind in ROLES.items()}
-FACTS = 12  # of a role, as ``role_facts_of`` returns them
 
 ROBOTS = "MATCH (r:Robot) RETURN properties(r) AS robot ORDER BY r.name"
 ELEMENTS = (
@@ -121,24 +106,20 @@ class Stored:
 
 
 def read_stored(driver: Driver, vocabulary: Vocabulary) -> Stored:
-    """Read everything.
-
-    Raises
-    ------
-    InputErrors
-        With every element, flow or role that cannot be understood.
-    """
+    """Read everything; all elements, flows and roles that cannot be understood are one ``InputErrors``."""
     with driver.session() as session:
         return session.execute_read(_read, vocabulary)
 
 
 def _read(transaction: ManagedTransaction, vocabulary: Vocabulary) -> Stored:
     robots = {record["robot"]["name"]: record["robot"] for record in transaction.run(ROBOTS)}
-    if not robots:
-        raise InputErrors([_problem("there is no robot in it", "load one with rosprivacy load")])
-    if others := of_other_schemas(robots.values()):
-        raise InputErrors([_problem(others, HINT)])
     reader = _Reader(vocabulary, alone=len(robots) == 1)
+    if not robots:
+        reader.problem("there is no robot in it", "load one with rosprivacy load")
+    elif others := of_other_schemas(robots.values()):
+        reader.problem(others, HINT)
+    if reader.problems:
+        raise InputErrors(reader.problems)
     reader.elements(transaction.run(ELEMENTS))
     reader.flows(transaction.run(FLOWS))
     reader.said(transaction.run(SAID))
@@ -147,20 +128,14 @@ def _read(transaction: ManagedTransaction, vocabulary: Vocabulary) -> Stored:
     reader.by_hand(meaningless_relationships(transaction))
     for name, robot in sorted(robots.items()):
         if damaged := unreadable(robot):
-            reader.problems.append(
-                _problem(f"{damaged} of robot {shown(name)!r} cannot be understood", "load it again")
-            )
+            reader.problem(f"{damaged} of robot {shown(name)!r} cannot be understood", "load it again")
     views = sorted({str(robot.get("view", "declared")) for robot in robots.values()})
     if len(views) > 1:
-        hint = "load all robots with the same --view"
-        reader.problems.append(_problem(f"robots were loaded in the views {' and '.join(views)}", hint))
+        what = f"robots were loaded in the views {' and '.join(views)}"
+        reader.problem(what, "load all robots with the same --view")
     if reader.problems:
         raise InputErrors(reader.problems)
     return reader.stored(robots, views[0])
-
-
-def _problem(problem: str, hint: str) -> InputError:
-    return GraphError(DATABASE, 0, problem, hint)
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,14 +155,19 @@ class _Reader:
         self._vertices: dict[Element, _Vertex] = {}
         self._by_key: dict[str, Element] = {}
         self._flows: list[tuple[Element, Element, str, str, Mapping[str, Any]]] = []
-        self._said: dict[str, list[tuple[str, tuple[Any, ...], bool]]] = defaultdict(list)
+        self._said: dict[str, list[tuple[str, Statement]]] = defaultdict(list)
         self._foreign_kinds = False
         self._profiles: list[Profile] = []
         self._outside: dict[Element, NonRosFacts] = {}
-        self._processing: dict[str, Processing] = {}
+        self._facts: dict[str, dict[Element, Any]] = {fact.field: {} for fact in ELEMENT_FACTS}
         self._of_robots: dict[str, Processing] = {}
-        self._types: dict[str, tuple[MessageType, ...]] = {}
-        self._exposed: dict[str, tuple[Exposure, ...]] = {}
+
+    def problem(self, problem: str, hint: str) -> None:
+        self.problems.append(GraphError(DATABASE, 0, problem, hint))
+
+    def not_understood(self, what: str, error: Exception, of: str) -> None:
+        """Note what properties cannot be read."""
+        self.problem(f"{what} cannot be understood: {shown(str(error))}", f"see docs/database.md for what {of} has")
 
     def elements(self, records: Iterable[Record]) -> None:
         for record in records:
@@ -196,90 +176,74 @@ class _Reader:
             kinds = {properties.get("kind")} & set(KIND_LABELS) or {_KIND_OF[label] for label in labels & set(_KIND_OF)}
             if not isinstance(name, str) or not name or not isinstance(robot, str):
                 what = f"an element with the labels {', '.join(sorted(labels))} has no name"
-                self.problems.append(_problem(shown(what), "SET n.name = '…' (and n.robot, if it has one, to text)"))
+                self.problem(shown(what), "SET n.name = '…' (and n.robot, if it has one, to text)")
                 continue
             if len(kinds) != 1:
                 hint = f"give it one of the labels {', '.join(KIND_LABELS.values())}"
-                self.problems.append(_problem(f"what is {shown(name)!r}? its labels do not say its kind", hint))
+                self.problem(f"what is {shown(name)!r}? its labels do not say its kind", hint)
                 continue
-            try:
-                subjects_of(properties)
-            except TypeError as error:
-                self.problems.append(_problem(f"{shown(name)!r}: {error}", "SET n.subjects = ['residents', 'staff']"))
+            leg, side = (str(properties.get(key) or "") for key in ("leg", "side"))
+            without = tuple(properties.get("without") or ())
+            element = Element(str(kinds.pop()), name, "" if self._alone else robot, leg, side, without)
+            if not self._take_facts(element, properties):
                 continue
-            try:
-                surroundings_of(properties, ros="node" in kinds)
-            except TypeError as error:
-                hint = "SET n.context = ['care'], n.country = 'DE'"
-                self.problems.append(_problem(f"{shown(name)!r}: {error}", hint))
-                continue
-            try:
-                if "node" not in kinds and (types := types_of(properties, "" if self._alone else robot)):
-                    self._types[record["key"]] = types
-                if kinds <= {*CHANNELS} and (exposed := exposures_of(properties)):
-                    self._exposed[record["key"]] = exposed
-                self._processing[record["key"]] = processing_of(properties, self._vocabulary.categories)
-            except ValueError as error:
-                what = f"{shown(name)!r} cannot be understood: {shown(str(error))}"
-                self.problems.append(_problem(what, "see docs/database.md for what it has"))
-                continue
-            parts = {key: str(properties.get(key) or "") for key in ("leg", "side")}
-            shown_robot = "" if self._alone and robot else robot
-            element = Element(
-                str(kinds.pop()), name, shown_robot, parts["leg"], parts["side"], tuple(properties.get("without") or ())
-            )
             if element in self._vertices:
-                hint = "rename one, or remove it"
-                self.problems.append(_problem(f"there are two elements {element.kind} {shown(name)!r}", hint))
-            if element.kind in NON_ROS:
-                self._take_facts(element, properties)
+                self.problem(f"there are two elements {element.kind} {shown(name)!r}", "rename one, or remove it")
+            if element.kind in NON_ROS:  # where nothing is stated, the facts are empty (rule S9)
+                try:
+                    self._outside[element] = outside_facts(properties, self._vocabulary.categories)
+                except ValueError as error:
+                    self.not_understood(f"{element.kind} {shown(name)!r}", error, "it")
             self._vertices[element] = _Vertex(record["key"], labels, properties)
             self._by_key[record["key"]] = element
 
-    def _take_facts(self, element: Element, properties: Mapping[str, Any]) -> None:
-        """What is stated about an element outside ROS; where nothing is, the facts are empty (rule S9)."""
-        try:
-            self._outside[element] = facts_of(properties, self._vocabulary.categories)
-        except ValueError as error:
-            what = f"{element.kind} {shown(element.name)!r} cannot be understood: {shown(str(error))}"
-            self.problems.append(_problem(what, "see docs/database.md for what it has"))
+    def _take_facts(self, element: Element, properties: Mapping[str, Any]) -> bool:
+        """Read what is stated about an element; return whether it can be understood."""
+        for fact in ELEMENT_FACTS:
+            try:
+                stated = fact.read(properties, element, self._vocabulary.categories)
+            except (TypeError, ValueError) as error:
+                if fact.example:
+                    self.problem(f"{shown(element.name)!r}: {error}", fact.example)
+                else:
+                    self.not_understood(repr(shown(element.name)), error, "it")
+                return False
+            if stated:
+                self._facts[fact.field][element] = stated
+        return True
 
     def flows(self, records: Iterable[Record]) -> None:
         for record in records:
-            ends = self._by_key.get(record["source"]), self._by_key.get(record["target"])
-            if not ends[0] or not ends[1]:  # one of them is a problem of its own
+            source, target = self._by_key.get(record["source"]), self._by_key.get(record["target"])
+            if not source or not target:  # one of them is a problem of its own
                 continue
             said = record["properties"]
             try:
-                grants_of(said, ADDED, ends[0])
+                grants_of(said, ADDED, source)
                 unknown = names_of(said) - set(self._vocabulary.categories)
             except (KeyError, TypeError, ValueError, AttributeError) as error:
-                which = f"{shown(ends[0].name)} -> {shown(ends[1].name)}"
+                which = f"{shown(source.name)} -> {shown(target.name)}"
                 what = f"a flow cannot be understood: {which}: {shown(str(error))}"
-                self.problems.append(_problem(what, "see docs/database.md for what a flow has"))
+                self.problem(what, "see docs/database.md for what a flow has")
                 continue
             for name in sorted(unknown):
-                self.problems.append(_problem(f"a flow names the unknown category {shown(name)!r}", "correct it"))
+                self.problem(f"a flow names the unknown category {shown(name)!r}", "correct it")
             role = said.get("role")
-            self._flows.append((ends[0], ends[1], role if role in _FLOW_ROLES else ADDED, record["key"], said))
+            self._flows.append((source, target, role if role in _FLOW_ROLES else ADDED, record["key"], said))
 
     def said(self, records: Iterable[Record]) -> None:
         for record in records:
-            if record["category"] not in self._vocabulary.categories:
+            role, category = _ROLE_OF[record["type"]], record["category"]
+            if category not in self._vocabulary.categories:
                 self._foreign_kinds = True
-                hint = "use one that rosprivacy load wrote"
-                self.problems.append(_problem(f"unknown category {shown(str(record['category']))!r}", hint))
-                continue
-            role, category, said = _ROLE_OF[record["type"]], record["category"], record["properties"]
-            if not (element := self._by_key.get(record["key"])):  # a problem of its own
-                continue
-            try:
-                facts = role_facts_of(role, category, said)
-            except (TypeError, ValueError) as error:
-                what = f"{ROLES[role].type} of {shown(element.name)!r} cannot be understood: {shown(str(error))}"
-                self.problems.append(_problem(what, "see docs/database.md for what a role has"))
-                continue
-            self._said[record["key"]].append((category, facts, bool(said.get("every"))))
+                self.problem(f"unknown category {shown(str(category))!r}", "use one that rosprivacy load wrote")
+            elif element := self._by_key.get(record["key"]):  # else a problem of its own
+                try:
+                    said = role_of(role, category, record["properties"])
+                except (TypeError, ValueError) as error:
+                    self.not_understood(f"{ROLES[role].type} of {shown(element.name)!r}", error, "a role")
+                else:
+                    self._said[record["key"]].append((category, said))
 
     def profiles(self, records: Iterable[Record]) -> None:
         for record in records:
@@ -290,13 +254,12 @@ class _Reader:
         """Read who is responsible for each robot, what for and on which basis."""
         for name, robot in sorted(robots.items()):
             try:
-                said = processing_of(robot, self._vocabulary.categories)
+                stated = processing_of(robot, self._vocabulary.categories)
             except ValueError as error:
-                what = f"robot {shown(name)!r} cannot be understood: {shown(str(error))}"
-                self.problems.append(_problem(what, "see docs/database.md for what it has"))
+                self.not_understood(f"robot {shown(name)!r}", error, "it")
                 continue
-            if said:
-                self._of_robots["" if self._alone else name] = said
+            if stated:
+                self._of_robots["" if self._alone else name] = stated
 
     def by_hand(self, meaningless: Iterable[InputError]) -> None:
         """See that what people wrote means something; where kinds are unknown, what is made of them is, too."""
@@ -305,7 +268,7 @@ class _Reader:
             return
         sealed = Sealed(self._vocabulary)
         for vertex in self._vertices.values():
-            made = [category for category, facts, _ in self._said.get(vertex.key, ()) if facts[0] == "derivation"]
+            made = [category for category, said in self._said.get(vertex.key, ()) if said.role == "derivation"]
             name = str(vertex.properties["name"])
             self.problems += sealed.problems(name, vertex.labels, vertex.properties, made)
 
@@ -314,64 +277,43 @@ class _Reader:
         elements = tuple(sorted(self._vertices, key=Element.sort_key))
         number = {element: i for i, element in enumerate(elements)}
         vertices = [self._vertices[element] for element in elements]
-        rows = [(number[a], number[b], role, key, said) for a, b, role, key, said in self._flows]
-        rows.sort(key=lambda row: (*row[:3], str(row[4].get("file")), str(row[4].get("line")), row[3]))
-        allowed = [row for row in rows if row[4].get("decision") != "deny"]
-        refused = [(denied_flow_of(row, elements), row[2]) for row in rows if row[4].get("decision") == "deny"]
+        rows = [FlowRow(number[a], number[b], role, key, said) for a, b, role, key, said in self._flows]
+        rows.sort(key=lambda row: (*row[:3], str(row.said.get("file")), str(row.said.get("line")), row.key))
+        allowed = [row for row in rows if row.said.get("decision") != "deny"]
+        refused = [flow_of(row, elements) for row in rows if row.said.get("decision") == "deny"]
         graph = FlowGraph(
             elements,
             tuple(flow_of(row, elements) for row in allowed),
-            tuple(flow for flow, role in refused if role != MATCHES),
+            tuple(flow for flow in refused if flow.role != MATCHES),
             tuple(sorted(set(self._profiles), key=lambda p: (p.enclave, p.node, p.place.file, p.place.line))),
             view,
-            tuple(flow for flow, role in refused if role == MATCHES),
+            tuple(flow for flow in refused if flow.role == MATCHES),
         )
-        statements = {v: tuple(self._statements(vertices[v].key)) for v in range(len(elements))}
+        statements: dict[int, tuple[Statement, ...]] = {}
+        for v, element in enumerate(elements):
+            said = role_statements(self._said.get(vertices[v].key, ()), element, self._vocabulary)
+            statements[v] = (*said, *(by_kind(element) if element in self._outside else ()))
         statements = {v: said for v, said in statements.items() if said}
-        outside = {v: facts for v, e in enumerate(elements) if (facts := self._outside.get(e)) is not None}
-        for vertex in outside:
-            statements[vertex] = (*statements.get(vertex, ()), *by_kind(elements[vertex]))
-        statements = dict(sorted(statements.items()))
-        restrictions = {i: statements_of(row[4], self._vocabulary.hierarchy) for i, row in enumerate(allowed)}
+        restrictions = {i: statements_of(row.said, self._vocabulary.hierarchy) for i, row in enumerate(allowed)}
+        facts: dict[str, Any] = {
+            field: {v: stated[element] for v, element in enumerate(elements) if element in stated}
+            for field, stated in self._facts.items()
+        }
+        bound = Bound(
+            statements,
+            {i: said for i, said in restrictions.items() if said},
+            flows_through(graph, statements),
+            {v: self._outside[element] for v, element in enumerate(elements) if element in self._outside},
+            of_robots=self._of_robots,
+            **{**facts, "types": in_order(facts["types"])},
+        )
         return Stored(
             graph,
-            Bound(
-                {v: said for v, said in statements.items() if said},
-                {i: said for i, said in restrictions.items() if said},
-                flows_through(graph, statements),
-                outside,
-                surroundings={
-                    v: where
-                    for v, vertex in enumerate(vertices)
-                    if (where := surroundings_of(vertex.properties, ros=elements[v].is_node))
-                },
-                subjects={v: groups for v, vertex in enumerate(vertices) if (groups := subjects_of(vertex.properties))},
-                processing={v: one for v, vertex in enumerate(vertices) if (one := self._processing[vertex.key])},
-                of_robots=self._of_robots,
-                types=in_order({v: self._types.get(vertex.key, ()) for v, vertex in enumerate(vertices)}),
-                exposed={v: some for v, vertex in enumerate(vertices) if (some := self._exposed.get(vertex.key))},
-            ),
+            bound,
             robots,
             tuple(vertex.key for vertex in vertices),
             tuple(vertex.labels for vertex in vertices),
             tuple(vertex.properties for vertex in vertices),
-            tuple(row[3] for row in allowed),
-            tuple(row[4] for row in allowed),
+            tuple(row.key for row in allowed),
+            tuple(row.said for row in allowed),
         )
-
-    def _statements(self, key: str) -> Iterator[Statement]:
-        """What is said of an element; the categories that one label of a channel names stand together again."""
-        together: dict[tuple[Any, ...], list[str]] = defaultdict(list)
-        for category, facts, every in self._said.get(key, ()):
-            alone = () if facts[0] in ("only", "never", "mundane") or every else (category,)
-            together[(*facts, *alone)].append(category)
-        for facts, categories in sorted(together.items(), key=lambda item: str(item[0])):
-            role, rank, place, method, stated, to, through, every, naming, why, author, pinned = facts[:FACTS]
-            names = () if every else tuple(sorted(categories))
-            if role == "derivation":
-                names = (to,)
-                to = categories[0]  # it is stored the other way round: the target is what is made
-            shipped = role == "mundane" and rank[0] <= STANDARD
-            if shipped and rank[0] == STANDARD and is_log(self._by_key[key].name):  # earlier versions: of every kind
-                names = without_text(self._vocabulary)
-            yield Statement(role, names, rank, place, method, stated, to, through, shipped, naming, why, author, pinned)

@@ -1,7 +1,7 @@
-"""Analysis -> the rows that Neo4j takes: one robot's elements, flows, roles and findings, as plain values.
+"""Analysis -> the rows that Neo4j takes: what it says of elements, flows and findings, as properties and labels.
 
-In: the analysis of one robot and the statements that it rests on. Out: ``RobotRows``, whose digest says whether
-anything differs from what was loaded before. The properties are those of ``schema.py``; a test holds this.
+In: an analysis and the statements that it rests on. Out: plain values for the properties of ``schema.py``; a test holds
+this. Used when robots are loaded, and when the answer to what is in the database is written back.
 """
 
 from __future__ import annotations
@@ -9,36 +9,58 @@ from __future__ import annotations
 import hashlib
 import json
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from functools import cache
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rosprivacy.analysis.contexts import Contexts
-from rosprivacy.analysis.model import CANNOT, UNSTATED
+from rosprivacy.analysis.errors import LabelError
+from rosprivacy.analysis.findings.beyond import beyond
+from rosprivacy.analysis.kernel.roles import facts
+from rosprivacy.analysis.legal import turned_special
 from rosprivacy.analysis.non_ros import BY_KIND
-from rosprivacy.ingest.database.beyond_rows import NOTHING, Beyond, BeyondRows, add_beyond
-from rosprivacy.ingest.database.carrying import Carrying
-from rosprivacy.ingest.database.element_properties import (
-    Names,
-    Roles,
-    element_results,
-    finding_row,
-    finding_rows,
-    flow_results,
-    origin_rows,
-)
-from rosprivacy.ingest.database.flow_statements import as_properties
-from rosprivacy.ingest.database.ids import category_labels, element_id, enclave_id, intake_id
-from rosprivacy.ingest.database.non_ros_properties import properties_of
-from rosprivacy.ingest.database.processing_properties import processing_properties
+from rosprivacy.ingest.database.by_hand import seal_of
+from rosprivacy.ingest.database.carrying import moving
+from rosprivacy.ingest.database.element_facts import outside_properties, stated_properties
+from rosprivacy.ingest.database.ids import enclave_id, intake_id
 from rosprivacy.ingest.database.schema import INTAKE, KIND_LABELS, LEG, SCHEMA, WILDCARD
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping
 
-    from rosprivacy.analysis.answer import Analysis
-    from rosprivacy.analysis.model import Bound, Element, Flow, Grant, NonRosFacts, Statement
+    from rosprivacy.analysis.answer import Analysis, Finding
+    from rosprivacy.analysis.contexts import Contexts
+    from rosprivacy.analysis.findings.beyond import Added, Ends
+    from rosprivacy.analysis.findings.derived_from import Origin
+    from rosprivacy.analysis.kernel.spread import Spread
+    from rosprivacy.analysis.model import Bound, Element, NonRosFacts, Statement
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 Row = dict[str, Any]
+
+
+class Beyond(NamedTuple):
+    """What the enforced view adds, and the flows that profiles allow."""
+
+    added: tuple[Added, ...] = ()
+    declared: frozenset[Ends] = frozenset()
+
+
+class BeyondRows(NamedTuple):
+    """What the enforced view adds on one robot: nothing of it is a ``Finding`` or a ``FLOWS_TO`` (rule S6).
+
+    Attributes
+    ----------
+    findings
+        As those of ``RobotRows``.
+    flows
+        ``source``, ``target`` (ids), ``properties``: steps that no profile of their node allows.
+    possible, split
+        ``source`` (id of the finding), ``target`` (id of the enclave), ``properties``.
+    """
+
+    findings: list[Row]
+    flows: list[Row]
+    possible: list[Row]
+    split: list[Row]
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +109,7 @@ class RobotRows:
     findings: list[Row]
     across: list[Row]
     foreign: list[Row] = field(default_factory=list)
-    beyond: BeyondRows = NOTHING
+    beyond: BeyondRows = field(default_factory=lambda: BeyondRows([], [], [], []))
 
     @property
     def digest(self) -> str:
@@ -99,88 +121,6 @@ class RobotRows:
         """Number of rows, for batches and progress."""
         lists = (self.elements, self.memberships, self.flows, self.derived, self.carried, self.findings, self.across)
         return sum(map(len, (*lists, *self.roles.values())))
-
-
-def robot_rows(
-    robot: str,
-    analysis: Analysis,
-    bound: Bound,
-    vocabulary: Vocabulary,
-    more: Mapping[str, Any] | None = None,
-    beyond: Beyond | None = None,
-) -> RobotRows:
-    """Return the rows of one robot.
-
-    Parameters
-    ----------
-    robot
-        Name in the database.
-    analysis
-        Of all categories, not of a choice.
-    bound
-        The statements that it rests on.
-    more
-        Further properties of the ``Robot``.
-    beyond
-        What the enforced view adds; None where nobody asked for both views.
-
-    Raises
-    ------
-    InputErrors
-        If a category's label cannot be one.
-    """
-    graph = analysis.graph
-    labels = category_labels(vocabulary)
-    names, roles = Names(analysis.spread, vocabulary, labels), Roles(vocabulary, labels)
-    ids = [element_id(robot, element) for element in graph.elements]
-    by_element = dict(zip(graph.elements, ids, strict=True))
-    enclaves = sorted({profile.enclave for profile in graph.profiles})
-    found, across = finding_rows(analysis, bound, vocabulary, by_element, dict.fromkeys(graph.elements, robot))
-    results = list(element_results(analysis, bound, names, roles))
-    carrying = Carrying(analysis, [said for _, said in results], labels)
-    elements = graph.elements
-    parts: dict[str, Any] = {
-        "elements": list(_elements(robot, ids, results, analysis)),
-        "intakes": [intake_row(robot, ids[v], elements[v], carrying.labels(v)) for v in carrying.intakes],
-        "enclaves": [{"id": enclave_id(robot, e), "properties": {"path": e, "robot": robot}} for e in enclaves],
-        "memberships": list(_memberships(robot, analysis)),
-        "flows": list(_flows(robot, analysis, bound, names, ids)),
-        "roles": _roles(robot, bound, vocabulary, ids),
-        "derived": list(origin_rows(analysis, ids, [robot] * len(ids))),
-        "carried": [
-            {"source": end_id(ids[a], part), "target": end_id(ids[b], to), "types": types}
-            for (a, part), (b, to), types in carrying.steps
-        ],
-        "findings": found,
-        "across": across,
-    }
-    properties: Row = {
-        "verdict": str(analysis.verdict),
-        "view": graph.view,
-        **stated_of_robot(bound, ""),
-        **(more or {}),
-    }
-    if beyond:
-        parts["beyond"] = _beyond(robot, beyond, analysis, bound, vocabulary)
-        properties["beyond"] = len(parts["beyond"].findings)
-    return rows_of(robot, properties, parts)
-
-
-def _beyond(robot: str, beyond: Beyond, analysis: Analysis, bound: Bound, vocabulary: Vocabulary) -> BeyondRows:
-    rows = BeyondRows([], [], [], [])
-    contexts = Contexts.of(analysis.graph, bound, vocabulary.categories)
-    for one in beyond.added:
-        ids = {element: element_id(robot, element) for element in (*one.finding.witness, one.finding.source)}
-        robots = dict.fromkeys(ids, robot)
-        row, _ = finding_row(one.finding, one.finding.id, vocabulary, ids, robots, contexts, across=False)
-        add_beyond(rows, row, one, one.finding, ids, robots, beyond.declared)
-    return rows
-
-
-def stated_of_robot(bound: Bound, robot: str) -> Row:
-    """Return who is responsible for a robot, what for and on which basis, as far as it is stated."""
-    said = processing_properties(bound.of_robots.get(robot, UNSTATED))
-    return {key: value for key, value in said.items() if value is not None}
 
 
 def rows_of(robot: str, properties: Row, parts: Mapping[str, Any]) -> RobotRows:
@@ -196,6 +136,130 @@ def rows_of(robot: str, properties: Row, parts: Mapping[str, Any]) -> RobotRows:
     return RobotRows(robot, {**known, "digest": hashlib.sha256(text.encode()).hexdigest()}, **parts)
 
 
+class Names:
+    """Sets of bits -> names, as lists that are shared by all that have the same.
+
+    Attributes
+    ----------
+    exact
+        The kinds of some bits, planes put together.
+    broad
+        The same with all broader kinds.
+    labels
+        (bits, suffix) -> the labels of these, such as ``BiometricLeak``.
+    """
+
+    def __init__(self, found: Spread, vocabulary: Vocabulary, labels: Mapping[str, str]) -> None:
+        ancestors = vocabulary.hierarchy.ancestors
+
+        @cache
+        def exact(bits: int) -> list[str]:
+            return list(found.names(bits))
+
+        @cache
+        def broad(bits: int) -> list[str]:
+            return sorted({up for name in exact(bits) for up in ancestors[name]})
+
+        @cache
+        def as_labels(bits: int, suffix: str) -> list[str]:
+            return [labels[name] + suffix for name in broad(bits)]
+
+        self.exact, self.broad, self.labels = exact, broad, as_labels
+
+
+class Roles:
+    """Statements about an element -> the kinds that it lets out, cleans, and makes of others, if they come (rule S7).
+
+    All kinds of the vocabulary are asked for, not only those that a source brings in. The labels of leaks say less: of
+    a display, which lets out whatever comes, those of all kinds would say nothing.
+    """
+
+    def __init__(self, vocabulary: Vocabulary, labels: Mapping[str, str]) -> None:
+        self._hierarchy = vocabulary.hierarchy
+        self._labels = labels
+        self._top = [name for name, above in self._hierarchy.ancestors.items() if len(above) == 1]
+        self._known: dict[tuple[Statement, ...], tuple[list[str], list[str]]] = {}
+
+    def of(self, said: tuple[Statement, ...]) -> tuple[list[str], list[str]]:
+        """(kinds that leak, kinds that are cleaned)."""
+        if said not in self._known:
+            self._known[said] = self._decided(said, "leak"), self._decided(said, "sanitizer")
+        return self._known[said]
+
+    def labels(self, said: tuple[Statement, ...], gets: Iterable[str]) -> list[str]:
+        """The labels of what is made, let out and cleaned; leaks of kinds that get there or that somebody names.
+
+        Who says it of every kind names those at the top.
+        """
+        leaks, cleans = self.of(said)
+        words = [s for s in said if s.role == "leak" and s.rank != BY_KIND]
+        named = {name for s in words for name in s.categories or self._top}
+        return [
+            *self._as_labels({s.to for s in said if s.role == "derivation"}, "Source"),
+            *self._as_labels(set(leaks) & {*gets, *named}, "Leak"),
+            *self._as_labels(cleans, "Sanitizer"),
+        ]
+
+    def _decided(self, said: tuple[Statement, ...], role: str) -> list[str]:
+        if not any(statement.role == role for statement in said):
+            return []
+        return [category for category in sorted(self._hierarchy.ancestors) if self._holds(said, role, category)]
+
+    def _holds(self, said: tuple[Statement, ...], role: str, category: str) -> bool:
+        try:
+            return role in facts("", said, category, self._hierarchy).roles
+        except LabelError:  # two labels contradict each other about a kind that nobody brings in: the worse one counts
+            leaks = tuple(statement for statement in said if statement.role == "leak")
+            return role == "leak" and role in facts("", leaks, category, self._hierarchy).roles
+
+    def _as_labels(self, names: Iterable[str], suffix: str) -> list[str]:
+        return sorted({self._labels[up] + suffix for name in names for up in self._hierarchy.ancestors[name]})
+
+
+def element_results(analysis: Analysis, bound: Bound, names: Names, roles: Roles) -> Iterator[tuple[Row, list[str]]]:
+    """Return properties and category labels of each element, in the order of the graph."""
+    found = analysis.spread
+    questions = {question.element.shown_as: question for question in analysis.open}
+    for vertex, element in enumerate(analysis.graph.elements):
+        question = questions.get(element.shown_as)
+        present, begins = found.present(vertex), found.begins(vertex)
+        said = bound.elements.get(vertex, ())
+        leaks, cleans = roles.of(said)
+        labels = [*names.labels(present, ""), *names.labels(begins, "Source")]
+        labels = list(dict.fromkeys((*labels, *roles.labels(said, names.exact(present)))))
+        properties = {
+            "carries": names.broad(present),
+            "pseudonymised": names.broad(found.bits.planes(present)[1]),
+            "begins": names.exact(begins),
+            "leaks": leaks,
+            "sanitizes": cleans,
+            "stops": names.exact(_stopped(found, found.keeps.get(vertex, found.all_bits))),
+            **stated_properties(bound, vertex, element),
+            "open": list(question.categories) if question else [],
+            "frontier": question.frontier if question else None,
+            "distance": question.distance if question else None,
+        }
+        yield {**properties, "seal": seal_of(properties, labels)}, labels
+
+
+def _stopped(found: Spread, kept: int) -> int:
+    """Kinds that go on neither as they are nor pseudonymised."""
+    return found.all_bits & ~found.bits.in_both_forms(kept)
+
+
+def flow_results(analysis: Analysis, names: Names) -> Iterator[Row]:
+    """Return the properties of each allowed flow, in the order of the graph."""
+    found = analysis.spread
+    for index, moved in enumerate(moving(analysis)):
+        yield {
+            "carries": names.broad(found.along(index)),
+            "passes": names.exact(moved.passed) or None,
+            "begins": names.exact(moved.begun) or None,
+            "made": names.exact(moved.made) or None,
+            "stops": names.exact(_stopped(found, found.passing(index))) or None,
+        }
+
+
 def kind_labels(element: Element) -> list[str]:
     """Return the labels that say what an element is.
 
@@ -206,15 +270,8 @@ def kind_labels(element: Element) -> list[str]:
     return [KIND_LABELS[element.kind], *([LEG] if element.leg else ()), *([WILDCARD] if element.pattern else ())]
 
 
-def _elements(
-    robot: str, ids: Sequence[str], results: Iterable[tuple[Row, list[str]]], analysis: Analysis
-) -> Iterator[Row]:
-    for element, key, (properties, labels) in zip(analysis.graph.elements, ids, results, strict=True):
-        yield element_row(robot, key, element, properties, labels, analysis.outside.get(element))
-
-
 def element_row(
-    robot: str, key: str, element: Element, properties: Row, labels: Iterable[str], facts: NonRosFacts | None
+    robot: str, key: str, element: Element, properties: Row, labels: Iterable[str], stated: NonRosFacts | None
 ) -> Row:
     """Return the row of an element with what the analysis says of it."""
     known = {
@@ -224,7 +281,7 @@ def element_row(
         "leg": element.leg or None,
         "side": element.side or None,
         "without": list(element.without) or None,
-        **(properties_of(facts) if facts else {}),
+        **(outside_properties(stated) if stated else {}),
     }
     return {"id": key, "labels": [*kind_labels(element), *labels], "properties": {**known, **properties}}
 
@@ -240,94 +297,121 @@ def end_id(key: str, intake: bool) -> str:  # noqa: FBT001 - one of two ids
     return intake_id(key) if intake else key
 
 
-def _memberships(robot: str, analysis: Analysis) -> Iterator[Row]:
-    """A node in an enclave, once; the first of its profiles there is named."""
-    seen = set()
-    nodes = {element.name: element_id(robot, element) for element in analysis.graph.elements if element.is_node}
-    for profile in analysis.graph.profiles:
-        if (profile.enclave, profile.node) not in seen:
-            seen.add((profile.enclave, profile.node))
-            place = {"file": profile.place.file, "line": profile.place.line, "robot": robot}
-            yield {"source": nodes[profile.node], "target": enclave_id(robot, profile.enclave), "properties": place}
+def origin_properties(analysis: Analysis, origin: Origin, robot: str) -> Row:
+    """Return the properties of one ``DERIVES_FROM``."""
+    elements, flows = analysis.graph.elements, analysis.graph.flows
+    lines = [flows[index].grants[0].place if flows[index].grants else "" for index in origin.flows]
+    return {
+        "category": origin.category,
+        "way": [elements[vertex].name for vertex in origin.path],
+        "policy": [str(line) for line in lines],
+        "past_leak": origin.past_leak,
+        "robot": robot,
+    }
 
 
-def _flows(robot: str, analysis: Analysis, bound: Bound, names: Names, ids: Sequence[str]) -> Iterator[Row]:
-    results = flow_results(analysis, names)
-    for index, (flow, result) in enumerate(zip(analysis.graph.flows, results, strict=True)):
-        said = bound.flows.get(index, ())
-        yield flow_row(robot, flow, ids[flow.source], ids[flow.target], allowed(result, said, names.vocabulary))
-    for flow in analysis.graph.taken_back:
-        yield flow_row(robot, flow, ids[flow.source], ids[flow.target], denied(flow))
+def finding_row(
+    finding: Finding,
+    pattern: str,
+    vocabulary: Vocabulary,
+    ids: Mapping[Element, str],
+    robots: Mapping[Element, str],
+    contexts: Contexts,
+    *,
+    across: bool,
+) -> tuple[Row, list[Row]]:
+    """Return the row of a finding, and those of the elements that it goes across.
 
-
-def allowed(result: Row, said: Sequence[Statement], vocabulary: Vocabulary) -> Row:
-    """Return the properties of an allowed flow."""
-    return {"decision": "allow", **result, **as_properties(said, vocabulary.hierarchy)}
-
-
-def denied(flow: Flow) -> Row:
-    """Return the properties of a denied flow."""
-    lines = [json.dumps(_grant(grant), sort_keys=True) for grant in flow.denials]
-    by = [str(grant.place) for grant in flow.denials]
-    return {"decision": "deny", "carries": [], "denied_by": by, "denials": lines}
-
-
-def flow_row(robot: str, flow: Flow, source: str, target: str, properties: Row) -> Row:
-    """Return the row of a flow between two ids."""
-    known: Row = {"role": flow.role, "robot": robot}
-    if flow.grants:
-        known |= _grant(flow.grants[0])
-        further = [json.dumps(_grant(grant), sort_keys=True) for grant in flow.grants[1:]]
-        known["further"] = further or None
-    return {"source": source, "target": target, "properties": known | properties}
-
-
-def _grant(grant: Grant) -> Row:
-    place = grant.place
-    row: Row = {"file": place.file, "line": place.line, "enclave": grant.enclave, "profile": grant.node}
-    if grant.seen:
-        row |= {"seen_by": list(grant.seen.by), "first_seen": grant.seen.first, "last_seen": grant.seen.last}
-    return row
-
-
-def _roles(robot: str, bound: Bound, vocabulary: Vocabulary, ids: Sequence[str]) -> dict[str, list[Row]]:
-    rows: dict[str, list[Row]] = {}
-    for vertex, said in bound.elements.items():
-        add_roles(rows, robot, ids[vertex], said, vocabulary)
-    return rows
-
-
-def add_roles(
-    rows: dict[str, list[Row]], robot: str, key: str, said: Iterable[Statement], vocabulary: Vocabulary
-) -> None:
-    """Add one relationship per category that a statement names; one about every category goes to those at the top."""
-    for statement in said:
-        if statement.rank == BY_KIND or statement.role == CANNOT:  # nobody said it; who reads the graph takes it so too
-            continue
-        properties: Row = {
-            "file": statement.place.file,
-            "line": statement.place.line,
-            "tier": statement.rank[0],
-            "specificity": statement.rank[1],
-            "naming": statement.naming,
-            "every": None if statement.categories else True,
+    Parameters
+    ----------
+    across
+        Whether it goes from one robot to another: then no number of paths is written, as it is counted of few.
+    """
+    robot = robots[finding.source]
+    key = f"{robot}|{pattern}" if robots[finding.leak] == robot else f"{robot}|{pattern}|{ids[finding.leak]}"
+    row = {
+        "id": key,
+        "source": ids[finding.source],
+        "target": ids[finding.leak],
+        "category": vocabulary.categories[finding.category].iri,
+        "properties": {
+            "pattern": pattern,
             "robot": robot,
-            "why": statement.why or None,
-            "author": statement.author or None,
-            "pinned": None if statement.pinned is None else list(statement.pinned),
-            **_particulars(statement),
-        }
-        top = [category.name for category in vocabulary.categories.values() if not category.broader]
-        named = [statement.to] if statement.role == "derivation" else statement.categories or top
-        for name in named:
-            iri = vocabulary.categories[name].iri
-            rows.setdefault(statement.role, []).append({"source": key, "target": iri, "properties": properties})
+            "leak_robot": robots[finding.leak],
+            "kind": finding.kind,
+            "reason": finding.reason or None,
+            "category": finding.category,
+            "source": finding.source.name,
+            "leak": finding.leak.name,
+            "pseudonymised": finding.pseudonymised,
+            "dismissed": finding.dismissed,
+            "disjoint_paths": None if across else finding.number_of_paths,
+            "article9": contexts.article9(finding),
+            "in_context": [f"{legal.context}: {legal.name}" for legal in contexts.revealed(finding)] or None,
+            "special_from": turned.name if (turned := turned_special(finding, vocabulary.categories)) else None,
+        },
+    }
+    return row, [{"source": key, "target": ids[element], "properties": step} for element, step in _steps(finding)]
 
 
-def _particulars(statement: Statement) -> Row:
-    if statement.role == "source":
-        return {"through": list(statement.through) or None}
-    if statement.role == "sanitizer":
-        method = str(statement.method) if statement.method else None
-        return {"method": method, "stated": statement.stated}
-    return {"of": statement.categories[0]} if statement.role == "derivation" else {}
+def _steps(finding: Finding) -> Iterator[tuple[Element, Row]]:
+    first = finding.steps[0] if finding.steps else finding
+    yield finding.witness[0], {"step": 0, "category": first.category, "pseudonymised": first.pseudonymised}
+    for number, step in enumerate(finding.steps, 1):
+        place = step.grants[0].place if step.grants else None
+        line = {"file": place.file, "line": place.line} if place else {}
+        yield step.target, {"step": number, "category": step.category, "pseudonymised": step.pseudonymised, **line}
+
+
+def add_beyond(
+    rows: BeyondRows,
+    row: Row,
+    added: Added,
+    finding: Finding,
+    ids: Mapping[Element, str],
+    robots: Mapping[Element, str],
+    declared: frozenset[Ends],
+) -> None:
+    """Add a finding that only the enforced view has, with its steps and enclaves.
+
+    Parameters
+    ----------
+    row
+        Of the finding, as that of any.
+    ids, robots
+        Of the elements of its witness.
+    """
+    robot = row["properties"]["robot"]
+    known = {key: value for key, value in row["properties"].items() if key != "dismissed"}
+    steps = [finding.steps[number] for number in beyond(finding, declared)]
+    rows.findings.append({**row, "properties": {**known, **_added_properties(added, finding), "beyond": [
+        f"{step.source.name} {step.role} {step.target.name} ({step.grants[0].place})" for step in steps
+    ]}})  # fmt: skip
+    taken = {(flow["source"], flow["target"]) for flow in rows.flows}
+    for step in steps:
+        node, grant = step.target if step.source.is_channel else step.source, step.grants[0]
+        line = {"file": grant.place.file, "line": grant.place.line, "enclave": grant.enclave, "profile": grant.node}
+        ends = {"source": ids[step.source], "target": ids[step.target]}
+        if (ends["source"], ends["target"]) not in taken:
+            rows.flows.append({**ends, "properties": {"role": step.role, "robot": robot, **line}})
+        for path in sorted({grant.enclave for grant in step.grants} & set(added.enclaves)):
+            end = {"source": row["id"], "target": enclave_id(robots[node], path), "properties": {}}
+            if end not in rows.possible:
+                rows.possible.append(end)
+    rows.split.extend(
+        {"source": row["id"], "target": enclave_id(robot, path), "properties": {}} for path in added.split
+    )
+
+
+def _added_properties(added: Added, finding: Finding) -> Row:
+    return {
+        "view": "enforced",
+        "way": [element.name for element in finding.witness],
+        "enclaves": list(added.enclaves),
+        "split": list(added.split),
+        "move": f"{added.move[1]} from {added.move[0]}" if added.move else None,
+        "deny": [f"{line.role} {line.name} in {line.enclave} ({line.policy})" for line in added.deny],
+        "loses": [f"{node[2]} {role} {channel[2]}" for node, role, channel in added.loses],
+        "plain": added.plain,
+        "opened_by": [str(place) for place in added.opened] or None,
+    }

@@ -9,12 +9,17 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import CONTEXTS
 
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
 SCHEMA = 5  # raised when what a load writes gains what an answer rests on, or changes its meaning; none was stored at 1
+DATABASE = "the database"  # where people write by hand, as the file of a problem or a statement
 _IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
-STRING, INTEGER, BOOLEAN, STRINGS = "STRING", "INTEGER", "BOOLEAN", "LIST<STRING>"
+TYPES = {"STRING": "STRING", "INTEGER": "INTEGER", "BOOLEAN": "BOOLEAN", "STRINGS": "LIST<STRING>"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,435 +81,324 @@ LEG, WILDCARD, INTAKE = "Leg", "Wildcard", "Intake"
 DOMAIN, INFRASTRUCTURE, FLEET = "domain", "infrastructure", "fleet"  # what of a fleet is no robot
 CARRIES = "CARRIES_"  # and a kind of data, as `carries` writes it
 
-_OURS = Property("robot", STRING, "whose load wrote it; absent on what people add")
-_PLACE = (
-    Property("file", STRING, "of the label"),
-    Property("line", INTEGER, "of the label"),
-    Property(
-        "tier", INTEGER, "rank: 1 for a person's own label, 0 for the standard channels, -1 for proposed infrastructure"
-    ),
-    Property("specificity", INTEGER, "rank: the more of the name is spelt out, the higher"),
-    Property("naming", STRING, "name, glob, or segment for a glob with its last segment written out"),
-    Property("every", BOOLEAN, "the label names no category: it holds for every one"),
-    Property("why", STRING, "the label's note; of method absent: why the node is not on the robot"),
-    Property("author", STRING, "who says it, as the label file names them"),
-    Property("pinned", STRINGS, "of a glob in a file with pins: kinds that a person has seen here, for which it holds"),
-    _OURS,
-)
-_PROCESSING = (
-    Property("purposes", STRINGS, "what data are processed for, as stated; `Video: …` of one kind"),
-    Property("legal_bases", STRINGS, "on which legal basis, as stated: `6(1)(f)`, or `Video: 6(1)(f)` of one kind"),
-    Property("stated_in", STRING, "file that states purposes and legal bases"),
-    Property("stated_at", INTEGER, "line there"),
-)
-_BROAD = "; broader kinds are named too"
-
-ELEMENT = NodeKind(
-    "Element",
-    "id",
-    "Anything that data can be at.",
-    (
-        Property("id", STRING, "unique: robot, kind, name, leg and side"),
-        Property("name", STRING, "fully qualified ROS name, or name of what lies outside ROS"),
-        Property("robot", STRING, "name of its robot"),
-        Property("kind", STRING, f"one of {', '.join(KIND_LABELS)}"),
-        Property("leg", STRING, "of a service or action: request or response"),
-        Property("side", STRING, "of a wildcard: write or read"),
-        Property("without", STRINGS, "of a wildcard: DDS expressions that a DENY takes out of it"),
-        Property("carries", STRINGS, f"kinds of data that get here{_BROAD}"),
-        Property("pseudonymised", STRINGS, f"kinds of data that get here pseudonymised{_BROAD}"),
-        Property("begins", STRINGS, "kinds that it brings in"),
-        Property("subjects", STRINGS, "of a source: whom its data are about"),
-        Property("types", STRINGS, "of a channel: message types, as they were observed or stated"),
-        Property("type_facts", STRINGS, "JSON: each of these with who states it, or which nodes were seen with it"),
-        Property(
-            "unprotected", STRINGS, "of a channel: why others on the network can read it, `not-encrypted: file:line`"
-        ),
-        Property("context", STRINGS, f"where it works, with its system: some of {', '.join(CONTEXTS)}"),
-        *_PROCESSING,
-        Property("leaks", STRINGS, "kinds that it lets out, if they come"),
-        Property("sanitizes", STRINGS, "kinds that it cleans, if they come"),
-        Property("stops", STRINGS, "kinds that some source brings in and that do not go on from here"),
-        Property(
-            "seal", STRING, "of what the analysis wrote of it: a change of that by hand says nothing, and is told"
-        ),
-        Property("open", STRINGS, "kinds that get here and that no label covers"),
-        Property("frontier", BOOLEAN, "open, and reached before any other open node: to be reviewed first"),
-        Property("distance", INTEGER, "of an open element: flows from the nearest source"),
-        Property("retention", STRINGS, "of a storage: how long it keeps data, `P30D`, or `Video: P30D` for one kind"),
-        Property("limits", STRINGS, "of a storage: how long kinds may be kept, as above"),
-        Property("backups", STRING, "of a storage: how much longer backups keep data; true where that is not known"),
-        Property("encrypted", BOOLEAN, "of a storage: at rest"),
-        Property("bag", STRING, "of a storage that is a recording: the bag, as the label file names it"),
-        Property("bag_bytes", INTEGER, "its size"),
-        Property("bag_topics", INTEGER, "how many topics are in it"),
-        Property("bag_messages", INTEGER, "how many messages, where it says so"),
-        Property("bag_start", INTEGER, "from when, in nanoseconds since 1970"),
-        Property("bag_end", INTEGER, "to when"),
-        Property("bag_oldest", INTEGER, "the earliest time that any of its bags says"),
-        Property("country", STRING, "ISO 3166-1 code; of a node that of its system, where it is stated"),
-        Property("operator", STRING, "outside ROS: who runs it"),
-        Property("recipient", STRING, "outside ROS: controller, joint-controller, processor or third-party"),
-        Property("contract", STRING, "outside ROS: on what it is operated, such as a contract under Article 28"),
-        Property("transfer", STRING, "outside ROS: basis of a transfer out of the EEA; `none` if that is stated"),
-        Property("file", STRING, "outside ROS: where it is stated"),
-        Property("line", INTEGER, "outside ROS: where it is stated"),
-    ),
+# In the notation of `query --schema`: a kind with its key, or with the two that it joins, and what it is; below it its
+# properties, each with name, type (STRINGS is a list of them) and meaning. What is indented further goes on.
+_OURS = """\
+    robot STRING whose load wrote it; absent on what people add"""
+_LABEL = f"""\
+    file STRING of the label
+    line INTEGER of the label
+    tier INTEGER rank: 1 for a person's own label, 0 for the standard channels, -1 for proposed infrastructure
+    specificity INTEGER rank: the more of the name is spelt out, the higher
+    naming STRING name, glob, or segment for a glob with its last segment written out
+    every BOOLEAN the label names no category: it holds for every one
+    why STRING the label's note; of method absent: why the node is not on the robot
+    author STRING who says it, as the label file names them
+    pinned STRINGS of a glob in a file with pins: kinds that a person has seen here, for which it holds
+{_OURS}"""
+_PROCESSING = """\
+    purposes STRINGS what data are processed for, as stated; `Video: …` of one kind
+    legal_bases STRINGS on which legal basis, as stated: `6(1)(f)`, or `Video: 6(1)(f)` of one kind
+    stated_in STRING file that states purposes and legal bases
+    stated_at INTEGER line there"""
+_ARRIVES = """\
+    id STRING unique: robot and pattern
+    pattern STRING made from kind, category, source, leak, and across robots or not: the same on each
+    robot STRING name of the robot of its source
+    leak_robot STRING name of the robot of its leak, which may be another one
+    kind STRING disclosure, storage-limitation, third-country-transfer or unprotected-channel
+    reason STRING of other kinds than disclosure: what is wrong there
+    category STRING name of the category that arrives
+    source STRING name of the source
+    leak STRING name of the leak
+    pseudonymised BOOLEAN it arrives in pseudonymised form only"""
+_WAY = """\
+    disjoint_paths INTEGER paths that share no flow; absent from one robot to another
+    article9 STRING strongest verdict under Art. 9(1) where its source works
+    in_context STRINGS what it may reveal, or what concerns it, where its source works, `care: GDPR Art. 9(1) …`
+    special_from STRING element that makes a special category of other data; absent if none does"""
+_KINDS_IN_BAGS = """\
+    kinds STRINGS kinds of data that can be in it, as labels and policies say
+    suggested STRINGS kinds that types suggest, `Video (likely)`: questions, no facts"""
+_NODES = f"""\
+(:Element {{id}}) Anything that data can be at.
+    id STRING unique: robot, kind, name, leg and side
+    name STRING fully qualified ROS name, or name of what lies outside ROS
+    robot STRING name of its robot
+    kind STRING one of {", ".join(KIND_LABELS)}
+    leg STRING of a service or action: request or response
+    side STRING of a wildcard: write or read
+    without STRINGS of a wildcard: DDS expressions that a DENY takes out of it
+    carries STRINGS kinds of data that get here; broader kinds are named too
+    pseudonymised STRINGS kinds of data that get here pseudonymised; broader kinds are named too
+    begins STRINGS kinds that it brings in
+    subjects STRINGS of a source: whom its data are about
+    types STRINGS of a channel: message types, as they were observed or stated
+    type_facts STRINGS JSON: each of these with who states it, or which nodes were seen with it
+    unprotected STRINGS of a channel: why others on the network can read it, `not-encrypted: file:line`
+    context STRINGS where it works, with its system: some of {", ".join(CONTEXTS)}
+{_PROCESSING}
+    leaks STRINGS kinds that it lets out, if they come
+    sanitizes STRINGS kinds that it cleans, if they come
+    stops STRINGS kinds that some source brings in and that do not go on from here
+    seal STRING of what the analysis wrote of it: a change of that by hand says nothing, and is told
+    open STRINGS kinds that get here and that no label covers
+    frontier BOOLEAN open, and reached before any other open node: to be reviewed first
+    distance INTEGER of an open element: flows from the nearest source
+    retention STRINGS of a storage: how long it keeps data, `P30D`, or `Video: P30D` for one kind
+    limits STRINGS of a storage: how long kinds may be kept, as above
+    backups STRING of a storage: how much longer backups keep data; true where that is not known
+    encrypted BOOLEAN of a storage: at rest
+    bag STRING of a storage that is a recording: the bag, as the label file names it
+    bag_bytes INTEGER its size
+    bag_topics INTEGER how many topics are in it
+    bag_messages INTEGER how many messages, where it says so
+    bag_start INTEGER from when, in nanoseconds since 1970
+    bag_end INTEGER to when
+    bag_oldest INTEGER the earliest time that any of its bags says
+    country STRING ISO 3166-1 code; of a node that of its system, where it is stated
+    operator STRING outside ROS: who runs it
+    recipient STRING outside ROS: controller, joint-controller, processor or third-party
+    contract STRING outside ROS: on what it is operated, such as a contract under Article 28
+    transfer STRING outside ROS: basis of a transfer out of the EEA; `none` if that is stated
+    file STRING outside ROS: where it is stated
+    line INTEGER outside ROS: where it is stated
+(:Robot {{name}}) A robot that was loaded; or, marked as shared, what the robots of a fleet have in common.
+    name STRING unique
+    model STRING of a robot of a fleet, if it has one
+    shared BOOLEAN true for infrastructure, a DDS domain, or the fleet itself: no robot
+    part STRING of what is shared: infrastructure, domain, or fleet for what the fleet file states
+    verdict STRING leak, undetermined or no-leak-found; a DDS domain has none: data passes there
+    view STRING declared or enforced
+    version INTEGER how often it was written
+    schema INTEGER version of this graph; a robot with another one has to be loaded again
+    digest STRING of what was loaded; absent when the database was analysed since
+    elements INTEGER how many were loaded
+    flows INTEGER how many were loaded
+    roles INTEGER how many relationships of labels were loaded
+    carried INTEGER how many `CARRIES_…` were loaded
+    beyond INTEGER how many `AddedFinding` it has; absent where nobody loaded it with `--view both`
+    controller STRING who is responsible, as stated
+    dpo STRING the data-protection officer, as stated
+{_PROCESSING}
+    assumptions STRING JSON: what the answer rests on
+    diagnostics STRING JSON: what its policies and labels were read with
+    doubts STRINGS what is not known of it, or rests on more than a person's word: `breaks unread-file: d/x.xml was
+        not read`; with one that breaks the verdict is undetermined at best
+(:Enclave {{id}}) A security enclave: all nodes in it share one certificate.
+    id STRING unique: robot and path
+    path STRING of the SROS 2 enclave
+    robot STRING name of its robot
+(:DataCategory {{iri}}) A kind of personal data.
+    iri STRING unique
+    name STRING short name, as in label files
+    label STRING stem of the labels of elements
+    title STRING in English
+    definition STRING one sentence
+    article9 STRING strongest verdict under Art. 9(1): always, conditional, may-reveal, no, unknown
+    data_types STRINGS how it is represented, such as video
+    identity_factors STRINGS of Art. 4(1), such as economic; empty where it is not stated
+    gdpr STRING short name of the provision that defines its GDPR category
+(:LegalProvision {{iri}}) A provision that findings point to.
+    iri STRING unique
+    name STRING short, such as GDPR Art. 9(1) health
+    title STRING its meaning in one sentence, in our words
+    as_of STRING when our entry of the law was last looked at
+    applies_from STRING day from which it applies, or will; absent where it simply applies
+    country STRING ISO 3166-1 code of the country whose law it is; absent for law of the Union
+(:Finding {{id}}) A kind of data reaches a leak, or a place where it is kept too long, has left the EEA or can be read
+        by others.
+{_ARRIVES}
+    dismissed BOOLEAN every path goes through another leak of the category
+{_WAY}
+(:AddedFinding {{id}}) What the enforced view adds to the findings: data gets there only if a node goes beyond its own
+        profile. `load --view both` writes it; it is no `Finding`, and verdicts are without it.
+{_ARRIVES}
+{_WAY}
+    view STRING enforced
+    way STRINGS names of the elements of its shortest way
+    beyond STRINGS its steps that no profile of their node allows, with the policy line of another
+    enclaves STRINGS whose nodes share their rights on it
+    plain BOOLEAN there is a `Finding` of it, too, but in pseudonymised form only
+    opened_by STRINGS file:line of a governance that asks nobody for permissions there; else absent
+    split STRINGS enclaves of which splitting takes it away, proven by a new analysis
+    move STRING the profile of which an enclave of its own takes it away alone; absent if none does
+    deny STRINGS DENY lines that take it away, proven by a new analysis
+    loses STRINGS what nodes would lose by these lines that their own profiles allow
+(:Bag {{id}}) A recording, with what can be in it: `rosprivacy bag --load` writes it. It takes part in no path.
+    id STRING unique: where it is, from the root of the file system
+    path STRING as it was named when it was loaded
+    robot STRING name of the robot that was recorded, as it was named
+    verdict STRING personal-data, undetermined or nothing-found
+{_KINDS_IN_BAGS}
+    open_topics STRINGS topics of which nobody can say what is in them
+    gaps STRINGS why topics may be missing
+    beside STRINGS what is in it beside messages, and can hold anything
+    storage STRING mcap, sqlite3, or what it names
+    distro STRING release of ROS, where it says so
+    compression STRING as it names it
+    bytes INTEGER size of its files
+    topics INTEGER how many are in it
+    messages INTEGER how many, where it says so
+    start INTEGER from when, in nanoseconds since 1970
+    end INTEGER to when
+    assumptions STRING JSON: what the answer rests on
+(:RecordedTopic {{id}}) A topic of a bag.
+    id STRING unique: that of the bag, and the name
+    name STRING as the bag has it
+    types STRINGS of its messages
+    messages INTEGER how many, where the bag says so
+{_KINDS_IN_BAGS}
+    unknown STRING why nobody can say what is in it; absent where that is known
+    why STRING what its kinds rest on
+"""
+_FURTHER_LABELS = (
     f"the kind, one of {', '.join(f'`{label}`' for label in KIND_LABELS.values())}; `{LEG}` on the request and the "
     f"response of a service or action, `{WILDCARD}` on a name with wildcards; `{INTAKE}` on what stands beside an "
     f"element at the end of `{CARRIES}…`, where what comes to it goes on another way than what begins there. And for "
     "each category, here `Biometric`: "
     "`Biometric` where it gets to, `BiometricSource` where it begins (at a source, or at a node that makes it of other "
     "data), `BiometricLeak` on what lets it out where it gets there or a label names it, `BiometricSanitizer` on what "
-    "cleans it if it comes; the labels of broader categories too",
+    "cleans it if it comes; the labels of broader categories too"
 )
-ROBOT = NodeKind(
-    "Robot",
-    "name",
-    "A robot that was loaded; or, marked as shared, what the robots of a fleet have in common.",
-    (
-        Property("name", STRING, "unique"),
-        Property("model", STRING, "of a robot of a fleet, if it has one"),
-        Property("shared", BOOLEAN, "true for infrastructure, a DDS domain, or the fleet itself: no robot"),
-        Property("part", STRING, "of what is shared: infrastructure, domain, or fleet for what the fleet file states"),
-        Property("verdict", STRING, "leak, undetermined or no-leak-found; a DDS domain has none: data passes there"),
-        Property("view", STRING, "declared or enforced"),
-        Property("version", INTEGER, "how often it was written"),
-        Property("schema", INTEGER, "version of this graph; a robot with another one has to be loaded again"),
-        Property("digest", STRING, "of what was loaded; absent when the database was analysed since"),
-        Property("elements", INTEGER, "how many were loaded"),
-        Property("flows", INTEGER, "how many were loaded"),
-        Property("roles", INTEGER, "how many relationships of labels were loaded"),
-        Property("carried", INTEGER, "how many `CARRIES_…` were loaded"),
-        Property("beyond", INTEGER, "how many `AddedFinding` it has; absent where nobody loaded it with `--view both`"),
-        Property("controller", STRING, "who is responsible, as stated"),
-        Property("dpo", STRING, "the data-protection officer, as stated"),
-        *_PROCESSING,
-        Property("assumptions", STRING, "JSON: what the answer rests on"),
-        Property("diagnostics", STRING, "JSON: what its policies and labels were read with"),
-        Property(
-            "doubts",
-            STRINGS,
-            "what is not known of it, or rests on more than a person's word: `breaks unread-file: d/x.xml was not "
-            "read`; with one that breaks the verdict is undetermined at best",
-        ),
-    ),
-)
-ENCLAVE = NodeKind(
-    "Enclave",
-    "id",
-    "A security enclave: all nodes in it share one certificate.",
-    (
-        Property("id", STRING, "unique: robot and path"),
-        Property("path", STRING, "of the SROS 2 enclave"),
-        Property("robot", STRING, "name of its robot"),
-    ),
-)
-CATEGORY = NodeKind(
-    "DataCategory",
-    "iri",
-    "A kind of personal data.",
-    (
-        Property("iri", STRING, "unique"),
-        Property("name", STRING, "short name, as in label files"),
-        Property("label", STRING, "stem of the labels of elements"),
-        Property("title", STRING, "in English"),
-        Property("definition", STRING, "one sentence"),
-        Property("article9", STRING, "strongest verdict under Art. 9(1): always, conditional, may-reveal, no, unknown"),
-        Property("data_types", STRINGS, "how it is represented, such as video"),
-        Property("identity_factors", STRINGS, "of Art. 4(1), such as economic; empty where it is not stated"),
-        Property("gdpr", STRING, "short name of the provision that defines its GDPR category"),
-    ),
-)
-PROVISION = NodeKind(
-    "LegalProvision",
-    "iri",
-    "A provision that findings point to.",
-    (
-        Property("iri", STRING, "unique"),
-        Property("name", STRING, "short, such as GDPR Art. 9(1) health"),
-        Property("title", STRING, "its meaning in one sentence, in our words"),
-        Property("as_of", STRING, "when our entry of the law was last looked at"),
-        Property("applies_from", STRING, "day from which it applies, or will; absent where it simply applies"),
-        Property("country", STRING, "ISO 3166-1 code of the country whose law it is; absent for law of the Union"),
-    ),
-)
-FINDING = NodeKind(
-    "Finding",
-    "id",
-    "A kind of data reaches a leak, or a place where it is kept too long, has left the EEA or can be read by others.",
-    (
-        Property("id", STRING, "unique: robot and pattern"),
-        Property(
-            "pattern",
-            STRING,
-            "made from kind, category, source, leak, and across robots or not: the same on each",
-        ),
-        Property("robot", STRING, "name of the robot of its source"),
-        Property("leak_robot", STRING, "name of the robot of its leak, which may be another one"),
-        Property("kind", STRING, "disclosure, storage-limitation, third-country-transfer or unprotected-channel"),
-        Property("reason", STRING, "of other kinds than disclosure: what is wrong there"),
-        Property("category", STRING, "name of the category that arrives"),
-        Property("source", STRING, "name of the source"),
-        Property("leak", STRING, "name of the leak"),
-        Property("pseudonymised", BOOLEAN, "it arrives in pseudonymised form only"),
-        Property("dismissed", BOOLEAN, "every path goes through another leak of the category"),
-        Property("disjoint_paths", INTEGER, "paths that share no flow; absent from one robot to another"),
-        Property("article9", STRING, "strongest verdict under Art. 9(1) where its source works"),
-        Property(
-            "in_context",
-            STRINGS,
-            "what it may reveal, or what concerns it, where its source works, `care: GDPR Art. 9(1) …`",
-        ),
-        Property("special_from", STRING, "element that makes a special category of other data; absent if none does"),
-    ),
-)
-ADDED_FINDING = NodeKind(
-    "AddedFinding",
-    "id",
-    "What the enforced view adds to the findings: data gets there only if a node goes beyond its own profile. `load "
-    "--view both` writes it; it is no `Finding`, and verdicts are without it.",
-    (
-        *(field for field in FINDING.properties if field.name != "dismissed"),
-        Property("view", STRING, "enforced"),
-        Property("way", STRINGS, "names of the elements of its shortest way"),
-        Property("beyond", STRINGS, "its steps that no profile of their node allows, with the policy line of another"),
-        Property("enclaves", STRINGS, "whose nodes share their rights on it"),
-        Property("plain", BOOLEAN, "there is a `Finding` of it, too, but in pseudonymised form only"),
-        Property("opened_by", STRINGS, "file:line of a governance that asks nobody for permissions there; else absent"),
-        Property("split", STRINGS, "enclaves of which splitting takes it away, proven by a new analysis"),
-        Property("move", STRING, "the profile of which an enclave of its own takes it away alone; absent if none does"),
-        Property("deny", STRINGS, "DENY lines that take it away, proven by a new analysis"),
-        Property("loses", STRINGS, "what nodes would lose by these lines that their own profiles allow"),
-    ),
-)
-_KINDS = Property("kinds", STRINGS, "kinds of data that can be in it, as labels and policies say")
-_SUGGESTED = Property("suggested", STRINGS, "kinds that types suggest, `Video (likely)`: questions, no facts")
-BAG = NodeKind(
-    "Bag",
-    "id",
-    "A recording, with what can be in it: `rosprivacy bag --load` writes it. It takes part in no path.",
-    (
-        Property("id", STRING, "unique: where it is, from the root of the file system"),
-        Property("path", STRING, "as it was named when it was loaded"),
-        Property("robot", STRING, "name of the robot that was recorded, as it was named"),
-        Property("verdict", STRING, "personal-data, undetermined or nothing-found"),
-        _KINDS,
-        _SUGGESTED,
-        Property("open_topics", STRINGS, "topics of which nobody can say what is in them"),
-        Property("gaps", STRINGS, "why topics may be missing"),
-        Property("beside", STRINGS, "what is in it beside messages, and can hold anything"),
-        Property("storage", STRING, "mcap, sqlite3, or what it names"),
-        Property("distro", STRING, "release of ROS, where it says so"),
-        Property("compression", STRING, "as it names it"),
-        Property("bytes", INTEGER, "size of its files"),
-        Property("topics", INTEGER, "how many are in it"),
-        Property("messages", INTEGER, "how many, where it says so"),
-        Property("start", INTEGER, "from when, in nanoseconds since 1970"),
-        Property("end", INTEGER, "to when"),
-        Property("assumptions", STRING, "JSON: what the answer rests on"),
-    ),
-)
-RECORDED_TOPIC = NodeKind(
-    "RecordedTopic",
-    "id",
-    "A topic of a bag.",
-    (
-        Property("id", STRING, "unique: that of the bag, and the name"),
-        Property("name", STRING, "as the bag has it"),
-        Property("types", STRINGS, "of its messages"),
-        Property("messages", INTEGER, "how many, where the bag says so"),
-        _KINDS,
-        _SUGGESTED,
-        Property("unknown", STRING, "why nobody can say what is in it; absent where that is known"),
-        Property("why", STRING, "what its kinds rest on"),
-    ),
-)
-NODES = (ELEMENT, ROBOT, ENCLAVE, CATEGORY, PROVISION, FINDING, ADDED_FINDING, BAG, RECORDED_TOPIC)
+_RELATIONSHIPS = f"""\
+(:Element)-[:FLOWS_TO]->(:Element) A step along which data can go.
+    role STRING publish, subscribe, request, reply, call, execute; matches for a wildcard, flow for what people state
+    decision STRING allow, or deny where a DENY takes an ALLOW back
+    carries STRINGS kinds of data that go along it; broader kinds are named too
+    passes STRINGS kinds that had come to its start and go on; absent where there are none
+    begins STRINGS kinds that its start brings in; absent where there are none
+    made STRINGS kinds that its start makes of what comes to it; absent where there are none
+    stops STRINGS kinds that some source brings in and that do not go along it; absent as above
+    file STRING of the policy line behind it, or of the line that states it
+    line INTEGER of the policy line behind it
+    enclave STRING of the profile that the line stands in
+    profile STRING node of that profile
+    seen_by STRINGS of an observed policy: through which doors it was seen in use
+    first_seen STRING of an observed policy: when it was first seen in use
+    last_seen STRING of an observed policy: when it was last seen in use
+    further STRINGS JSON: file, line, enclave and profile of further policy lines behind it
+    denied_by STRINGS of a denied flow: file:line of the DENY
+    denials STRINGS JSON: file, line, enclave and profile of each DENY
+    said_at STRINGS file:line of the labels that say only or never of it
+    only STRINGS a label: it carries these at most
+    never STRINGS a label: it does not carry these
+    naming STRING of the label: glob where it names no end in full; absent else
+    statements STRINGS JSON: role, categories, rank, naming, file and line of each of these labels
+{_OURS}
+(:Element)-[:COULD_FLOW_TO]->(:Element) A step of the way of an `AddedFinding`: the enclave of its node allows it, no
+        profile of the node does. It is no flow of the declared view.
+    role STRING as of `FLOWS_TO`
+    file STRING of the policy line of another profile
+    line INTEGER of the policy line of another profile
+    enclave STRING of the profile that the line stands in
+    profile STRING node of that profile
+{_OURS}
+(:AddedFinding)-[:MADE_POSSIBLE_BY]->(:Enclave) Its nodes share the rights that the finding needs.
+(:AddedFinding)-[:ENDED_BY_SPLITTING]->(:Enclave) With an enclave for each of its nodes, and of all others that it
+        names so, the finding is gone.
+(:Element)-[:{CARRIES}BIOMETRIC]->(:Element) Data of the category goes this step; one type for each category that a
+        source brings in or a node makes, and a broader one does not stand for it. From an element to itself where it
+        is both source and leak. Followed from a source to a leak, it finds what the analysis finds, dismissed
+        findings included.
+(:Element)-[:SOURCE_OF]->(:DataCategory) It brings the category in.
+{_LABEL}
+    through STRINGS only through these channels
+(:Element)-[:LEAKS]->(:DataCategory) It lets the category out.
+{_LABEL}
+(:Element)-[:NO_SOURCE_OF]->(:DataCategory) Labels of lower rank do not make it a source.
+{_LABEL}
+(:Element)-[:LEAKS_NOT]->(:DataCategory) Labels of lower rank do not make it a leak.
+{_LABEL}
+(:Element)-[:SANITIZES]->(:DataCategory) It cleans the category.
+{_LABEL}
+    method STRING anonymise, aggregate, drop, absent or pseudonymise; none counts as the last
+    stated BOOLEAN whether the label states the method
+(:Element)-[:PASSES]->(:DataCategory) Reviewed: it passes the category on.
+{_LABEL}
+(:Element)-[:DERIVES]->(:DataCategory) It makes the category of another.
+{_LABEL}
+    of STRING name of the category that it is made of
+(:Element)-[:NEVER_HAS]->(:DataCategory) A mundane channel.
+{_LABEL}
+(:Element)-[:MAY_HAVE]->(:DataCategory) A channel, reviewed.
+{_LABEL}
+(:Element)-[:HAS_ONLY]->(:DataCategory) A channel carries what is named so at most.
+{_LABEL}
+(:Element)-[:HAS_NOT]->(:DataCategory) A channel does not carry the category.
+{_LABEL}
+(:Element)-[:DERIVES_FROM]->(:Element) What the first makes of other data comes from the second, a source.
+    category STRING name of the category that is made
+    way STRINGS names of the elements from the source to it, both included
+    policy STRINGS file:line of the policy line behind each step of the path
+    past_leak BOOLEAN every path there goes through a leak of that category
+{_OURS}
+(:Element)-[:OF_ROBOT]->(:Robot) Whose element it is.
+(:Element)-[:IN_ENCLAVE]->(:Enclave) The node has a profile in the enclave.
+    file STRING of the profile
+    line INTEGER of the profile
+{_OURS}
+(:DataCategory)-[:BROADER]->(:DataCategory) The second is broader (skos:broader).
+(:DataCategory)-[:FALLS_UNDER]->(:LegalProvision) Data of the category can be what the provision speaks of.
+    verdict STRING always, conditional or may-reveal
+    condition STRING when, where it is not always
+    stated_of STRING category, or broader or narrower ones, that the ontology says it of
+    sources STRINGS what the verdict rests on
+(:DataCategory)-[:LOOK_AT]->(:LegalProvision) A provision to look at beside those that data of the category fall
+        under; it is not followed into paths.
+(:Finding)-[:OF_CATEGORY]->(:DataCategory) What arrives; of an `AddedFinding` too.
+(:Finding)-[:FROM]->(:Element) The source; of an `AddedFinding` too.
+(:Finding)-[:TO]->(:Element) The leak; of an `AddedFinding` too.
+(:Finding)-[:ACROSS]->(:Element) An element of its shortest way.
+    step INTEGER 0 for the source
+    category STRING the kind of data with which the path gets here
+    pseudonymised BOOLEAN in which form
+    file STRING of the policy line behind the step to here
+    line INTEGER of the policy line behind the step to here
+(:Bag)-[:HAS_TOPIC]->(:RecordedTopic) The topic is in the bag.
+(:RecordedTopic)-[:RECORDS]->(:Element) Of which channel of its robot it tells, or of which leg of one.
+"""
+_HEAD = re.compile(r"\(:(\w+)(?: {(\w+)}\)|\)-\[:(\w+)\]->\(:(\w+)\)) (.+)")
 
-FLOWS_TO = RelationshipKind(
-    "FLOWS_TO",
-    "Element",
-    "Element",
-    "A step along which data can go.",
-    (
-        Property(
-            "role",
-            STRING,
-            "publish, subscribe, request, reply, call, execute; matches for a wildcard, flow for what people state",
-        ),
-        Property("decision", STRING, "allow, or deny where a DENY takes an ALLOW back"),
-        Property("carries", STRINGS, f"kinds of data that go along it{_BROAD}"),
-        Property("passes", STRINGS, "kinds that had come to its start and go on; absent where there are none"),
-        Property("begins", STRINGS, "kinds that its start brings in; absent where there are none"),
-        Property("made", STRINGS, "kinds that its start makes of what comes to it; absent where there are none"),
-        Property("stops", STRINGS, "kinds that some source brings in and that do not go along it; absent as above"),
-        Property("file", STRING, "of the policy line behind it, or of the line that states it"),
-        Property("line", INTEGER, "of the policy line behind it"),
-        Property("enclave", STRING, "of the profile that the line stands in"),
-        Property("profile", STRING, "node of that profile"),
-        Property("seen_by", STRINGS, "of an observed policy: through which doors it was seen in use"),
-        Property("first_seen", STRING, "of an observed policy: when it was first seen in use"),
-        Property("last_seen", STRING, "of an observed policy: when it was last seen in use"),
-        Property("further", STRINGS, "JSON: file, line, enclave and profile of further policy lines behind it"),
-        Property("denied_by", STRINGS, "of a denied flow: file:line of the DENY"),
-        Property("denials", STRINGS, "JSON: file, line, enclave and profile of each DENY"),
-        Property("said_at", STRINGS, "file:line of the labels that say only or never of it"),
-        Property("only", STRINGS, "a label: it carries these at most"),
-        Property("never", STRINGS, "a label: it does not carry these"),
-        Property("naming", STRING, "of the label: glob where it names no end in full; absent else"),
-        Property("statements", STRINGS, "JSON: role, categories, rank, naming, file and line of each of these labels"),
-        _OURS,
-    ),
+
+def _read(text: str) -> Iterator[tuple[tuple[str, ...], tuple[Property, ...]]]:
+    """(label, key, type, label of the target, meaning; empty what it lacks) and properties of each kind."""
+    for block in re.split(r"\n(?=\()", text.replace("\n" + " " * 8, " ").rstrip("\n")):
+        head, *lines = block.split("\n")
+        match = _HEAD.fullmatch(head)
+        assert match, head
+        fields = (line.split(maxsplit=2) for line in lines)
+        yield match.groups(""), tuple(Property(name, TYPES[kind], meaning) for name, kind, meaning in fields)
+
+
+NODES = tuple(
+    NodeKind(label, key, meaning, properties, _FURTHER_LABELS if label == "Element" else "")
+    for (label, key, _, _, meaning), properties in _read(_NODES)
 )
-COULD_FLOW_TO = RelationshipKind(
-    "COULD_FLOW_TO",
-    "Element",
-    "Element",
-    "A step of the way of an `AddedFinding`: the enclave of its node allows it, no profile of the node does. It is no "
-    "flow of the declared view.",
-    (
-        Property("role", STRING, "as of `FLOWS_TO`"),
-        Property("file", STRING, "of the policy line of another profile"),
-        Property("line", INTEGER, "of the policy line of another profile"),
-        Property("enclave", STRING, "of the profile that the line stands in"),
-        Property("profile", STRING, "node of that profile"),
-        _OURS,
-    ),
+ELEMENT, ROBOT, ENCLAVE, CATEGORY, PROVISION, FINDING, ADDED_FINDING, BAG, RECORDED_TOPIC = NODES
+RELATIONSHIPS = tuple(
+    RelationshipKind(type_, source, target, meaning, properties)
+    for (source, _, type_, target, meaning), properties in _read(_RELATIONSHIPS)
 )
-MADE_POSSIBLE_BY = RelationshipKind(
-    "MADE_POSSIBLE_BY", "AddedFinding", "Enclave", "Its nodes share the rights that the finding needs."
-)
-ENDED_BY_SPLITTING = RelationshipKind(
-    "ENDED_BY_SPLITTING",
-    "AddedFinding",
-    "Enclave",
-    "With an enclave for each of its nodes, and of all others that it names so, the finding is gone.",
-)
-CARRIED = RelationshipKind(
-    f"{CARRIES}BIOMETRIC",
-    "Element",
-    "Element",
-    "Data of the category goes this step; one type for each category that a source brings in or a node makes, and a "
-    "broader one does not stand for it. From an element to itself where it is both source and leak. Followed from a "
-    "source to a leak, it finds what the analysis finds, dismissed findings included.",
-)
+_BY_TYPE = {kind.type: kind for kind in RELATIONSHIPS}
+FLOWS_TO, COULD_FLOW_TO = _BY_TYPE["FLOWS_TO"], _BY_TYPE["COULD_FLOW_TO"]
+MADE_POSSIBLE_BY, ENDED_BY_SPLITTING = _BY_TYPE["MADE_POSSIBLE_BY"], _BY_TYPE["ENDED_BY_SPLITTING"]
+CARRIED, DERIVES_FROM, IN_ENCLAVE = _BY_TYPE[f"{CARRIES}BIOMETRIC"], _BY_TYPE["DERIVES_FROM"], _BY_TYPE["IN_ENCLAVE"]
+BROADER, FALLS_UNDER, LOOK_AT = _BY_TYPE["BROADER"], _BY_TYPE["FALLS_UNDER"], _BY_TYPE["LOOK_AT"]
+ACROSS, HAS_TOPIC, RECORDS = _BY_TYPE["ACROSS"], _BY_TYPE["HAS_TOPIC"], _BY_TYPE["RECORDS"]
 ROLES = {
-    "source": RelationshipKind(
-        "SOURCE_OF",
-        "Element",
-        "DataCategory",
-        "It brings the category in.",
-        (*_PLACE, Property("through", STRINGS, "only through these channels")),
-    ),
-    "leak": RelationshipKind("LEAKS", "Element", "DataCategory", "It lets the category out.", _PLACE),
-    "no-source": RelationshipKind(
-        "NO_SOURCE_OF", "Element", "DataCategory", "Labels of lower rank do not make it a source.", _PLACE
-    ),
-    "no-leak": RelationshipKind(
-        "LEAKS_NOT", "Element", "DataCategory", "Labels of lower rank do not make it a leak.", _PLACE
-    ),
-    "sanitizer": RelationshipKind(
-        "SANITIZES",
-        "Element",
-        "DataCategory",
-        "It cleans the category.",
-        (
-            *_PLACE,
-            Property("method", STRING, "anonymise, aggregate, drop, absent or pseudonymise; none counts as the last"),
-            Property("stated", BOOLEAN, "whether the label states the method"),
-        ),
-    ),
-    "conduit": RelationshipKind("PASSES", "Element", "DataCategory", "Reviewed: it passes the category on.", _PLACE),
-    "derivation": RelationshipKind(
-        "DERIVES",
-        "Element",
-        "DataCategory",
-        "It makes the category of another.",
-        (*_PLACE, Property("of", STRING, "name of the category that it is made of")),
-    ),
-    "mundane": RelationshipKind("NEVER_HAS", "Element", "DataCategory", "A mundane channel.", _PLACE),
-    "sensitive": RelationshipKind("MAY_HAVE", "Element", "DataCategory", "A channel, reviewed.", _PLACE),
-    "only": RelationshipKind(
-        "HAS_ONLY", "Element", "DataCategory", "A channel carries what is named so at most.", _PLACE
-    ),
-    "never": RelationshipKind("HAS_NOT", "Element", "DataCategory", "A channel does not carry the category.", _PLACE),
+    "source": _BY_TYPE["SOURCE_OF"],
+    "leak": _BY_TYPE["LEAKS"],
+    "no-source": _BY_TYPE["NO_SOURCE_OF"],
+    "no-leak": _BY_TYPE["LEAKS_NOT"],
+    "sanitizer": _BY_TYPE["SANITIZES"],
+    "conduit": _BY_TYPE["PASSES"],
+    "derivation": _BY_TYPE["DERIVES"],
+    "mundane": _BY_TYPE["NEVER_HAS"],
+    "sensitive": _BY_TYPE["MAY_HAVE"],
+    "only": _BY_TYPE["HAS_ONLY"],
+    "never": _BY_TYPE["HAS_NOT"],
 }
-DERIVES_FROM = RelationshipKind(
-    "DERIVES_FROM",
-    "Element",
-    "Element",
-    "What the first makes of other data comes from the second, a source.",
-    (
-        Property("category", STRING, "name of the category that is made"),
-        Property("way", STRINGS, "names of the elements from the source to it, both included"),
-        Property("policy", STRINGS, "file:line of the policy line behind each step of the path"),
-        Property("past_leak", BOOLEAN, "every path there goes through a leak of that category"),
-        _OURS,
-    ),
-)
-IN_ENCLAVE = RelationshipKind(
-    "IN_ENCLAVE",
-    "Element",
-    "Enclave",
-    "The node has a profile in the enclave.",
-    (Property("file", STRING, "of the profile"), Property("line", INTEGER, "of the profile"), _OURS),
-)
-FALLS_UNDER = RelationshipKind(
-    "FALLS_UNDER",
-    "DataCategory",
-    "LegalProvision",
-    "Data of the category can be what the provision speaks of.",
-    (
-        Property("verdict", STRING, "always, conditional or may-reveal"),
-        Property("condition", STRING, "when, where it is not always"),
-        Property("stated_of", STRING, "category, or broader or narrower ones, that the ontology says it of"),
-        Property("sources", STRINGS, "what the verdict rests on"),
-    ),
-)
-LOOK_AT = RelationshipKind(
-    "LOOK_AT",
-    "DataCategory",
-    "LegalProvision",
-    "A provision to look at beside those that data of the category fall under; it is not followed into paths.",
-)
-ACROSS = RelationshipKind(
-    "ACROSS",
-    "Finding",
-    "Element",
-    "An element of its shortest way.",
-    (
-        Property("step", INTEGER, "0 for the source"),
-        Property("category", STRING, "the kind of data with which the path gets here"),
-        Property("pseudonymised", BOOLEAN, "in which form"),
-        Property("file", STRING, "of the policy line behind the step to here"),
-        Property("line", INTEGER, "of the policy line behind the step to here"),
-    ),
-)
-HAS_TOPIC = RelationshipKind("HAS_TOPIC", "Bag", "RecordedTopic", "The topic is in the bag.")
-RECORDS = RelationshipKind(
-    "RECORDS", "RecordedTopic", "Element", "Of which channel of its robot it tells, or of which leg of one."
-)
-RELATIONSHIPS = (
-    FLOWS_TO,
-    COULD_FLOW_TO,
-    MADE_POSSIBLE_BY,
-    ENDED_BY_SPLITTING,
-    CARRIED,
-    *ROLES.values(),
-    DERIVES_FROM,
-    RelationshipKind("OF_ROBOT", "Element", "Robot", "Whose element it is."),
-    IN_ENCLAVE,
-    RelationshipKind("BROADER", "DataCategory", "DataCategory", "The second is broader (skos:broader)."),
-    FALLS_UNDER,
-    LOOK_AT,
-    RelationshipKind("OF_CATEGORY", "Finding", "DataCategory", "What arrives; of an `AddedFinding` too."),
-    RelationshipKind("FROM", "Finding", "Element", "The source; of an `AddedFinding` too."),
-    RelationshipKind("TO", "Finding", "Element", "The leak; of an `AddedFinding` too."),
-    ACROSS,
-    HAS_TOPIC,
-    RECORDS,
-)
 SUFFIXES = ("", "Source", "Leak", "Sanitizer")
 RESERVED = frozenset({kind.label for kind in NODES} | set(KIND_LABELS.values()) | {LEG, WILDCARD, INTAKE})
 

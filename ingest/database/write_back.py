@@ -10,20 +10,25 @@ from collections import defaultdict
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.answer import robot_verdicts
+from rosprivacy.analysis.contexts import Contexts
 from rosprivacy.analysis.errors import DatabaseError
+from rosprivacy.analysis.findings.derived_from import origins
+from rosprivacy.analysis.fleet.likeness import pattern_id
 from rosprivacy.ingest.database import cypher
 from rosprivacy.ingest.database.carrying import Carrying
-from rosprivacy.ingest.database.element_properties import (
+from rosprivacy.ingest.database.ids import category_labels, element_id
+from rosprivacy.ingest.database.loading import delete_beyond, refusals, run, write
+from rosprivacy.ingest.database.rows import (
     Names,
     Roles,
     element_results,
-    finding_rows,
+    end_id,
+    finding_row,
     flow_results,
-    origin_rows,
+    intake_row,
+    kind_labels,
+    origin_properties,
 )
-from rosprivacy.ingest.database.ids import category_labels, element_id
-from rosprivacy.ingest.database.loading import delete_beyond, refusals, run, write
-from rosprivacy.ingest.database.rows import end_id, intake_row, kind_labels
 from rosprivacy.ingest.database.schema import DERIVES_FROM, DOMAIN, ELEMENT, KIND_LABELS, SUFFIXES
 
 if TYPE_CHECKING:
@@ -116,11 +121,21 @@ class _Changes:
         self.changed = sum(map(len, self._elements.values())) + sum(map(len, self._flows.values()))
         by_element = dict(zip(elements, ids, strict=True))
         of_robot = dict(zip(elements, robots, strict=True))
-        findings, across = finding_rows(analysis, stored.bound, vocabulary, by_element, of_robot, stored.likeness)
-        self._findings = _by(findings, {row["id"]: row["properties"]["robot"] for row in findings}, "id")
-        self._across = _by(across, {row["id"]: row["properties"]["robot"] for row in findings}, "source")
-        origins = list(origin_rows(analysis, ids, robots))
-        self._origins = _by(origins, dict(zip(ids, robots, strict=True)), "source")
+        contexts = Contexts.of(analysis.graph, stored.bound, vocabulary.categories)
+        self._findings: dict[str, list[Row]] = defaultdict(list)
+        self._across: dict[str, list[Row]] = defaultdict(list)
+        for finding in analysis.findings:
+            pattern, across = pattern_id(finding, stored.likeness), stored.likeness.across(finding)
+            row, steps = finding_row(finding, pattern, vocabulary, by_element, of_robot, contexts, across=across)
+            self._findings[of_robot[finding.source]].append(row)
+            self._across[of_robot[finding.source]] += steps
+        self._origins: dict[str, list[Row]] = defaultdict(list)
+        for origin in origins(analysis.spread):
+            robot = robots[origin.maker]
+            properties = origin_properties(analysis, origin, robot)
+            self._origins[robot].append(
+                {"source": ids[origin.maker], "target": ids[origin.source], "properties": properties}
+            )
         self.robots = sorted({*robots, *stored.robots})
         self._verdicts = robot_verdicts(analysis, self.robots, of_robot.__getitem__, broken)
 
@@ -196,13 +211,6 @@ def _more(some: Mapping[tuple[str, str], set[str]], others: Mapping[tuple[str, s
     """What goes between two ends in one and not in the other."""
     more = {ends: types - others.get(ends, set()) for ends, types in some.items()}
     return [{"source": a, "target": b, "types": sorted(types)} for (a, b), types in more.items() if types]
-
-
-def _by(rows: list[Row], robots: Mapping[str, str], key: str) -> dict[str, list[Row]]:
-    grouped: dict[str, list[Row]] = defaultdict(list)
-    for row in rows:
-        grouped[robots[row[key]]].append(row)
-    return grouped
 
 
 def _rows(grouped: Mapping[str, list[Row]], robots: list[str]) -> list[Row]:

@@ -8,7 +8,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import rosprivacy
-from rosprivacy.ingest.database.rows import robot_rows
+from rosprivacy.ingest.database.fleet_rows import robot_rows
 from rosprivacy.reading.fleet_system import answer_fleet
 from rosprivacy.settings import Settings
 from tests.helpers.paths import ROOT

@@ -176,13 +176,6 @@ def test_a_start_needs_jgo_only_once(private_neo4j: Connection, monkeypatch: pyt
     assert all(jar.is_file() for jar in jars)
 
 
-@pytest.mark.database
-def test_no_server_named_is_the_private_one(private_neo4j: Connection) -> None:
-    before = servers()
-    assert connection.connection(None) == private_neo4j
-    assert servers() == before
-
-
 @pytest.mark.slow
 @pytest.mark.database
 def test_two_starts_at_once_after_a_stop_make_one_server(private_neo4j: Connection) -> None:
@@ -401,15 +394,6 @@ def test_the_commands(private_neo4j: Connection) -> None:
     assert len(servers()) == 1
 
 
-def test_the_status_says_which_server_the_other_commands_use(nowhere: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("NEO4J_URI", "bolt://db.example")
-    done = rosprivacy("db", "status")
-    assert done.stdout.splitlines()[-1] == (
-        "Note:      NEO4J_URI is set, so the other commands use the server that it names"
-    )
-    assert not nowhere.exists()
-
-
 def test_the_bar_is_for_terminals(monkeypatch: pytest.MonkeyPatch) -> None:
     class Terminal(StringIO):
         def isatty(self) -> bool:
@@ -441,21 +425,27 @@ def test_the_state_folder(nowhere: Path, monkeypatch: pytest.MonkeyPatch, tmp_pa
 
 
 @pytest.mark.usefixtures("local_extra")
-def test_a_folder_that_cannot_be_made(nowhere: Path) -> None:
-    nowhere.parent.write_text("a file", "utf-8")
+@pytest.mark.parametrize(
+    ("file", "heap", "place", "problem"),
+    [
+        ("data", "", "neo4j", "cannot be written: Not a directory; free space"),
+        ("data/neo4j/conf", "", "neo4j/conf", "cannot be written: File exists; free space"),
+        ("", "1g -XX:OnError=x", "ROSPRIVACY_NEO4J_HEAP", "'1g -XX:OnError=x' is not a size; "),
+    ],
+)
+def test_what_keeps_a_start_from_beginning(
+    file: str, heap: str, place: str, problem: str, nowhere: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(server, "jar_files", lambda *_: [])
+    monkeypatch.setenv("ROSPRIVACY_NEO4J_HEAP", heap)
+    if file:
+        (nowhere.parents[1] / file).parent.mkdir(parents=True, exist_ok=True)
+        (nowhere.parents[1] / file).write_text("a file", "utf-8")
     with pytest.raises(DatabaseError) as error:
         connection.start()
-    assert one_line(error).startswith(f"{nowhere}: cannot be written: Not a directory; free space")
-
-
-@pytest.mark.usefixtures("local_extra")
-def test_a_file_that_cannot_be_written(nowhere: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("rosprivacy.private_neo4j.server.jar_files", lambda *_: [])
-    nowhere.mkdir(parents=True)
-    (nowhere / "conf").write_text("a file", "utf-8")
-    with pytest.raises(DatabaseError) as error:
-        connection.start()
-    assert one_line(error).startswith(f"{nowhere / 'conf'}: cannot be written: File exists; free space")
+    where = place if heap else str(nowhere.parent / place)
+    assert one_line(error).startswith(f"{where}: {problem}")
+    assert not (nowhere / "server.json").exists()
 
 
 @pytest.mark.usefixtures("local_extra")
@@ -469,15 +459,6 @@ def test_another_start_that_takes_too_long(nowhere: Path, monkeypatch: pytest.Mo
             connection.start()
         other.communicate(b"\n")
     assert one_line(error).startswith(f"{nowhere}: another rosprivacy has been starting or stopping the server")
-
-
-@pytest.mark.usefixtures("local_extra")
-def test_a_heap_that_is_none(nowhere: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("ROSPRIVACY_NEO4J_HEAP", "1g -XX:OnError=x")
-    with pytest.raises(DatabaseError) as error:
-        connection.start()
-    assert one_line(error).startswith("ROSPRIVACY_NEO4J_HEAP: '1g -XX:OnError=x' is not a size; ")
-    assert sorted(file.name for file in nowhere.iterdir()) in ([], ["lock"])
 
 
 @pytest.mark.usefixtures("local_extra")
@@ -500,18 +481,13 @@ def test_files_that_a_dead_server_left(text: str, nowhere: Path) -> None:
 
 
 def test_ports_are_kept_unless_taken() -> None:
+    """Who holds them without listening could listen there a moment before the server does."""
     first = server._free_ports(0, 0)
     assert len(set(first)) == 2
     assert server._free_ports(*first) == first
     with socket.create_server(("127.0.0.1", first[0])):
         other, same = server._free_ports(*first)
-    assert other != first[0]
-    assert same == first[1]
-
-
-def test_ports_that_somebody_holds_without_listening_are_taken() -> None:
-    """Who holds them so could listen there a moment before the server does."""
-    first = server._free_ports(0, 0)
+    assert (other != first[0], same) == (True, first[1])
     with held(*first):
         assert not set(server._free_ports(*first)) & set(first)
 

@@ -10,7 +10,6 @@ import rosprivacy
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.model import ARTICLE_9
 from rosprivacy.ingest.database.loading import load
-from rosprivacy.private_neo4j import connection
 from rosprivacy.queries.library import find
 from rosprivacy.queries.run import run
 from tests.helpers.graphs import care_home, rows_of
@@ -19,7 +18,7 @@ from tests.helpers.paths import ROOT
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from rosprivacy.private_neo4j.connection import Connection
+    from neo4j import Driver
 
 CARE = ROOT / "examples" / "care-home"
 GRANTS = """<policy version="0.2.0"><enclaves><enclave path="/e"><profiles>
@@ -75,37 +74,45 @@ class TestDocument:
         assert categories["FaceTemplate"]["gdpr"] == "GDPR Art. 4(14) biometric data"
 
 
+FACE, VIDEO, VOICE = ("FaceTemplate", "/uplink"), ("Video", "/recorder"), ("Voice", "/uplink")
+FILTERS: list[tuple[dict[str, Any], set[tuple[str, str]], dict[str, Any]]] = [  # asked, findings, assumptions
+    ({"article9": True}, {FACE, VIDEO, VOICE}, {"article9_only": True}),
+    ({"article9_level": "may-reveal"}, {FACE, VIDEO, VOICE}, {"article9_level": "may-reveal"}),
+    ({"article9_level": "conditional"}, {FACE}, {"article9_level": "conditional"}),
+    ({"article9_level": "always"}, set(), {}),
+    ({"data_types": ("video",)}, {VIDEO}, {"data_types_asked": ["video"]}),
+    ({"data_types": ("video", "audio")}, {VIDEO, VOICE}, {}),
+    ({"identity_factors": ("physiological",)}, {VOICE}, {}),
+    ({"identity_factors": ["physical", "genetic"]}, {FACE, VIDEO}, {}),
+    ({"identity_factors": "economic"}, set(), {"identity_factors_asked": ["economic"]}),
+    ({"categories": ("Biometrie",)}, {FACE}, {}),  # the German name
+    ({"categories": ("PersonalData",), "article9": True, "data_types": ("video",)}, {VIDEO}, {}),
+]
+UNKNOWN = [
+    ({"article9_level": "alwas"}, r"^--article9-level: 'alwas' is none of .*; did you mean always\?"),
+    ({"identity_factors": ("economical",)}, r"--identity-factor: unknown identity factor 'economical'; .*social"),
+    ({"data_types": ("vidoe",)}, r"--data-type: unknown data type 'vidoe'; it is one of: .*video"),
+]
+
+
 class TestFilters:
-    def test_article_9_only(self) -> None:
+    @pytest.mark.parametrize(("asked", "expected", "assumed"), FILTERS)
+    def test_only_what_is_asked_for(
+        self, asked: dict[str, Any], expected: set[tuple[str, str]], assumed: dict[str, Any]
+    ) -> None:
+        shown = document(**asked)
+        assert found(shown) == expected
+        assert shown["assumptions"].items() >= assumed.items()
+        assert expected or shown["verdict"] == "undetermined"  # nothing of the kind is brought in
+
+    def test_kinds_that_may_reveal_at_least(self) -> None:
         kinds = {category["name"] for category in document(article9=True)["categories"]}
-        assert kinds == {"FaceTemplate", "Location", "PersonTrack", "Video", "Voice"}  # all may reveal at least
-        assert found(document(article9=True)) == found(document())
+        assert kinds == {"FaceTemplate", "Location", "PersonTrack", "Video", "Voice"}
 
-    def test_up_to_a_level(self) -> None:
-        always = document(article9_level="always")
-        assert (always["findings"], always["verdict"]) == ([], "undetermined")  # nothing of the kind is brought in
-        on_condition = document(article9_level="conditional")
-        assert found(on_condition) == {("FaceTemplate", "/uplink")}
-        assert on_condition["assumptions"]["article9_level"] == "conditional"
-        assert found(document(article9_level="may-reveal")) == found(document(article9=True))
-
-    def test_an_unknown_level_is_an_error(self) -> None:
-        with pytest.raises(InputErrors, match=r"^--article9-level: 'alwas' is none of .*; did you mean always\?"):
-            document(article9_level="alwas")
-
-    def test_a_data_type_only(self) -> None:
-        assert found(document(data_types=("video",))) == {("Video", "/recorder")}
-        assert found(document(data_types=("video", "audio"))) == {("Video", "/recorder"), ("Voice", "/uplink")}
-
-    def test_an_identity_factor_only(self) -> None:
-        assert found(document(identity_factors=("physiological",))) == {("Voice", "/uplink")}
-        assert found(document(identity_factors=["physical", "genetic"])) == {
-            ("FaceTemplate", "/uplink"),
-            ("Video", "/recorder"),
-        }
-        nothing = document(identity_factors="economic")
-        assert (nothing["findings"], nothing["verdict"]) == ([], "undetermined")  # nothing of the kind is brought in
-        assert nothing["assumptions"]["identity_factors_asked"] == ["economic"]
+    @pytest.mark.parametrize(("asked", "message"), UNKNOWN)
+    def test_what_nothing_has_is_an_error(self, asked: dict[str, Any], message: str) -> None:
+        with pytest.raises(InputErrors, match=message):
+            document(**asked)
 
     def test_a_kind_of_which_no_factor_is_stated_is_kept(self, tmp_path: Path) -> None:
         """What is not known of a kind may be what is asked for."""
@@ -123,44 +130,22 @@ class TestFilters:
         assert asked(ODD.replace("@en .\n", '@en ; rp:identityFactor "economic" .\n')) == {("Odd", "/net")}
         assert asked(ODD.replace("@en .\n", '@en ; rp:identityFactor "social" .\n')) == set()
 
-    def test_an_unknown_identity_factor_is_an_error(self) -> None:
-        said = r"--identity-factor: unknown identity factor 'economical'; it is one of: cultural, economic, .*social"
-        with pytest.raises(InputErrors, match=said):
-            document(identity_factors=("economical",))
-
-    def test_a_category_with_narrower_ones_only(self) -> None:
-        assert found(document(categories=("Biometrie",))) == {("FaceTemplate", "/uplink")}  # the German name
-
-    def test_filters_narrow_together(self) -> None:
-        shown = document(categories=("PersonalData",), article9=True, data_types=("video",))
-        assert found(shown) == {("Video", "/recorder")}
-
-    def test_what_is_asked_for_stands_in_the_assumptions(self) -> None:
-        assumptions = document(article9=True, data_types=("audio",))["assumptions"]
-        assert (assumptions["article9_only"], assumptions["data_types_asked"]) == (True, ["audio"])
-
-    def test_an_unknown_data_type_is_an_error(self) -> None:
-        with pytest.raises(InputErrors, match=r"--data-type: unknown data type 'vidoe'; it is one of: .*video"):
-            document(data_types=("vidoe",))
-
 
 @pytest.mark.slow
 @pytest.mark.database
-def test_cypher_says_the_same(neo4j_server: Connection) -> None:
+def test_cypher_says_the_same(driver: Driver) -> None:
     result = care_home()
     expected = under_article_9(result.document())
     assert expected
-    with connection.open_driver(neo4j_server) as driver:
-        driver.execute_query("MATCH (n) DETACH DELETE n")
-        load(driver, [rows_of("h1", result)], result.vocabulary)
-        query = find("findings-under-article")
-        rows = run(driver, query.text, query.values({}))
-        at = {name: number for number, name in enumerate(rows.columns)}
-        pack = {tuple(row[at[name]] for name in ("provision", "verdict", "category", "leak")) for row in rows.rows}
-        one_line = (
-            "MATCH (f:Finding)-[:OF_CATEGORY]->()-[u:FALLS_UNDER]->(p:LegalProvision) "
-            "WHERE p.name STARTS WITH 'GDPR Art. 9(1)' RETURN p.name, u.verdict, f.category, f.leak"
-        )
-        plain = {tuple(record.values()) for record in driver.execute_query(one_line).records}
+    load(driver, [rows_of("h1", result)], result.vocabulary)
+    query = find("findings-under-article")
+    rows = run(driver, query.text, query.values({}))
+    at = {name: number for number, name in enumerate(rows.columns)}
+    pack = {tuple(row[at[name]] for name in ("provision", "verdict", "category", "leak")) for row in rows.rows}
+    one_line = (
+        "MATCH (f:Finding)-[:OF_CATEGORY]->()-[u:FALLS_UNDER]->(p:LegalProvision) "
+        "WHERE p.name STARTS WITH 'GDPR Art. 9(1)' RETURN p.name, u.verdict, f.category, f.leak"
+    )
+    plain = {tuple(record.values()) for record in driver.execute_query(one_line).records}
     assert pack == expected
     assert plain == expected

@@ -14,11 +14,10 @@ import pytest
 import rosprivacy
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.model import DISCLOSURE
+from rosprivacy.ingest.database.fleet_rows import robot_rows
 from rosprivacy.ingest.database.loading import load
-from rosprivacy.ingest.database.rows import robot_rows
 from rosprivacy.ingest.policies.policy_xml import NotAPolicyError, read_policy
 from rosprivacy.ontology.vocabulary import load as load_vocabulary
-from rosprivacy.private_neo4j import connection
 from rosprivacy.queries.library import find
 from rosprivacy.queries.run import run
 from tests.helpers.cases import CASES
@@ -27,25 +26,16 @@ from tests.helpers.random_rows import VOCABULARY, random_systems
 from tests.helpers.systems import PARENTS
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
     from pathlib import Path
 
     from neo4j import Driver
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.ingest.database.rows import RobotRows
-    from rosprivacy.private_neo4j.connection import Connection
 
 pytestmark = pytest.mark.database
 
 Way = tuple[str, str, str, str]
-
-
-@pytest.fixture
-def empty(neo4j_server: Connection) -> Iterator[Driver]:
-    with connection.open_driver(neo4j_server) as driver:
-        driver.execute_query("MATCH (n) DETACH DELETE n")
-        yield driver
 
 
 def ways(analysis: Analysis, robot: str) -> dict[Way, int]:
@@ -67,7 +57,7 @@ def found(driver: Driver, name: str, **values: str) -> dict[Way, list[str]]:
 
 
 @pytest.mark.slow
-def test_on_200_random_graphs(empty: Driver) -> None:
+def test_on_200_random_graphs(driver: Driver) -> None:
     """With derivations, pseudonymisation, restricted flows and channels, leaks behind leaks."""
     expected: dict[Way, int] = {}
     rows = []
@@ -75,17 +65,17 @@ def test_on_200_random_graphs(empty: Driver) -> None:
         analysis, robot = system.analyse(), f"g{number:03}"
         rows.append(robot_rows(robot, analysis, system.bound(), VOCABULARY))
         expected |= ways(analysis, robot)
-    load(empty, rows, VOCABULARY)
+    load(driver, rows, VOCABULARY)
     assert len(expected) > 100
-    got = found(empty, "leak-paths-of-category", category="Any")
+    got = found(driver, "leak-paths-of-category", category="Any")
     assert set(got) == set(expected)
     # Memory shows a way in the clear even where one on which the data is pseudonymised is shorter.
     assert all(len(got[way]) <= expected[way] for way in got)
     assert sum(len(got[way]) == expected[way] for way in got) > 0.9 * len(got)
-    assert {way: len(path) for way, path in found(empty, "leak-paths").items()} == expected
+    assert {way: len(path) for way, path in found(driver, "leak-paths").items()} == expected
     for name in PARENTS:
         of_category = {way for way in expected if name in VOCABULARY.hierarchy.overlaps[way[1]]}  # S7: or may be of it
-        assert set(found(empty, "leak-paths-of-category", category=name)) == of_category
+        assert set(found(driver, "leak-paths-of-category", category=name)) == of_category
 
 
 def made_up_labels(policy: Path) -> str:
@@ -106,7 +96,7 @@ def made_up_labels(policy: Path) -> str:
 
 @pytest.mark.slow
 @pytest.mark.corpus
-def test_on_every_policy_of_the_corpus(empty: Driver, corpus: Path, tmp_path: Path) -> None:
+def test_on_every_policy_of_the_corpus(driver: Driver, corpus: Path, tmp_path: Path) -> None:
     expected: dict[Way, int] = {}
     rows: list[RobotRows] = []
     for policy in sorted((corpus / "policies").rglob("*.xml")):
@@ -122,56 +112,26 @@ def test_on_every_policy_of_the_corpus(empty: Driver, corpus: Path, tmp_path: Pa
         expected |= ways(result.analysis, robot)
     assert len(rows) == 24
     assert len(expected) > 100
-    load(empty, rows, load_vocabulary())
-    got = found(empty, "leak-paths-of-category", category="PersonalData")
+    load(driver, rows, load_vocabulary())
+    got = found(driver, "leak-paths-of-category", category="PersonalData")
     assert set(got) == set(expected)
     assert all(len(got[way]) <= expected[way] for way in got)
 
 
 @pytest.mark.parametrize("case", one_in(4, CASES), ids=lambda path: str(path.name))
-def test_on_the_examples(empty: Driver, case: Path, examples: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_on_the_examples(driver: Driver, case: Path, examples: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Shown way for way, but for the two sides of a wildcard, which are one element to the reader."""
     monkeypatch.chdir(examples)
     given = json.loads((case / "case.json").read_text("utf-8"))
     result = rosprivacy.analyze(given["policies"], given["labels"], **given.get("options", {}))
-    load(empty, [robot_rows("r", result.analysis, result.bound, result.vocabulary)], result.vocabulary)
+    load(driver, [robot_rows("r", result.analysis, result.bound, result.vocabulary)], result.vocabulary)
     shown = {
         ("r", f.category, f.source.name, f.leak.name): f
         for f in result.analysis.findings
         if f.kind == DISCLOSURE and not f.dismissed
     }
-    got, stored = found(empty, "leak-paths-of-category", category="PersonalData"), found(empty, "leak-paths")
+    got, stored = found(driver, "leak-paths-of-category", category="PersonalData"), found(driver, "leak-paths")
     assert set(got) == set(stored) == set(shown)
     for way, finding in shown.items():
         assert len([name for name, _ in groupby(got[way])]) == len(finding.witness)
         assert stored[way] == [element.name for element in finding.witness]
-
-
-def test_the_line_that_a_user_types(empty: Driver, examples: Path, tmp_path: Path) -> None:
-    """With the plain driver, from outside: the one-line query of the issue on the two examples."""
-    import neo4j
-
-    labels = tmp_path / "labels.yaml"
-    labels.write_text(
-        "labels: 1\nnodes:\n  /safety_camera: {source: [Biometric]}\n  /archive_server: {leak: [Biometric]}\n", "utf-8"
-    )
-    factory = rosprivacy.analyze([str(examples / "factory" / "before.policy.xml")], [str(labels)])
-    care = rosprivacy.analyze(
-        [str(examples / "care-home" / "care-home.policy.xml")], [str(examples / "care-home" / "care-home.labels.yaml")]
-    )
-    results = {"factory": factory, "care-home": care}
-    rows = [robot_rows(name, result.analysis, result.bound, result.vocabulary) for name, result in results.items()]
-    load(empty, rows, care.vocabulary)
-    to = connection.connection(None)
-    with (
-        neo4j.GraphDatabase.driver(to.uri, auth=(to.username, to.password)) as driver,
-        driver.session() as session,
-    ):
-        paths = [
-            record["p"]
-            for record in session.run("MATCH p = (:BiometricSource)-[:FLOWS_TO*1..8]->(:BiometricLeak) RETURN p")
-        ]
-    shown = {tuple(node["name"] for node in path.nodes) for path in paths}
-    assert ("/safety_camera", "/safety_video", "/archive_server") in shown
-    assert {path.start_node["name"] for path in paths} == {"/safety_camera", "/face_recognizer"}
-    assert {path.end_node["name"] for path in paths} == {"/archive_server", "/uplink"}

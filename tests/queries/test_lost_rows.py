@@ -13,7 +13,6 @@ import pytest
 import rosprivacy
 from rosprivacy.analysis.errors import InputErrors, QueryError
 from rosprivacy.ingest.database.loading import load
-from rosprivacy.private_neo4j import connection
 from rosprivacy.queries.library import find
 from rosprivacy.reading.robot_system import robot_of
 from rosprivacy.reading.stored_rows import rows_of
@@ -24,12 +23,10 @@ from tests.helpers.fleet_files import policy
 from tests.helpers.fleet_rows import VOCABULARY, rows
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
     from pathlib import Path
 
     from neo4j import Driver
 
-    from rosprivacy.private_neo4j.connection import Connection
     from tests.helpers.command import Cli
 
 pytestmark = pytest.mark.database
@@ -49,11 +46,9 @@ IN_B = [
 
 
 @pytest.fixture
-def driver(neo4j_server: Connection, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Driver]:
+def driver(driver: Driver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Driver:
     monkeypatch.chdir(tmp_path)
-    with connection.open_driver(neo4j_server) as opened:
-        opened.execute_query("MATCH (n) DETACH DELETE n")
-        yield opened
+    return driver
 
 
 def write(folder: Path, **files: str) -> None:

@@ -15,10 +15,9 @@ from hypothesis import strategies as st
 
 import rosprivacy
 from rosprivacy.analysis.model import DISCLOSURE
+from rosprivacy.ingest.database.fleet_rows import robot_rows
 from rosprivacy.ingest.database.ids import carries
 from rosprivacy.ingest.database.loading import load
-from rosprivacy.ingest.database.rows import robot_rows
-from rosprivacy.private_neo4j import connection
 from rosprivacy.queries.run import run
 from tests.helpers.cases import CASES
 from tests.helpers.daily import one_in
@@ -29,13 +28,11 @@ from tests.helpers.random_rows import VOCABULARY, random_systems
 from tests.helpers.systems import systems
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
     from pathlib import Path
 
     from neo4j import Driver
 
     from rosprivacy.ontology.vocabulary import Vocabulary
-    from rosprivacy.private_neo4j.connection import Connection
 
 pytestmark = pytest.mark.database
 Pair = tuple[str, str, str, str]  # robot, category, names of source and leak
@@ -48,13 +45,6 @@ MADE = (
     "RETURN DISTINCT n.robot, n.name, "
     "COLLECT { MATCH (n)-[:DERIVES_FROM {category: $category}]->(s:Element) RETURN s.name } AS sources"
 )
-
-
-@pytest.fixture
-def empty(neo4j_server: Connection) -> Iterator[Driver]:
-    with connection.open_driver(neo4j_server) as driver:
-        driver.execute_query("MATCH (n) DETACH DELETE n")
-        yield driver
 
 
 def asked(driver: Driver, vocabulary: Vocabulary) -> set[Pair]:
@@ -73,7 +63,7 @@ def asked(driver: Driver, vocabulary: Vocabulary) -> set[Pair]:
 
 
 @pytest.mark.slow
-def test_on_200_random_graphs(empty: Driver) -> None:
+def test_on_200_random_graphs(driver: Driver) -> None:
     """With derivations, pseudonymisation, wildcards, sources of one channel, restricted flows, leaks behind leaks."""
     expected: set[Pair] = set()
     rows = []
@@ -82,36 +72,36 @@ def test_on_200_random_graphs(empty: Driver) -> None:
         rows.append(robot_rows(robot, analysis, system.bound(), VOCABULARY))
         found = (f for f in analysis.findings if f.kind == DISCLOSURE)
         expected |= {(robot, f.category, f.source.name, f.leak.name) for f in found}
-    load(empty, rows, VOCABULARY)
+    load(driver, rows, VOCABULARY)
     assert len(expected) > 200
     assert sum(bool(one.intakes) for one in rows) > 10
-    assert asked(empty, VOCABULARY) == expected
+    assert asked(driver, VOCABULARY) == expected
 
 
 @pytest.mark.parametrize("case", one_in(len(CASES), CASES[::-1]), ids=lambda path: str(path.name))
-def test_on_the_examples(empty: Driver, case: Path, examples: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_on_the_examples(driver: Driver, case: Path, examples: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Against the findings of the JSON."""
     monkeypatch.chdir(examples)
     given = json.loads((case / "case.json").read_text("utf-8"))
     result = rosprivacy.analyze(given["policies"], given["labels"], **given.get("options", {}))
-    load(empty, [robot_rows("r", result.analysis, result.bound, result.vocabulary)], result.vocabulary)
+    load(driver, [robot_rows("r", result.analysis, result.bound, result.vocabulary)], result.vocabulary)
     found = [row for row in result.document()["findings"] if row["kind"] == DISCLOSURE]
     expected = {("r", row["category"], row["source"]["name"], row["leak"]["name"]) for row in found}
-    assert asked(empty, result.vocabulary) == expected
+    assert asked(driver, result.vocabulary) == expected
 
 
-def test_the_cypher_of_the_documentation(empty: Driver) -> None:
+def test_the_cypher_of_the_documentation(driver: Driver) -> None:
     """Each block of docs/database.md that only reads gives rows; those of video give the pairs of the findings."""
     result = care_home()
-    load(empty, [rows_of("care-home", result)], result.vocabulary)
+    load(driver, [rows_of("care-home", result)], result.vocabulary)
     found = [row for row in result.document()["findings"] if (row["kind"], row["category"]) == (DISCLOSURE, "Video")]
     text = (ROOT / "docs" / "database.md").read_text("utf-8")
     blocks = re.findall(r"```cypher\n(.*?)```", text, re.DOTALL)
     reading = [block for block in blocks if "CREATE" not in block]
-    paths = [run(empty, block).rows for block in reading if "CARRIES_VIDEO" in block]
+    paths = [run(driver, block).rows for block in reading if "CARRIES_VIDEO" in block]
     assert len(paths) == 3
     for rows in paths:
         ends = {(path.nodes[0].properties["name"], path.nodes[-1].properties["name"]) for (path,) in rows}
         assert ends == {(row["source"]["name"], row["leak"]["name"]) for row in found}
     for block in reading:
-        run(empty, block)
+        run(driver, block)

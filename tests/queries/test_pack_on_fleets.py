@@ -14,20 +14,18 @@ import pytest
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.answering import answer
 from rosprivacy.ingest.database.loading import load
-from rosprivacy.private_neo4j import connection
 from rosprivacy.queries.library import find, pack
 from rosprivacy.reading.fleet_system import fleet_system, rows_of_fleet
 from tests.helpers.pack_memory import QUESTION, VOCABULARY, Fleet, Memory, place_of
 from tests.helpers.written_fleets import KINDS, fleet
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping
+    from collections.abc import Callable, Iterable, Mapping
     from pathlib import Path
 
     from neo4j import Driver, Record
 
     from rosprivacy.ingest.database.rows import RobotRows
-    from rosprivacy.private_neo4j.connection import Connection
 
 
 class Check(NamedTuple):
@@ -96,13 +94,6 @@ CHECKS = {
 
 def test_every_question_is_held() -> None:
     assert CHECKS.keys() == pack().keys()
-
-
-@pytest.fixture
-def driver(neo4j_server: Connection) -> Iterator[Driver]:
-    with connection.open_driver(neo4j_server) as opened:
-        opened.execute_query("MATCH (n) DETACH DELETE n")
-        yield opened
 
 
 def written(numbers: Iterable[int], folder: Path) -> tuple[list[Fleet], list[RobotRows]]:

@@ -17,10 +17,9 @@ from rosprivacy.analysis.findings.findings import analyse
 from rosprivacy.analysis.model import Category, Confidence, Element, Flow, FlowGraph, Legal, Place, Suggestion
 from rosprivacy.analysis.model.recording import Bag, BagTopic, JudgedBag, TopicKinds
 from rosprivacy.both_views import both_views
-from rosprivacy.ingest.database.bag_loading import load_bags
-from rosprivacy.ingest.database.bag_rows import bag_rows
+from rosprivacy.ingest.database.bag_rows import bag_rows, load_bags
+from rosprivacy.ingest.database.fleet_rows import robot_rows
 from rosprivacy.ingest.database.loading import load
-from rosprivacy.ingest.database.rows import robot_rows
 from rosprivacy.ingest.database.schema import CARRIES, FLOWS_TO, KIND_LABELS
 from rosprivacy.ingest.labels.binding import bind
 from rosprivacy.ingest.labels.label_file import STANDARD, read_labels

@@ -30,24 +30,6 @@ def driver(neo4j_server: Connection) -> Iterator[Driver]:
         yield opened
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
-        "CREATE (n:ShouldNotBe) RETURN n",
-        "MERGE (n:ShouldNotBe) RETURN n",
-        "MATCH (n) SET n.x = 1",
-        "MATCH (n) DETACH DELETE n",
-        "CREATE INDEX i FOR (n:X) ON (n.y)",
-        "CALL db.createLabel('ShouldNotBe')",
-        "UNWIND [1] AS x CALL (x) { CREATE (:ShouldNotBe) } RETURN x",
-    ],
-)
-def test_what_writes_is_refused_and_writes_nothing(driver: Driver, text: str) -> None:
-    with pytest.raises(QueryError, match=r"would write|refuses"):
-        run(driver, text)
-    assert run(driver, "MATCH (n:ShouldNotBe) RETURN count(n)").rows == ((0,),)
-
-
 def test_rows_have_a_bound(driver: Driver) -> None:
     text = "UNWIND range(1, 5) AS x RETURN x"
     assert (run(driver, text, limit=3).rows, run(driver, text, limit=3).more) == (((1,), (2,), (3,)), True)

@@ -22,10 +22,11 @@ from rosprivacy.report.element_counts import count_elements
 from rosprivacy.report.verdict import verdict_sentence
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
 
     from rosprivacy.ingest.database.loading import Loaded
     from rosprivacy.ingest.database.rows import RobotRows
+    from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.result import Result
     from rosprivacy.settings import Settings
 
@@ -117,7 +118,7 @@ def name_of(inputs: Inputs) -> str:
 
 
 def _tell_replaced(done: Loaded) -> None:
-    """Say which robots took the place of others of the same name (users.md, B8)."""
+    """Say which robots took the place of others of the same name."""
     names = [f"{shown(name)} ({', '.join(map(shown, files))})" for name, files in sorted(done.replaced.items())]
     if names:
         more = f" and {len(names) - NAMED:,} more" if len(names) > NAMED else ""
@@ -126,9 +127,7 @@ def _tell_replaced(done: Loaded) -> None:
 
 
 def _load_fleet(file: str, settings: Settings, neo4j: str | None, *, both: bool) -> None:
-
     from rosprivacy.answering import answer
-    from rosprivacy.ingest.database import loading as database
     from rosprivacy.ingest.database.fleet_rows import MOST_ACROSS
     from rosprivacy.question import question_of
     from rosprivacy.reading.fleet_system import fleet_system, rows_of_fleet
@@ -141,12 +140,7 @@ def _load_fleet(file: str, settings: Settings, neo4j: str | None, *, both: bool)
 
         result = replace(result, enforced=both_views_of_fleet(file, settings).enforced)
     rows = rows_of_fleet(system, question, result)
-    with driver_of(neo4j) as driver, _bar(None) as advance:
-        done = database.load(driver, rows, system.vocabulary, advance)
-    _tell_replaced(done)
-    robots = len(system.fleet.robots)
-    what = f"fleet {shown(file)}: {robots:,} robots and what they share"
-    emit(f"{what}: {done.written:,} written, {done.unchanged:,} as they were\n{_sentence(result)}\n", None)
+    _load_many(rows, system.vocabulary, neo4j, f"fleet {shown(file)}", len(system.fleet.robots), _sentence(result))
     if rows.left_out:
         message = f"{rows.left_out:,} findings from one robot to another are not written one by one: of each pattern"
         print(
@@ -156,20 +150,29 @@ def _load_fleet(file: str, settings: Settings, neo4j: str | None, *, both: bool)
 
 
 def _load_results(folder: str, ontologies: tuple[str, ...], neo4j: str | None) -> None:
-    from rosprivacy.ingest.database import loading as database
     from rosprivacy.ontology.vocabulary import load
     from rosprivacy.spark.parquet import read
 
     vocabulary = load(ontologies=ontologies)
     document, rows = read(folder)
-    with driver_of(neo4j) as driver, _bar(None) as advance:
-        done = database.load(driver, rows, vocabulary, advance)
-    _tell_replaced(done)
-    what = f"results {shown(folder)}: {document['fleet']['robots']:,} robots and what they share"
-    emit(f"{what}: {done.written:,} written, {done.unchanged:,} as they were\n{verdict_sentence(document)}\n", None)
+    robots, sentence = document["fleet"]["robots"], verdict_sentence(document)
+    _load_many(rows, vocabulary, neo4j, f"results {shown(folder)}", robots, sentence)
     if any(pattern["across"] for pattern in document["fleet"]["patterns"]):
         message = "findings from one robot to another are not written one by one: of each pattern only one for each"
         print(f"{message} robot that data comes from", file=sys.stderr)
+
+
+def _load_many(
+    rows: Iterable[RobotRows], vocabulary: Vocabulary, neo4j: str | None, what: str, robots: int, sentence: str
+) -> None:
+    """Write many robots, and say what was written of what, with the verdict in a sentence."""
+    from rosprivacy.ingest.database.loading import load
+
+    with driver_of(neo4j) as driver, _bar(None) as advance:
+        done = load(driver, rows, vocabulary, advance)
+    _tell_replaced(done)
+    shares = f"{what}: {robots:,} robots and what they share"
+    emit(f"{shares}: {done.written:,} written, {done.unchanged:,} as they were\n{sentence}\n", None)
 
 
 @contextmanager

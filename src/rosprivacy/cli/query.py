@@ -15,7 +15,7 @@ from rosprivacy.cli.exit_code import UNDETERMINED
 from rosprivacy.cli.inputs import refuse
 from rosprivacy.cli.options import Output, Server
 from rosprivacy.cli.output import emit, not_for_a_terminal
-from rosprivacy.cli.query_answer import RowFormat, answer, not_drawn
+from rosprivacy.cli.query_answer import RowFormat, answer, listing, not_drawn
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -82,8 +82,6 @@ def query(
     if (cypher is not None) + (file is not None) + (name is not None and "=" not in name) > 1:
         raise typer.BadParameter("name a question, or give --cypher, or --file")
     if schema:
-        from rosprivacy.cli.schema_listing import listing
-
         beside = (("NAME", name), ("--cypher", cypher), ("--file", file))
         refuse("--schema", "no question", [what for what, value in beside if value is not None])
         emit(listing(), output)

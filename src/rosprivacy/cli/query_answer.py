@@ -1,23 +1,30 @@
-"""The rows of a query as its formats have them: a table or records, JSON, CSV, or one drawing."""
+"""What ``query`` prints: rows as a table or records, JSON, CSV, or one drawing; and the schema of the graph."""
 
 from __future__ import annotations
 
 import io
 import sys
+import textwrap
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import QueryError, shown
 from rosprivacy.analysis.text import counted, printable
-from rosprivacy.cli.row_records import natural_width, records
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator, Sequence
 
+    from rosprivacy.ingest.database.schema import Property
     from rosprivacy.queries.run import Rows
 
 WIDEST_TABLE = 400  # in a file or a pipe
+GAP = 2  # between columns
 LESS = "ask for less, or use a lower --limit"
+CATEGORIES = """\
+`Biometric` and `CARRIES_BIOMETRIC` stand for every kind of data; rosprivacy categories lists the kinds. Written in
+capitals, words are parted: FaceTemplate has the labels FaceTemplate, FaceTemplateSource, FaceTemplateLeak and
+FaceTemplateSanitizer, and the type CARRIES_FACE_TEMPLATE.
+"""
 
 
 class RowFormat(StrEnum):
@@ -105,7 +112,7 @@ def _table(columns: tuple[str, ...], cells: list[list[str]], *, wide: bool) -> s
     cells = [[printable(cell) for cell in row] for row in cells]
     terminal = Console()
     on_screen = terminal.is_terminal and not wide
-    if natural_width(columns, cells) > (width := terminal.width if on_screen else WIDEST_TABLE):
+    if _natural_width(columns, cells) > (width := terminal.width if on_screen else WIDEST_TABLE):
         return records(columns, cells, width if on_screen else sys.maxsize)
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for column in columns:
@@ -115,3 +122,51 @@ def _table(columns: tuple[str, ...], cells: list[list[str]], *, wide: bool) -> s
     text = io.StringIO()
     Console(file=text, width=width, highlight=False).print(table)
     return "".join(f"{line.rstrip()}\n" for line in text.getvalue().splitlines()).lstrip("\n")
+
+
+def _natural_width(columns: Sequence[str], cells: Sequence[Sequence[str]]) -> int:
+    """How wide a table of these cells is when no cell is wrapped."""
+    widest = [max(map(len, column)) for column in zip(columns, *cells, strict=True)]
+    return sum(widest) + GAP * (len(widest) - 1)
+
+
+def records(columns: Sequence[str], cells: Sequence[Sequence[str]], width: int) -> str:
+    r"""Return rows one below the other, a line for each cell, or several; a word longer than a line stands whole.
+
+    >>> print(records(["robot", "path"], [["r1", "/camera -> /image -> /uplink"]], 24), end="")
+    robot  r1
+    path   /camera -> /image
+           -> /uplink
+    """
+    names = max(map(len, columns)) + GAP
+    return "\n".join(
+        "".join(_field(column, cell, names, width) for column, cell in zip(columns, row, strict=True)) for row in cells
+    )
+
+
+def _field(column: str, cell: str, names: int, width: int) -> str:
+    lines = textwrap.wrap(
+        cell, max(width - names, 1), break_long_words=False, break_on_hyphens=False, replace_whitespace=False
+    )
+    first, *others = lines or [""]
+    return "".join(f"{line}\n" for line in (f"{column:<{names}}{first}".rstrip(), *(" " * names + o for o in others)))
+
+
+def listing() -> str:
+    """Return all labels, relationship types and properties, each with its meaning, as the program loads by them."""
+    from rosprivacy.ingest.database.schema import NODES, RELATIONSHIPS
+
+    lines = [CATEGORIES]
+    for node in NODES:
+        labels = f" Further labels: {node.labels}." if node.labels else ""
+        lines += [f"(:{node.label})  {node.meaning}{labels}", *_properties(node.properties)]
+    for kind in RELATIONSHIPS:
+        lines += [f"(:{kind.source})-[:{kind.type}]->(:{kind.target})  {kind.meaning}", *_properties(kind.properties)]
+    return "\n".join(lines).replace("`", "")
+
+
+def _properties(properties: tuple[Property, ...]) -> Iterator[str]:
+    wide = max((len(field.name) for field in properties), default=0)
+    for field in properties:
+        yield f"    {field.name:<{wide}}  {field.type:<12}  {field.meaning}"
+    yield ""

@@ -46,7 +46,7 @@ def unload(
 
 
 def _unload_bags(path: str, neo4j: str | None) -> None:
-    from rosprivacy.ingest.database.bag_loading import unload_bags
+    from rosprivacy.ingest.database.bag_rows import unload_bags
 
     with driver_of(neo4j) as driver:
         gone = unload_bags(driver, path)

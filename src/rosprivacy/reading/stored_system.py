@@ -12,7 +12,7 @@ from rosprivacy.answering import answer
 from rosprivacy.assumptions import put_together
 from rosprivacy.ingest.database.fleet_rows import MOST_ACROSS
 from rosprivacy.ingest.database.read_back import Stored, read_stored
-from rosprivacy.ingest.database.robot_notices import diagnostics_of
+from rosprivacy.ingest.database.robot_facts import diagnostics_of
 from rosprivacy.ingest.database.write_back import write_back
 from rosprivacy.question import question_of
 from rosprivacy.robot_doubts import breaking, doubt_lines, doubts_by_robot
@@ -34,13 +34,7 @@ class StoredSystem(System):
 
 
 def stored_system(driver: Driver, vocabulary: Vocabulary) -> StoredSystem:
-    """Read everything that is in a database.
-
-    Raises
-    ------
-    InputErrors
-        With every element, flow and role that cannot be understood.
-    """
+    """Read everything that is in a database."""
     stored = read_stored(driver, vocabulary)
     said, rests_on = put_together(stored.robots.values())
     return StoredSystem(
@@ -56,15 +50,7 @@ def answer_unwritten(driver: Driver, settings: Settings) -> Result:
 
 
 def answer_stored(driver: Driver, settings: Settings) -> Result:
-    """Analyse what is in the database, and write the answer about all categories back.
-
-    Raises
-    ------
-    InputErrors
-        With every element, flow and role that cannot be understood.
-    DatabaseError
-        If the server refuses, or a robot was loaded meanwhile.
-    """
+    """Analyse what is in the database, and write the answer about all categories back."""
     question = question_of(settings)._replace(every=True, most_across=MOST_ACROSS)
     system = stored_system(driver, question.vocabulary)
     everything = question._replace(asked=None, decisions=None)

@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.model import DISCLOSURE, Method
+from rosprivacy.ingest.database.fleet_rows import robot_rows
 from rosprivacy.ingest.database.ids import carries, category_labels, element_id
-from rosprivacy.ingest.database.rows import robot_rows
 from tests.helpers.more_systems import ranked, wildcards
 from tests.helpers.random_rows import VOCABULARY
 from tests.helpers.systems import System, statement, systems

@@ -14,7 +14,6 @@ from rosprivacy.ingest.database import fleet_rows
 from rosprivacy.ingest.database.fleet_rows import FleetRows
 from rosprivacy.ingest.database.ids import carries, category_labels
 from rosprivacy.ingest.database.loading import load, unload
-from rosprivacy.private_neo4j import connection
 from rosprivacy.queries.library import find
 from rosprivacy.queries.run import run
 from rosprivacy.reading.stored_system import answer_stored
@@ -32,16 +31,8 @@ if TYPE_CHECKING:
     from neo4j import Driver
 
     from rosprivacy.ingest.database.rows import RobotRows
-    from rosprivacy.private_neo4j.connection import Connection
 
 FLEET = str((ROOT / "examples") / "fleet" / "fleet.yaml")
-
-
-@pytest.fixture
-def driver(neo4j_server: Connection) -> Iterator[Driver]:
-    with connection.open_driver(neo4j_server) as driver:
-        driver.execute_query("MATCH (n) DETACH DELETE n")
-        yield driver
 
 
 def test_each_robot_has_its_rows() -> None:
@@ -136,14 +127,6 @@ def _robots(row: Any) -> Iterator[str]:
 
 def _statement(row: dict[str, Any]) -> str:
     return json.dumps({key: value for key, value in row.items() if key not in LISTS}, sort_keys=True)
-
-
-@pytest.mark.slow
-@pytest.mark.database
-def test_the_same_load_again_writes_nothing(driver: Driver) -> None:
-    load(driver, rows(FLEET), VOCABULARY)
-    done = load(driver, rows(FLEET), VOCABULARY)
-    assert (done.written, done.unchanged) == (0, 42)
 
 
 @pytest.mark.slow

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import os
-import signal
 import subprocess
 import sys
 import threading
-import time
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -16,10 +13,10 @@ from rosprivacy.analysis.errors import DatabaseError, InputError, InputErrors
 from rosprivacy.analysis.findings.findings import analyse
 from rosprivacy.analysis.model import Bound, Category, Element, Flow, FlowGraph, Place, Statement
 from rosprivacy.ingest.database import loading
+from rosprivacy.ingest.database.fleet_rows import robot_rows
 from rosprivacy.ingest.database.loading import Loaded, check_robot_name, load, unload
 from rosprivacy.ingest.database.read_back import read_stored
-from rosprivacy.ingest.database.rows import RobotRows, robot_rows
-from rosprivacy.ingest.database.schema import NODES, RELATIONSHIPS, ROLES, NodeKind, RelationshipKind
+from rosprivacy.ingest.database.schema import NODES, RELATIONSHIPS
 from rosprivacy.ontology.vocabulary import Vocabulary
 from rosprivacy.ontology.vocabulary import load as load_vocabulary
 from rosprivacy.private_neo4j import connection, server
@@ -28,10 +25,9 @@ from tests.helpers.graphs import care_home, dump, factory, rows_of
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from neo4j import Driver
 
+    from rosprivacy.ingest.database.rows import RobotRows
     from rosprivacy.private_neo4j.connection import Connection
 
 VOCABULARY = load_vocabulary()
@@ -41,42 +37,12 @@ COUNTS = (
 )
 
 
-@pytest.fixture
-def driver(neo4j_server: Connection) -> Iterator[Driver]:
-    assert neo4j_server
-    with connection.open_driver(connection.connection(None)) as driver:  # with its password of now: tests restart it
-        driver.execute_query("MATCH (n) DETACH DELETE n")
-        yield driver
-
-
 def ask(driver: Driver, query: str, **values: Any) -> list[Any]:
     return [record[0] for record in driver.execute_query(query, **values).records]
 
 
 class TestSchema:
     """What is written is what is declared."""
-
-    @pytest.mark.parametrize("rows", [rows_of("a", care_home()), rows_of("b", factory(4))], ids=["care", "factory"])
-    def test_every_property_of_a_row_is_declared_with_its_type(self, rows: RobotRows) -> None:
-        nodes = {kind.label: kind for kind in NODES}
-        kinds = {kind.type: kind for kind in RELATIONSHIPS}
-        written: list[tuple[NodeKind | RelationshipKind, Any]] = [
-            *((nodes["Element"], row) for row in rows.elements),
-            *((nodes["Enclave"], row) for row in rows.enclaves),
-            *((nodes["Finding"], row) for row in rows.findings),
-            (nodes["Robot"], {"properties": rows.properties}),
-            *((kinds["IN_ENCLAVE"], row) for row in rows.memberships),
-            *((kinds["FLOWS_TO"], row) for row in rows.flows),
-            *((kinds["DERIVES_FROM"], row) for row in rows.derived),
-            *((kinds["ACROSS"], row) for row in rows.across),
-            *((ROLES[role], row) for role, said in rows.roles.items() for row in said),
-        ]
-        types = {"STRING": str, "INTEGER": int, "BOOLEAN": bool, "LIST<STRING>": list}
-        for kind, row in written:
-            declared = {p.name: types[p.type] for p in kind.properties}
-            for name, value in row["properties"].items():
-                assert value is None or type(value) is declared[name], (kind, name)
-                assert not isinstance(value, list) or all(isinstance(item, str) for item in value)
 
     @pytest.mark.database
     def test_nothing_else_is_in_the_graph(self, driver: Driver) -> None:
@@ -323,42 +289,6 @@ def all_whole(driver: Driver) -> int:
 @pytest.mark.slow
 @pytest.mark.database
 class TestFaults:
-    def test_the_client_is_killed_in_mid_load(self, driver: Driver) -> None:
-        load(driver, [rows_of("other", care_home()), rows_of("r001", factory(5))], VOCABULARY)
-        with loader(2, 60) as child:
-            assert child.stdout
-            for _ in range(5):
-                assert child.stdout.readline() == "+\n"
-            time.sleep(0.03)
-            os.kill(child.pid, signal.SIGKILL)
-        robots = all_whole(driver)
-        assert 5 < robots < 61
-        rows = [rows_of(f"r{i:03}", factory(2)) for i in range(60)]
-        done = load(driver, rows, VOCABULARY)
-        assert done.unchanged >= 5
-        assert all_whole(driver) == 61
-        assert load(driver, [*rows, rows_of("other", care_home())], VOCABULARY) == Loaded(0, 61)
-
-    def test_the_server_is_killed_in_mid_load(self, private_neo4j: Connection) -> None:
-        with connection.open_driver(private_neo4j) as driver:
-            driver.execute_query("MATCH (n) DETACH DELETE n")
-            load(driver, [rows_of("other", care_home())], VOCABULARY)
-        with loader(2, 60) as child:
-            assert child.stdout
-            for _ in range(5):
-                assert child.stdout.readline() == "+\n"
-            found = server.running(connection.state_folder())
-            assert found
-            os.kill(found.pid, signal.SIGKILL)
-            _, error = child.communicate(timeout=120)
-        assert child.returncode != 0
-        assert "DatabaseError: bolt://" in error
-        with connection.open_driver(connection.start()) as driver:
-            assert 5 < all_whole(driver) < 61
-            rows = [rows_of(f"r{i:03}", factory(2)) for i in range(60)]
-            load(driver, rows, VOCABULARY)
-            assert load(driver, [*rows, rows_of("other", care_home())], VOCABULARY) == Loaded(0, 61)
-
     def test_two_loads_at_once(self, driver: Driver) -> None:
         """Of the same robots, with different policies: each robot is one or the other, and whole."""
         with loader(2, 25) as one, loader(4, 25) as other:

@@ -11,21 +11,17 @@ import pytest
 
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.ingest.database.loading import load
-from rosprivacy.ingest.database.other_schemas import of_other_schemas
 from rosprivacy.ingest.database.read_back import read_stored
+from rosprivacy.ingest.database.robot_facts import of_other_schemas
 from rosprivacy.ingest.database.schema import SCHEMA
 from rosprivacy.ontology.vocabulary import load as load_vocabulary
-from rosprivacy.private_neo4j import connection
 from tests.helpers.command import Cli, refused
 from tests.helpers.graphs import care_home, rows_of
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from neo4j import Driver
 
-    from rosprivacy.private_neo4j.connection import Connection
 
 pytestmark = pytest.mark.slow  # each loads a database of its own
 
@@ -34,18 +30,16 @@ HOME = ROOT / "examples" / "care-home"
 LOAD = ("load", HOME / "care-home.policy.xml", "--labels", HOME / "care-home.labels.yaml", "--robot", "care")
 HINT = "load it again from its files, with rosprivacy load"
 BESIDE = ("robot", "properties", "foreign", "beyond")  # the rest are rows of its own; beyond only where it is asked for
-AS_EARLIER = "MATCH (r:Robot {name: 'care'}) REMOVE r.schema"  # b86d901 wrote none
+AS_EARLIER = "MATCH (r:Robot {name: 'care'}) REMOVE r.schema"  # the first versions wrote none
 EVERYTHING = "MATCH (n) OPTIONAL MATCH (n)-[r]->() RETURN count(DISTINCT n), count(r), sum(size(keys(n)))"
 
 
 @pytest.fixture
-def driver(neo4j_server: Connection) -> Iterator[Driver]:
+def driver(driver: Driver) -> Driver:
     """Of a database with two robots, of which the first is as an earlier version left it."""
-    with connection.open_driver(neo4j_server) as driver:
-        driver.execute_query("MATCH (n) DETACH DELETE n")
-        load(driver, [rows_of(name, care_home()) for name in ("care", "home")], VOCABULARY)
-        driver.execute_query(AS_EARLIER)
-        yield driver
+    load(driver, [rows_of(name, care_home()) for name in ("care", "home")], VOCABULARY)
+    driver.execute_query(AS_EARLIER)
+    return driver
 
 
 def rows(driver: Driver, query: str) -> list[list[Any]]:
@@ -90,7 +84,7 @@ class TestOfADatabase:
 
 
 def test_a_load_takes_no_robot_of_another_schema_as_unchanged() -> None:
-    """Else 'load it again' would change nothing: the digest that b86d901 stored was made without the schema."""
+    """Else 'load it again' would change nothing: the digest of the first versions was made without the schema."""
     rows = rows_of("care", care_home())
     known = {key: value for key, value in rows.properties.items() if key != "digest"}
     parts = {field.name: getattr(rows, field.name) for field in fields(rows) if field.name not in BESIDE}

@@ -14,16 +14,15 @@ from rosprivacy.analysis.errors import DatabaseError, InputErrors, LabelError
 from rosprivacy.analysis.findings.findings import analyse
 from rosprivacy.analysis.kernel.ranks import decided
 from rosprivacy.analysis.model import GLOB, NAME, Place, Statement
-from rosprivacy.ingest.database.flow_statements import HAND
+from rosprivacy.ingest.database.fleet_rows import robot_rows
 from rosprivacy.ingest.database.loading import load
 from rosprivacy.ingest.database.read_back import read_stored
-from rosprivacy.ingest.database.rows import robot_rows
+from rosprivacy.ingest.database.relationship_facts import HAND
 from rosprivacy.ingest.database.write_back import write_back
 from rosprivacy.ingest.labels.entries import EXACT
 from rosprivacy.ingest.running.node_info import read_node_info
 from rosprivacy.ingest.running.observed_files import policy_xml, prepared
 from rosprivacy.ontology.vocabulary import load as load_vocabulary
-from rosprivacy.private_neo4j import connection
 from rosprivacy.reading.robot_system import robot_of
 from rosprivacy.reading.stored_system import answer_stored
 from rosprivacy.settings import Settings
@@ -37,22 +36,14 @@ from tests.helpers.random_rows import VOCABULARY as SMALL
 from tests.helpers.random_rows import random_systems
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Sequence
     from pathlib import Path
 
     from neo4j import Driver
 
-    from rosprivacy.private_neo4j.connection import Connection
 
 pytestmark = pytest.mark.database
 VOCABULARY = load_vocabulary()
-
-
-@pytest.fixture
-def driver(neo4j_server: Connection) -> Iterator[Driver]:
-    with connection.open_driver(neo4j_server) as driver:
-        driver.execute_query("MATCH (n) DETACH DELETE n")
-        yield driver
 
 
 def ways(result: Any) -> set[tuple[str, ...]]:

@@ -9,7 +9,6 @@ import pytest
 
 import rosprivacy
 from rosprivacy.ingest.database.loading import load
-from rosprivacy.private_neo4j import connection
 from rosprivacy.queries.library import find
 from rosprivacy.reading.robot_system import robot_of
 from rosprivacy.reading.stored_system import answer_stored
@@ -20,7 +19,6 @@ from tests.helpers.fleet_rows import VOCABULARY, rows
 if TYPE_CHECKING:
     from neo4j import Driver
 
-    from rosprivacy.private_neo4j.connection import Connection
 
 SETTLED = """labels: 1
 nodes: {/camera: {source: [Video]}, /screen: conduit, /uplink: {leak: [Video]}}
@@ -97,7 +95,7 @@ def test_what_is_about_the_whole_fleet_is_a_doubt_of_each_robot(fleet_file: str)
 
 
 @pytest.mark.database
-def test_the_database_tells_them(fleet_file: str, neo4j_server: Connection) -> None:
+def test_the_database_tells_them(fleet_file: str, driver: Driver) -> None:
     def stored(driver: Driver) -> dict[str, tuple[Any, list[str]]]:
         found = driver.execute_query("MATCH (r:Robot) RETURN r.name, r.verdict, r.doubts").records
         return {name: (verdict, doubts) for name, verdict, doubts in found}
@@ -107,25 +105,20 @@ def test_the_database_tells_them(fleet_file: str, neo4j_server: Connection) -> N
         ["no-leak-found", ["plain"], [SHOUT], 1],
         ["undetermined", ["clock", "lost1", "lost2"], both, 4],
     ]
-    with connection.open_driver(neo4j_server) as driver:
-        driver.execute_query("MATCH (n) DETACH DELETE n")
-        load(driver, rows(fleet_file), VOCABULARY)
-        assert stored(driver) == EACH
-        asked = driver.execute_query(find("verdicts").text).records
-        columns = ("verdict", "some_robots", "doubts", "number_of_doubts")
-        assert [[record[column] for column in columns] for record in asked] == rows_told
-        answer_stored(driver, Settings())
-        assert stored(driver) == EACH
+    load(driver, rows(fleet_file), VOCABULARY)
+    assert stored(driver) == EACH
+    asked = driver.execute_query(find("verdicts").text).records
+    columns = ("verdict", "some_robots", "doubts", "number_of_doubts")
+    assert [[record[column] for column in columns] for record in asked] == rows_told
+    answer_stored(driver, Settings())
+    assert stored(driver) == EACH
 
 
 @pytest.mark.database
-def test_a_single_robot_has_all_doubts_of_its_answer(fleet_file: str, neo4j_server: Connection) -> None:
+def test_a_single_robot_has_all_doubts_of_its_answer(fleet_file: str, driver: Driver) -> None:
     del fleet_file
-    result = rosprivacy.analyze("lost", "some.yaml")
-    with connection.open_driver(neo4j_server) as driver:
-        driver.execute_query("MATCH (n) DETACH DELETE n")
-        load(driver, [robot_of("r", result)], VOCABULARY)
-        for _ in range(2):
-            (record,) = driver.execute_query("MATCH (r:Robot) RETURN r.verdict, r.doubts").records
-            assert list(record) == ["undetermined", [LOST[1][0], "rides no-reader: /shout ends at no known reader"]]
-            answer_stored(driver, Settings())
+    load(driver, [robot_of("r", rosprivacy.analyze("lost", "some.yaml"))], VOCABULARY)
+    for _ in range(2):
+        (record,) = driver.execute_query("MATCH (r:Robot) RETURN r.verdict, r.doubts").records
+        assert list(record) == ["undetermined", [LOST[1][0], "rides no-reader: /shout ends at no known reader"]]
+        answer_stored(driver, Settings())
