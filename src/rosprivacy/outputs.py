@@ -12,8 +12,8 @@ from html import escape
 from typing import TYPE_CHECKING, overload
 
 from rosprivacy.analysis.errors import InputError, shown
-from rosprivacy.analysis.whatif.why_not import why_not
 from rosprivacy.analysis.text import fit
+from rosprivacy.analysis.whatif.why_not import why_not
 from rosprivacy.analysis.written_names import A_LITTLE, FEW, did_you_mean, meant, nearest
 
 if TYPE_CHECKING:
@@ -23,9 +23,9 @@ if TYPE_CHECKING:
     import networkx as nx
 
     from rosprivacy.analysis.answer import Analysis, Finding
-    from rosprivacy.analysis.whatif.why_not import WhyNot
     from rosprivacy.analysis.fleet.patterns import FleetView
     from rosprivacy.analysis.model import Element
+    from rosprivacy.analysis.whatif.why_not import WhyNot
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 COLUMNS = ("id", "kind", "category", "source", "leak", "pseudonymised", "dismissed", "accepted")

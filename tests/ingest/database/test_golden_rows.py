@@ -17,6 +17,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Self
 
+from rosprivacy.recordings import answer_bags
+from rosprivacy.both_views import both_views, both_views_of_fleet
+
 from rosprivacy.answering import answer
 from rosprivacy.ingest.database.bag_rows import load_bags
 from rosprivacy.ingest.database.loading import load
@@ -24,9 +27,7 @@ from rosprivacy.ingest.database.schema import NODES, RELATIONSHIPS
 from rosprivacy.question import question_of
 from rosprivacy.reading.fleet_system import fleet_system, rows_of_fleet
 from rosprivacy.reading.robot_system import answer_robot, robot_of
-from rosprivacy.recordings.bags import answer_bags
 from rosprivacy.settings import Settings
-from rosprivacy.views.both_views import both_views, both_views_of_fleet
 from tests.golden.runs import FLEETS, ROBOTS, lay_out
 
 if TYPE_CHECKING:
