@@ -17,7 +17,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Self
 
-from rosprivacy.recordings import answer_bags
+from rosprivacy.bags import answer_bags
 from rosprivacy.both_views import both_views, both_views_of_fleet
 
 from rosprivacy.answering import answer
