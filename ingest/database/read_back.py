@@ -44,9 +44,8 @@ from rosprivacy.ingest.database.row_facts import (
 )
 from rosprivacy.ingest.database.schema import KIND_LABELS, ROLES
 from rosprivacy.ingest.database.type_properties import types_of
-from rosprivacy.ingest.labels.log_text import is_log, without_text
-from rosprivacy.ingest.labels.stated_types import in_order
-from rosprivacy.ingest.labels.surroundings import surroundings_of
+from rosprivacy.ingest.labels.entries import is_log, without_text
+from rosprivacy.ingest.labels.stated_facts import in_order, surroundings_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping

@@ -14,7 +14,7 @@ from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap
 
 from rosprivacy.analysis.text import blanked
-from rosprivacy.ingest.labels.non_ros_reader import LONGEST
+from rosprivacy.ingest.labels.entries import LONGEST_NAME as LONGEST
 from rosprivacy.ingest.observe.declared import TYPE
 from rosprivacy.ingest.observe.observed_names import is_name
 

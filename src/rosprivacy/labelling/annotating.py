@@ -16,8 +16,8 @@ from rosprivacy.ingest.annotations.attached import attach
 from rosprivacy.ingest.annotations.code_names import ROOT, is_ros_name
 from rosprivacy.ingest.annotations.left_out import lost_annotations
 from rosprivacy.ingest.annotations.source_files import read_sources
+from rosprivacy.ingest.labels.entries import SECTIONS
 from rosprivacy.ingest.labels.label_file import parse_labels, read_labels
-from rosprivacy.ingest.labels.label_reader import SECTIONS
 from rosprivacy.ingest.labels.label_writer import without_places
 from rosprivacy.ingest.reading.bounded_file import beginning
 
