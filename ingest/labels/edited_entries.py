@@ -173,9 +173,7 @@ def read_entry(said: Said, line: int, how: Written) -> LabelReader:
     if how.author:
         top.insert(1, ("author", line, Value(line, "text", how.author)))
     reader.document(Value(line, "map", entries=tuple(top)))
-    if reader.problems:
-        raise InputErrors(reader.problems)
-    return reader
+    return reader.whole(reader)
 
 
 def value_of(said: Any, line: int) -> Value:

@@ -24,6 +24,7 @@ from rosprivacy.ingest.labels.entries import OWN, PROPOSED, ROBOT, SHIPPED
 from rosprivacy.ingest.labels.label_reader import LabelReader, check_mundane
 from rosprivacy.ingest.policies.names import covered
 from rosprivacy.ingest.reading import yaml_values
+from rosprivacy.ingest.reading.format_reader import read_values
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -108,10 +109,7 @@ def read_labels(
     name = file.removeprefix(OURS)
     shipped = shipped or (file.startswith(OURS) and name in SHIPPED_FILES)
     path = _shipped_path(name) if file.startswith(OURS) and shipped else file
-    try:
-        top, data = yaml_values.read(path, partial(LabelError, file), bounds)
-    except InputError as error:
-        raise InputErrors([error]) from None
+    top, data = read_values(path, partial(LabelError, file), bounds)
     tier = OWN if not shipped else PROPOSED if file == INFRASTRUCTURE else SHIPPED
     reader = LabelReader(file, vocabulary, category, tier, ROBOT if own else 0, bounds=bounds, root=include_root or "")
     return _labels(reader, top, data, shipped=shipped, own=own)
@@ -149,21 +147,21 @@ def _labels(reader: LabelReader, top: Value, data: bytes, *, shipped: bool = Fal
     reader.document(top)
     if shipped:
         check_mundane(reader, top)
-    if reader.problems:
-        raise InputErrors(reader.problems)
-    return Labels(
-        reader.file,
-        hashlib.sha256(data).hexdigest(),
-        tuple(reader.entries),
-        tuple(reader.flows),
-        tuple(reader.diagnostics),
-        shipped,
-        tuple(reader.elements),
-        tuple(reader.limits),
-        own,
-        reader.surroundings,
-        reader.processing,
-        reader.pins,
+    return reader.whole(
+        Labels(
+            reader.file,
+            hashlib.sha256(data).hexdigest(),
+            tuple(reader.entries),
+            tuple(reader.flows),
+            tuple(reader.diagnostics),
+            shipped,
+            tuple(reader.elements),
+            tuple(reader.limits),
+            own,
+            reader.surroundings,
+            reader.processing,
+            reader.pins,
+        )
     )
 
 

@@ -53,7 +53,7 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "decisions": {"reading"},
         "bags": {"reading"},
         "labels": READING | {"bags"},
-        "annotations": READING | {"labels"},
+        "code": READING | {"labels"},
         "mitigation": READING,
         "language_model": {"reading"},
         "keystore": READING,

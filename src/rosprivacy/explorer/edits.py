@@ -26,8 +26,7 @@ SECTION = {
     "non_ros": "elements",
     **dict.fromkeys(NON_ROS, "elements"),
 }
-NODES = moves_data(NODE)
-ROLES = (*NODES, *moves_data(CHANNEL))  # what data does there
+ROLES = (*moves_data(NODE), *moves_data(CHANNEL))  # what data does there
 WHOLE = {"conduit": "conduit", "mundane": "never", "sensitive": "sensitive"}  # said of all kinds -> key of a map
 
 

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from rosprivacy.ingest.annotations.cpp_code import read_cpp
-from rosprivacy.ingest.annotations.python_code import read_python
+from rosprivacy.ingest.code.cpp_code import read_cpp
+from rosprivacy.ingest.code.python_code import read_python
 from rosprivacy.ingest.decisions.decisions_file import read_decisions
 from rosprivacy.ingest.doors.text_files import TextFiles
 from rosprivacy.ingest.fleet.fleet_file import read_fleet

@@ -1,7 +1,10 @@
 """C++ source -> what is read in it, by tree-sitter's grammar; no preprocessor, no recursion, nothing is built.
 
 tree-sitter reads on behind code that it does not understand. What looks like an annotation there, or in a macro, is a
-problem: whether it is a comment nobody can say.
+problem: whether it is a comment nobody can say. What is used are qualified names, types and functions, as far as the
+file itself says what a name stands for: ``using cv::VideoCapture``, ``namespace c = cv`` and ``using namespace cv`` are
+followed. Where several namespaces are used, a plain name may be of each: it is noted for each, and no rule speaks about
+the wrong ones.
 
 Source: the signatures of rclcpp, rclcpp_lifecycle, rclcpp_action and image_transport.
 """
@@ -12,10 +15,9 @@ from bisect import bisect_right
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import LabelError
-from rosprivacy.ingest.annotations.annotation_text import looks_like_one
-from rosprivacy.ingest.annotations.cpp_nodes import (
+from rosprivacy.ingest.code.annotation_text import looks_like_one
+from rosprivacy.ingest.code.cpp_tree import (
     CLASSES,
-    Where,
     arguments_of,
     brief,
     end_of,
@@ -23,14 +25,13 @@ from rosprivacy.ingest.annotations.cpp_nodes import (
     line_of,
     literal_of,
     names_of,
+    parts,
     path_of,
     text_of,
-    variable,
-    walk,
 )
-from rosprivacy.ingest.annotations.cpp_types import TypeNames
-from rosprivacy.ingest.annotations.cpp_uses import CppUses
-from rosprivacy.ingest.annotations.source_code import (
+from rosprivacy.ingest.code.source_code import (
+    INTERFACES,
+    LONGEST_USE,
     NODE,
     NODE_CLASSES,
     Code,
@@ -39,16 +40,25 @@ from rosprivacy.ingest.annotations.source_code import (
     NodeClass,
     OutOfTime,
     Site,
+    Use,
+    Where,
     class_owner,
     clock,
     in_time,
+    program,
+    variable,
+    walk,
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Sequence
 
     from tree_sitter import Node
 
+STEPS = 5  # of names that stand for names
+STARTERS = ("system", "std::system", "popen", "execl", "execlp")
+OPENERS = ("fopen", "std::fopen")
+WRITING = frozenset("wa+")
 CALLS = {  # name -> kind, role
     "create_publisher": ("topic", "publish"),
     "create_generic_publisher": ("topic", "publish"),
@@ -72,6 +82,108 @@ PIECE = 512  # bytes that the library is given at once
 SIGNS = "/*!< \t\r"  # of comments, at the beginning of a line
 NO_COMMENT = "an annotation stands in a macro or in code that cannot be read"
 ALONE = "put it on a line of its own above the call or class, or correct the code"
+
+
+class TypeNames:
+    """What ``using`` says in a file."""
+
+    def __init__(self) -> None:
+        self.meant: dict[str, str] = {}
+
+    def add(self, kind: str, names: list[str]) -> None:
+        """Note one ``using A::B;``, ``using B = A::C;`` or ``namespace b = a::c;``."""
+        if kind == "using_declaration" and len(names) == 1:
+            self.meant[names[0].rpartition("::")[2].strip()] = names[0]
+        elif kind != "using_declaration" and len(names) > 1:
+            self.meant[names[0]] = names[-1]
+
+    def meaning(self, name: str) -> str:
+        """Return what a name stands for, by what ``using`` says of its first part.
+
+        >>> types = TypeNames()
+        >>> types.add("namespace_alias_definition", ["b", "a::c"])
+        >>> types.meaning("b::D"), types.meaning("D")
+        ('a::c::D', 'D')
+        """
+        for _ in range(STEPS):
+            head, colons, rest = name.partition("::")
+            if head not in self.meant or self.meant[head] == name:
+                break
+            name = self.meant[head] + colons + rest
+        return name
+
+    def message(self, written: str) -> str:
+        """Return the type in ROS's spelling; empty where the file does not say.
+
+        >>> types = TypeNames()
+        >>> types.add("alias_declaration", ["Image", "sensor_msgs::msg::Image"])
+        >>> types.message("Image"), types.message("Other"), types.message("std_msgs::msg::String")
+        ('sensor_msgs/msg/Image', '', 'std_msgs/msg/String')
+        """
+        name = self.meaning(written.removeprefix("const ").strip())
+        parts = [part.strip() for part in name.replace("/", "::").split("::") if part.strip()]
+        known = len(parts) >= len(("package", "msg", "Name")) and parts[1] in INTERFACES
+        return "/".join(parts[:3]) if known and all(part.isidentifier() for part in parts[:3]) else ""
+
+
+class CppUses:
+    """Collects the uses of one file.
+
+    Parameters
+    ----------
+    types
+        What names stand for; complete when ``uses`` is asked.
+
+    Attributes
+    ----------
+    namespaces
+        Of ``using namespace``.
+    """
+
+    def __init__(self, types: TypeNames) -> None:
+        self.types = types
+        self.namespaces: list[str] = []
+        self._found: dict[tuple[str, str], int] = {}
+
+    def add(self, name: str, line: int, unit: str) -> None:
+        """Note a name."""
+        self._found.setdefault((unit, name), line)
+
+    def add_call(self, name: str, texts: Sequence[str | None], line: int, unit: str) -> None:
+        """Note a call of a function.
+
+        Parameters
+        ----------
+        texts
+            Its arguments, those that are literal texts.
+        """
+        self.add(name, line, unit)
+        if name in OPENERS and len(texts) > 1 and WRITING & set(texts[1] or ""):
+            self.add(f"{name}(w)", line, unit)
+        if name in STARTERS and texts and texts[0] and (started := program(texts[0].split())):
+            self.add(started, line, unit)
+
+    def uses(self) -> tuple[Use, ...]:
+        """Return what is used, each name once in a unit, by line.
+
+        >>> used = CppUses(TypeNames())
+        >>> used.namespaces.append("cv")
+        >>> used.add("VideoCapture", 3, "Camera")
+        >>> [use.name for use in used.uses()]
+        ['VideoCapture', 'cv::VideoCapture']
+        """
+        found: dict[tuple[str, str], int] = {}
+        for (unit, name), line in self._found.items():
+            for meant in self._meant(name):
+                found[unit, meant] = min(line, found.get((unit, meant), line))
+        made = (Use(name, line, unit) for (unit, name), line in found.items())
+        made = (use for use in made if len(use.name) <= LONGEST_USE)
+        return tuple(sorted(made, key=lambda use: (use.line, use.name)))
+
+    def _meant(self, name: str) -> list[str]:
+        known = self.types.meaning(name)
+        plain = known == name and "::" not in name and name.isidentifier()
+        return [known, *(f"{space}::{name}" for space in dict.fromkeys(self.namespaces) if plain)]
 
 
 def read_cpp(file: str, data: bytes) -> Code:
@@ -99,7 +211,7 @@ def read_cpp(file: str, data: bytes) -> Code:
         tree = parser.parse(lambda at, _: data[at : at + PIECE], progress_callback=lambda _at, _broken: late())
     except ValueError:
         raise OutOfTime from None
-    return _Reader(file, data).read(in_time(walk(tree.root_node), late))
+    return _Reader(file, data).read(in_time(walk(tree.root_node, parts), late))
 
 
 class _Reader:
