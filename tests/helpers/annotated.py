@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rosprivacy.ingest.code.annotations import attach
+from rosprivacy.ingest.code.annotated_elements import attach
 from rosprivacy.ingest.code.cpp_code import read_cpp
 from rosprivacy.ingest.code.python_code import read_python
 from rosprivacy.ontology.vocabulary import load

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import InputError, InputErrors, shown
 from rosprivacy.analysis.text import counted, printable
-from rosprivacy.ingest.code.annotations import HEAD, attach, conflicts, label_text, lost_annotations
+from rosprivacy.ingest.code.annotated_elements import HEAD, attach, conflicts, label_text, lost_annotations
 from rosprivacy.ingest.code.code_names import ROOT, is_ros_name
 from rosprivacy.ingest.code.source_files import read_sources
 from rosprivacy.ingest.labels.entries import SECTIONS
@@ -22,7 +22,7 @@ from rosprivacy.ingest.reading.bounded_file import beginning
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from rosprivacy.ingest.code.annotations import Labelled
+    from rosprivacy.ingest.code.annotated_elements import Labelled
     from rosprivacy.ingest.labels.entries import Entry
     from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.ontology.vocabulary import Vocabulary

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from rosprivacy import analyze
-from rosprivacy.ingest.code.annotations import attach, label_text
+from rosprivacy.ingest.code.annotated_elements import attach, label_text
 from rosprivacy.ingest.code.cpp_code import read_cpp
 from rosprivacy.ontology.vocabulary import load
 from tests.helpers.annotated import said_by

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rosprivacy.ingest.code.annotations import attach, conflicts, label_text
+from rosprivacy.ingest.code.annotated_elements import attach, conflicts, label_text
 from rosprivacy.ingest.code.cpp_code import read_cpp
 from rosprivacy.ingest.code.python_code import read_python
 from rosprivacy.ingest.labels.label_file import parse_labels
