@@ -51,7 +51,7 @@ from rosprivacy.ingest.code.source_code import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterable, Iterator
 
     from tree_sitter import Node
 
@@ -84,55 +84,8 @@ NO_COMMENT = "an annotation stands in a macro or in code that cannot be read"
 ALONE = "put it on a line of its own above the call or class, or correct the code"
 
 
-class TypeNames:
-    """What ``using`` says in a file."""
-
-    def __init__(self) -> None:
-        self.meant: dict[str, str] = {}
-
-    def add(self, kind: str, names: list[str]) -> None:
-        """Note one ``using A::B;``, ``using B = A::C;`` or ``namespace b = a::c;``."""
-        if kind == "using_declaration" and len(names) == 1:
-            self.meant[names[0].rpartition("::")[2].strip()] = names[0]
-        elif kind != "using_declaration" and len(names) > 1:
-            self.meant[names[0]] = names[-1]
-
-    def meaning(self, name: str) -> str:
-        """Return what a name stands for, by what ``using`` says of its first part.
-
-        >>> types = TypeNames()
-        >>> types.add("namespace_alias_definition", ["b", "a::c"])
-        >>> types.meaning("b::D"), types.meaning("D")
-        ('a::c::D', 'D')
-        """
-        for _ in range(STEPS):
-            head, colons, rest = name.partition("::")
-            if head not in self.meant or self.meant[head] == name:
-                break
-            name = self.meant[head] + colons + rest
-        return name
-
-    def message(self, written: str) -> str:
-        """Return the type in ROS's spelling; empty where the file does not say.
-
-        >>> types = TypeNames()
-        >>> types.add("alias_declaration", ["Image", "sensor_msgs::msg::Image"])
-        >>> types.message("Image"), types.message("Other"), types.message("std_msgs::msg::String")
-        ('sensor_msgs/msg/Image', '', 'std_msgs/msg/String')
-        """
-        name = self.meaning(written.removeprefix("const ").strip())
-        parts = [part.strip() for part in name.replace("/", "::").split("::") if part.strip()]
-        known = len(parts) >= len(("package", "msg", "Name")) and parts[1] in INTERFACES
-        return "/".join(parts[:3]) if known and all(part.isidentifier() for part in parts[:3]) else ""
-
-
-class CppUses:
-    """Collects the uses of one file.
-
-    Parameters
-    ----------
-    types
-        What names stand for; complete when ``uses`` is asked.
+class _Names:
+    """What the names of a file stand for, as far as it says so itself, and where each is used.
 
     Attributes
     ----------
@@ -140,59 +93,53 @@ class CppUses:
         Of ``using namespace``.
     """
 
-    def __init__(self, types: TypeNames) -> None:
-        self.types = types
+    def __init__(self) -> None:
         self.namespaces: list[str] = []
-        self._found: dict[tuple[str, str], int] = {}
+        self._meant: dict[str, str] = {}
+        self._used: dict[tuple[str, str], int] = {}
 
-    def add(self, name: str, line: int, unit: str) -> None:
-        """Note a name."""
-        self._found.setdefault((unit, name), line)
+    def using(self, kind: str, names: list[str]) -> None:
+        """Note one ``using A::B;``, ``using B = A::C;`` or ``namespace b = a::c;``."""
+        if kind == "using_declaration" and len(names) == 1:
+            self._meant[names[0].rpartition("::")[2].strip()] = names[0]
+        elif kind != "using_declaration" and len(names) > 1:
+            self._meant[names[0]] = names[-1]
 
-    def add_call(self, name: str, texts: Sequence[str | None], line: int, unit: str) -> None:
-        """Note a call of a function.
+    def meaning(self, name: str) -> str:
+        """What a name stands for, by what ``using`` says of its first part."""
+        for _ in range(STEPS):
+            head, colons, rest = name.partition("::")
+            if head not in self._meant or self._meant[head] == name:
+                break
+            name = self._meant[head] + colons + rest
+        return name
 
-        Parameters
-        ----------
-        texts
-            Its arguments, those that are literal texts.
-        """
-        self.add(name, line, unit)
-        if name in OPENERS and len(texts) > 1 and WRITING & set(texts[1] or ""):
-            self.add(f"{name}(w)", line, unit)
-        if name in STARTERS and texts and texts[0] and (started := program(texts[0].split())):
-            self.add(started, line, unit)
+    def message(self, written: str) -> str:
+        """The type in ROS's spelling, ``sensor_msgs/msg/Image``; empty where the file does not say."""
+        name = self.meaning(written.removeprefix("const ").strip())
+        names = [part.strip() for part in name.replace("/", "::").split("::") if part.strip()]
+        known = len(names) >= len(("package", "msg", "Name")) and names[1] in INTERFACES
+        return "/".join(names[:3]) if known and all(part.isidentifier() for part in names[:3]) else ""
+
+    def use(self, name: str, line: int, unit: str) -> None:
+        """Note the first use of a name in a unit."""
+        self._used.setdefault((unit, name), line)
 
     def uses(self) -> tuple[Use, ...]:
-        """Return what is used, each name once in a unit, by line.
-
-        >>> used = CppUses(TypeNames())
-        >>> used.namespaces.append("cv")
-        >>> used.add("VideoCapture", 3, "Camera")
-        >>> [use.name for use in used.uses()]
-        ['VideoCapture', 'cv::VideoCapture']
-        """
+        """What is used, each name once in a unit, by line."""
         found: dict[tuple[str, str], int] = {}
-        for (unit, name), line in self._found.items():
-            for meant in self._meant(name):
+        for (unit, name), line in self._used.items():
+            known = self.meaning(name)
+            plain = known == name and "::" not in name and name.isidentifier()
+            for meant in [known, *(f"{space}::{name}" for space in dict.fromkeys(self.namespaces) if plain)]:
                 found[unit, meant] = min(line, found.get((unit, meant), line))
-        made = (Use(name, line, unit) for (unit, name), line in found.items())
-        made = (use for use in made if len(use.name) <= LONGEST_USE)
-        return tuple(sorted(made, key=lambda use: (use.line, use.name)))
-
-    def _meant(self, name: str) -> list[str]:
-        known = self.types.meaning(name)
-        plain = known == name and "::" not in name and name.isidentifier()
-        return [known, *(f"{space}::{name}" for space in dict.fromkeys(self.namespaces) if plain)]
+        uses = (Use(name, line, unit) for (unit, name), line in found.items() if len(name) <= LONGEST_USE)
+        return tuple(sorted(uses, key=lambda use: (use.line, use.name)))
 
 
 def read_cpp(file: str, data: bytes) -> Code:
     """Read a file.
 
-    Parameters
-    ----------
-    file
-        For messages.
 
     Raises
     ------
@@ -220,8 +167,7 @@ class _Reader:
     def __init__(self, file: str, data: bytes) -> None:
         self.file = file
         self.data = data
-        self.types = TypeNames()
-        self.used = CppUses(self.types)
+        self.names = _Names()
         self.parts_of_names: set[int] = set()
         self.comments: list[Comment] = []
         self.classes: list[NodeClass] = []
@@ -238,9 +184,9 @@ class _Reader:
             elif kind in ("using_declaration", "alias_declaration", "namespace_alias_definition"):
                 names = [text_of(child) for child in node.named_children]
                 if any(child.type == "namespace" for child in node.children) and kind == "using_declaration":
-                    self.used.namespaces += names
+                    self.names.namespaces += names
                 else:
-                    self.types.add(kind, names)
+                    self.names.using(kind, names)
             elif kind in CLASSES and node.child_by_field_name("body"):
                 self._class(node, where)
             elif kind == "field_initializer":
@@ -252,11 +198,11 @@ class _Reader:
                 self._use_of_call(node, where)
             elif kind in NAMES:
                 self._use_of_name(node, where)
-        if len(set(self.used.namespaces)) > NAMESPACES:
+        if len(set(self.names.namespaces)) > NAMESPACES:
             raise LabelError(self.file, 0, f"using namespace, of more than {NAMESPACES} namespaces", FEWER)
-        sites = tuple(site._replace(type=self.types.message(site.type)) for site in self.sites)
+        sites = tuple(site._replace(type=self.names.message(site.type)) for site in self.sites)
         classes, lost = tuple(self.classes), tuple(self._lost())
-        return Code(self.file, "c++", tuple(self.comments), classes, sites, lost, self.used.uses())
+        return Code(self.file, "c++", tuple(self.comments), classes, sites, lost, self.names.uses())
 
     def _comment(self, node: Node) -> Iterator[Comment]:
         before = self.data[self.data.rfind(b"\n", 0, node.start_byte) + 1 : node.start_byte]
@@ -334,7 +280,7 @@ class _Reader:
     def _use_of_name(self, node: Node, where: Where) -> None:
         """A name as a whole; its parts are noted, since asking each for its parent takes time for each level."""
         if node.id not in self.parts_of_names:
-            self.used.add("::".join(names_of(node)), line_of(node), where.of_class)
+            self.names.use("::".join(names_of(node)), line_of(node), where.of_class)
         if node.type == "qualified_identifier":
             self.parts_of_names.update(child.id for child in node.named_children)
 
@@ -344,7 +290,12 @@ class _Reader:
         if function is None or arguments is None or function.type not in ("identifier", "qualified_identifier"):
             return
         texts = [literal_of(one) for one in arguments_of(arguments)]
-        self.used.add_call("::".join(names_of(function)), texts, line_of(node), where.of_class)
+        name, line, unit = "::".join(names_of(function)), line_of(node), where.of_class
+        self.names.use(name, line, unit)
+        if name in OPENERS and len(texts) > 1 and WRITING & set(texts[1] or ""):
+            self.names.use(f"{name}(w)", line, unit)
+        if name in STARTERS and texts and texts[0] and (started := program(texts[0].split())):
+            self.names.use(started, line, unit)
 
     def _endpoint(
         self, path: list[str], template: list[Node], receiver: str, given: list[Node], at: tuple[Lines, Lines],

@@ -73,10 +73,6 @@ ACTIONS = {
 def read_python(file: str, data: bytes) -> Code:
     """Read a file.
 
-    Parameters
-    ----------
-    file
-        For messages.
 
     Raises
     ------

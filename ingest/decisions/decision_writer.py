@@ -46,8 +46,6 @@ def with_decision(
 
     Parameters
     ----------
-    file
-        For messages.
     text
         Of the file as it is; None if there is none.
     entry

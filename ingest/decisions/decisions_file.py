@@ -213,14 +213,7 @@ class _Reader(FileReader):
             if one in said and several in said:
                 self.problem(said[several].line, f"{one} and {several}", "keep one of the two")
         if texts.get("category"):
-            texts["category"] = self._category(texts["category"], said["category"].line)
-
-    def _category(self, written: str, line: int) -> str:
-        category = self.vocabulary.find(written)
-        if category is None:
-            self.problem(line, f"unknown category {shown(written)!r}", self.vocabulary.hint(written))
-            return ""
-        return category.name
+            texts["category"] = self.category_of_name(self.vocabulary, texts["category"], said["category"].line)
 
     def _text(self, value: Value, key: str) -> str:
         if value.kind == "number" and key in ("id", "ticket"):  # 1234567812345678 is an id too

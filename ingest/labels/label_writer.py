@@ -54,10 +54,6 @@ class NewLine:
 def with_lines(file: str, text: str, lines: Sequence[NewLine], vocabulary: Vocabulary) -> str:
     """Return the text of a label file with lines added at the end of their sections.
 
-    Parameters
-    ----------
-    file
-        For messages.
 
     Raises
     ------
@@ -174,8 +170,6 @@ def with_entries(file: str, text: str, said: Sequence[Said]) -> NewText:
 
     Parameters
     ----------
-    file
-        For messages.
     said
         Of one name and section at most one; that of ``PINS`` is the whole section.
 

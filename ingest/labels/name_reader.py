@@ -75,14 +75,11 @@ class NameReader(FileReader):
 
     def kind_of_data(self, written: str, line: int) -> str:
         """Return the category's name; rule S11: one that is not there is an error with the nearest."""
-        category = self.vocabulary.find(written)
-        if category is None:
-            self.problem(line, f"unknown category {shown(written)!r}", self.vocabulary.hint(written))
-            return ""
-        if new := self.vocabulary.respelt_as(written):
+        name = self.category_of_name(self.vocabulary, written, line)
+        if name and (new := self.vocabulary.respelt_as(written)):
             message = f"{shown(written)} is a former spelling; DPV spells it {new}"
             self.diagnostics.append(Diagnostic(Place(self.file, line), Severity.NOTICE, message))
-        return category.name
+        return name
 
     def end(self, value: Value) -> End:
         """Return an end of a flow: a name or glob of ROS, with its kind where that is said, or a name outside ROS."""

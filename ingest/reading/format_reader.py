@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
     from rosprivacy.ingest.reading.yaml_values import Value
+    from rosprivacy.ontology.vocabulary import Vocabulary
 
     Read = TypeVar("Read")
 
@@ -103,6 +104,14 @@ class FileReader:
     def values_of(self, value: Value, known: tuple[str, ...]) -> dict[str, Value]:
         """Return the values of a map by key; see ``entries_of``."""
         return {key: child for key, _, child in self.entries_of(value, known)}
+
+    def category_of_name(self, vocabulary: Vocabulary, written: str, line: int) -> str:
+        """Return the kind of data of a name; empty, and a problem with the nearest names, if there is none (S11)."""
+        category = vocabulary.find(written)
+        if category is None:
+            self.problem(line, f"unknown category {shown(written)!r}", vocabulary.hint(written))
+            return ""
+        return category.name
 
     def list_of(self, value: Value, what: str, hint: str = "write […]") -> tuple[Value, ...]:
         """Return the items of a list; nothing is an empty one."""
