@@ -1,4 +1,4 @@
-"""What the code of nodes uses: names as imports resolve them, and whose they are (issue 21)."""
+"""What the code of nodes uses: names as imports resolve them, and whose they are."""
 
 from __future__ import annotations
 
