@@ -32,23 +32,23 @@ LONGEST_GROUP = 100  # characters of a group of persons, or of the name of an au
 TRUE, FALSE = ("true", "yes", "on"), ("false", "no", "off")
 
 
-def read_each_kind(reader: NameReader, value: Value, said: Statement) -> Iterator[Statement]:
+def read_each_kind(reader: NameReader, value: Value, blank: Statement) -> Iterator[Statement]:
     """Say it of each kind of data by itself: ``leak`` and ``conduit``."""
-    for name in reader.categories_of(value, said.role):
-        yield said._replace(categories=(name,))
+    for name in reader.categories_of(value, blank.role):
+        yield blank._replace(categories=(name,))
 
 
-def read_all_kinds(reader: NameReader, value: Value, said: Statement) -> Iterator[Statement]:
+def read_all_kinds(reader: NameReader, value: Value, blank: Statement) -> Iterator[Statement]:
     """Say it of all of these kinds at once: ``sensitive``, ``only`` and ``never``."""
-    names = tuple(reader.categories_of(value, said.role))
+    names = tuple(reader.categories_of(value, blank.role))
     if names:
-        yield said._replace(categories=names)
+        yield blank._replace(categories=names)
 
 
-def read_source(reader: NameReader, value: Value, said: Statement) -> Iterator[Statement]:
+def read_source(reader: NameReader, value: Value, blank: Statement) -> Iterator[Statement]:
     """Read kinds of data, or a map from them to the channels that they go out through."""
     if value.kind != "map":
-        yield from read_each_kind(reader, value, said)
+        yield from read_each_kind(reader, value, blank)
         return
     reader.not_empty(value, "source")
     for kind, line, channels in value.entries:
@@ -56,12 +56,12 @@ def read_source(reader: NameReader, value: Value, said: Statement) -> Iterator[S
         through = {reader.absolute_name(item) for item in reader.list_of(channels, f"source of {shown(kind)}")}
         if not through:
             reader.problem(line, f"source of {shown(kind)} names no channel", "name them: [/topic]")
-        yield said._replace(categories=(name,), through=tuple(sorted(through)))
+        yield blank._replace(categories=(name,), through=tuple(sorted(through)))
 
 
-def read_sanitizer(reader: NameReader, value: Value, said: Statement) -> Iterator[Statement]:
+def read_sanitizer(reader: NameReader, value: Value, blank: Statement) -> Iterator[Statement]:
     """Read kinds of data, or a map from them to methods (rule S8)."""
-    unstated = said._replace(method=Method.PSEUDONYMISE, stated=False)
+    unstated = blank._replace(method=Method.PSEUDONYMISE, stated=False)
     if value.kind != "map":
         yield from read_each_kind(reader, value, unstated)
         return
@@ -71,13 +71,13 @@ def read_sanitizer(reader: NameReader, value: Value, said: Statement) -> Iterato
         if method.kind == "empty":
             yield unstated._replace(categories=(name,))
         elif method.kind == "text" and method.text in CLEANS:
-            yield said._replace(categories=(name,), method=Method(method.text))
+            yield blank._replace(categories=(name,), method=Method(method.text))
         else:
             what = f"sanitizer method {shown(method.text or method.kind)!r}"
             reader.problem(method.line, what, f"one of {', '.join(CLEANS)}")
 
 
-def read_derives(reader: NameReader, value: Value, said: Statement) -> Iterator[Statement]:
+def read_derives(reader: NameReader, value: Value, blank: Statement) -> Iterator[Statement]:
     """Read a list of derivations, each of one kind from another."""
     hint = "write {from: Video, to: FaceTemplate}"
     if value.kind == "empty":
@@ -90,16 +90,16 @@ def read_derives(reader: NameReader, value: Value, said: Statement) -> Iterator[
         if len(ends) < len(("from", "to")):
             reader.problem(item.line, "a derivation needs from and to", hint)
         elif all(ends.values()):
-            yield said._replace(role="derivation", categories=(ends["from"],), to=ends["to"])
+            yield blank._replace(role="derivation", categories=(ends["from"],), to=ends["to"])
 
 
-def read_absent(reader: NameReader, value: Value, said: Statement) -> Iterator[Statement]:
+def read_absent(reader: NameReader, value: Value, blank: Statement) -> Iterator[Statement]:
     """Read why a node that has a profile is not on the robot: nothing gets there, and nothing comes from it."""
     if value.kind != "text" or not value.text.strip():
         hint = "write why it is not there: {absent: a test tool}"
-        reader.problem(said.place.line, "absent without a reason", hint)
+        reader.problem(blank.place.line, "absent without a reason", hint)
     else:
-        yield said._replace(role="sanitizer", method=Method.ABSENT, why=value.text.strip())
+        yield blank._replace(role="sanitizer", method=Method.ABSENT, why=value.text.strip())
 
 
 def read_subjects(reader: NameReader, item: Item) -> Mapping[str, Any]:
@@ -149,13 +149,13 @@ def read_retention(reader: NameReader, item: Item) -> Mapping[str, Any]:
     pairs = value.entries if value.kind == "map" else ((EVERY, line, value),)
     if not pairs:
         reader.problem(line, "retention names no category", "write {Video: P30D}, or P30D for every one")
-    found = []
+    limits = []
     for kind, at, duration in pairs:
         category = reader.kind_of_data(kind, at) if kind else EVERY
         limit = read_duration(reader, at, duration)
         if limit and (category or not kind):
-            found.append((category, limit))
-    return {"retention": ordered(found)}
+            limits.append((category, limit))
+    return {"retention": ordered(limits)}
 
 
 def read_backups(reader: NameReader, item: Item) -> Mapping[str, Any]:

@@ -173,7 +173,7 @@ class LabelReader(NameReader):
         statements = self._statements(label, where, place, rank, naming(name))
         if self.tier == SHIPPED and is_log(name):
             kinds = without_text(self.vocabulary)
-            statements = tuple(said._replace(categories=kinds) for said in statements if kinds)
+            statements = tuple(statement._replace(categories=kinds) for statement in statements if kinds)
         facts = self._facts(label, where)
         check_types(self, facts.get("types", ()), SECTIONS[section])
         processing = processing_at(place, label.entries, facts) if where == NODE else UNSTATED
@@ -226,21 +226,21 @@ class LabelReader(NameReader):
         return facts
 
     def _statements(
-        self, label: Value, where: str, place: Place, rank: tuple[int, int], how: str = NAME
+        self, label: Value, where: str, place: Place, rank: tuple[int, int], named_by: str = NAME
     ) -> tuple[Statement, ...]:
         """What an entry says that data does, with how it names, its reason, and its author, or the file's."""
         note = label.get("note")
         why = note.text.strip() if note and note.kind == "text" else ""
         author = self._author(label) or self.author
-        said = tuple(self._read(label, where, place, rank))
+        statements = tuple(self._read(label, where, place, rank))
         named: set[str] = set()
-        for one in said:
-            if one.role in ("only", "never"):
-                for name in sorted(named.intersection(one.categories)):
+        for statement in statements:
+            if statement.role in ("only", "never"):
+                for name in sorted(named.intersection(statement.categories)):
                     what = f"{name} is under only and under never"
-                    self.problem(one.place.line, what, "name it under one of them")
-                named.update(one.categories)
-        return tuple(one._replace(naming=how, why=one.why or why, author=author) for one in said)
+                    self.problem(statement.place.line, what, "name it under one of them")
+                named.update(statement.categories)
+        return tuple(s._replace(naming=named_by, why=s.why or why, author=author) for s in statements)
 
     def _author(self, label: Value) -> str:
         value = label.get("author")
@@ -271,11 +271,11 @@ class LabelReader(NameReader):
                 value = value._replace(entries=tuple(item for item in value.entries if item[0] != NONE))  # noqa: PLW2901
                 if not value.entries:
                     continue
-            said = tuple(keyword.says(self, value, blank))
+            statements = tuple(keyword.says(self, value, blank))
             others = [other for other, *_ in label.entries if other not in (key, "note", "author")]
-            if keyword.alone and said and others:
+            if keyword.alone and statements and others:
                 self.problem(line, f"{key} beside {others[0]}", "a node that is not there does nothing: keep one")
-            yield from said
+            yield from statements
 
     def _none(self, value: Value, blank: Statement) -> Iterator[Statement]:
         """What takes a source or a leak back: of all kinds, or of some."""
@@ -294,8 +294,8 @@ class LabelReader(NameReader):
         ends = {key: self.end(value) for key, _, value in item.entries if key in ENDS}
         names = [end.name for end in ends.values()]
         rank = self.tier, sum(map(specificity, names)) + self.above
-        how = GLOB if any(naming(name) != NAME for name in names) else NAME
-        statements = self._statements(item, FLOW, place, rank, how)
+        named_by = GLOB if any(naming(name) != NAME for name in names) else NAME
+        statements = self._statements(item, FLOW, place, rank, named_by)
         if len(ends) < len(ENDS):
             self.problem(item.line, "a flow needs from and to", "write {from: /a, to: /b, never: [Video]}")
             return
@@ -343,5 +343,7 @@ def check_mundane(reader: LabelReader, top: Value) -> None:
             if statement.role != "mundane":
                 what = f"{shown(entry.name)!r} is {statement.role} in a file of standard channels"
                 reader.problem(statement.place.line, what, hint)
-        for one in entry.types[:1]:
-            reader.problem(one.place.line, f"types of {shown(entry.name)!r} in a file of standard channels", hint)
+        for message_type in entry.types[:1]:
+            reader.problem(
+                message_type.place.line, f"types of {shown(entry.name)!r} in a file of standard channels", hint
+            )

@@ -118,7 +118,7 @@ def non_ros_sections() -> dict[str, Any]:
 
 def _keywords(where: str) -> dict[str, Mapping[str, Any]]:
     """The schemas of what stands behind the keywords of a map."""
-    of_map = {name: one.schema for name, one in keywords_of(where).items() if one.schema is not None}
+    of_map = {name: word.schema for name, word in keywords_of(where).items() if word.schema is not None}
     return {name: of_map[name] for name in dict.fromkeys([*PUBLISHED, *of_map]) if name in of_map}
 
 
