@@ -19,12 +19,13 @@ import typer
 
 import rosprivacy
 from rosprivacy.analysis.bounds import BOUNDS, WHAT
-from rosprivacy.analysis.model import RANKS
+from rosprivacy.analysis.model import NON_ROS, RANKS
 from rosprivacy.cli.app import program
 from rosprivacy.cli.exit_code import CODES
 from rosprivacy.cli.inputs import WRITTEN
 from rosprivacy.cli.options import ASKED, READ
 from rosprivacy.ingest.database.schema import NODES, RELATIONSHIPS, Property
+from rosprivacy.ingest.labels.keywords import CHANNEL, KEYWORDS, NODE, rows
 from rosprivacy.ingest.labels.label_file import read_labels
 from rosprivacy.ingest.lint import RULES
 from rosprivacy.ontology.vocabulary import TOP, load
@@ -47,6 +48,7 @@ if TYPE_CHECKING:
 ARCHITECTURE = ROOT / "docs" / "architecture.md"
 COMMAND_LINE = ROOT / "docs" / "command-line.md"
 DATABASE = ROOT / "docs" / "database.md"
+LABELS = ROOT / "docs" / "labels.md"
 LINT = ROOT / "docs" / "lint.md"
 DECISIONS = ROOT / "docs" / "decisions.md"
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md"]
@@ -191,6 +193,21 @@ def decisions_page(text: str) -> str:
     ]
     head = ["| doubt | rank | what it is | what to do |", "| --- | --- | --- | --- |"]
     return with_parts(text, doubts="\n".join([*head, *rows, ""]))
+
+
+def labels_page(text: str) -> str:
+    """The page with the tables of keywords: of nodes, of channels, and the facts of elements outside ROS."""
+    head = ["| label | meaning |", "| --- | --- |"]
+    nodes, channels = (
+        "\n".join([*head, *(f"| {written} | {meaning} |" for one in KEYWORDS if where in one.where
+                           for written, meaning in rows(one.docs)), ""])
+        for where in (NODE, CHANNEL)
+    )  # fmt: skip
+    facts = ["| fact | of | meaning |", "| --- | --- | --- |"]
+    for one in (one for one in KEYWORDS if set(one.where) <= set(NON_ROS)):
+        of = "all" if one.where == NON_ROS else ", ".join(one.where).replace("-", " ")
+        facts += [f"| {written} | {of} | {meaning} |" for written, meaning in rows(one.docs)]
+    return with_parts(text, nodes=nodes, channels=channels, facts="\n".join([*facts, ""]))
 
 
 def house() -> str:
@@ -348,6 +365,11 @@ def test_the_readme_has_the_table_of_exit_codes() -> None:
     assert EXIT_CODES in (ROOT / "README.md").read_text("utf-8")
 
 
+def test_the_page_of_labels_has_every_keyword() -> None:
+    assert labels_page(LABELS.read_text("utf-8")) == LABELS.read_text("utf-8")
+    assert all(f"`{one.name}" in LABELS.read_text("utf-8") for one in KEYWORDS)
+
+
 def test_the_page_of_lint_has_every_rule() -> None:
     assert lint_page(LINT.read_text("utf-8")) == LINT.read_text("utf-8")
 
@@ -363,6 +385,7 @@ if __name__ == "__main__":
     CATEGORIES.write_text(categories_page(CATEGORIES.read_text("utf-8")), "utf-8")
     COMMAND_LINE.write_text(command_line(), "utf-8")
     DECISIONS.write_text(decisions_page(DECISIONS.read_text("utf-8")), "utf-8")
+    LABELS.write_text(labels_page(LABELS.read_text("utf-8")), "utf-8")
     LINT.write_text(lint_page(LINT.read_text("utf-8")), "utf-8")
     SECURITY.write_text(security_page(SECURITY.read_text("utf-8")), "utf-8")
     DATABASE.write_text(database_page(DATABASE.read_text("utf-8")), "utf-8")

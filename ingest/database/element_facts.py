@@ -27,7 +27,7 @@ from rosprivacy.analysis.model.recording import Recording
 from rosprivacy.analysis.non_ros import EVERY, RECIPIENTS, TRANSFERS
 from rosprivacy.ingest.database.schema import DATABASE
 from rosprivacy.ingest.labels.countries import countries
-from rosprivacy.ingest.labels.surroundings import surroundings_of
+from rosprivacy.ingest.labels.stated_facts import surroundings_of
 from rosprivacy.ingest.reading.legal_basis import HINT, legal_basis
 
 if TYPE_CHECKING:

@@ -31,7 +31,7 @@ from rosprivacy.ingest.database.relationship_facts import (
 )
 from rosprivacy.ingest.database.robot_facts import HINT, of_other_schemas, unreadable
 from rosprivacy.ingest.database.schema import DATABASE, KIND_LABELS, ROLES
-from rosprivacy.ingest.labels.stated_types import in_order
+from rosprivacy.ingest.labels.stated_facts import in_order
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

@@ -30,8 +30,7 @@ from rosprivacy.analysis.model import (
 )
 from rosprivacy.analysis.non_ros import BY_KIND
 from rosprivacy.ingest.database.schema import DATABASE
-from rosprivacy.ingest.labels.entries import EXACT, as_ranked_now
-from rosprivacy.ingest.labels.log_text import is_log, without_text
+from rosprivacy.ingest.labels.entries import EXACT, as_ranked_now, is_log, without_text
 from rosprivacy.ingest.policies.names import covered
 
 if TYPE_CHECKING:

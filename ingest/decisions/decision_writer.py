@@ -9,6 +9,7 @@ from __future__ import annotations
 from contextlib import suppress
 from copy import deepcopy
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
@@ -45,8 +46,6 @@ def with_decision(
 
     Parameters
     ----------
-    file
-        For messages.
     text
         Of the file as it is; None if there is none.
     entry
@@ -88,10 +87,7 @@ def text_in(file: Path) -> str | None:
     """
     if not file.exists() and not file.is_symlink():
         return None
-
-    def fail(line: int, problem: str, hint: str) -> InputError:
-        return DecisionError(str(file), line, problem, hint)
-
+    fail = partial(DecisionError, str(file))
     try:
         return read_regular(str(file), MAX_BYTES, fail).decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -121,7 +117,7 @@ def _written(text: str, entry: Mapping[str, Any], remark: str, section: str) -> 
 
     def change(top: Any) -> None:
         entries = _entries(top, section)
-        place = next((i for i, there in enumerate(entries) if _same_target(there, entry)), len(entries))
+        place = next((i for i, there in enumerate(entries) if _target(there) == _target(entry)), len(entries))
         places.append(place)
         if place == len(entries):
             entries.append(CommentedMap(entry))
@@ -165,10 +161,6 @@ def _entries(top: Any, section: str) -> Any:
             fresh.ca.comment = entries.ca.comment if entries is not None else None
         top[section] = fresh
     return top[section]
-
-
-def _same_target(there: Mapping[str, Any], entry: Mapping[str, Any]) -> bool:
-    return _target(there) == _target(entry)
 
 
 def _target(entry: Mapping[str, Any]) -> dict[str, object]:

@@ -10,16 +10,17 @@ import hashlib
 import re
 from dataclasses import dataclass, field
 from datetime import date
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.decisions import Choice, Decision, Decisions
-from rosprivacy.analysis.errors import DecisionError, InputError, InputErrors, shown
+from rosprivacy.analysis.errors import DecisionError, InputError, shown
 from rosprivacy.analysis.model import Acceptance, Place
 from rosprivacy.analysis.remembered import About
 from rosprivacy.analysis.written_names import did_you_mean, nearest
 from rosprivacy.ingest.reading import yaml_values
-from rosprivacy.ingest.reading.format_reader import FileReader
+from rosprivacy.ingest.reading.format_reader import FileReader, read_values
 from rosprivacy.ingest.reading.legal_basis import read_bases
 
 if TYPE_CHECKING:
@@ -61,28 +62,21 @@ def read_decisions(file: str, vocabulary: Vocabulary, day: str, bounds: Bounds =
     def fail(line: int, problem: str, hint: str) -> InputError:
         return DecisionError(file, line, problem, hint.replace("labels: 1", "decisions: 1"))
 
-    try:
-        top, data = yaml_values.read(file, fail, bounds)
-    except InputError as error:
-        raise InputErrors([error]) from None
+    top, data = read_values(file, fail, bounds)
     return _decisions(file, top, data, vocabulary, day)
 
 
 def parse_decisions(file: str, text: str, vocabulary: Vocabulary, day: str) -> Decisions:
     """Read the text of a decisions file; see ``read_decisions``."""
-
-    def fail(line: int, problem: str, hint: str) -> InputError:
-        return DecisionError(file, line, problem, hint)
-
-    return _decisions(file, yaml_values.parse(text, fail), text.encode(), vocabulary, day)
+    top = yaml_values.parse(text, partial(DecisionError, file))
+    return _decisions(file, top, text.encode(), vocabulary, day)
 
 
 def _decisions(file: str, top: Value, data: bytes, vocabulary: Vocabulary, day: str) -> Decisions:
     reader = _Reader(file, vocabulary)
     entries, doubts = tuple(reader.document(top)), tuple(reader.doubts(top))
-    if reader.problems:
-        raise InputErrors(reader.problems)
-    return Decisions(file, hashlib.sha256(data).hexdigest(), day, entries, vocabulary.hierarchy, doubts=doubts)
+    digest = hashlib.sha256(data).hexdigest()
+    return reader.whole(Decisions(file, digest, day, entries, vocabulary.hierarchy, doubts=doubts))
 
 
 def is_id(written: str) -> bool:
@@ -107,11 +101,9 @@ class _Reader(FileReader):
     ids: dict[tuple[object, ...], int] = field(default_factory=dict)
 
     def document(self, top: Value) -> Iterator[Decision]:
-        if top.kind != "map":
-            self.problem(top.line, f"a decisions file is a map, not a {top.kind}", "begin with 'decisions: 1'")
+        if not self.is_format(top, "decisions", "a decisions file"):
             return
-        self.version(top, "decisions", "decisions")
-        findings = {key: value for key, _, value in self.entries_of(top, TOP)}.get("findings")
+        findings = self.values_of(top, TOP).get("findings")
         for item in self.list_of(findings, "findings", "write '- id: …' lines") if findings else ():
             if item.kind != "map":
                 self.problem(item.line, f"a decision is a map, not a {item.kind}", "write id: … and decision: …")
@@ -128,7 +120,7 @@ class _Reader(FileReader):
                 yield self._acceptance(item)
 
     def _acceptance(self, item: Value) -> Acceptance:
-        stated = {key: value for key, _, value in self.entries_of(item, DOUBT_KEYS)}
+        stated = self.values_of(item, DOUBT_KEYS)
         texts = {key: self._text(stated[key], key) for key in (*OF_DOUBTS, *TEXTS) if key in stated}
         choice = stated.get("decision")
         if choice is None or choice.text != Choice.ACCEPT:
@@ -147,7 +139,7 @@ class _Reader(FileReader):
 
     def _decision(self, item: Value) -> Decision:
         before = len(self.problems)
-        said = {key: value for key, _, value in self.entries_of(item, KEYS)}
+        said = self.values_of(item, KEYS)
         texts: dict[str, Any] = {key: self._text(said[key], key) for key in (*NAMES, *TEXTS) if key in said}
         texts |= {key: tuple(self._names(said[key], key)) for key in LISTS if key in said}
         choice = self._choice(item, said.get("decision"))
@@ -176,7 +168,7 @@ class _Reader(FileReader):
         elif value.kind != "map":
             self.problem(value.line, f"made_about is a map, not a {value.kind}", "remove it, or decide anew")
         else:
-            known = {key: inner for key, _, inner in self.entries_of(value, REMEMBERED)}
+            known = self.values_of(value, REMEMBERED)
             lists = {key: tuple(self._names(known[key], key)) for key in ("path", "robots") if key in known}
             view = self._text(known["view"], "view") if "view" in known else ""
             count = self._count(known["disjoint_paths"]) if "disjoint_paths" in known else 0
@@ -221,14 +213,7 @@ class _Reader(FileReader):
             if one in said and several in said:
                 self.problem(said[several].line, f"{one} and {several}", "keep one of the two")
         if texts.get("category"):
-            texts["category"] = self._category(texts["category"], said["category"].line)
-
-    def _category(self, written: str, line: int) -> str:
-        category = self.vocabulary.find(written)
-        if category is None:
-            self.problem(line, f"unknown category {shown(written)!r}", self.vocabulary.hint(written))
-            return ""
-        return category.name
+            texts["category"] = self.category_of_name(self.vocabulary, texts["category"], said["category"].line)
 
     def _text(self, value: Value, key: str) -> str:
         if value.kind == "number" and key in ("id", "ticket"):  # 1234567812345678 is an id too

@@ -19,12 +19,22 @@ from rosprivacy.analysis.errors import FleetError, InputError, InputErrors, show
 from rosprivacy.analysis.model import NO_ROBOT, UNSTATED, Diagnostic, Severity, Surroundings
 from rosprivacy.analysis.text import counted
 from rosprivacy.analysis.written_names import listed
-from rosprivacy.ingest.fleet.fleet_reader import GROUP_KEYS, ID, ID_HINT, ROBOT_KEYS, SECTIONS, SPEC, FleetReader, Spec
+from rosprivacy.ingest.fleet.fleet_reader import (
+    GROUP_KEYS,
+    ID,
+    ID_HINT,
+    ROBOT_KEYS,
+    SECTIONS,
+    SPEC,
+    Spec,
+    file_of,
+    read_spec,
+    text_of,
+)
 from rosprivacy.ingest.labels.entries import OWN
 from rosprivacy.ingest.labels.label_file import OURS
-from rosprivacy.ingest.labels.label_reader import SURROUNDINGS
-from rosprivacy.ingest.labels.stated_processing import OF_SYSTEM, two_of_one, united
-from rosprivacy.ingest.labels.surroundings import joined
+from rosprivacy.ingest.labels.label_reader import LabelReader
+from rosprivacy.ingest.labels.stated_facts import OF_SYSTEM, SURROUNDINGS, joined, two_of_one, united
 from rosprivacy.ingest.reading import yaml_values
 from rosprivacy.ingest.reading.confined import WIDEN, leaves, what_leaves
 
@@ -33,8 +43,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.bounds import Bounds
     from rosprivacy.analysis.model import Place, Processing
-    from rosprivacy.ingest.labels.entries import Entry, FlowEntry
-    from rosprivacy.ingest.labels.non_ros_reader import Limit, Stated
+    from rosprivacy.ingest.labels.entries import Entry, FlowEntry, Limit, Stated
     from rosprivacy.ingest.reading.yaml_values import Value
     from rosprivacy.ontology.vocabulary import Vocabulary
 
@@ -167,8 +176,8 @@ class _Fleet:
         self._robots: dict[str, Robot] = {}
         self._infrastructure: dict[str, Robot] = {}
         self._drafts: list[tuple[str, Spec, bool]] = []  # id, what is said, whether it is infrastructure
-        self._groups: list[tuple[FleetReader, Spec, Value]] = []
-        self._parts: list[FleetReader] = []
+        self._groups: list[tuple[LabelReader, Spec, Value]] = []
+        self._parts: list[LabelReader] = []
         self._diagnostics: list[Diagnostic] = []
         self._domains: dict[str, tuple[str, Place]] = {}  # as they are compared -> as one is written first, and where
 
@@ -188,8 +197,15 @@ class _Fleet:
             self.problems.append(error)
             return
         self._sources[file] = hashlib.sha256(data).hexdigest()
-        part = FleetReader(
-            file, self._vocabulary, "", OWN, error=FleetError, problems=self.problems, bounds=self._bounds
+        part = LabelReader(
+            file,
+            self._vocabulary,
+            "",
+            OWN,
+            error=FleetError,
+            problems=self.problems,
+            bounds=self._bounds,
+            of_fleet=True,
         )
         self._parts.append(part)
         part.version(top, "fleet", "fleet")
@@ -197,9 +213,9 @@ class _Fleet:
         for key, line, value in part.entries_of(top, ("fleet", *OF_SYSTEM, *SECTIONS)) if top.kind == "map" else ():
             self._section(part, key, line, value, (*within, path))
 
-    def _section(self, part: FleetReader, key: str, line: int, value: Value, within: tuple[str, ...]) -> None:
+    def _section(self, part: LabelReader, key: str, line: int, value: Value, within: tuple[str, ...]) -> None:
         if key == "name":
-            self._name = part.text_of(value, "the name of a fleet")
+            self._name = text_of(part, value, "the name of a fleet")
         elif key == "include":
             for item in value.items if value.kind == "list" else (value,):
                 self._include(part, item, within)
@@ -209,7 +225,7 @@ class _Fleet:
             part.outside(key, line, value)
         elif key == "groups":
             for item in value.items:
-                self._groups.append((part, part.spec("a group", item.line, item, GROUP_KEYS), item))
+                self._groups.append((part, read_spec(part, "a group", item.line, item, GROUP_KEYS), item))
             if value.kind not in ("list", "empty"):
                 part.problem(line, f"groups is a list, not a {value.kind}", "write [{robots: 10, model: …}]")
         elif key in ("models", "robots", "infrastructure"):
@@ -217,10 +233,10 @@ class _Fleet:
                 part.problem(line, f"{key} is a map, not a {value.kind}", "write 'name: {policies: […]}'")
             for name, at, said in value.entries:
                 self._entry(
-                    part, key, name, at, part.spec(shown(name), at, said, SPEC if key == "models" else ROBOT_KEYS)
+                    part, key, name, at, read_spec(part, shown(name), at, said, SPEC if key == "models" else ROBOT_KEYS)
                 )
 
-    def _entry(self, part: FleetReader, section: str, name: str, line: int, spec: Spec) -> None:
+    def _entry(self, part: LabelReader, section: str, name: str, line: int, spec: Spec) -> None:
         if not ID.fullmatch(name):
             part.problem(line, f"{shown(name)!r} cannot name a robot or model", ID_HINT)
         elif section != "models":
@@ -230,8 +246,8 @@ class _Fleet:
         else:
             self._models[name] = spec
 
-    def _include(self, part: FleetReader, item: Value, within: tuple[str, ...]) -> None:
-        file = part.file_of(item, "include")
+    def _include(self, part: LabelReader, item: Value, within: tuple[str, ...]) -> None:
+        file = file_of(part, item, "include")
         if not file:
             return
         if leaves(file, self._root):
@@ -324,7 +340,7 @@ class _Fleet:
             what = f"domain {domain!r} is another one than {first!r} (at {where}), and looks like it"
             self._problem(place, what, "write it in one way, or give them names that differ by more")
 
-    def _members(self, part: FleetReader, spec: Spec, item: Value) -> Iterator[tuple[str, Spec]]:
+    def _members(self, part: LabelReader, spec: Spec, item: Value) -> Iterator[tuple[str, Spec]]:
         """The robots of a group: so many, or one for each file that a glob matches."""
         count, pattern = item.get("robots"), [file for file in spec.policies if STAR in file]
         if (count is None) != bool(pattern):
@@ -344,7 +360,7 @@ class _Fleet:
             self._problem(place, *self._bounds.refusal("robots", self._count))
         return self._count <= self._bounds.robots
 
-    def _counted(self, part: FleetReader, spec: Spec, item: Value, count: int) -> Iterator[tuple[str, Spec]]:
+    def _counted(self, part: LabelReader, spec: Spec, item: Value, count: int) -> Iterator[tuple[str, Spec]]:
         said = item.get("id")
         pattern = said.text if said else f"{spec.model}_{STAR}"
         if pattern.count(STAR) != 1 or not ID.fullmatch(pattern.replace(STAR, "0")):
@@ -356,7 +372,7 @@ class _Fleet:
             name = pattern.replace(STAR, f"{number:0{width}}")
             yield name, _of_robot(spec, name)
 
-    def _matched(self, part: FleetReader, spec: Spec, pattern: str) -> Iterator[tuple[str, Spec]]:
+    def _matched(self, part: LabelReader, spec: Spec, pattern: str) -> Iterator[tuple[str, Spec]]:
         line = self._line(spec, "policies")
         if pattern.count(STAR) != 1 or has_magic(pattern.replace(STAR, "")):
             part.problem(line.line, f"{shown(pattern)!r} has more than one *", "write one *, for the robot's id")

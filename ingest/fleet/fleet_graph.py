@@ -21,8 +21,7 @@ from rosprivacy.ingest.fleet.dds_domains import alone, pseudo_robot, shared
 from rosprivacy.ingest.fleet.mergeable_graph import Part, numbered, together
 from rosprivacy.ingest.labels.add_non_ros import FLOW, Ends, ambiguous, line_of, merged, missing, two_meanings
 from rosprivacy.ingest.labels.entries import End
-from rosprivacy.ingest.labels.stated_processing import over, united
-from rosprivacy.ingest.labels.surroundings import joined
+from rosprivacy.ingest.labels.stated_facts import joined, over, united
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -33,8 +32,7 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.fleet.fleet_file import Fleet
     from rosprivacy.ingest.fleet.joins import Met
     from rosprivacy.ingest.fleet.mergeable_graph import Key
-    from rosprivacy.ingest.labels.entries import FlowEntry
-    from rosprivacy.ingest.labels.non_ros_reader import Limit
+    from rosprivacy.ingest.labels.entries import FlowEntry, Limit
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,14 +8,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.ingest.fleet.fleet_reader import ID, NAMESPACE
-from rosprivacy.ingest.labels.label_schema import (
-    END,
-    END_OF_KIND,
-    SURROUNDINGS,
-    label_schema,
-    non_ros_sections,
-    processing_of_system,
-)
+from rosprivacy.ingest.labels.keywords import END, END_OF_KIND
+from rosprivacy.ingest.labels.label_schema import SURROUNDINGS, label_schema, non_ros_sections, processing_of_system
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -13,7 +13,7 @@ from operator import itemgetter
 from typing import TYPE_CHECKING, TypeVar
 
 from rosprivacy.analysis.model import Bound, Element, Flow, FlowGraph
-from rosprivacy.ingest.labels.stated_types import in_order
+from rosprivacy.ingest.labels.stated_facts import in_order
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence

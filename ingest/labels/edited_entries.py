@@ -1,7 +1,8 @@
-"""Entries of a label file said anew, in memory: what the file would mean if somebody wrote them so (rule S7).
+"""Entries of label files said anew, in memory: what the files would mean if somebody wrote them so (rule S7).
 
-In: a label file as it was read, and what some of its entries are to say. Out: the same labels with these entries in the
-place of those of the same name. Nothing is read from the disk.
+In: label files as they were read, and what some entries are to say. Out: the same labels with these entries in the
+place of those of the same name; their name and hash say that they are not what stands on the disk (rule S12). Nothing
+is read from there.
 """
 
 from __future__ import annotations
@@ -13,21 +14,20 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rosprivacy.analysis.errors import InputErrors, LabelError
+from rosprivacy.analysis.errors import InputErrors, LabelError, shown
 from rosprivacy.analysis.model import NON_ROS
 from rosprivacy.analysis.text import counted
 from rosprivacy.analysis.written_names import is_glob, meant
-from rosprivacy.ingest.labels.entries import OWN, ROBOT
-from rosprivacy.ingest.labels.label_reader import SECTIONS, LabelReader
+from rosprivacy.ingest.labels.entries import OWN, ROBOT, SECTIONS
+from rosprivacy.ingest.labels.label_file import Labels, parse_labels
+from rosprivacy.ingest.labels.label_reader import LabelReader
 from rosprivacy.ingest.reading.yaml_values import Value
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from rosprivacy.analysis.bounds import Bounds
-    from rosprivacy.ingest.labels.entries import Entry
-    from rosprivacy.ingest.labels.label_file import Labels
-    from rosprivacy.ingest.labels.non_ros_reader import Stated
+    from rosprivacy.ingest.labels.entries import Entry, Stated
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 KINDS = {**SECTIONS, "elements": NON_ROS}
@@ -173,9 +173,7 @@ def read_entry(said: Said, line: int, how: Written) -> LabelReader:
     if how.author:
         top.insert(1, ("author", line, Value(line, "text", how.author)))
     reader.document(Value(line, "map", entries=tuple(top)))
-    if reader.problems:
-        raise InputErrors(reader.problems)
-    return reader
+    return reader.whole(reader)
 
 
 def value_of(said: Any, line: int) -> Value:
@@ -219,3 +217,50 @@ def entries_of(top: Value) -> Mapping[tuple[str, str], Any]:
         if section in KINDS and content.kind == "map"
         for name, _, value in content.entries
     }
+
+
+def with_entry(
+    files: Iterable[Labels], section: str, name: str, said: object, vocabulary: Vocabulary
+) -> tuple[Labels, ...]:
+    """Return label files with one entry in place of all that they say of a name; shipped files stay.
+
+    Parameters
+    ----------
+    section
+        One of ``KINDS``.
+    name
+        As the files write it: a glob stands for the entry of that glob.
+    said
+        The entry as in a label file; None to say nothing of it.
+
+    Raises
+    ------
+    InputErrors
+        If the section or the entry is wrong, or a file says the same of more kinds of elements than the section has.
+    """
+    if section not in KINDS:
+        raise InputErrors(
+            [LabelError("labels", 0, f"unknown section {shown(section)!r}", f"one of {', '.join(KINDS)}")]
+        )
+    entry = parse_labels({"labels": 1, section: {name: said}}, vocabulary, name=f"{section} {name}")
+    return (*(file if file.shipped else _without(file, section, name) for file in files), entry)
+
+
+def _without(labels: Labels, section: str, name: str) -> Labels:
+    """The labels without the entries of a section for a name."""
+    kinds = set(KINDS[section])
+    gone = [entry for entry in labels.entries if entry.name == name and kinds.intersection(entry.kinds)]
+    for entry in gone:
+        if not kinds.issuperset(entry.kinds):
+            what = f"{shown(name)!r} is labelled for more than {section}"
+            raise InputErrors([LabelError(entry.place.file, entry.place.line, what, "replace it under channels")])
+    if not gone:
+        return labels
+    file = f"{labels.file} without {section} {name}"
+    return replace(
+        labels,
+        file=file,
+        sha256=hashlib.sha256(f"{labels.sha256} {file}".encode("utf-8", "surrogatepass")).hexdigest(),
+        entries=tuple(entry for entry in labels.entries if entry not in gone),
+        elements=tuple(one for one in labels.elements if one.name != name or one.kind not in kinds),
+    )

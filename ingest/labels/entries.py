@@ -1,19 +1,35 @@
 """What label files say, before it is joined to a graph: entries about elements and flows, and which of two outranks.
 
-Made by ``label_reader.py``; ``binding.py`` joins it to the graph.
+Made by ``label_reader.py``; ``binding.py`` and ``add_non_ros.py`` join it to the graph.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
+from rosprivacy.analysis.durations import Duration
 from rosprivacy.analysis.model import GLOB, NAME, SEGMENT, STANDARD, UNSTATED
-from rosprivacy.analysis.written_names import is_glob
-from rosprivacy.ingest.policies.names import literals
+from rosprivacy.analysis.written_names import GLOB_SIGNS, LITERAL, is_glob, meant
+from rosprivacy.ingest.policies.names import covers, literals
 
 if TYPE_CHECKING:
-    from rosprivacy.analysis.model import MessageType, Place, Processing, Statement
+    from rosprivacy.analysis.model import MessageType, NonRosFacts, Place, Processing, Statement
+    from rosprivacy.analysis.model.recording import Bag
+    from rosprivacy.ontology.vocabulary import Vocabulary
 
+SECTIONS = {
+    "nodes": ("node",),
+    "channels": ("topic", "service", "action"),
+    "topics": ("topic",),
+    "services": ("service",),
+    "actions": ("action",),
+}
+END_KINDS = ("node", "topic", "service", "action")
+BAG = "bag"  # the recording that a storage is
+LONGEST_NAME = 200  # characters of the name of an element outside ROS
+LOG = "rosout"  # the log of ROS holds text: it is no harmless channel of what can be said in words (rule S13)
+TEXT = frozenset({"text", "identifier"})
+Limit = tuple[str, Duration]  # category, how long it may be kept
 EXACT = 1_000_000  # a name outranks every glob
 PROPOSED, SHIPPED, OWN = -1, STANDARD, 1  # tiers: infrastructure, standard channels, a person's own word (rule S13)
 ROBOT = EXACT // 2  # added for a robot of a fleet, which outranks its model between names or between globs (rule S7)
@@ -78,6 +94,36 @@ class FlowEntry(NamedTuple):
         return End(self.source, self.kinds[0]), End(self.target, self.kinds[1])
 
 
+class Stated(NamedTuple):
+    """An element outside ROS as a file states it.
+
+    Attributes
+    ----------
+    outside
+        Without limits.
+    between
+        The nodes, or channels, that it joins, in both directions.
+    bags
+        Of a storage: the recordings that it is.
+    """
+
+    kind: str
+    name: str
+    outside: NonRosFacts
+    between: tuple[End, ...] = ()
+    bags: tuple[Bag, ...] = ()
+
+    @property
+    def place(self) -> Place:
+        """Where it is stated."""
+        return self.outside.place
+
+
+def is_non_ros(name: str) -> bool:
+    """Return whether a name is one of an element outside ROS; names of ROS begin with ``/``, a glob sign or ``=``."""
+    return not name.startswith(("/", LITERAL, *GLOB_SIGNS))
+
+
 def specificity(name: str) -> int:
     """Return the rank of a name among those that cover an element: the more that is spelt out, the higher.
 
@@ -106,3 +152,26 @@ def naming(name: str) -> str:
         return NAME
     _, slash, last = name.rpartition("/")
     return SEGMENT if slash and last and not is_glob(last) else GLOB
+
+
+def is_log(name: str) -> bool:
+    """Return whether a name or glob covers the log of some namespace.
+
+    >>> [is_log(name) for name in ("*/rosout", "=/a/rosout", "/*", "/rosout_agg", "*/clock")]
+    [True, True, True, False, False]
+    """
+    return covers(meant(name).rpartition("/")[2], LOG)
+
+
+def without_text(vocabulary: Vocabulary) -> tuple[str, ...]:
+    """Return the broadest kinds of which neither they nor a narrower one is text or an identifier.
+
+    >>> from rosprivacy.ontology.vocabulary import load
+    >>> kinds = without_text(load())
+    >>> [name in kinds for name in ("PersonImage", "SpeechTranscript", "Location", "PersonalData")]
+    [True, False, False, False]
+    """
+    above = vocabulary.hierarchy.ancestors
+    texts = {name for name, kind in vocabulary.categories.items() if TEXT.intersection(kind.data_types)}
+    holds = {broader for name in texts for broader in above[name]}
+    return tuple(sorted(name for name in above if name not in holds and holds.issuperset(above[name].keys() - {name})))

@@ -12,7 +12,7 @@ from __future__ import annotations
 import hashlib
 import json
 from dataclasses import dataclass
-from functools import partial
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,15 +22,16 @@ from rosprivacy.analysis.model import UNSTATED, Place, Surroundings
 from rosprivacy.analysis.non_ros import EVERY
 from rosprivacy.ingest.labels.entries import OWN, PROPOSED, ROBOT, SHIPPED
 from rosprivacy.ingest.labels.label_reader import LabelReader, check_mundane
+from rosprivacy.ingest.policies.names import covered
 from rosprivacy.ingest.reading import yaml_values
+from rosprivacy.ingest.reading.format_reader import read_values
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.bounds import Bounds
-    from rosprivacy.analysis.model import Diagnostic, Processing
-    from rosprivacy.ingest.labels.entries import Entry, FlowEntry
-    from rosprivacy.ingest.labels.non_ros_reader import Limit, Stated
+    from rosprivacy.analysis.model import Diagnostic, Element, Processing
+    from rosprivacy.ingest.labels.entries import Entry, FlowEntry, Limit, Stated
     from rosprivacy.ingest.labels.pins import Pin
     from rosprivacy.ingest.reading.yaml_values import Value
     from rosprivacy.ontology.vocabulary import Vocabulary
@@ -108,10 +109,7 @@ def read_labels(
     name = file.removeprefix(OURS)
     shipped = shipped or (file.startswith(OURS) and name in SHIPPED_FILES)
     path = _shipped_path(name) if file.startswith(OURS) and shipped else file
-    try:
-        top, data = yaml_values.read(path, partial(LabelError, file), bounds)
-    except InputError as error:
-        raise InputErrors([error]) from None
+    top, data = read_values(path, partial(LabelError, file), bounds)
     tier = OWN if not shipped else PROPOSED if file == INFRASTRUCTURE else SHIPPED
     reader = LabelReader(file, vocabulary, category, tier, ROBOT if own else 0, bounds=bounds, root=include_root or "")
     return _labels(reader, top, data, shipped=shipped, own=own)
@@ -149,21 +147,21 @@ def _labels(reader: LabelReader, top: Value, data: bytes, *, shipped: bool = Fal
     reader.document(top)
     if shipped:
         check_mundane(reader, top)
-    if reader.problems:
-        raise InputErrors(reader.problems)
-    return Labels(
-        reader.file,
-        hashlib.sha256(data).hexdigest(),
-        tuple(reader.entries),
-        tuple(reader.flows),
-        tuple(reader.diagnostics),
-        shipped,
-        tuple(reader.elements),
-        tuple(reader.limits),
-        own,
-        reader.surroundings,
-        reader.processing,
-        reader.pins,
+    return reader.whole(
+        Labels(
+            reader.file,
+            hashlib.sha256(data).hexdigest(),
+            tuple(reader.entries),
+            tuple(reader.flows),
+            tuple(reader.diagnostics),
+            shipped,
+            tuple(reader.elements),
+            tuple(reader.limits),
+            own,
+            reader.surroundings,
+            reader.processing,
+            reader.pins,
+        )
     )
 
 
@@ -190,3 +188,21 @@ def shipped_text(name: str) -> str:
 
 def _shipped_path(name: str) -> str:
     return str(Path(__file__).with_name(f"{name}.yaml"))
+
+
+def infrastructure_of(elements: Iterable[Element], vocabulary: Vocabulary) -> frozenset[tuple[str, str]]:
+    """Return (kind, name) of those channels that the file of infrastructure proposes to take as mundane (rule S13)."""
+    names: dict[str, set[str]] = {}
+    for element in elements:
+        if element.is_channel:
+            names.setdefault(element.kind, set()).add(element.name)
+    if not names:
+        return frozenset()
+    entries = read_labels(INFRASTRUCTURE, vocabulary).entries
+    written = {kind: tuple(entry.name for entry in entries if kind in entry.kinds) for kind in names}
+    return frozenset((kind, name) for kind, some in names.items() for name in some if _is_one_of(name, written[kind]))
+
+
+@lru_cache(maxsize=65536)  # after each answer of a session the same is asked
+def _is_one_of(name: str, written: tuple[str, ...]) -> bool:
+    return any(covered(one, (name,)) for one in written)

@@ -1,88 +1,97 @@
 """The format of label files: YAML values -> entries, with every problem (rules S7, S8, S9).
 
 In: the values of a file, each with its line. Out: a ``LabelReader`` with what it read. Fleet files have sections of the
-same format, and read them with it.
-
-Source: the paper, section II-A, for the roles and the six lists.
+same format, and read them with it. What a keyword means stands in ``keywords.py``.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.errors import InputError, shown
+from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.kernel.ranks import NONE_OF
 from rosprivacy.analysis.model import (
-    CLEANS,
     GLOB,
     NAME,
+    NON_ROS,
     UNSTATED,
     Diagnostic,
     Method,
+    NonRosFacts,
     Place,
     Processing,
     Severity,
     Statement,
     Surroundings,
 )
-from rosprivacy.ingest.labels.bag_storages import bags_of
-from rosprivacy.ingest.labels.entries import EXACT, SHIPPED, Entry, FlowEntry, naming, specificity
-from rosprivacy.ingest.labels.log_text import is_log, without_text
+from rosprivacy.ingest.labels.entries import (
+    EXACT,
+    LONGEST_NAME,
+    SECTIONS,
+    SHIPPED,
+    Entry,
+    FlowEntry,
+    Stated,
+    is_log,
+    is_non_ros,
+    naming,
+    specificity,
+    without_text,
+)
+from rosprivacy.ingest.labels.keyword_readers import LONGEST_GROUP, read_duration
+from rosprivacy.ingest.labels.keywords import (
+    CHANNEL,
+    FLOW,
+    NODE,
+    NONE,
+    keys_of,
+    keywords_of,
+    moves_data,
+    words_of,
+)
 from rosprivacy.ingest.labels.name_reader import NameReader
-from rosprivacy.ingest.labels.non_ros_reader import is_non_ros, read_element, read_limits
 from rosprivacy.ingest.labels.pins import PINS, Pin, read_pins
-from rosprivacy.ingest.labels.stated_processing import (
-    OF_ELEMENT,
+from rosprivacy.ingest.labels.stated_facts import (
     OF_SYSTEM,
-    read_processing,
+    SURROUNDINGS,
+    check_types,
+    processing_at,
+    read_context_names,
+    read_country_code,
     read_system,
     with_transfer,
 )
-from rosprivacy.ingest.labels.stated_types import read_types
-from rosprivacy.ingest.labels.surroundings import read_contexts, read_country
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterator
 
-    from rosprivacy.analysis.model.recording import Bag
-    from rosprivacy.ingest.labels.non_ros_reader import Limit, Stated
+    from rosprivacy.ingest.labels.entries import Limit
     from rosprivacy.ingest.reading.yaml_values import Value
 
-SECTIONS = {
-    "nodes": ("node",),
-    "channels": ("topic", "service", "action"),
-    "topics": ("topic",),
-    "services": ("service",),
-    "actions": ("action",),
-}
 SIX_LISTS = ("source", "leak", "conduit", "sanitizer", "sensitive", "mundane")
-NODE_KEYS = (
-    "source",
-    "leak",
-    "sanitizer",
-    "conduit",
-    "derives",
-    "subjects",
-    "context",
-    *OF_ELEMENT,
-    "absent",
-    "note",
-    "author",
-)
-SAYS_NOTHING = ("subjects", "context", *OF_ELEMENT, "note", "author")  # of what data does
-CHANNEL_KEYS = ("sensitive", "only", "never", "types", "note", "author")
-FLOW_KEYS = ("from", "to", "only", "never", "note", "author")
 OUTSIDE = ("elements", "limits")
-SURROUNDINGS = ("context", "country")  # of a system
-SYSTEM = (*OF_SYSTEM, *SURROUNDINGS)
-NONE = "none"  # in place of categories: takes back what labels of lower rank say (rule S7)
-LONGEST_GROUP = 100  # characters of a group of persons, or of the name of an author
+ENDS = ("from", "to")
+TOP = ("labels", "author", *OF_SYSTEM, *SURROUNDINGS, *SECTIONS, *OUTSIDE, "flows", PINS)
+NO_LABEL = {
+    NODE: "write conduit, or {source: [Video]}, {leak: […]}, {sanitizer: {…}}, …",
+    CHANNEL: "write mundane, sensitive, {sensitive: […]}, {only: […]}, {never: […]} or {types: […]}",
+}
 
 
 @dataclass(eq=False, repr=False)
 class LabelReader(NameReader):
-    """Walks the file once, from the outside in."""
+    """Walks the file once, from the outside in.
+
+    Attributes
+    ----------
+    category
+        What the paper's six lists are about.
+    tier, above
+        Of the ranks of its statements; ``above`` is added where the file is about one robot.
+    author
+        Who wrote the file, as its top says.
+    """
 
     category: str
     tier: int
@@ -94,20 +103,7 @@ class LabelReader(NameReader):
     limits: list[Limit] = field(default_factory=list)
     surroundings: Surroundings = field(default_factory=Surroundings)
     processing: Processing = UNSTATED
-    root: str = ""
     pins: tuple[Pin, ...] | None = None
-
-    def bags_at(self, value: Value) -> tuple[Bag, ...]:
-        """Return the bags that a storage names, relative to this file; none, and a problem, if they cannot be read."""
-        try:
-            return bags_of(self.file, self.root, value)
-        except InputError as error:
-            self.problem(value.line, error.problem, error.hint)
-        return ()
-
-    def rank(self, specific: int) -> tuple[int, int]:
-        """Return the rank of a statement."""
-        return (self.tier, specific + self.above)
 
     def document(self, top: Value) -> None:
         """Read a label file."""
@@ -122,7 +118,7 @@ class LabelReader(NameReader):
         self.version(top, "labels", "label")
         self.system(top)
         self.author = self._author(top)
-        for key, line, value in self.entries_of(top, ("labels", "author", *SYSTEM, *SECTIONS, *OUTSIDE, "flows", PINS)):
+        for key, line, value in self.entries_of(top, TOP):
             if key in SURROUNDINGS:
                 self.surroundings = self.surrounded(self.surroundings, key, value)
             elif key in ("flows", *OUTSIDE):
@@ -135,73 +131,116 @@ class LabelReader(NameReader):
     def surrounded(self, known: Surroundings, key: str, value: Value) -> Surroundings:
         """Return where a system works with what one more key says of it."""
         if key == "context":
-            return known._replace(contexts=read_contexts(self, value))
-        return known._replace(country=read_country(self, value))
+            return known._replace(contexts=read_context_names(self, value))
+        return known._replace(country=read_country_code(self, value))
 
     def system(self, top: Value) -> None:
         """Read what the top says of the whole system; fleet files say it too."""
-        lines = [line for key, line, _ in top.entries if key in OF_SYSTEM]
-        if lines:
-            self.processing = read_system(self, top, Place(self.file, lines[0]))
+        if any(top.get(key) for key in OF_SYSTEM):
+            self.processing = read_system(self, top)
 
     def outside(self, section: str, line: int, value: Value) -> None:
         """Read a section that fleet files have too."""
-        if section == "limits":
-            self.limits += read_limits(self, line, value)
-        elif section == "flows":
+        if section == "flows":
             for item in self.list_of(value, "flows"):
                 self._flow(item)
         elif value.kind not in ("map", "empty"):
-            self.problem(line, f"elements is a map, not a {value.kind}", "write 'name: {kind: storage}'")
-        for name, at, facts in value.entries if section == "elements" else ():
-            self._element(name, at, facts)
-
-    def _element(self, name: str, line: int, value: Value) -> None:
-        stated = read_element(self, name, line, value, NODE_KEYS)
-        if stated is None:
-            return
-        labels = value._replace(entries=tuple(entry for entry in value.entries if entry[0] in NODE_KEYS))
-        statements = self._said(labels, self._node(labels, stated.place, self.rank(EXACT)))
-        if stated.kind == "device" and all(key in SAYS_NOTHING for key, *_ in labels.entries):
-            self.problem(line, f"device {shown(name)!r} does nothing", "say what comes from it: source: [Voice]")
-        processing = self._processing(labels, stated.place)
-        facts = with_transfer(self, value, stated.outside, processing.bases)
-        self.elements.append(stated._replace(outside=facts))
-        about = self._subjects(labels), processing, self.rank(EXACT), self._contexts(labels)
-        self.entries.append(Entry((stated.kind,), name, stated.place, statements, *about))
+            hint = "write 'name: {kind: storage}'" if section == "elements" else "write {Video: P30D}"
+            self.problem(line, f"{section} is a map, not a {value.kind}", hint)
+        elif section == "elements":
+            for name, at, facts in value.entries:
+                self._element(name, at, facts)
+        else:
+            for name, at, duration in value.entries:
+                category, limit = self.kind_of_data(name, at), read_duration(self, at, duration)
+                if category and limit:
+                    self.limits.append((category, limit))
 
     def _section(self, section: str, line: int, value: Value) -> None:
-        if value.kind == "empty":
-            return
-        if value.kind != "map":
+        if value.kind not in ("map", "empty"):
             self.problem(line, f"{section} is a map from names to labels, not a {value.kind}", "write '/name: label'")
+            return
         for name, at, label in value.entries:
             if is_non_ros(name):
                 self.problem(at, f"name {shown(name)!r} is not absolute", "begin it with /")
-                continue
-            if len(name) > self.bounds.name:
+            elif len(name) > self.bounds.name:
                 self.problem(at, *self.bounds.refusal("name", len(name)))
-                continue
-            rank = self.rank(specificity(name))
-            read = self._node if section == "nodes" else self._channel
-            statements = self._said(label, read(label, Place(self.file, at), rank), naming(name))
-            if self.tier == SHIPPED and is_log(name):
-                kinds = without_text(self.vocabulary)
-                statements = tuple(one._replace(categories=kinds) for one in statements if kinds)
-            place, of_node = Place(self.file, at), section == "nodes"
-            subjects = self._subjects(label) if of_node else ()
-            processing = self._processing(label, place) if of_node else UNSTATED
-            contexts = self._contexts(label) if of_node else ()
-            types = () if of_node else read_types(self, label, SECTIONS[section])
-            about = subjects, processing, rank, contexts, types
-            self.entries.append(Entry(SECTIONS[section], name, place, statements, *about))
+            else:
+                self._entry(section, name, Place(self.file, at), label)
 
-    def _said(self, label: Value, statements: Iterable[Statement], how: str = NAME) -> tuple[Statement, ...]:
-        """Statements of one entry, with how it names, its reason, and who says it: its author, or the file's."""
+    def _entry(self, section: str, name: str, place: Place, label: Value) -> None:
+        where, rank = NODE if section == "nodes" else CHANNEL, (self.tier, specificity(name) + self.above)
+        statements = self._statements(label, where, place, rank, naming(name))
+        if self.tier == SHIPPED and is_log(name):
+            kinds = without_text(self.vocabulary)
+            statements = tuple(statement._replace(categories=kinds) for statement in statements if kinds)
+        facts = self._facts(label, where)
+        check_types(self, facts.get("types", ()), SECTIONS[section])
+        processing = processing_at(place, label.entries, facts) if where == NODE else UNSTATED
+        self.entries.append(_entry_of(SECTIONS[section], name, place, statements, rank, processing, facts))
+
+    def _element(self, name: str, line: int, value: Value) -> None:
+        """An element outside ROS: what is stated of it, and labels as of a node."""
+        kind = self._kind_of(name, line, value)
+        if not kind:
+            return
+        place, rank, of_kind = Place(self.file, line), (self.tier, EXACT + self.above), keywords_of(kind)
+        outside: dict[str, Any] = {}
+        for item in self.entries_of(value, ("kind", *of_kind, *keys_of(NODE))):
+            keyword = of_kind.get(item[0])
+            outside |= keyword.states(self, item) if keyword and keyword.states else {}
+        label = value._replace(entries=tuple(item for item in value.entries if item[0] in keys_of(NODE)))
+        statements = self._statements(label, NODE, place, rank)
+        if kind == "device" and not any(key in moves_data(NODE) for key, *_ in label.entries):
+            self.problem(line, f"device {shown(name)!r} does nothing", "say what comes from it: source: [Voice]")
+        facts = self._facts(label, NODE)
+        processing = processing_at(place, label.entries, facts)
+        joins, bags = outside.pop("between", ()), outside.pop("bags", ())
+        stated = with_transfer(self, value, NonRosFacts(place=place, **outside), processing.bases)
+        self.elements.append(Stated(kind, name, stated, joins, bags))
+        self.entries.append(_entry_of((kind,), name, place, statements, rank, processing, facts))
+
+    def _kind_of(self, name: str, line: int, value: Value) -> str:
+        """The kind of an element outside ROS; empty, and a problem, if it has no name or no kind."""
+        unfit = ":" in name or len(name) > LONGEST_NAME or not name.isprintable() or name != name.strip()
+        if unfit or not is_non_ros(name):
+            hint = (
+                f"a plain name of at most {LONGEST_NAME} characters, not beginning with / = * ? [, and without a colon"
+            )
+            self.problem(line, f"{shown(name)!r} cannot name an element outside ROS", hint)
+            return ""
+        kind = value.get("kind") if value.kind == "map" else None
+        if kind is not None and kind.text in NON_ROS:
+            return kind.text
+        what = f"of kind {shown(kind.text)!r}" if kind else "has no kind"
+        hint = f"write {{kind: …}}, one of {', '.join(NON_ROS)}"
+        self.problem(kind.line if kind else line, f"element {shown(name)!r} {what}", hint)
+        return ""
+
+    def _facts(self, label: Value, where: str) -> dict[str, Any]:
+        """What an entry states that moves no data, by field."""
+        facts: dict[str, Any] = {}
+        for item in label.entries:
+            keyword = keywords_of(where).get(item[0])
+            facts |= keyword.states(self, item) if keyword and keyword.states else {}
+        return facts
+
+    def _statements(
+        self, label: Value, where: str, place: Place, rank: tuple[int, int], named_by: str = NAME
+    ) -> tuple[Statement, ...]:
+        """What an entry says that data does, with how it names, its reason, and its author, or the file's."""
         note = label.get("note")
         why = note.text.strip() if note and note.kind == "text" else ""
         author = self._author(label) or self.author
-        return tuple(s._replace(naming=how, why=s.why or why, author=author) for s in statements)
+        statements = tuple(self._read(label, where, place, rank))
+        named: set[str] = set()
+        for statement in statements:
+            if statement.role in ("only", "never"):
+                for name in sorted(named.intersection(statement.categories)):
+                    what = f"{name} is under only and under never"
+                    self.problem(statement.place.line, what, "name it under one of them")
+                named.update(statement.categories)
+        return tuple(s._replace(naming=named_by, why=s.why or why, author=author) for s in statements)
 
     def _author(self, label: Value) -> str:
         value = label.get("author")
@@ -213,164 +252,54 @@ class LabelReader(NameReader):
             return ""
         return value.text.strip()
 
-    def _node(self, label: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
+    def _read(self, label: Value, where: str, place: Place, rank: tuple[int, int]) -> Iterator[Statement]:
         if label.kind == "empty":  # a line of --init that nobody has filled in yet
             return
-        if label.kind == "text" and label.text == "conduit":
-            yield Statement("conduit", (), rank, place)
-            return
-        if label.kind != "map":
-            what = f"label {shown(label.text or label.kind)!r} on a node"
-            self.problem(place.line, what, "write conduit, or {source: [Video]}, {leak: […]}, {sanitizer: {…}}, …")
-            return
-        for key, line, value in self.entries_of(label, NODE_KEYS):
-            at = Place(self.file, line)
-            if key in NONE_OF and (value.text == NONE or value.get(NONE)):
-                yield from self._none(key, value, at, rank)
-                value = value._replace(entries=tuple(one for one in value.entries if one[0] != NONE))  # noqa: PLW2901
-                if not value.entries:
-                    continue
-            if key == "source":
-                yield from self._source(value, at, rank)
-            elif key in ("leak", "conduit"):
-                for name in self.categories_of(value, key):
-                    yield Statement(key, (name,), rank, at)
-            elif key == "sanitizer":
-                yield from self._sanitizer(value, at, rank)
-            elif key == "derives":
-                yield from self._derives(value, at, rank)
-            elif key == "absent":
-                yield from self._absent(label, value, at, rank)
-
-    def _none(self, key: str, value: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
-        """What takes a source or a leak back: of all kinds, or of some."""
-        if (kinds := value.get(NONE)) is None:
-            yield Statement(NONE_OF[key], (), rank, place)
-            return
-        for name in self.categories_of(kinds, f"{key}: none"):
-            yield Statement(NONE_OF[key], (name,), rank, place)
-
-    def _source(self, value: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
-        if value.kind != "map":
-            for name in self.categories_of(value, "source"):
-                yield Statement("source", (name,), rank, place)
-            return
-        self.not_empty(value, "source")
-        for written, line, channels in value.entries:
-            name = self.kind_of_data(written, line)
-            through = tuple(
-                sorted({self.absolute_name(item) for item in self.list_of(channels, f"source of {shown(written)}")})
-            )
-            if not through:
-                self.problem(line, f"source of {shown(written)} names no channel", "name them: [/topic]")
-            yield Statement("source", (name,), rank, place, through=through)
-
-    def _sanitizer(self, value: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
-        if value.kind != "map":
-            for name in self.categories_of(value, "sanitizer"):
-                yield Statement("sanitizer", (name,), rank, place, Method.PSEUDONYMISE, stated=False)
-            return
-        self.not_empty(value, "sanitizer")
-        for written, line, method in value.entries:
-            name = self.kind_of_data(written, line)
-            if method.kind == "empty":
-                yield Statement("sanitizer", (name,), rank, place, Method.PSEUDONYMISE, stated=False)
-            elif method.kind == "text" and method.text in CLEANS:
-                yield Statement("sanitizer", (name,), rank, place, Method(method.text))
-            else:
-                what = f"sanitizer method {shown(method.text or method.kind)!r}"
-                self.problem(method.line, what, f"one of {', '.join(CLEANS)}")
-
-    def _derives(self, value: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
-        if value.kind == "empty":
-            self.problem(value.line, "derives takes a list, not nothing", "write [{from: Video, to: FaceTemplate}]")
-        for item in self.list_of(value, "derives"):
-            if item.kind != "map":
-                self.problem(
-                    item.line, f"a derivation is a map, not a {item.kind}", "write {from: Video, to: FaceTemplate}"
-                )
-                continue
-            ends = {key: self.category_of(end) for key, _, end in self.entries_of(item, ("from", "to"))}
-            if len(ends) < len(("from", "to")):
-                self.problem(item.line, "a derivation needs from and to", "write {from: Video, to: FaceTemplate}")
-            elif all(ends.values()):
-                yield Statement("derivation", (ends["from"],), rank, place, to=ends["to"])
-
-    def _absent(self, label: Value, why: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
-        """A node that has a profile and is not on the robot: nothing gets there, and nothing comes from it."""
-        beside = [key for key, *_ in label.entries if key not in ("absent", "note", "author")]
-        if why.kind != "text" or not why.text.strip():
-            self.problem(place.line, "absent without a reason", "write why it is not there: {absent: a test tool}")
-        elif beside:
-            self.problem(place.line, f"absent beside {beside[0]}", "a node that is not there does nothing: keep one")
-        else:
-            yield Statement("sanitizer", (), rank, place, Method.ABSENT, why=why.text.strip())
-
-    def _subjects(self, label: Value) -> tuple[str, ...]:
-        """Whom the data of a source are about: groups of persons, as a person calls them."""
-        value = label.get("subjects")
-        if value is None:
-            return ()
-        if not value.items:
-            self.problem(value.line, "subjects names nobody", "write [residents, staff], or remove it")
-        for item in value.items:
-            if item.kind != "text" or not item.text.strip() or len(item.text) > LONGEST_GROUP:
-                what = f"{shown(item.text) or f'a {item.kind}'!r} where a group of persons is named"
-                self.problem(item.line, what, f"write a word or two, at most {LONGEST_GROUP} characters")
-        return tuple(sorted({item.text.strip() for item in value.items}))
-
-    def _contexts(self, label: Value) -> tuple[str, ...]:
-        """Where a source works, beside what is said of its system."""
-        value = label.get("context")
-        return () if value is None else read_contexts(self, value)
-
-    def _processing(self, label: Value, place: Place) -> Processing:
-        """What data there are processed for, and on which basis."""
-        return read_processing(self, label.entries, place, OF_ELEMENT)
-
-    def _channel(self, label: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
-        if label.kind == "empty":
-            return
-        if label.kind == "text" and label.text in ("mundane", "sensitive"):
+        if label.kind == "text" and label.text in words_of(where):
             yield Statement(label.text, (), rank, place, shipped=self.tier <= SHIPPED)
             return
         if label.kind != "map":
-            what = f"label {shown(label.text or label.kind)!r} on a channel"
-            hint = "write mundane, sensitive, {sensitive: […]}, {only: […]}, {never: […]} or {types: […]}"
-            self.problem(place.line, what, hint)
+            self.problem(place.line, f"label {shown(label.text or label.kind)!r} on a {where}", NO_LABEL[where])
             return
-        yield from self._restrictions(label, CHANNEL_KEYS, rank)
+        for key, line, value in self.entries_of(label, (*(ENDS if where == FLOW else ()), *keys_of(where))):
+            keyword = keywords_of(where).get(key)
+            if keyword is None or keyword.says is None:
+                continue
+            blank = Statement(key, (), rank, Place(self.file, line))
+            if key in NONE_OF and (value.text == NONE or value.get(NONE)):
+                yield from self._none(value, blank)
+                value = value._replace(entries=tuple(item for item in value.entries if item[0] != NONE))  # noqa: PLW2901
+                if not value.entries:
+                    continue
+            statements = tuple(keyword.says(self, value, blank))
+            others = [other for other, *_ in label.entries if other not in (key, "note", "author")]
+            if keyword.alone and statements and others:
+                self.problem(line, f"{key} beside {others[0]}", "a node that is not there does nothing: keep one")
+            yield from statements
 
-    def _restrictions(self, label: Value, keys: tuple[str, ...], rank: tuple[int, int]) -> Iterable[Statement]:
-        """``only`` and ``never`` of a channel or flow, and for which kinds a channel is reviewed."""
-        named: set[str] = set()
-        for key, line, value in self.entries_of(label, keys):
-            if key == "sensitive":
-                reviewed = tuple(self.categories_of(value, key))
-                if reviewed:
-                    yield Statement(key, reviewed, rank, Place(self.file, line))
-            elif key in ("only", "never"):
-                names = tuple(self.categories_of(value, key))
-                for name in sorted(named.intersection(names)):
-                    self.problem(line, f"{name} is under only and under never", "name it under one of them")
-                named.update(names)
-                if names:
-                    yield Statement(key, names, rank, Place(self.file, line))
+    def _none(self, value: Value, blank: Statement) -> Iterator[Statement]:
+        """What takes a source or a leak back: of all kinds, or of some."""
+        back = blank._replace(role=NONE_OF[blank.role])
+        if (kinds := value.get(NONE)) is None:
+            yield back
+            return
+        for name in self.categories_of(kinds, f"{blank.role}: none"):
+            yield back._replace(categories=(name,))
 
     def _flow(self, item: Value) -> None:
         if item.kind != "map":
             self.problem(item.line, f"a flow is a map, not a {item.kind}", "write {from: /a, to: /b, never: [Video]}")
             return
         place = Place(self.file, item.line)
-        ends = {key: self.end(value) for key, _, value in item.entries if key in ("from", "to")}
+        ends = {key: self.end(value) for key, _, value in item.entries if key in ENDS}
         names = [end.name for end in ends.values()]
-        rank = self.rank(sum(map(specificity, names)))
-        how = GLOB if any(naming(name) != NAME for name in names) else NAME
-        statements = self._said(item, self._restrictions(item, FLOW_KEYS, rank), how)
-        if len(ends) < len(("from", "to")):
+        rank = self.tier, sum(map(specificity, names)) + self.above
+        named_by = GLOB if any(naming(name) != NAME for name in names) else NAME
+        statements = self._statements(item, FLOW, place, rank, named_by)
+        if len(ends) < len(ENDS):
             self.problem(item.line, "a flow needs from and to", "write {from: /a, to: /b, never: [Video]}")
             return
-        stated = self.states(names)
+        stated = self.of_fleet or any(map(is_non_ros, names))  # others are in the policies
         if not stated and not (item.get("only") or item.get("never")):
             hint = "write {from: /a, to: /b, never: [Video]}; what policies do not know goes through an element"
             self.problem(item.line, "a flow between nodes and channels needs only or never", hint)
@@ -379,10 +308,6 @@ class LabelReader(NameReader):
             source, target = ends["from"], ends["to"]
             self.flows.append(FlowEntry(source.name, target.name, place, statements, (source.kind, target.kind)))
 
-    def states(self, ends: Iterable[str]) -> bool:
-        """Return whether a line about a flow states it; flows between nodes and channels are in the policies."""
-        return any(map(is_non_ros, ends))
-
     def _six_lists(self, top: Value) -> None:
         """The paper's JSON: six lists of names, one kind of data; there a sanitizer ends it (rule S8)."""
         name = self.kind_of_data(self.category, 0)
@@ -390,13 +315,21 @@ class LabelReader(NameReader):
             kinds = SECTIONS["channels" if role in ("sensitive", "mundane") else "nodes"]
             for item in self.list_of(value, role):
                 element = self.absolute_name(item)
-                place, rank = Place(self.file, item.line), self.rank(specificity(element))
+                place, rank = Place(self.file, item.line), (self.tier, specificity(element) + self.above)
                 method = Method.ANONYMISE if role == "sanitizer" else None
                 statement = Statement(role, (name,), rank, place, method, naming=naming(element))
                 self.entries.append(Entry(kinds, element, place, (statement,)))
             if role == "sanitizer" and value.items:
                 message = "a sanitizer of the paper's six lists ends the category; the method is not stated"
                 self.diagnostics.append(Diagnostic(Place(self.file, line), Severity.NOTICE, message))
+
+
+def _entry_of(
+    kinds: tuple[str, ...], name: str, place: Place, statements: tuple[Statement, ...], rank: tuple[int, int],
+    processing: Processing, facts: dict[str, Any],
+) -> Entry:  # fmt: skip
+    own = {key: value for key, value in facts.items() if key in Entry._fields}
+    return Entry(kinds, name, place, statements, processing=processing, rank=rank, **own)
 
 
 def check_mundane(reader: LabelReader, top: Value) -> None:
@@ -410,5 +343,7 @@ def check_mundane(reader: LabelReader, top: Value) -> None:
             if statement.role != "mundane":
                 what = f"{shown(entry.name)!r} is {statement.role} in a file of standard channels"
                 reader.problem(statement.place.line, what, hint)
-        for one in entry.types[:1]:
-            reader.problem(one.place.line, f"types of {shown(entry.name)!r} in a file of standard channels", hint)
+        for message_type in entry.types[:1]:
+            reader.problem(
+                message_type.place.line, f"types of {shown(entry.name)!r} in a file of standard channels", hint
+            )

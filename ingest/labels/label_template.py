@@ -15,7 +15,8 @@ from rosprivacy.analysis.many_flows import parted
 from rosprivacy.analysis.model import PARTICIPANT
 from rosprivacy.analysis.text import blanked, counted
 from rosprivacy.analysis.written_names import literal
-from rosprivacy.ingest.labels.label_reader import SECTIONS
+from rosprivacy.ingest.labels.entries import SECTIONS
+from rosprivacy.ingest.labels.keywords import CHANNEL, NODE, keywords_of, rows
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping
@@ -26,23 +27,26 @@ HEADER = """\
 # Labels: which elements bring personal data in, let it out, clean it or pass it on, per kind of data.
 # Fill in what you know; an element without a label counts as not reviewed, and data passes it.
 #
-#   nodes:     {source: [Video]}                    brings the data in
-#              {source: {Video: [/robot_video]}}    … but only through these channels
-#              {source: [Video], conduit: [Voice]}  … and passes on what it gets of another kind
-#              {leak: [Voice]}                      lets it out: to a cloud, a display, a log
-#              {sanitizer: {Video: anonymise}}      ends it: anonymise, aggregate, drop; pseudonymise does not
-#              {derives: [{from: Video, to: FaceTemplate}]}   makes one kind of another
-#              conduit  or  {conduit: [Location]}   reviewed: passes it on
-#              {absent: why}                        has a profile, but is not on this robot
-#   channels:  mundane     never carries personal data
-#              sensitive   reviewed: may carry it
-#              {only: [HomeMap]}  or  {never: [Location]}
-#
 """
+LAST = ("conduit", "absent")  # in the head
 LONGEST_KEY = 1000  # of YAML, without a question mark before it
 SCHEMA_FILE = "labels.schema.json"
 WITH_SCHEMA = f"# yaml-language-server: $schema={SCHEMA_FILE}\n"
 Channel = tuple[str, str]  # kind, name
+
+
+def header() -> str:
+    """Return the head of a first label file, with what each keyword means."""
+    examples = [*_examples("nodes", NODE, 37), *_examples("channels", CHANNEL, 12), ""]
+    return HEADER + "".join(f"# {line}".rstrip() + "\n" for line in examples)
+
+
+def _examples(section: str, where: str, width: int) -> Iterator[str]:
+    """How the keywords of a section are written, and in a column behind it what they mean."""
+    ordered = sorted(keywords_of(where).values(), key=lambda keyword: keyword.name in LAST)
+    for number, (written, meaning) in enumerate(row for keyword in ordered for row in rows(keyword.init)):
+        begin = "" if number else f"  {section}:"
+        yield f"{begin:13}{f'{written:{width}}' if len(written) < width else f'{written}   '}{meaning}"
 
 
 def template(
@@ -69,7 +73,7 @@ def template(
     listed = {channel for channel in map(_channel, graph.elements) if channel not in left_out}
     head = [
         WITH_SCHEMA if schema else "",
-        HEADER,
+        header(),
         *(f"# {line}\n" for line in _remarks(graph, standard, left_out, own)),
     ]
     lines = [*_nodes(graph, listed), *_channels(graph, listed), *_participants(graph, listed), ""]

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import Diagnostic, Place, Severity
 from rosprivacy.analysis.written_names import is_glob, literal, meant
-from rosprivacy.ingest.labels.name_reader import END_KINDS
-from rosprivacy.ingest.labels.non_ros_reader import is_non_ros
+from rosprivacy.ingest.labels.entries import END_KINDS, is_non_ros
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

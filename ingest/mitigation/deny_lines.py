@@ -3,6 +3,9 @@
 In: policies, the graph that they make, flows. Out: ``Denial``s; policies with some grants set to DENY. A DENY holds for
 its policy, enclave and direction, and for all that its name covers; it takes names out of the enclave's wildcards.
 One that sros2 does not read takes nothing away: there only the ALLOW goes that it takes the place of (rule S5).
+
+``open_ended`` finds wildcards that take in a channel whatever it is called: there, a filter has nowhere to keep what it
+has not cleaned.
 """
 
 from __future__ import annotations
@@ -13,7 +16,8 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.many_flows import one_by_one
 from rosprivacy.analysis.mitigation.candidates import Denial
-from rosprivacy.ingest.policies.names import DDS, covers, endpoints, is_pattern, overlaps
+from rosprivacy.analysis.model import CHANNELS
+from rosprivacy.ingest.policies.names import DDS, covers, dds_names, endpoints, is_pattern, overlaps
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Sequence
@@ -23,6 +27,7 @@ if TYPE_CHECKING:
 
 # policy, enclave, whether it writes, DDS name or expression; the line, where sros2 does not read it (rule S5)
 Part = tuple[str, str, bool, str, str]
+NEW_NAMES = tuple(f"/{first}nfiltered_data/{last}" for first in "uUzZ0_" for last in ("raw", "clean_9"))
 
 
 def with_denied(policies: Iterable[Policy], grants: Collection[Grant]) -> tuple[Policy, ...]:
@@ -145,3 +150,24 @@ class _Rights:
             ends = self.graph.flows[f].source, self.graph.flows[f].target
             touched |= {other for end in ends if self.graph.elements[end].pattern for other in self.matches[end]}
         return Denial(grants, frozenset(gone), frozenset(touched))
+
+
+def open_ended(graph: FlowGraph) -> dict[str, frozenset[int]]:
+    """Return, per kind of channel, the wildcards that also cover a new one, chosen so that as few as possible do."""
+    patterns = [(v, e) for v, e in enumerate(graph.elements) if e.pattern]
+    expressions = {v: dds_names(e.kind, e.name, e.leg) for v, e in patterns}
+    found = {}
+    for kind in CHANNELS:
+        covering = [
+            frozenset(
+                v for v, own in expressions.items() if any(covers(one, dds) for one in own for dds in _dds(kind, name))
+            )
+            for name in NEW_NAMES
+        ]
+        found[kind] = min(covering, key=lambda vertices: (len(vertices), sorted(vertices)))
+    return found
+
+
+def _dds(kind: str, name: str) -> Iterator[str]:
+    for leg in ("",) if kind == "topic" else ("request", "response"):
+        yield from dds_names(kind, name, leg)

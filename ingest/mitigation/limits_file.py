@@ -8,15 +8,15 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import dataclass, field, fields
+from functools import partial
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.bounds import BOUNDS
-from rosprivacy.analysis.errors import InputError, InputErrors, LimitsError, shown
+from rosprivacy.analysis.errors import InputError, LimitsError, shown
 from rosprivacy.analysis.mitigation.limits import CHANGES, LARGEST_COST, Limits, Rule, Weights
 from rosprivacy.analysis.written_names import A_LITTLE, FEW, did_you_mean, literal, meant, nearest
 from rosprivacy.ingest.policies.names import covered
-from rosprivacy.ingest.reading import yaml_values
-from rosprivacy.ingest.reading.format_reader import FileReader
+from rosprivacy.ingest.reading.format_reader import FileReader, read_values
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -37,19 +37,9 @@ def read_limits(file: str, graph: FlowGraph, bounds: Bounds = BOUNDS) -> Limits:
     InputErrors
         With every problem of the file, each a ``LimitsError`` of one line.
     """
-
-    def fail(line: int, problem: str, hint: str) -> InputError:
-        return LimitsError(file, line, problem, hint)
-
-    try:
-        top, _ = yaml_values.read(file, fail, bounds)
-    except InputError as error:
-        raise InputErrors([error]) from None
+    top, _ = read_values(file, partial(LimitsError, file), bounds)
     reader = _Reader(file, graph)
-    limits = reader.document(top)
-    if reader.problems:
-        raise InputErrors(reader.problems)
-    return limits
+    return reader.whole(reader.document(top))
 
 
 @dataclass
@@ -65,11 +55,9 @@ class _Reader(FileReader):
             self.by_name[element.name].append(vertex)
 
     def document(self, top: Value) -> Limits:
-        if top.kind != "map":
-            self.problem(top.line, f"a limits file is a map, not a {top.kind}", "begin with 'limits: 1'")
+        if not self.is_format(top, "limits", "a limits file"):
             return Limits()
-        self.version(top, "limits", "limits")
-        said = {key: value for key, _, value in self.entries_of(top, TOP)}
+        said = self.values_of(top, TOP)
         critical = [v for item in self._items(said, "time_critical") for v in self._nodes(item)]
         rules = [rule for item in self._items(said, "places") for rule in self._place(item)]
         return Limits(self._weights(said.get("weights")), critical=frozenset(critical), rules=tuple(rules))
@@ -95,7 +83,7 @@ class _Reader(FileReader):
         if item.kind != "map":
             self.problem(item.line, f"a place is a map, not a {item.kind}", "write {at: /a, never: all}")
             return
-        said = {key: value for key, _, value in self.entries_of(item, PLACE)}
+        said = self.values_of(item, PLACE)
         if "at" in said and not {"from", "to"} & set(said):
             vertices = frozenset(self._vertices(said["at"]))
             flows = [f for f, flow in enumerate(self.graph.flows) if {flow.source, flow.target} & vertices]

@@ -1,21 +1,40 @@
 """What the readers of our YAML formats have in common: problems with their line, the version, unknown keys.
 
-In: values that know their line (``yaml_values.py``). Out: what a format's reader makes of them; all problems of a file.
+In: a file, or values that know their line (``yaml_values.py``). Out: what a format's reader makes of them; all problems
+of a file at once.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from rosprivacy.analysis.bounds import BOUNDS, Bounds
 from rosprivacy.analysis.errors import InputError, InputErrors, shown
 from rosprivacy.analysis.written_names import did_you_mean, nearest
+from rosprivacy.ingest.reading import yaml_values
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable
 
     from rosprivacy.ingest.reading.yaml_values import Value
+    from rosprivacy.ontology.vocabulary import Vocabulary
+
+    Read = TypeVar("Read")
+
+
+def read_values(file: str, fail: Callable[[int, str, str], InputError], bounds: Bounds = BOUNDS) -> tuple[Value, bytes]:
+    """Read the values and the bytes of a file; see ``yaml_values.read``.
+
+    Raises
+    ------
+    InputErrors
+        With the one problem that keeps it from being read.
+    """
+    try:
+        return yaml_values.read(file, fail, bounds)
+    except InputError as error:
+        raise InputErrors([error]) from None
 
 
 @dataclass(kw_only=True, eq=False, repr=False)
@@ -36,6 +55,26 @@ class FileReader:
     def problem(self, line: int, problem: str, hint: str) -> None:
         """Note a problem; the file is read on."""
         self.problems.append(self.error(self.file, line, problem, hint))
+
+    def whole(self, read: Read) -> Read:
+        """Return what was read, if all of it was understood.
+
+        Raises
+        ------
+        InputErrors
+            With every problem of the file.
+        """
+        if self.problems:
+            raise InputErrors(self.problems)
+        return read
+
+    def is_format(self, top: Value, key: str, a_file: str, what: str = "") -> bool:
+        """Return whether a file is a map that says which format it is of; see ``version``."""
+        if top.kind != "map":
+            self.problem(top.line, f"{a_file} is a map, not a {top.kind}", f"begin with '{key}: 1'")
+            return False
+        self.version(top, key, what or key)
+        return True
 
     def version(self, top: Value, key: str, what: str) -> None:
         """Check that a file says which format it is of: ``key: 1``.
@@ -61,6 +100,18 @@ class FileReader:
             else:
                 hint = did_you_mean([*map(repr, nearest(key, known))], f"one of {', '.join(known)}")
                 self.problem(line, f"unknown key {shown(key)!r}", hint)
+
+    def values_of(self, value: Value, known: tuple[str, ...]) -> dict[str, Value]:
+        """Return the values of a map by key; see ``entries_of``."""
+        return {key: child for key, _, child in self.entries_of(value, known)}
+
+    def category_of_name(self, vocabulary: Vocabulary, written: str, line: int) -> str:
+        """Return the kind of data of a name; empty, and a problem with the nearest names, if there is none (S11)."""
+        category = vocabulary.find(written)
+        if category is None:
+            self.problem(line, f"unknown category {shown(written)!r}", vocabulary.hint(written))
+            return ""
+        return category.name
 
     def list_of(self, value: Value, what: str, hint: str = "write […]") -> tuple[Value, ...]:
         """Return the items of a list; nothing is an empty one."""

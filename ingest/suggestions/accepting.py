@@ -21,8 +21,8 @@ from ruamel.yaml.scalarstring import DoubleQuotedScalarString
 from rosprivacy.analysis.errors import InputErrors, LabelError, shown
 from rosprivacy.analysis.text import blanked
 from rosprivacy.analysis.written_names import meant
+from rosprivacy.ingest.labels.entries import SECTIONS
 from rosprivacy.ingest.labels.label_file import parse_labels
-from rosprivacy.ingest.labels.label_reader import SECTIONS
 from rosprivacy.ingest.labels.label_writer import NewLine, add_line, facts_of
 from rosprivacy.ingest.policies.names import covered
 from rosprivacy.ingest.reading.kept_yaml import FAILURES, changed, keeps_comments

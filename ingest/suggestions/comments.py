@@ -14,7 +14,7 @@ from rosprivacy.analysis.model import Confidence
 from rosprivacy.analysis.suggesting.evidence import CONDUIT, LEAK, SENSITIVE, SOURCE
 from rosprivacy.analysis.suggesting.written import written
 from rosprivacy.analysis.text import LONGEST_LINE, blanked, cut, printable
-from rosprivacy.ingest.labels.label_reader import SECTIONS
+from rosprivacy.ingest.labels.entries import SECTIONS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -15,9 +15,8 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.bounds import BOUNDS
-from rosprivacy.analysis.errors import InputError, InputErrors, TypesError, shown
-from rosprivacy.ingest.reading import yaml_values
-from rosprivacy.ingest.reading.format_reader import FileReader
+from rosprivacy.analysis.errors import TypesError, shown
+from rosprivacy.ingest.reading.format_reader import FileReader, read_values
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -87,14 +86,9 @@ def read_types(file: str, bounds: Bounds = BOUNDS) -> TypesFile:
     InputErrors
         With every problem of the file, each a ``TypesError`` of one line.
     """
-    try:
-        top, data = yaml_values.read(file, partial(TypesError, file), bounds)
-    except InputError as error:
-        raise InputErrors([error]) from None
+    top, data = read_values(file, partial(TypesError, file), bounds)
     reader = _Reader(file, error=TypesError, bounds=bounds)
-    observed, channels = reader.document(top)
-    if reader.problems:
-        raise InputErrors(reader.problems)
+    observed, channels = reader.whole(reader.document(top))
     return TypesFile(file, hashlib.sha256(data).hexdigest(), observed, channels)
 
 
@@ -153,10 +147,8 @@ class _Reader(FileReader):
     channels: list[SeenChannel] = field(default_factory=list)
 
     def document(self, top: Value) -> tuple[Observed, tuple[SeenChannel, ...]]:
-        if top.kind != "map":
-            self.problem(top.line, f"a file of types is a map, not a {top.kind}", "begin with 'types: 1'")
+        if not self.is_format(top, "types", "a file of types"):
             return Observed(), ()
-        self.version(top, "types", "types")
         observed = Observed()
         for key, _, value in self.entries_of(top, ("types", "observed", *KINDS)):
             if key == "observed":
@@ -170,7 +162,7 @@ class _Reader(FileReader):
         if value.kind != "map":
             self.problem(value.line, f"observed is a map, not a {value.kind}", "write {from: …, to: …, by: [dds]}")
             return Observed()
-        said = {key: child for key, _, child in self.entries_of(value, ("from", "to", "by"))}
+        said = self.values_of(value, ("from", "to", "by"))
         start, end = (self._time(said[key], key) if key in said else "" for key in ("from", "to"))
         doors = self.list_of(said["by"], "by") if "by" in said else ()
         return Observed(start, end, tuple(filter(None, (self._text(door, "by") for door in doors))))
@@ -188,7 +180,7 @@ class _Reader(FileReader):
 
     def _type(self, item: Value, section: str) -> SeenType | None:
         ends = ENDS[section]
-        said = {key: value for key, _, value in self.entries_of(item, ("type", "hash", *ends, "first", "last"))}
+        said = self.values_of(item, ("type", "hash", *ends, "first", "last"))
         if item.kind != "map" or "type" not in said:
             self.problem(item.line, "what was seen needs a type", "write {type: sensor_msgs/msg/Image}")
             return None

@@ -21,7 +21,7 @@ from rosprivacy.analysis.modes import Paths, View
 from rosprivacy.analysis.whatif.answered_by_globs import answered_by_globs
 from rosprivacy.assumptions import assumptions_of
 from rosprivacy.decided import accepts, doubts_decided, joined_to, law_of
-from rosprivacy.ingest.labels.shipped import infrastructure_of
+from rosprivacy.ingest.labels.label_file import infrastructure_of
 from rosprivacy.question import in_contexts
 from rosprivacy.result import Result
 

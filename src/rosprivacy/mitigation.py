@@ -16,10 +16,9 @@ from rosprivacy.analysis.mitigation.propose import System, mitigate, open_findin
 from rosprivacy.analysis.model import UNPROTECTED
 from rosprivacy.ingest.deployed.exposures import with_exposed
 from rosprivacy.ingest.labels.binding import join
-from rosprivacy.ingest.mitigation.deny_lines import denials, with_denied
+from rosprivacy.ingest.mitigation.deny_lines import denials, open_ended, with_denied
 from rosprivacy.ingest.mitigation.deny_patch import Patch, patch
 from rosprivacy.ingest.mitigation.limits_file import read_limits
-from rosprivacy.ingest.mitigation.open_wildcards import open_ended
 from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.report.document.mitigation import mitigation_document
 from rosprivacy.report.document.whole import document

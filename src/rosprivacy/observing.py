@@ -21,7 +21,7 @@ from rosprivacy.analysis.errors import InputError, InputErrors, shown
 from rosprivacy.analysis.model import WITHOUT_WARNINGS
 from rosprivacy.analysis.text import blanked, counted
 from rosprivacy.clock import source_date
-from rosprivacy.ingest.labels.non_ros_reader import LONGEST
+from rosprivacy.ingest.labels.entries import LONGEST_NAME
 from rosprivacy.ingest.policies.observed_metadata import GAPS, UNWARNED
 from rosprivacy.ingest.running.doors import seen_by
 from rosprivacy.ingest.running.observation import TYPE, Observation, added_up, moment
@@ -231,8 +231,8 @@ def _say(facts: CommentedMap, key: str, text: str) -> None:
 
 def _element(path: str) -> str:
     """A name that no element of ROS has, without what the label file's grammar forbids."""
-    return f"file {_in_one_line(path).lstrip('/').replace(':', '_')}"[:LONGEST].strip()
+    return f"file {_in_one_line(path).lstrip('/').replace(':', '_')}"[:LONGEST_NAME].strip()
 
 
 def _in_one_line(text: str) -> str:
-    return " ".join(blanked(text).split())[:LONGEST]
+    return " ".join(blanked(text).split())[:LONGEST_NAME]

@@ -240,6 +240,6 @@ class Result(Answer):
         >>> len(result.with_entry("nodes", "/robot_camera", "conduit").findings)
         1
         """
-        from rosprivacy.ingest.labels.replaced import with_entry  # noqa: PLC0415 - light start
+        from rosprivacy.ingest.labels.edited_entries import with_entry  # noqa: PLC0415 - light start
 
         return self.with_labels(*with_entry(self.labels, section, name, said, self.vocabulary))

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 import pytest
 
 from rosprivacy.analysis.model import Place
-from rosprivacy.ingest.annotations.annotation_text import WORDS, Annotation, read_annotation
-from rosprivacy.ingest.annotations.code_evidence import CodeEvidence, code_evidence
-from rosprivacy.ingest.annotations.source_files import read_sources
+from rosprivacy.ingest.code.annotation_text import WORDS, Annotation, read_annotation
+from rosprivacy.ingest.code.code_names import CodeEvidence, code_evidence
+from rosprivacy.ingest.code.source_files import read_sources
 from rosprivacy.ontology.vocabulary import load
 from tests.helpers.command import cli, refused
 from tests.helpers.docs import CATEGORIES, blocks

@@ -14,7 +14,7 @@ import pytest
 import yaml
 
 from rosprivacy.analysis.model import GOES_NOWHERE, NO_LEAK_NAMED
-from rosprivacy.ingest.labels.label_template import HEADER
+from rosprivacy.ingest.labels.label_template import header
 from rosprivacy.labelling.label_lines import next_lines, updated
 from rosprivacy.report.terminal.next_step import EXAMPLE, lacking_step
 from rosprivacy.settings import Settings
@@ -71,7 +71,7 @@ def planted_in(corpus: Path, names: tuple[str, ...]) -> list[Planted]:
 def test_the_words_are_those_of_the_template() -> None:
     """What is tried is what is offered: by the template's header, and by what the program says to do next."""
     for word in (*NODE_WORDS, *CHANNEL_WORDS):
-        assert any(word.format(kind) in HEADER for kind in ("Video", "Voice", "Location")), word
+        assert any(word.format(kind) in header() for kind in ("Video", "Voice", "Location")), word
     assert NODE_WORDS[0].format("Video") in EXAMPLE
     assert all("{leak: [" in text or "{source: [" in text for text in map(lacking_step, (GOES_NOWHERE, NO_LEAK_NAMED)))
 

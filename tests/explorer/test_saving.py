@@ -12,7 +12,7 @@ from rosprivacy.analysis.errors import InputError
 from rosprivacy.explorer.saving import Conflict, Saved
 from rosprivacy.explorer.session import Session
 from rosprivacy.ingest.labels.edited_entries import Said
-from rosprivacy.ingest.labels.entry_writer import with_entries
+from rosprivacy.ingest.labels.label_writer import with_entries
 from tests.helpers.factory import FACTORY
 from tests.helpers.turtlebot import TURTLEBOT3
 

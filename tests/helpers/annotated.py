@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from rosprivacy.ingest.annotations.attached import attach
-from rosprivacy.ingest.annotations.cpp_code import read_cpp
-from rosprivacy.ingest.annotations.python_code import read_python
+from rosprivacy.ingest.code.annotated_elements import attach
+from rosprivacy.ingest.code.cpp_code import read_cpp
+from rosprivacy.ingest.code.python_code import read_python
 from rosprivacy.ontology.vocabulary import load
 
 PYTHON, CPP = "a.py", "a.cpp"

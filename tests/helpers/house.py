@@ -54,7 +54,7 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "decisions": {"reading"},
         "running": READING | {"types"},
         "labels": READING | {"running"},
-        "annotations": READING | {"labels"},
+        "code": READING | {"labels"},
         "mitigation": READING,
         "language_model": {"reading"},
         "deployed": READING,

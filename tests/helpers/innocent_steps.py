@@ -16,9 +16,8 @@ from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.model import Place, Statement
 from rosprivacy.answering import answer
 from rosprivacy.cli.exit_code import FailOn, exit_code
-from rosprivacy.ingest.labels.label_file import parse_labels
+from rosprivacy.ingest.labels.label_file import infrastructure_of, parse_labels
 from rosprivacy.ingest.labels.label_template import template
-from rosprivacy.ingest.labels.shipped import infrastructure_of
 from rosprivacy.question import question_of
 from rosprivacy.reading.robot_system import robot_system, standard_channels
 from rosprivacy.settings import Settings

@@ -14,8 +14,7 @@ from rosprivacy.ingest.fleet.alike_robots import alike, chosen
 from rosprivacy.ingest.fleet.dds_domains import Member
 from rosprivacy.ingest.fleet.fleet_file import Fleet, Robot
 from rosprivacy.ingest.fleet.fleet_graph import place
-from rosprivacy.ingest.labels.entries import Entry, FlowEntry
-from rosprivacy.ingest.labels.non_ros_reader import Stated
+from rosprivacy.ingest.labels.entries import Entry, FlowEntry, Stated
 from tests.helpers.brute import Brute
 from tests.helpers.systems import HIERARCHY, PARENTS, System, facts, statement, systems
 

@@ -14,7 +14,7 @@ from ruamel.yaml.comments import CommentedSeq
 
 from rosprivacy.analysis.model import Element
 from rosprivacy.analysis.suggesting.library_rules import ADDRESS, PYTHON
-from rosprivacy.ingest.annotations.source_files import read_sources
+from rosprivacy.ingest.code.source_files import read_sources
 from rosprivacy.ingest.suggestions.library_file import read_library_rules
 from rosprivacy.labelling.code_said import code_said
 from rosprivacy.ontology.vocabulary import load

@@ -159,8 +159,8 @@ def _begin(inputs: Inputs, output: Path | None) -> None:
 
 def _first(inputs: Inputs, output: Path | None) -> tuple[str, Path | None, dict[Path, str | None]]:
     """A first label file; and beside it, if it goes into a file, the schema that its first line names."""
+    from rosprivacy.ingest.labels.label_file import infrastructure_of
     from rosprivacy.ingest.labels.label_template import SCHEMA_FILE, template
-    from rosprivacy.ingest.labels.shipped import infrastructure_of
     from rosprivacy.ingest.policies.flow_graph import build
     from rosprivacy.ontology.vocabulary import load
     from rosprivacy.reading.robot_system import read_graphs, read_system, standard_channels

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypedDict
 from rosprivacy.analysis.errors import InputErrors, LabelError, shown
 from rosprivacy.analysis.model import NON_ROS
 from rosprivacy.ingest.labels.edited_entries import KINDS, Said, same_name
-from rosprivacy.ingest.labels.label_reader import NONE
+from rosprivacy.ingest.labels.keywords import CHANNEL, NODE, NONE, moves_data
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -26,8 +26,7 @@ SECTION = {
     "non_ros": "elements",
     **dict.fromkeys(NON_ROS, "elements"),
 }
-NODES = ("source", "leak", "sanitizer", "conduit", "derives", "absent")
-ROLES = (*NODES, "sensitive", "only", "never", "mundane")  # what data does there
+ROLES = (*moves_data(NODE), *moves_data(CHANNEL))  # what data does there
 WHOLE = {"conduit": "conduit", "mundane": "never", "sensitive": "sensitive"}  # said of all kinds -> key of a map
 
 

@@ -13,7 +13,7 @@ from rosprivacy.analysis.errors import InputError, InputErrors, shown
 from rosprivacy.answering import answer
 from rosprivacy.explorer.scenarios import cut, doubting, stated, with_steps
 from rosprivacy.ingest.fleet.dds_domains import pseudo_robot
-from rosprivacy.ingest.mitigation.open_wildcards import open_ended
+from rosprivacy.ingest.mitigation.deny_lines import open_ended
 from rosprivacy.reading.robot_reader import Tried
 
 if TYPE_CHECKING:

@@ -13,9 +13,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import InputError, InputErrors, LabelError, shown
 from rosprivacy.analysis.files_read import one_run
-from rosprivacy.ingest.labels.entry_writer import with_entries
 from rosprivacy.ingest.labels.label_file import parse_labels
-from rosprivacy.ingest.labels.label_writer import without_places
+from rosprivacy.ingest.labels.label_writer import with_entries, without_places
 from rosprivacy.ingest.reading import yaml_values
 from rosprivacy.ingest.reading.bounded_file import read_regular
 from rosprivacy.report.atomic import write_texts
@@ -26,8 +25,8 @@ if TYPE_CHECKING:
 
     from rosprivacy.explorer.edits import Edit
     from rosprivacy.explorer.own_file import OwnFile
-    from rosprivacy.ingest.labels.entry_writer import NewText
     from rosprivacy.ingest.labels.label_file import Labels
+    from rosprivacy.ingest.labels.label_writer import NewText
 
 
 class Saved(NamedTuple):

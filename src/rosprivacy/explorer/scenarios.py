@@ -19,8 +19,7 @@ from rosprivacy.answering import answer
 from rosprivacy.explorer.edits import section_of
 from rosprivacy.ingest.labels.edited_entries import KINDS, same_name
 from rosprivacy.ingest.labels.label_file import parse_labels
-from rosprivacy.ingest.mitigation.deny_lines import with_denied
-from rosprivacy.ingest.mitigation.open_wildcards import open_ended
+from rosprivacy.ingest.mitigation.deny_lines import open_ended, with_denied
 from rosprivacy.reading.robot_system import lenient_system
 
 if TYPE_CHECKING:

@@ -11,20 +11,18 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import InputError, InputErrors, shown
 from rosprivacy.analysis.text import counted, printable
-from rosprivacy.ingest.annotations.annotated_labels import HEAD, conflicts, label_text
-from rosprivacy.ingest.annotations.attached import attach
-from rosprivacy.ingest.annotations.code_names import ROOT, is_ros_name
-from rosprivacy.ingest.annotations.left_out import lost_annotations
-from rosprivacy.ingest.annotations.source_files import read_sources
+from rosprivacy.ingest.code.annotated_elements import HEAD, attach, conflicts, label_text, lost_annotations
+from rosprivacy.ingest.code.code_names import ROOT, is_ros_name
+from rosprivacy.ingest.code.source_files import read_sources
+from rosprivacy.ingest.labels.entries import SECTIONS
 from rosprivacy.ingest.labels.label_file import parse_labels, read_labels
-from rosprivacy.ingest.labels.label_reader import SECTIONS
 from rosprivacy.ingest.labels.label_writer import without_places
 from rosprivacy.ingest.reading.bounded_file import beginning
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from rosprivacy.ingest.annotations.attached import Labelled
+    from rosprivacy.ingest.code.annotated_elements import Labelled
     from rosprivacy.ingest.labels.entries import Entry
     from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.ontology.vocabulary import Vocabulary

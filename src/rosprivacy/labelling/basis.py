@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Bound, MessageType
     from rosprivacy.analysis.suggesting.asked_elements import Comments
     from rosprivacy.analysis.suggesting.library_rules import NodeUse
-    from rosprivacy.ingest.annotations.code_units import Local
+    from rosprivacy.ingest.code.node_uses import Local
     from rosprivacy.result import Result
 
 

@@ -11,8 +11,8 @@ from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import MessageType
-from rosprivacy.ingest.annotations.code_evidence import code_evidence
-from rosprivacy.ingest.annotations.node_uses import node_uses
+from rosprivacy.ingest.code.code_names import code_evidence
+from rosprivacy.ingest.code.node_uses import node_uses
 from rosprivacy.labelling.basis import CodeSaid
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.model import Element
     from rosprivacy.analysis.suggesting.library_rules import NodeUse
-    from rosprivacy.ingest.annotations.source_code import Code
+    from rosprivacy.ingest.code.source_code import Code
 
 
 def code_said(codes: Sequence[Code], of_others: tuple[str, ...], elements: Sequence[Element]) -> CodeSaid:

@@ -16,11 +16,10 @@ from rosprivacy.analysis.model import GLOB
 from rosprivacy.analysis.written_names import literal
 from rosprivacy.ingest.labels.add_non_ros import extend
 from rosprivacy.ingest.labels.binding import join
-from rosprivacy.ingest.labels.label_file import OURS, Labels, parse_labels, read_labels
-from rosprivacy.ingest.labels.label_reader import SECTIONS
+from rosprivacy.ingest.labels.entries import SECTIONS
+from rosprivacy.ingest.labels.label_file import OURS, Labels, infrastructure_of, parse_labels, read_labels
 from rosprivacy.ingest.labels.label_template import neighbours, told
 from rosprivacy.ingest.labels.label_writer import NEW, NewLine, with_lines
-from rosprivacy.ingest.labels.shipped import infrastructure_of
 from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.ingest.policies.names import covered
 from rosprivacy.ingest.reading.bounded_file import read_regular

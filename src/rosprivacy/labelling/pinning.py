@@ -20,9 +20,8 @@ from rosprivacy.analysis.whatif.answered_by_globs import answered_by_globs
 from rosprivacy.answering import answer
 from rosprivacy.ingest.fleet.dds_domains import called_in_fleet
 from rosprivacy.ingest.labels.edited_entries import Said
-from rosprivacy.ingest.labels.entry_writer import with_entries
 from rosprivacy.ingest.labels.label_file import OURS, Labels, parse_labels
-from rosprivacy.ingest.labels.label_writer import without_places
+from rosprivacy.ingest.labels.label_writer import with_entries, without_places
 from rosprivacy.ingest.labels.pins import PINS, Pin, as_section, spot
 from rosprivacy.ingest.reading import yaml_values
 from rosprivacy.ingest.reading.bounded_file import read_utf8

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Bound, Category, MessageType, Weight
     from rosprivacy.analysis.suggesting.evidence import Evidence, Proposal
     from rosprivacy.analysis.suggesting.library_rules import LibraryRules
-    from rosprivacy.ingest.annotations.code_units import Local
+    from rosprivacy.ingest.code.node_uses import Local
     from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.labelling.interview import Interview
     from rosprivacy.labelling.knowledge import Known, UserFiles
@@ -146,8 +146,8 @@ def basis_of(result: Result, sources: Sequence[str] = ()) -> Basis:
     places = review_places(result, result.review_order)
     if not sources:
         return Basis(result, result.bound, places, {}, NO_CODE)
-    from rosprivacy.ingest.annotations.code_comments import code_comments  # noqa: PLC0415 - light start
-    from rosprivacy.ingest.annotations.source_files import read_sources  # noqa: PLC0415
+    from rosprivacy.ingest.code.code_names import code_comments  # noqa: PLC0415 - light start
+    from rosprivacy.ingest.code.source_files import read_sources  # noqa: PLC0415
     from rosprivacy.labelling.code_said import code_said  # noqa: PLC0415
 
     codes, of_others, _ = read_sources(sources)

@@ -13,8 +13,7 @@ from rosprivacy.analysis.suggesting.outdated_reasons import outdated_reasons
 from rosprivacy.ingest.deployed.exposures import with_exposed
 from rosprivacy.ingest.fleet.alike_robots import digest
 from rosprivacy.ingest.fleet.dds_domains import Member, stripped
-from rosprivacy.ingest.labels.add_non_ros import extended
-from rosprivacy.ingest.labels.bag_storages import told_of_bags
+from rosprivacy.ingest.labels.add_non_ros import extended, told_of_bags
 from rosprivacy.ingest.labels.binding import join, remarks
 from rosprivacy.ingest.labels.label_file import OURS, read_labels
 from rosprivacy.ingest.mitigation.deny_lines import with_denied

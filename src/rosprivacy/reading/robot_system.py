@@ -16,13 +16,11 @@ from rosprivacy.analysis.suggesting.outdated_reasons import outdated_reasons
 from rosprivacy.answering import answer
 from rosprivacy.assumptions import files_read, remembered, types_read
 from rosprivacy.ingest.deployed.exposures import with_exposed
-from rosprivacy.ingest.labels.add_non_ros import extend, extended
-from rosprivacy.ingest.labels.bag_storages import told_of_bags
-from rosprivacy.ingest.labels.binding import bind, join, remarks
-from rosprivacy.ingest.labels.graph_names import GraphNames
+from rosprivacy.ingest.labels.add_non_ros import extend, extended, told_of_bags
+from rosprivacy.ingest.labels.binding import GraphNames, bind, join, remarks
 from rosprivacy.ingest.labels.label_file import Labels, read_labels, unknown_categories
 from rosprivacy.ingest.labels.pins import PIN_OF_NOTHING
-from rosprivacy.ingest.labels.stated_types import in_order
+from rosprivacy.ingest.labels.stated_facts import in_order
 from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, Change, changed
 from rosprivacy.ingest.policies.comparisons import careful_warnings
 from rosprivacy.ingest.policies.flow_graph import build

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.fleet.dds_domains import Member
     from rosprivacy.ingest.fleet.fleet_file import Fleet, Robot
     from rosprivacy.ingest.fleet.joins import Met
-    from rosprivacy.ingest.labels.non_ros_reader import Limit
+    from rosprivacy.ingest.labels.entries import Limit
     from rosprivacy.ingest.types.types_file import TypesFile
     from rosprivacy.spark.units import Unit
 

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.fleet.alike_robots import Alike
     from rosprivacy.ingest.fleet.fleet_file import Fleet
     from rosprivacy.ingest.fleet.mergeable_graph import Key
-    from rosprivacy.ingest.labels.non_ros_reader import Limit
+    from rosprivacy.ingest.labels.entries import Limit
 
 HUB, GATE = "\0hub", "\0gate"  # in place of a robot; none has such a name
 Lines = frozenset[int]  # numbers of flows of the fleet file

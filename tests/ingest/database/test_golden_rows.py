@@ -17,10 +17,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Self
 
+from rosprivacy.answering import answer
 from rosprivacy.bags import answer_bags
 from rosprivacy.both_views import both_views, both_views_of_fleet
-
-from rosprivacy.answering import answer
 from rosprivacy.ingest.database.bag_rows import load_bags
 from rosprivacy.ingest.database.loading import load
 from rosprivacy.ingest.database.schema import NODES, RELATIONSHIPS

@@ -11,7 +11,7 @@ import pytest
 
 from rosprivacy.analysis.case import Case
 from rosprivacy.analysis.decisions import Choice, Decisions, State
-from rosprivacy.analysis.errors import InputErrors
+from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.analysis.model import Element
 from rosprivacy.clock import today
 from rosprivacy.ingest.decisions.decisions_file import parse_decisions
@@ -119,62 +119,56 @@ def test_decisions_of_one_rank_that_differ_accept_nothing() -> None:
 # ---------------------------------------------------------------- the file
 
 
+WHOLE = [  # line, text, words of the message
+    (1, "", "the file is empty"),
+    (1, "[]", "a decisions file is a map, not a list"),
+    (1, "findings: []", "no 'decisions: 1'"),
+    (1, "decisions: 2", "decisions format '2'"),
+    (2, "decisions: 1\nfinding: []", "unknown key 'finding'; did you mean 'findings'?"),
+    (2, "decisions: 1\nfindings: x", "findings takes a list, not a text"),
+    (2, "decisions: 1\nfindings: [x]", "a decision is a map, not a text"),
+]
+ENTRIES = [  # what an entry says, words of the message
+    (f"id: {ID}", "no decision"),
+    (f"id: {ID}, decision: acept", "decision 'acept'; did you mean accept?"),
+    (f"id: {ID}, decision: accept, owner: me", "an acceptance without reason"),
+    (f"id: {ID}, decision: accept, reason: so", "an acceptance without owner"),
+    ("id: 7ac, decision: avoid", "id '7ac'"),
+    ("decision: avoid", "a decision about everything"),
+    ("decision: avoid, kind: disclosure", "a decision about everything"),
+    ("category: Vidio, decision: avoid", "unknown category 'Vidio'; did you mean Video or Voice?"),
+    ("category: qqqqqq, decision: avoid", "unknown category 'qqqqqq'; rosprivacy categories lists all of them"),
+    (f"id: {ID}, decision: avoid, expires: 2026-02-30", "expires '2026-02-30'"),
+    (f"id: {ID}, decision: avoid, expires: tomorrow", "expires 'tomorrow'"),
+    (f"id: {ID}, decision: avoid, expires: ", "expires 'empty'"),
+    (f"id: {ID}, decision: avoid, legal_basis: consent", "legal basis 'consent'"),
+    (f"id: {ID}, decision: avoid, legal_basis: [6(1)(z)]", "legal basis '6(1)(z)'"),
+    (f"id: {ID}, decision: avoid, legal_basis: [48]", "legal basis '48'"),
+    (f"id: {ID}, decision: avoid, pseudonymised: maybe", "pseudonymised takes"),
+    (f"id: {ID}, decision: avoid, reason: ''", "reason takes text"),
+    (f"id: {ID}, decision: avoid, owner: {{a: b}}", "owner takes text"),
+    (f"id: {ID}, decision: avoid, resaon: x", "unknown key 'resaon'"),
+    (f"id: {ID}, decision: avoid}}\n- {{id: {ID}, decision: avoid", f"{ID} again, first in line 3"),
+    (f"id: {ID}, decision: avoid, reason: {'x' * 10_001}", "reason of 10001"),
+]
+
+
 @pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        ("", "1: the file is empty"),
-        ("[]", "1: a decisions file is a map, not a list"),
-        ("findings: []", "1: no 'decisions: 1'"),
-        ("decisions: 2", "1: decisions format '2'"),
-        ("decisions: 1\nfinding: []", "2: unknown key 'finding'; did you mean 'findings'?"),
-        ("decisions: 1\nfindings: x", "2: findings takes a list, not a text"),
-        ("decisions: 1\nfindings: [x]", "2: a decision is a map, not a text"),
-        (f"decisions: 1\nfindings:\n- id: {ID}", "3: no decision"),
-        (f"decisions: 1\nfindings:\n- id: {ID}\n  decision: acept", "4: decision 'acept'; did you mean accept?"),
-        (f"decisions: 1\nfindings:\n- id: {ID}\n  decision: accept\n  owner: me", "3: an acceptance without reason"),
-        (f"decisions: 1\nfindings:\n- id: {ID}\n  decision: accept\n  reason: so", "3: an acceptance without owner"),
-        ("decisions: 1\nfindings:\n- id: 7ac\n  decision: avoid", "3: id '7ac'"),
-        ("decisions: 1\nfindings:\n- decision: avoid", "3: a decision about everything"),
-        ("decisions: 1\nfindings:\n- decision: avoid\n  kind: disclosure", "3: a decision about everything"),
-        (
-            "decisions: 1\nfindings:\n- category: Vidio\n  decision: avoid",
-            "3: unknown category 'Vidio'; did you mean Video or Voice?",
-        ),
-        (
-            "decisions: 1\nfindings:\n- category: qqqqqq\n  decision: avoid",
-            "3: unknown category 'qqqqqq'; rosprivacy categories lists all of them",
-        ),
-        (f"decisions: 1\nfindings:\n- id: {ID}\n  decision: avoid\n  expires: 2026-02-30", "5: expires '2026-02-30'"),
-        (f"decisions: 1\nfindings:\n- id: {ID}\n  decision: avoid\n  expires: tomorrow", "5: expires 'tomorrow'"),
-        (f"decisions: 1\nfindings:\n- id: {ID}\n  decision: avoid\n  expires:", "5: expires 'empty'"),
-        (f"decisions: 1\nfindings:\n- id: {ID}\n  decision: avoid\n  legal_basis: consent", "5: legal basis 'consent'"),
-        (
-            f"decisions: 1\nfindings:\n- id: {ID}\n  decision: avoid\n  legal_basis: [6(1)(z)]",
-            "5: legal basis '6(1)(z)'",
-        ),
-        (f"decisions: 1\nfindings:\n- id: {ID}\n  decision: avoid\n  legal_basis: [48]", "5: legal basis '48'"),
-        (f"decisions: 1\nfindings:\n- id: {ID}\n  decision: avoid\n  pseudonymised: maybe", "5: pseudonymised takes"),
-        (f"decisions: 1\nfindings:\n- id: {ID}\n  decision: avoid\n  reason: ''", "5: reason takes text"),
-        (f"decisions: 1\nfindings:\n- id: {ID}\n  decision: avoid\n  owner: {{a: b}}", "5: owner takes text"),
-        (f"decisions: 1\nfindings:\n- id: {ID}\n  decision: avoid\n  resaon: x", "5: unknown key 'resaon'"),
-        (
-            f"decisions: 1\nfindings:\n- id: {ID}\n  decision: avoid\n- id: {ID}\n  decision: avoid",
-            "5: 0123456789abcdef",
-        ),
-        (f"decisions: 1\nfindings:\n- id: {ID}\n  decision: avoid\n  reason: {'x' * 10_001}", "5: reason of 10001"),
-    ],
+    ("line", "text", "words"),
+    WHOLE + [(3 + said.count("\n"), f"decisions: 1\nfindings:\n- {{{said}}}", words) for said, words in ENTRIES],
 )
-def test_bad_decisions_are_refused_with_their_line(cli: Cli, tmp_path: Path, text: str, said: str) -> None:
-    file = tmp_path / "d.yaml"
-    file.write_text(text)
-    lines = refused(cli("analyze", *CARE, "--decisions", file))
-    assert any(line.startswith(f"{file}:{said}") for line in lines), lines
+def test_bad_decisions_are_refused_with_their_line(line: int, text: str, words: str) -> None:
+    with pytest.raises((InputError, InputErrors)) as caught:
+        parse_decisions("d.yaml", text, load(), "")
+    assert f"d.yaml:{line}: {words}" in str(caught.value)
 
 
 def test_all_problems_of_a_decisions_file_are_said_at_once(cli: Cli, tmp_path: Path) -> None:
+    """By the command, with the line of each."""
     file = tmp_path / "d.yaml"
     file.write_text("decisions: 1\nfindings:\n- id: x\n- category: Vidio\n  decision: y\n  expires: z\n")
-    assert len(refused(cli("analyze", *CARE, "--decisions", file))) == 5
+    lines = refused(cli("analyze", *CARE, "--decisions", file))
+    assert [line.removeprefix(f"{file}:").partition(":")[0] for line in lines] == ["3", "3", "4", "5", "6"]
 
 
 @pytest.mark.parametrize("id_", ["1234567812345678", "12345678e1234567", "0x12345678abcdef"])

@@ -1,19 +1,14 @@
-"""``absent: why``: a profile that is not on the robot (review/users.md, B3.7); nothing is said to be cleaned there."""
+"""``absent: why``: a profile that is not on the robot; nothing is said to be cleaned there."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 import pytest
-from jsonschema import Draft202012Validator
 
 import rosprivacy
-from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.ingest.database.loading import load as load_robots
-from rosprivacy.ingest.labels.label_file import parse_labels
-from rosprivacy.ingest.labels.label_schema import label_schema
 from rosprivacy.mitigation import run_mitigation
-from rosprivacy.ontology.vocabulary import load
 from rosprivacy.private_neo4j import connection
 from rosprivacy.reading.robot_system import robot_of
 from rosprivacy.reading.stored_system import answer_stored
@@ -113,28 +108,6 @@ def test_a_wildcard_that_only_an_absent_node_reads_asks_nothing(
     }
     there = analyze(tmp_path, labels, spy, ("screen", "subscribe", "/i*"))
     assert "/i*" in {q.element.name for q in there.analysis.open}
-
-
-@pytest.mark.parametrize(
-    ("label", "problem"),
-    [
-        ("{absent: }", "absent without a reason"),
-        ("{absent: true}", "absent without a reason"),
-        ("{absent: sold, leak: [Video]}", "absent beside leak"),
-        ("{sanitizer: {Video: absent}}", "sanitizer method 'absent'"),
-        ("absent", "label 'absent' on a node"),
-    ],
-)
-def test_it_stands_alone_with_its_reason(label: str, problem: str) -> None:
-    with pytest.raises(InputErrors, match=problem):
-        parse_labels(f"labels: 1\nnodes: {{/a: {label}}}", load(), name="l")
-
-
-def test_editors_take_it() -> None:
-    schema = Draft202012Validator(label_schema(load().categories.values()))
-    assert schema.is_valid({"labels": 1, "nodes": {"/a": {"absent": "sold", "note": "in May"}}})
-    assert not schema.is_valid({"labels": 1, "nodes": {"/a": {"absent": ""}}})
-    assert not schema.is_valid({"labels": 1, "nodes": {"/a": {"sanitizer": {"Video": "absent"}}}})
 
 
 @pytest.mark.database

@@ -27,6 +27,7 @@ FULL: dict[str, Any] = {
         "/c": {"source": {"Video": ["/t"]}, "sanitizer": {"Voice": "drop", "Health": None}},
         "/d": {"sanitizer": ["Video"], "derives": [{"from": "Video", "to": "FaceTemplate"}]},
         "/e": None,
+        "=/*": {"absent": "sold", "note": "in May"},
     },
     "channels": {
         "/t": "mundane",
@@ -81,7 +82,7 @@ def changed(way: tuple[Any, ...], other: Any) -> Any:
 
 
 def test_the_schema_accepts_what_uses_every_key(tmp_path: Path) -> None:
-    assert len(told(read(tmp_path, json.dumps(FULL)))) == 20
+    assert len(told(read(tmp_path, json.dumps(FULL)))) == 21
     assert validator().is_valid(FULL)
 
 

@@ -9,13 +9,12 @@ import pytest
 import yaml
 
 import rosprivacy
-from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.model import BY_GLOBS
 from rosprivacy.explorer.session import Session
 from rosprivacy.ingest.labels.pins import PIN_OF_NOTHING
 from tests.helpers.docs import blocks
 from tests.helpers.fleet_files import policy
-from tests.helpers.label_files import read, validator
+from tests.helpers.label_files import validator
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
@@ -133,29 +132,6 @@ class TestMeaning:
         pins = "pins:\n  nodes:\n    /planner: [Video]\n    /gone: [Video]\n  topics:\n    /cmd: [Video]\n"
         told = [d for d in analysed(tmp_path, LABELS + pins).diagnostics if d.code == PIN_OF_NOTHING]
         assert [(d.place.line, d.severity) for d in told] == [(12, "notice"), (14, "notice")]
-
-
-@pytest.mark.parametrize(
-    ("pins", "line"),
-    [
-        ("pins: [Video]", 2),
-        ("pins: {nodes: {/a: Vidoe}}", 2),
-        ("pins: {nodes: {'/*': [Video]}}", 2),
-        ("pins: {nodes: {a: [Video]}}", 2),
-        ("pins: {nodes: {/a: []}}", 2),
-        ("pins: {channels: {/a: [Video]}}", 2),
-        ("pins:\n  flows:\n  - {from: /a, to: {topic: /b}, kinds: [Video]}", 4),
-        ("pins:\n  flows:\n  - {from: {node: /a}, to: {topic: /b}}", 4),
-        ("pins:\n  flows:\n  - /a", 4),
-    ],
-)
-def test_what_is_no_pin_is_refused_at_its_line(tmp_path: Path, pins: str, line: int) -> None:
-    text = f"labels: 1\n{pins}\n"
-    with pytest.raises(InputErrors) as caught:
-        read(tmp_path, text)
-    assert [error.line for error in caught.value.errors] == [line]
-    if "Vidoe" not in pins:  # a schema takes every word as a category
-        assert not validator().is_valid(yaml.safe_load(text))
 
 
 class TestCommand:

@@ -9,8 +9,6 @@ import pytest
 import rosprivacy
 from rosprivacy.analysis.legal_bases import Lack
 from rosprivacy.analysis.model import LEGAL_BASIS
-from rosprivacy.ingest.labels.label_file import parse_labels
-from rosprivacy.ontology.vocabulary import load
 from tests.helpers.fleet_files import policy
 
 if TYPE_CHECKING:
@@ -19,12 +17,6 @@ if TYPE_CHECKING:
     from rosprivacy.result import Result
 
 CLOUD = "{kind: external-system, country: US, operator: X, recipient: processor"
-
-
-def refused(text: str) -> list[str]:
-    with pytest.raises(rosprivacy.InputErrors) as caught:
-        parse_labels(f"labels: 1\n{text}", load(), name="l.yaml")
-    return [str(error) for error in caught.value.errors]
 
 
 def analysed(folder: Path, labels: str, *more: str, **options: object) -> Result:
@@ -42,34 +34,6 @@ def flagged(result: Result) -> list[tuple[int, str]]:
         for said in result.document()["diagnostics"]
         if said.get("code") == LEGAL_BASIS
     ]
-
-
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        ("legal_basis: consent", "l.yaml:2: legal basis 'consent'; write such as 6(1)(f), 9(2)(h) for special"),
-        ("legal_basis: []", "l.yaml:2: legal_basis says nothing; write it, or remove the key"),
-        ("legal_basis: {Videoo: 6(1)(f)}", "l.yaml:2: unknown category 'Videoo'"),
-        ("legal_basis: [6(1)(f), 46(2)(c)]", "l.yaml:2: a basis of a transfer for a whole system; state it where the"),
-        ("controller: [A, B]", "l.yaml:2: controller: a list; write a text of one line, at most 200 characters"),
-        ("controller:", "l.yaml:2: controller: nothing; write a text of one line"),
-        ("purpose: {Video: 3}", "l.yaml:2: purpose: '3'; write a text of one line"),
-        ('purpose: "Video: care"', "l.yaml:2: purpose 'Video: care' begins with a kind of data; write {Video: …}"),
-        ("nodes: {/cam: {controller: A}}", "l.yaml:2: unknown key 'controller'"),
-        ("nodes: {/cam: {legal_basis: 6(2)}}", "l.yaml:2: legal basis '6(2)'; write such as 6(1)(f)"),
-        ("channels: {/v: {purpose: care}}", "l.yaml:2: unknown key 'purpose'"),
-        (f"elements: {{c: {CLOUD}, legal_basis: [46(2)(c), 47]}}}}", "legal_basis names binding-corporate-rules and"),
-        (
-            f"elements: {{c: {CLOUD}, transfer: none, legal_basis: 47}}}}",
-            "corporate-rules, and transfer says none; state",
-        ),
-        (f"elements: {{c: {CLOUD}, legal_basis: {{Video: 47}}}}}}", "a basis of a transfer for one kind of data"),
-        (f"elements: {{c: {CLOUD}, contract: [28]}}}}", "l.yaml:2: contract: a list; write its name"),
-    ],
-)
-def test_one_clear_line_for_each_bad_value(text: str, said: str) -> None:
-    (line,) = refused(text)
-    assert said in line
 
 
 def test_a_name_outranks_a_glob_and_one_file_another_only_by_name(tmp_path: Path) -> None:

@@ -54,15 +54,6 @@ def test_it_lets_pass_what_it_is_reviewed_for(tmp_path: Path) -> None:
         assert rosprivacy.analyze(str(tmp_path / "p.xml"), str(tmp_path / "l.yaml")).analysis.verdict == verdict, said
 
 
-@pytest.mark.parametrize(
-    ("said", "message"),
-    [
-        ("{sensitive: [Video], never: [Video]}", "/a is sensitive for Video here and never [Video] at"),
-        ("{sensitive: []}", "sensitive names no category"),
-        ("{sensitive: [Vidoe]}", "unknown category 'Vidoe'"),
-    ],
-)
-def test_what_contradicts_itself_or_names_nothing_is_an_error(tmp_path: Path, said: str, message: str) -> None:
-    with pytest.raises(InputErrors) as raised:
-        open_at(tmp_path, said)
-    assert message in str(raised.value)
+def test_what_contradicts_itself_is_an_error(tmp_path: Path) -> None:
+    with pytest.raises(InputErrors, match="/a is sensitive for Video here and never"):
+        open_at(tmp_path, "{sensitive: [Video], never: [Video]}")

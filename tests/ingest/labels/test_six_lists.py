@@ -50,25 +50,6 @@ def test_six_lists_are_about_personal_data_if_nothing_else_is_said(tmp_path: Pat
     assert told(read(tmp_path, '{"leak": ["/a"]}')) == ["node /a: leak PersonalData"]
 
 
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ('{"source": ["/a"], "leeks": []}', "unknown key 'leeks'; did you mean 'leak'?"),
-        ('{"source": ["/a"], "nodes": {}}', "unknown key 'nodes'"),
-        ('{"source": "/a"}', "source takes a list, not a text"),
-        ('{"source": {"/a": 1}}', "source takes a list, not a map"),
-        ('{"source": ["a"]}', "'a' is not an absolute name; begin it with /"),
-        ('{"source": [1]}', "'1' is not an absolute name"),
-        ('{"source": [["/a"]]}', "'list' is not an absolute name"),
-        ('{"source": [null]}', "is not an absolute name"),
-    ],
-)
-def test_six_lists_are_checked(tmp_path: Path, text: str, message: str) -> None:
-    (line,) = refused(tmp_path, text)
-    assert line.startswith("l.yaml:1: ")
-    assert message in line
-
-
 def test_the_category_of_six_lists_has_to_exist(tmp_path: Path) -> None:
     (line,) = refused(tmp_path, SIX, category="Vidio")
     assert "unknown category 'Vidio'; did you mean Video" in line

@@ -1,14 +1,10 @@
-"""Where a system or a source works: ``context`` and ``country`` of label and fleet files (issue 17, points 2 and 5)."""
+"""Where a system or a source works: ``context`` and ``country`` of label and fleet files."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import pytest
-
 import rosprivacy
-from rosprivacy.ingest.labels.label_file import parse_labels
-from rosprivacy.ontology.vocabulary import load
 from tests.helpers.fleet_files import policy
 
 if TYPE_CHECKING:
@@ -62,22 +58,6 @@ def test_article_9_asks_for_what_may_reveal_where_the_system_works(tmp_path: Pat
         ("OperatorInput", "may-reveal"),
         ("Video", "may-reveal"),
     ]
-
-
-@pytest.mark.parametrize(
-    ("top", "message"),
-    [
-        ("context: [carre]", "l.yaml:2: unknown context 'carre'; did you mean care?"),
-        ("context: [market]", "l.yaml:2: unknown context 'market'; "),
-        ("context: []", "l.yaml:2: context names nothing; write some of care, "),
-        ("context: {care: yes}", "l.yaml:2: "),
-        ("country: UK", "l.yaml:2: 'UK' is not an ISO 3166-1 country code; did you mean GB?"),
-    ],
-)
-def test_what_is_no_context_and_no_country_is_an_error(top: str, message: str) -> None:
-    with pytest.raises(rosprivacy.InputErrors) as raised:
-        parse_labels(LABELS.format(top=top, own=""), load(), name="l.yaml")
-    assert message in str(raised.value)
 
 
 def test_a_fleet_file_states_it_of_all_of_a_model_and_of_a_robot(tmp_path: Path) -> None:

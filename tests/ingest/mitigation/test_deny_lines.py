@@ -14,8 +14,7 @@ from rosprivacy.analysis.findings.findings import Options, analyse
 from rosprivacy.analysis.mitigation.limits import DENY, Limits, Weights
 from rosprivacy.analysis.mitigation.propose import System, mitigate, open_findings
 from rosprivacy.analysis.model import Bound, Element, Grant, Method, Place, Policy, Profile, Statement
-from rosprivacy.ingest.mitigation.deny_lines import denials, with_denied
-from rosprivacy.ingest.mitigation.open_wildcards import open_ended
+from rosprivacy.ingest.mitigation.deny_lines import denials, open_ended, with_denied
 from rosprivacy.ingest.policies.flow_graph import build
 from tests.helpers.systems import HIERARCHY, statement
 

@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from rosprivacy.bags import answer_bags
-from rosprivacy.ingest.annotations.cpp_code import read_cpp
-from rosprivacy.ingest.annotations.python_code import read_python
+from rosprivacy.ingest.code.cpp_code import read_cpp
+from rosprivacy.ingest.code.python_code import read_python
 from rosprivacy.ingest.decisions.decisions_file import read_decisions
 from rosprivacy.ingest.deployed.governance import read_governance
 from rosprivacy.ingest.deployed.permissions import policy_of, read_permissions

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.explorer.web import forms
-from rosprivacy.ingest.labels.label_reader import NONE
+from rosprivacy.ingest.labels.keywords import NONE
 
 if TYPE_CHECKING:
     from rosprivacy.explorer.web.forms import Answer

@@ -1,7 +1,10 @@
 """C++ source -> what is read in it, by tree-sitter's grammar; no preprocessor, no recursion, nothing is built.
 
 tree-sitter reads on behind code that it does not understand. What looks like an annotation there, or in a macro, is a
-problem: whether it is a comment nobody can say.
+problem: whether it is a comment nobody can say. What is used are qualified names, types and functions, as far as the
+file itself says what a name stands for: ``using cv::VideoCapture``, ``namespace c = cv`` and ``using namespace cv`` are
+followed. Where several namespaces are used, a plain name may be of each: it is noted for each, and no rule speaks about
+the wrong ones.
 
 Source: the signatures of rclcpp, rclcpp_lifecycle, rclcpp_action and image_transport.
 """
@@ -12,10 +15,9 @@ from bisect import bisect_right
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import LabelError
-from rosprivacy.ingest.annotations.annotation_text import looks_like_one
-from rosprivacy.ingest.annotations.cpp_nodes import (
+from rosprivacy.ingest.code.annotation_text import looks_like_one
+from rosprivacy.ingest.code.cpp_tree import (
     CLASSES,
-    Where,
     arguments_of,
     brief,
     end_of,
@@ -23,14 +25,13 @@ from rosprivacy.ingest.annotations.cpp_nodes import (
     line_of,
     literal_of,
     names_of,
+    parts,
     path_of,
     text_of,
-    variable,
-    walk,
 )
-from rosprivacy.ingest.annotations.cpp_types import TypeNames
-from rosprivacy.ingest.annotations.cpp_uses import CppUses
-from rosprivacy.ingest.annotations.source_code import (
+from rosprivacy.ingest.code.source_code import (
+    INTERFACES,
+    LONGEST_USE,
     NODE,
     NODE_CLASSES,
     Code,
@@ -39,9 +40,14 @@ from rosprivacy.ingest.annotations.source_code import (
     NodeClass,
     OutOfTime,
     Site,
+    Use,
+    Where,
     class_owner,
     clock,
     in_time,
+    program,
+    variable,
+    walk,
 )
 
 if TYPE_CHECKING:
@@ -49,6 +55,10 @@ if TYPE_CHECKING:
 
     from tree_sitter import Node
 
+STEPS = 5  # of names that stand for names
+STARTERS = ("system", "std::system", "popen", "execl", "execlp")
+OPENERS = ("fopen", "std::fopen")
+WRITING = frozenset("wa+")
 CALLS = {  # name -> kind, role
     "create_publisher": ("topic", "publish"),
     "create_generic_publisher": ("topic", "publish"),
@@ -74,13 +84,62 @@ NO_COMMENT = "an annotation stands in a macro or in code that cannot be read"
 ALONE = "put it on a line of its own above the call or class, or correct the code"
 
 
+class _Names:
+    """What the names of a file stand for, as far as it says so itself, and where each is used.
+
+    Attributes
+    ----------
+    namespaces
+        Of ``using namespace``.
+    """
+
+    def __init__(self) -> None:
+        self.namespaces: list[str] = []
+        self._meant: dict[str, str] = {}
+        self._used: dict[tuple[str, str], int] = {}
+
+    def using(self, kind: str, names: list[str]) -> None:
+        """Note one ``using A::B;``, ``using B = A::C;`` or ``namespace b = a::c;``."""
+        if kind == "using_declaration" and len(names) == 1:
+            self._meant[names[0].rpartition("::")[2].strip()] = names[0]
+        elif kind != "using_declaration" and len(names) > 1:
+            self._meant[names[0]] = names[-1]
+
+    def meaning(self, name: str) -> str:
+        """What a name stands for, by what ``using`` says of its first part."""
+        for _ in range(STEPS):
+            head, colons, rest = name.partition("::")
+            if head not in self._meant or self._meant[head] == name:
+                break
+            name = self._meant[head] + colons + rest
+        return name
+
+    def message(self, written: str) -> str:
+        """The type in ROS's spelling, ``sensor_msgs/msg/Image``; empty where the file does not say."""
+        name = self.meaning(written.removeprefix("const ").strip())
+        names = [part.strip() for part in name.replace("/", "::").split("::") if part.strip()]
+        known = len(names) >= len(("package", "msg", "Name")) and names[1] in INTERFACES
+        return "/".join(names[:3]) if known and all(part.isidentifier() for part in names[:3]) else ""
+
+    def use(self, name: str, line: int, unit: str) -> None:
+        """Note the first use of a name in a unit."""
+        self._used.setdefault((unit, name), line)
+
+    def uses(self) -> tuple[Use, ...]:
+        """What is used, each name once in a unit, by line."""
+        found: dict[tuple[str, str], int] = {}
+        for (unit, name), line in self._used.items():
+            known = self.meaning(name)
+            plain = known == name and "::" not in name and name.isidentifier()
+            for meant in [known, *(f"{space}::{name}" for space in dict.fromkeys(self.namespaces) if plain)]:
+                found[unit, meant] = min(line, found.get((unit, meant), line))
+        uses = (Use(name, line, unit) for (unit, name), line in found.items() if len(name) <= LONGEST_USE)
+        return tuple(sorted(uses, key=lambda use: (use.line, use.name)))
+
+
 def read_cpp(file: str, data: bytes) -> Code:
     """Read a file.
 
-    Parameters
-    ----------
-    file
-        For messages.
 
     Raises
     ------
@@ -99,7 +158,7 @@ def read_cpp(file: str, data: bytes) -> Code:
         tree = parser.parse(lambda at, _: data[at : at + PIECE], progress_callback=lambda _at, _broken: late())
     except ValueError:
         raise OutOfTime from None
-    return _Reader(file, data).read(in_time(walk(tree.root_node), late))
+    return _Reader(file, data).read(in_time(walk(tree.root_node, parts), late))
 
 
 class _Reader:
@@ -108,8 +167,7 @@ class _Reader:
     def __init__(self, file: str, data: bytes) -> None:
         self.file = file
         self.data = data
-        self.types = TypeNames()
-        self.used = CppUses(self.types)
+        self.names = _Names()
         self.parts_of_names: set[int] = set()
         self.comments: list[Comment] = []
         self.classes: list[NodeClass] = []
@@ -126,9 +184,9 @@ class _Reader:
             elif kind in ("using_declaration", "alias_declaration", "namespace_alias_definition"):
                 names = [text_of(child) for child in node.named_children]
                 if any(child.type == "namespace" for child in node.children) and kind == "using_declaration":
-                    self.used.namespaces += names
+                    self.names.namespaces += names
                 else:
-                    self.types.add(kind, names)
+                    self.names.using(kind, names)
             elif kind in CLASSES and node.child_by_field_name("body"):
                 self._class(node, where)
             elif kind == "field_initializer":
@@ -140,11 +198,11 @@ class _Reader:
                 self._use_of_call(node, where)
             elif kind in NAMES:
                 self._use_of_name(node, where)
-        if len(set(self.used.namespaces)) > NAMESPACES:
+        if len(set(self.names.namespaces)) > NAMESPACES:
             raise LabelError(self.file, 0, f"using namespace, of more than {NAMESPACES} namespaces", FEWER)
-        sites = tuple(site._replace(type=self.types.message(site.type)) for site in self.sites)
+        sites = tuple(site._replace(type=self.names.message(site.type)) for site in self.sites)
         classes, lost = tuple(self.classes), tuple(self._lost())
-        return Code(self.file, "c++", tuple(self.comments), classes, sites, lost, self.used.uses())
+        return Code(self.file, "c++", tuple(self.comments), classes, sites, lost, self.names.uses())
 
     def _comment(self, node: Node) -> Iterator[Comment]:
         before = self.data[self.data.rfind(b"\n", 0, node.start_byte) + 1 : node.start_byte]
@@ -222,7 +280,7 @@ class _Reader:
     def _use_of_name(self, node: Node, where: Where) -> None:
         """A name as a whole; its parts are noted, since asking each for its parent takes time for each level."""
         if node.id not in self.parts_of_names:
-            self.used.add("::".join(names_of(node)), line_of(node), where.of_class)
+            self.names.use("::".join(names_of(node)), line_of(node), where.of_class)
         if node.type == "qualified_identifier":
             self.parts_of_names.update(child.id for child in node.named_children)
 
@@ -232,7 +290,12 @@ class _Reader:
         if function is None or arguments is None or function.type not in ("identifier", "qualified_identifier"):
             return
         texts = [literal_of(one) for one in arguments_of(arguments)]
-        self.used.add_call("::".join(names_of(function)), texts, line_of(node), where.of_class)
+        name, line, unit = "::".join(names_of(function)), line_of(node), where.of_class
+        self.names.use(name, line, unit)
+        if name in OPENERS and len(texts) > 1 and WRITING & set(texts[1] or ""):
+            self.names.use(f"{name}(w)", line, unit)
+        if name in STARTERS and texts and texts[0] and (started := program(texts[0].split())):
+            self.names.use(started, line, unit)
 
     def _endpoint(
         self, path: list[str], template: list[Node], receiver: str, given: list[Node], at: tuple[Lines, Lines],

@@ -1,21 +1,28 @@
-"""Literal names in code -> names of nodes and channels as ROS resolves them; what is not known has none.
+"""Literal names in code -> names of nodes and channels as ROS resolves them, and what code says plainly of these.
 
-In: the files of a package. Out: the node that a class or a variable is, the full name at a call. Remapping and launch
-files are not seen: labels name what policies name, and a name that is not there is an error then (rule S11).
+In: the files of a package. Out: the node that a class or a variable is, the full name at a call; types and comments
+beside calls, as evidence for suggestions (comments are words of anybody: nothing is read out of them here). What is not
+known has no name. Remapping and launch files are not seen: labels name what policies name, and a name that is not there
+is an error then (rule S11).
+
+Measured on public packages: two thirds of the ends of channels have a literal name, a third a node that is known.
 """
 
 from __future__ import annotations
 
 from collections import defaultdict
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
-from rosprivacy.ingest.annotations.source_code import NODE, NODE_CLASSES, class_of
+from rosprivacy.analysis.model import Place
+from rosprivacy.ingest.code.source_code import NODE, NODE_CLASSES, class_of
 from rosprivacy.ingest.policies.names import resolve
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from rosprivacy.ingest.annotations.source_code import Code, Site
+    from rosprivacy.ingest.code.source_code import Code, Site
+
+    Named = tuple[str, str]  # kind and full name of an element
 
 ROOT = "/"
 
@@ -105,3 +112,102 @@ def is_ros_name(name: str) -> bool:
         return True
     parts = name.removeprefix("~").removeprefix("/").split("/")
     return all(part.isascii() and part.isidentifier() for part in parts) and not name.startswith("~~")
+
+
+class CodeEvidence(NamedTuple):
+    """One call that makes an end of a channel.
+
+    Attributes
+    ----------
+    kind
+        ``topic``, ``service`` or ``action``.
+    role
+        ``publish``, ``subscribe``, ``reply``, ``request``, ``execute``, ``call``.
+    name, node
+        Full names of the channel and of its node; empty where the code does not say.
+    type
+        ``pkg/msg/Name``; empty where the file does not say.
+    """
+
+    place: Place
+    kind: str
+    role: str
+    name: str = ""
+    type: str = ""
+    node: str = ""
+
+
+def code_evidence(codes: Sequence[Code], namespace: str = ROOT) -> tuple[CodeEvidence, ...]:
+    """Return what some files say of channels, by file and line.
+
+    Parameters
+    ----------
+    namespace
+        Of nodes that state none.
+    """
+    names = CodeNames(codes, namespace)
+    return tuple(
+        sorted(
+            CodeEvidence(
+                Place(code.file, site.lines.first),
+                site.kind,
+                site.role,
+                names.name(code, site),
+                site.type,
+                names.node(code, site.owner),
+            )
+            for code in codes
+            for site in code.sites
+            if site.kind != NODE
+        )
+    )
+
+
+def code_comments(codes: Sequence[Code], namespace: str = ROOT) -> dict[Named, tuple[str, ...]]:
+    """Return the comments beside each element whose name is a literal, by file and line.
+
+    A comment beside calls about several elements is one of none.
+
+    Parameters
+    ----------
+    namespace
+        Of nodes that state none.
+
+    Examples
+    --------
+    >>> from rosprivacy.ingest.code.source_code import Code, Comment, Lines, Site
+    >>> call = Site("topic", "/faces", Lines(3, 3), Lines(3, 3), "", "publish")
+    >>> said = (Comment(1, "of guests", True), Comment(2, "with names", True), Comment(9, "other", True))
+    >>> code_comments([Code("a.py", "python", said, (), (call,))])
+    {('topic', '/faces'): ('of guests', 'with names')}
+    """
+    names = CodeNames(codes, namespace)
+    found: dict[Named, list[str]] = defaultdict(list)
+    for code in codes:
+        beside = _beside(code, names)
+        for comment in code.comments:
+            elements = beside.get(comment.line, set())
+            if len(elements) == 1 and comment.text.strip():
+                found[next(iter(elements))].append(comment.text.strip())
+    return {element: tuple(dict.fromkeys(texts)) for element, texts in found.items()}
+
+
+def comments_above(code: Code) -> dict[int, int]:
+    """Return by line of code the first of the comment lines directly above it."""
+    above: dict[int, int] = {}
+    for line in sorted({comment.line for comment in code.comments if comment.alone}):
+        above[line + 1] = above.get(line, line)
+    return above
+
+
+def _beside(code: Code, names: CodeNames) -> dict[int, set[Named]]:
+    """By line the elements that a comment there is about."""
+    above = comments_above(code)
+    beside: dict[int, set[Named]] = defaultdict(set)
+    for site in code.sites:
+        if site.kind == NODE and not names.is_node(code, site):
+            continue
+        if name := names.name(code, site):
+            for line in range(above.get(site.statement.first, site.statement.first), site.statement.last + 1):
+                beside[line].add((site.kind, name))
+    return beside

@@ -16,8 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.suggesting.library_rules import ADDRESS
-from rosprivacy.ingest.annotations.source_code import LONGEST_USE, Lines, Unit, Use, in_time
-from rosprivacy.ingest.annotations.started import program
+from rosprivacy.ingest.code.source_code import LONGEST_USE, Lines, Unit, Use, in_time, program
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

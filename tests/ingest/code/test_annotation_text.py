@@ -8,7 +8,7 @@ import pytest
 
 from rosprivacy.analysis.errors import LabelError
 from rosprivacy.analysis.model import Method, Place
-from rosprivacy.ingest.annotations.annotation_text import Annotation, read_annotation
+from rosprivacy.ingest.code.annotation_text import Annotation, read_annotation
 from rosprivacy.ontology.vocabulary import load
 
 HERE = Place("a.py", 7)

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from rosprivacy import analyze
-from rosprivacy.ingest.annotations.annotated_labels import label_text
-from rosprivacy.ingest.annotations.attached import attach
-from rosprivacy.ingest.annotations.cpp_code import read_cpp
+from rosprivacy.ingest.code.annotated_elements import attach, label_text
+from rosprivacy.ingest.code.cpp_code import read_cpp
 from rosprivacy.ontology.vocabulary import load
 from tests.helpers.annotated import said_by
 

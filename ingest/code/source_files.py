@@ -14,9 +14,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import LabelError, shown
-from rosprivacy.ingest.annotations.cpp_code import read_cpp
-from rosprivacy.ingest.annotations.python_code import read_python
-from rosprivacy.ingest.annotations.source_code import SECONDS, Code, OutOfTime
+from rosprivacy.ingest.code.cpp_code import read_cpp
+from rosprivacy.ingest.code.python_code import read_python
+from rosprivacy.ingest.code.source_code import SECONDS, Code, OutOfTime
 from rosprivacy.ingest.policies.folders import contents
 from rosprivacy.ingest.reading.bounded_file import beginning, read_regular
 

@@ -1,4 +1,4 @@
-"""What the code of nodes uses: names as imports resolve them, and whose they are (issue 21)."""
+"""What the code of nodes uses: names as imports resolve them, and whose they are."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from rosprivacy.ingest.annotations.node_uses import node_uses
-from rosprivacy.ingest.annotations.source_files import read_sources
+from rosprivacy.ingest.code.node_uses import node_uses
+from rosprivacy.ingest.code.source_files import read_sources
 
 if TYPE_CHECKING:
     from pathlib import Path

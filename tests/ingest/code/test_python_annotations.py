@@ -174,7 +174,7 @@ def test_strings_are_no_comments() -> None:
     ],
 )
 def test_a_file_that_is_no_python_is_told(data: bytes, line: int, problem: str) -> None:
-    from rosprivacy.ingest.annotations.python_code import read_python
+    from rosprivacy.ingest.code.python_code import read_python
 
     (told,) = read_python("a.py", data).problems
     assert str(told).startswith(f"a.py:{line}: not Python ")
@@ -187,6 +187,6 @@ def test_long_chains_and_odd_ends_of_lines_are_read() -> None:
     code = "\ufeff# coding: utf-8\r\n" + long + "\r\nn.create_publisher(Image, 'a', 1)\r\n".replace("\r\n", "\r")
     assert said_by(("a.py", code + "# é\n# privacy(/a): mundane")) == ([("channels", "/a", 5)], [])
     latin = "# coding: latin-1\nn = 'é'\nn.create_publisher(I, 'a', 1)  # privacy: mundane\n".encode("latin-1")
-    from rosprivacy.ingest.annotations.python_code import read_python
+    from rosprivacy.ingest.code.python_code import read_python
 
     assert [comment.text for comment in read_python("a.py", latin).comments][1:] == ["privacy: mundane"]

@@ -1,27 +1,38 @@
 """What is read in one file of source code: comments, classes, calls that make a node or an end of a channel, and uses.
 
-Made by ``python_code.py`` and ``cpp_code.py``. Nothing is run, built or guessed: what is no literal has no name.
+Made by ``python_code.py`` and ``cpp_code.py``, which walk over their trees with ``walk``. Nothing is run, built or
+guessed: what is no literal has no name.
 """
 
 from __future__ import annotations
 
+import re
+from itertools import takewhile
 from time import thread_time
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
+from rosprivacy.analysis.suggesting.library_rules import PROGRAM
+
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from rosprivacy.analysis.errors import InputError
 
     Item = TypeVar("Item")
+    Piece = TypeVar("Piece")
 
 NODE = "node"
+INTERFACES = ("msg", "srv", "action")
 CLASS = "class "
 NODE_CLASSES = ("Node", "LifecycleNode")  # of rclpy, rclcpp, rclcpp_lifecycle, nav2_util
 SECONDS = 120.0  # of processor time for one file; the largest that is read takes a quarter of it
 OFTEN = 100  # items between two looks at the clock
 LONGEST_USE = 200  # signs of a name that is used: no library has a longer one
 WRITES = ("publish", "reply", "request", "execute", "call")  # roles of what sends something into its channel
+BEFORE = ("sudo", "exec", "nohup", "env")  # words before the program itself
+WITH_COMMANDS = ("ros2", "rosbag", "git")  # programs of which the next words say what they do
+LONGEST = 3  # words that are kept of these: ros2 bag record
+WORD = re.compile(r"[A-Za-z_][\w.-]*", re.ASCII)
 
 
 class Lines(NamedTuple):
@@ -180,6 +191,52 @@ def class_of(owner: str) -> str:
     return owner.removeprefix(CLASS) if owner.startswith(CLASS) else ""
 
 
+class Where(NamedTuple):
+    """Where a piece of code stands.
+
+    Attributes
+    ----------
+    of_class, function
+        Name of the class; what tells the function from others.
+    first
+        Of C++: first line of the function, with its template parameters.
+    statement
+        Lines of the whole statement.
+    target
+        The variable that is given the value.
+    broken, templated
+        Of C++: whether it stands in what cannot be read; whether template parameters stand right before it.
+    """
+
+    of_class: str = ""
+    function: str = ""
+    first: int = 0
+    statement: Lines | None = None
+    target: str = ""
+    broken: bool = False
+    templated: bool = False
+
+
+def walk(root: Piece, parts: Callable[[Piece, Where], Sequence[tuple[Piece, Where]]]) -> Iterator[tuple[Piece, Where]]:
+    """Yield all pieces of code in the order of the text, each with where it stands; no recursion over code.
+
+    Parameters
+    ----------
+    parts
+        What a piece is made of, from the first to the last.
+    """
+    waiting = [(root, Where())]
+    while waiting:
+        piece, where = waiting.pop()
+        yield piece, where
+        waiting += reversed(parts(piece, where))
+
+
+def variable(name: str, where: Where) -> str:
+    """Return what tells a variable from others of its name: its class and function."""
+    return f"{where.of_class}/{where.function}:{name}"
+
+
 class OutOfTime(Exception):  # noqa: N818 - of the field
     """A file was not read to its end in ``SECONDS``: what it says is not known."""
 
@@ -202,3 +259,18 @@ def in_time(items: Iterable[Item], late: Callable[[], bool]) -> Iterator[Item]:
         if number % OFTEN == 0 and late():
             raise OutOfTime
         yield item
+
+
+def program(words: Iterable[str]) -> str:
+    """Return what is started by the words of a command; empty if none is a program.
+
+    >>> program(["sudo", "/usr/bin/arecord", "-d", "5"]), program("ros2 bag record -a".split()), program([])
+    ('$ arecord', '$ ros2 bag record', '')
+    """
+    given = [*words][: LONGEST + 1]
+    given = given[1:] if given and given[0] in BEFORE else given
+    name = given[0].rpartition("/")[2] if given else ""
+    if not WORD.fullmatch(name):
+        return ""
+    more = given[1:LONGEST] if name in WITH_COMMANDS else []
+    return PROGRAM + " ".join([name, *takewhile(WORD.fullmatch, more)])

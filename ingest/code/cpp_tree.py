@@ -5,37 +5,17 @@ In: nodes of a syntax tree. Out: texts, names, lines, ``Where``.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from rosprivacy.ingest.annotations.source_code import Lines
+from rosprivacy.ingest.code.source_code import Lines, Where
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from tree_sitter import Node
 
 STATEMENTS = ("expression_statement", "declaration", "field_declaration", "return_statement", "field_initializer")
 CLASSES = ("class_specifier", "struct_specifier")
 LONGEST = 1000  # bytes of a variable or type
 FUNCTIONS = ("function_definition", "lambda_expression")
-
-
-class Where(NamedTuple):
-    """Where a piece of code stands: class, function, its first line, the statement, and the variable that is set.
-
-    Attributes
-    ----------
-    templated
-        Whether template parameters stand right before it. The library's own ``parent`` goes down from the root.
-    """
-
-    of_class: str = ""
-    function: int = 0
-    first: int = 0
-    statement: Lines | None = None
-    target: str = ""
-    broken: bool = False
-    templated: bool = False
 
 
 def text_of(node: Node) -> str:
@@ -48,14 +28,10 @@ def brief(node: Node) -> str:
     return text_of(node) if node.end_byte - node.start_byte <= LONGEST else "?"
 
 
-def walk(root: Node) -> Iterator[tuple[Node, Where]]:
-    """Yield all nodes in the order of the text, each with where it stands."""
-    waiting = [(root, Where())]
-    while waiting:
-        node, where = waiting.pop()
-        yield node, where
-        inside = _inside(node, where)
-        waiting += [(child, inside) for child in reversed(node.children)]
+def parts(node: Node, where: Where) -> list[tuple[Node, Where]]:
+    """Return the parts of a node, each with where it stands; the library's own ``parent`` goes down from the root."""
+    inside = _inside(node, where)
+    return [(child, inside) for child in node.children]
 
 
 def _inside(node: Node, where: Where) -> Where:
@@ -70,7 +46,7 @@ def _inside(node: Node, where: Where) -> Where:
     elif kind in FUNCTIONS:
         first = where.first if templated else line_of(node)
         of_class = _scope(node) or where.of_class
-        where = Where(of_class, node.start_byte + 1, first, broken=where.broken)
+        where = Where(of_class, str(node.start_byte), first, broken=where.broken)
     elif kind == "template_declaration":
         where = where._replace(first=line_of(node), templated=True)
     elif kind in STATEMENTS:
@@ -92,11 +68,6 @@ def _scope(function: Node) -> str:
         )
     path = names_of(declarator) if declarator is not None else []
     return path[-2] if len(path) > 1 else ""
-
-
-def variable(name: str, where: Where) -> str:
-    """Return what tells a variable from others of its name: its class and function."""
-    return f"{where.of_class}/{where.function}:{name}"
 
 
 def line_of(node: Node) -> int:

@@ -1,31 +1,41 @@
 """Python source -> what is read in it, by Python's own parser and tokenizer; no recursion, nothing is run.
 
-Source: the signatures of rclpy (``Node``, ``create_node``, ``create_publisher`` …, ``rclpy.action``).
+Of launch files and ``setup.py`` it is what they say of names: ``Node(package=…, executable=…, name=…)`` and entry
+points. Only literals are read.
+
+Source: the signatures of rclpy (``Node``, ``create_node``, ``create_publisher`` …, ``rclpy.action``), of
+``launch_ros.actions.Node``, and setuptools' ``console_scripts``.
 """
 
 from __future__ import annotations
 
 import ast
 import io
+import re
 import sys
 import tokenize
 import warnings
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import LabelError, shown
-from rosprivacy.ingest.annotations.python_launch import launched
-from rosprivacy.ingest.annotations.python_uses import PythonUses, imported
-from rosprivacy.ingest.annotations.source_code import (
+from rosprivacy.ingest.code.python_uses import PythonUses, imported
+from rosprivacy.ingest.code.source_code import (
+    INTERFACES,
     NODE,
     NODE_CLASSES,
     Code,
     Comment,
+    Launch,
     Lines,
     NodeClass,
+    Script,
     Site,
+    Where,
     class_owner,
     clock,
     in_time,
+    variable,
+    walk,
 )
 
 if TYPE_CHECKING:
@@ -34,6 +44,8 @@ if TYPE_CHECKING:
 FAILURES = (SyntaxError, ValueError, RecursionError, MemoryError, tokenize.TokenError)
 VERSION = ".".join(map(str, sys.version_info[:2]))
 CORRECT = "correct it, or name the other files; newer syntax needs a newer Python"
+LAUNCHED = ("Node", "LifecycleNode", "ComposableNode")
+ENTRY = re.compile(r"\s*([\w.-]+)\s*=\s*([\w.]+)\s*:\s*\w+\s*")
 
 
 class _Call(NamedTuple):
@@ -56,25 +68,11 @@ ACTIONS = {
     "ActionServer": _Call("action", "execute", (2, "action_name"), (1, "action_type"), (0, "node")),
     "ActionClient": _Call("action", "call", (2, "action_name"), (1, "action_type"), (0, "node")),
 }
-INTERFACES = ("msg", "srv", "action")
-
-
-class _Where(NamedTuple):
-    """Where a piece of code stands: class, function, statement, and the variable that is given its value."""
-
-    of_class: str = ""
-    function: str = ""
-    statement: Lines | None = None
-    target: str = ""
 
 
 def read_python(file: str, data: bytes) -> Code:
     """Read a file.
 
-    Parameters
-    ----------
-    file
-        For messages.
 
     Raises
     ------
@@ -97,7 +95,8 @@ def read_python(file: str, data: bytes) -> Code:
     imports = dict(pairs)
     used = PythonUses(tree, file)
     classes, sites = [], []
-    for node, where in in_time(_walk(tree), late):
+    root: ast.AST = tree
+    for node, where in in_time(walk(root, _parts), late):
         if isinstance(node, ast.ClassDef):
             classes.append(_class(node, imports))
             lines = classes[-1].lines
@@ -115,18 +114,13 @@ def _comments(text: str) -> Iterator[Comment]:
             yield Comment(token.start[0], token.string.lstrip("#!: ").rstrip(), alone)
 
 
-def _walk(tree: ast.Module) -> Iterator[tuple[ast.AST, _Where]]:
-    """All nodes in the order of the text, each with where it stands."""
-    waiting: list[tuple[ast.AST, _Where]] = [(tree, _Where())]
-    while waiting:
-        node, where = waiting.pop()
-        yield node, where
-        waiting += [(child, _inside(node, child, where)) for child in reversed([*ast.iter_child_nodes(node)])]
+def _parts(node: ast.AST, where: Where) -> list[tuple[ast.AST, Where]]:
+    return [(child, _inside(node, child, where)) for child in ast.iter_child_nodes(node)]
 
 
-def _inside(node: ast.AST, child: ast.AST, where: _Where) -> _Where:
+def _inside(node: ast.AST, child: ast.AST, where: Where) -> Where:
     if isinstance(node, ast.ClassDef) and isinstance(child, ast.stmt):
-        where = _Where(of_class=node.name)
+        where = Where(of_class=node.name)
     elif isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda):
         where = where._replace(function=f"{node.lineno}:{node.col_offset}", target="")
     if isinstance(child, ast.stmt):
@@ -161,7 +155,7 @@ def _dotted(node: ast.AST) -> str:
     return ".".join([node.id, *reversed(parts)]) if isinstance(node, ast.Name) else ""
 
 
-def _site(call: ast.Call, where: _Where, imports: Mapping[str, str]) -> Site | None:
+def _site(call: ast.Call, where: Where, imports: Mapping[str, str]) -> Site | None:
     function = _dotted(call.func)
     last = call.func.attr if isinstance(call.func, ast.Attribute) else function
     lines = _lines(call)
@@ -182,7 +176,7 @@ def _site(call: ast.Call, where: _Where, imports: Mapping[str, str]) -> Site | N
     return Site(how.kind, _text(_argument(call, *how.name)), *at, owner, how.role, found)
 
 
-def _own_constructor(call: ast.Call, where: _Where, at: tuple[Lines, Lines]) -> Site | None:
+def _own_constructor(call: ast.Call, where: Where, at: tuple[Lines, Lines]) -> Site | None:
     """``super().__init__('camera')`` or ``Node.__init__(self, 'camera')``."""
     before = call.func.value if isinstance(call.func, ast.Attribute) else None
     if isinstance(before, ast.Call) and _dotted(before.func) == "super":
@@ -209,16 +203,17 @@ def _argument(call: ast.Call, place: int, name: str) -> ast.expr | None:
     return next((one.value for one in call.keywords if one.arg == name), None)
 
 
-def _text(node: ast.expr | None) -> str | None:
+def _text(node: ast.AST | None) -> str | None:
     return node.value if isinstance(node, ast.Constant) and isinstance(node.value, str) else None
 
 
-def _variable(name: str, where: _Where) -> str:
+def _variable(name: str, where: Where) -> str:
     """What a variable is known by: ``self`` is the class, ``self.x`` is of the class, others of their function."""
     if name == "self":
         return class_owner(where.of_class)
-    scope = where.of_class if name.startswith("self.") else f"{where.of_class}/{where.function}"
-    return f"{scope}:{name}" if name else ""
+    if name.startswith("self."):
+        return f"{where.of_class}:{name}"
+    return variable(name, where) if name else ""
 
 
 def _whole(name: str, imports: Mapping[str, str]) -> str:
@@ -231,3 +226,27 @@ def _message_type(name: str, imports: Mapping[str, str]) -> str:
     parts = _whole(name, imports).split(".")
     known = len(parts) >= len(("package", "msg", "Name")) and parts[1] in INTERFACES and all(parts)
     return f"{parts[0]}/{parts[1]}/{parts[-1]}" if known else ""
+
+
+def launched(tree: ast.Module) -> tuple[tuple[Launch, ...], tuple[Script, ...]]:
+    """Return what a file says of executables; nothing unless it is a launch file or sets a package up."""
+    calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call)]
+    return tuple(one for call in calls for one in _launch(call)), tuple(one for call in calls for one in _scripts(call))
+
+
+def _launch(call: ast.Call) -> Iterator[Launch]:
+    name = call.func.attr if isinstance(call.func, ast.Attribute) else getattr(call.func, "id", "")
+    given = {one.arg: _text(one.value) or "" for one in call.keywords if one.arg}
+    executable = given.get("executable") or given.get("node_executable", "")
+    if name in LAUNCHED and given.get("package") and executable:
+        yield Launch(given["package"], executable, given.get("name") or given.get("node_name", ""))
+
+
+def _scripts(call: ast.Call) -> Iterator[Script]:
+    """The scripts of ``setup(entry_points={"console_scripts": ["talker = demo.talker:main"]})``."""
+    for given in call.keywords:
+        if given.arg == "entry_points" and isinstance(given.value, ast.Dict):
+            for node in ast.walk(given.value):
+                found = ENTRY.fullmatch(_text(node) or "")
+                if found:
+                    yield Script(found[1], found[2])

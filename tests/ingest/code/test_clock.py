@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from rosprivacy.analysis.errors import InputErrors
-from rosprivacy.ingest.annotations import source_code
-from rosprivacy.ingest.annotations.source_files import read_sources
+from rosprivacy.ingest.code import source_code
+from rosprivacy.ingest.code.source_files import read_sources
 from rosprivacy.labelling.annotating import annotated
 from rosprivacy.ontology.vocabulary import load
 

@@ -11,10 +11,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rosprivacy.ingest.annotations.annotated_labels import conflicts, label_text
-from rosprivacy.ingest.annotations.attached import attach
-from rosprivacy.ingest.annotations.cpp_code import read_cpp
-from rosprivacy.ingest.annotations.python_code import read_python
+from rosprivacy.ingest.code.annotated_elements import attach, conflicts, label_text
+from rosprivacy.ingest.code.cpp_code import read_cpp
+from rosprivacy.ingest.code.python_code import read_python
 from rosprivacy.ingest.labels.label_file import parse_labels
 from rosprivacy.ingest.labels.label_writer import without_places
 from rosprivacy.ontology.vocabulary import load

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeVar
 from rosprivacy.analysis.errors import LabelError, shown
 from rosprivacy.analysis.model import CLEANS, Method, Place, Statement
 from rosprivacy.analysis.written_names import MUCH, did_you_mean, nearest
-from rosprivacy.ingest.labels.entries import OWN, naming, specificity
-from rosprivacy.ingest.labels.non_ros_reader import is_non_ros
+from rosprivacy.ingest.labels.entries import OWN, is_non_ros, naming, specificity
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
