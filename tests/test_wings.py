@@ -29,7 +29,7 @@ SAME_PART = {
     "decisions": {"analysis", "report/document"},  # what they mean, and how the document tells them
     "doubts": {"analysis/findings", "report/document", "report/page"},  # the list of doubts, and how it is told
     "findings": {"analysis/findings", "report/rdf"},  # findings, and findings as RDF
-    "fleet": {"cli", "report/contract", "report/document", "report/terminal"},  # what is told of a fleet
+    "fleet": {"cli", "report/document", "report/terminal"},  # what is told of a fleet
     "law": {"cli", "report/terminal"},  # the command, and what it prints
     "labels": {"cli", "report/terminal"},  # the command, and what was said of labels
     "reliance": {  # what the answer hangs on, and how it is told

@@ -29,7 +29,8 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.kernel.overruled import Overruled
     from rosprivacy.analysis.model import Category, Diagnostic, Element, Flow, FlowGraph, Grant, Legal, Reason
     from rosprivacy.report.answer import Answer
-    from rosprivacy.report.contract.analysis import AnalysisDocument, Given
+    from rosprivacy.report.contract.analysis import AnalysisDocument, Assumptions
+    from rosprivacy.report.contract.notation import Texts
     from rosprivacy.report.contract.records import (
         DeniedEntry,
         DiagnosticEntry,
@@ -52,7 +53,6 @@ if TYPE_CHECKING:
         ProvisionEntry,
         SanitizerEntry,
         SurroundingsEntry,
-        Texts,
         WaysEntry,
     )
 
@@ -119,7 +119,7 @@ def analysis_document(answer: Answer) -> AnalysisDocument:
         "standard_channels": analysis.standard_channels,
         "diagnostics": [_diagnostic(d) for d in (*answer.diagnostics, *analysis.diagnostics)],
         "assumptions": {
-            **cast("Given", answer.assumptions),
+            **cast("Assumptions", answer.assumptions),
             "taken_away_by": ledger.counts(taken),
             "taken_by_kind": taken_by_kind(analysis),
             "backups_taken_as_none": [element_dict(element) for element in without_backups(analysis)],

@@ -19,8 +19,14 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.analysis.fleet.patterns import Deviant, FleetView, Pattern
     from rosprivacy.analysis.fleet.tallies import Share
-    from rosprivacy.report.contract.analysis import AnalysisDocument, StandardFile
-    from rosprivacy.report.contract.fleet import DeviantEntry, FleetEntry, PatternEntry, ShareEntry
+    from rosprivacy.report.contract.analysis import (
+        AnalysisDocument,
+        DeviantEntry,
+        FleetEntry,
+        PatternEntry,
+        ShareEntry,
+        StandardFile,
+    )
 
 
 def fleet_document(told: AnalysisDocument, view: FleetView, counts: Counts) -> AnalysisDocument:

@@ -12,7 +12,8 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
 
     from rosprivacy.ontology.vocabulary import Vocabulary
-    from rosprivacy.report.contract.stated import ContextEntry, PointerEntry, Texts
+    from rosprivacy.report.contract.notation import Texts
+    from rosprivacy.report.contract.stated import ContextEntry, PointerEntry
 
 _KEYS = {"name": "provision"}  # what the contract calls otherwise than the model
 

@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from rosprivacy.analysis.model import Breach
-    from rosprivacy.report.contract.linted import BreachEntry, LintDocument
+    from rosprivacy.report.contract.policies import BreachEntry, LintDocument
 
 FORMAT = "rosprivacy.lint/1"
 

@@ -11,7 +11,7 @@ from rosprivacy.analysis.text import counted
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from rosprivacy.report.contract.linted import LintDocument
+    from rosprivacy.report.contract.policies import LintDocument
 
 
 def lint_lines(document: LintDocument) -> Iterator[str]:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Diagnostic, Grant, Place, Policy
     from rosprivacy.ingest.keystore.deployed_rights import Difference
     from rosprivacy.ingest.keystore.generator_losses import Loss
-    from rosprivacy.report.contract.deployment import CheckDocument, DifferenceEntry
+    from rosprivacy.report.contract.policies import CheckDocument, DifferenceEntry
     from rosprivacy.settings import Settings
 
 FORMAT = "rosprivacy.check/1"
