@@ -30,7 +30,7 @@ from rosprivacy.ingest.labels.label_file import read_labels
 from rosprivacy.ingest.lint.rule_table import RULES
 from rosprivacy.ontology.vocabulary import TOP, load
 from rosprivacy.queries.library import pack
-from rosprivacy.report.terminal import categories
+from rosprivacy.report.text import categories
 from rosprivacy.report.words.words import IN_ENGLISH
 from tests.fuzzing import record
 from tests.fuzzing.targets import TARGETS

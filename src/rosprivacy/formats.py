@@ -110,7 +110,7 @@ def _text(answer: Answer, style: Style) -> str:
 
 def text_of(told: Mapping[str, Any], style: Style) -> str:
     """Return a document as text, for a terminal if the style says so."""
-    from rosprivacy.report.terminal.analysis import print_report, report_text
+    from rosprivacy.report.text.analysis import print_report, report_text
     from rosprivacy.report.words.words import Words
 
     words = Words(style.language)

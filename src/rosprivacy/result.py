@@ -68,7 +68,7 @@ class Result(Answer):
 
     def _verdict(self) -> str:
         """The line that every report begins with."""
-        from rosprivacy.report.terminal.analysis import verdict_line  # noqa: PLC0415 - light start
+        from rosprivacy.report.text.analysis import verdict_line  # noqa: PLC0415 - light start
 
         return verdict_line(self.document())[0]
 

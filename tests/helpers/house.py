@@ -71,7 +71,7 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "words": set(),
         "": {"contract", "words"},
         "document": {"", "contract", "words"},
-        "terminal": {"", "document", "words"},
+        "text": {"", "document", "words"},
         "pictures": {"", "words"},
         "explorer": {"", "pictures", "words"},
         "compare": {"", "contract", "document"},

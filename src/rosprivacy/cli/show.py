@@ -31,8 +31,8 @@ def show(
     from rich.text import Text
 
     from rosprivacy.report.json_text import as_text
-    from rosprivacy.report.terminal.finding_lines import details, law_lines
-    from rosprivacy.report.terminal.wrapped import wrapped
+    from rosprivacy.report.text.finding_lines import details, law_lines
+    from rosprivacy.report.text.lines import wrapped
     from rosprivacy.report.words.words import Words
 
     report = inputs.result(inputs.settings).document()

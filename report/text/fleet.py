@@ -14,9 +14,9 @@ from rosprivacy.report.robots import forms_in_words
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
+    from rosprivacy.report.text.lines import Line
     from rosprivacy.report.words.words import Words
 
-Line = tuple[str, str]  # text, style
 FORMS = ("dismissed", "accepted", "pseudonymised")
 
 

@@ -17,9 +17,9 @@ from rich.console import Console
 
 import rosprivacy
 from rosprivacy.report.finding_order import in_order
-from rosprivacy.report.terminal.analysis import print_report, report_text, verdict_line
-from rosprivacy.report.terminal.finding_lines import details, law_lines
-from rosprivacy.report.terminal.wrapped import wrapped
+from rosprivacy.report.text.analysis import print_report, report_text, verdict_line
+from rosprivacy.report.text.finding_lines import details, law_lines
+from rosprivacy.report.text.lines import wrapped
 from tests.helpers.paths import ROOT
 from tests.helpers.turtlebot import COSTMAP, MEMORY, TURTLEBOT3
 

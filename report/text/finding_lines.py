@@ -1,4 +1,4 @@
-"""Findings in the report for the terminal: a list, the details hop by hop, and what the law says of each kind once.
+"""Findings as lines: a list, the details hop by hop, what was decided, what the enforced view adds, and the law once.
 
 In: a JSON document of the contract. Out: lines. What a person decides first stands first.
 """
@@ -9,17 +9,15 @@ import os
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.model import CHANNELS
+from rosprivacy.analysis.model import CHANNELS, UNPROTECTED
 from rosprivacy.analysis.text import blanked
-from rosprivacy.report.called_alike import kind_in
+from rosprivacy.report.called_alike import kind_in, named
 from rosprivacy.report.finding_order import in_order
+from rosprivacy.report.looked_at import looked_at
 from rosprivacy.report.made_of import data_made
 from rosprivacy.report.naming import key, shown_name
-from rosprivacy.report.terminal.context_lines import context_lines, further_lines, pointer_lines
-from rosprivacy.report.terminal.decision_lines import decision_lines
-from rosprivacy.report.terminal.fleet import on_robots, robots_of
-from rosprivacy.report.terminal.open_channels import by_line, group_line
-from rosprivacy.report.terminal.restriction import may_be_asked
+from rosprivacy.report.text.fleet import on_robots, robots_of
+from rosprivacy.report.text.lines import place
 from rosprivacy.report.words.reasons import reason_told
 from rosprivacy.report.words.typography import spaced
 from rosprivacy.report.words.words import IN_ENGLISH, Words
@@ -27,8 +25,10 @@ from rosprivacy.report.words.words import IN_ENGLISH, Words
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 
-Line = tuple[str, str]  # text, style
+    from rosprivacy.report.text.lines import Line
+
 MANY = 5  # findings; of more a list of one line each comes first
+NAMED = 4  # kinds of data in one line
 NARROWER = "⊇ "  # how the ontology writes, in other languages than English: if the data are of one of these kinds
 VERBS = {  # (role, whether data goes into a channel) -> what is between the two
     ("publish", True): "publish",
@@ -58,10 +58,10 @@ def overview(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
     yield words("tty.findings", n=str(len(report["findings"]))), "bold"
     ordered = in_order(report["findings"], report)
     numbers = {finding["id"]: number for number, finding in enumerate(ordered, 1)}
-    for finding, *others in by_line(ordered):
+    for finding, *others in _by_line(ordered):
         number = numbers[finding["id"]]
         if others:
-            yield f"{number:>3}. {group_line([finding, *others], _reason(finding, words), words)}", _style(finding)
+            yield f"{number:>3}. {_group_line([finding, *others], _reason(finding, words), words)}", _style(finding)
             continue
         met = {key(e) for e in finding["witness"]} & unreviewed
         parts = [
@@ -88,7 +88,7 @@ def details(
         What is told below each.
     """
     roles = {(key(said["element"]), said["category"]): said["roles"] for said in report["roles"]}
-    unreviewed, folder = _unreviewed(report, findings), policies_in(report)
+    unreviewed, folder = _unreviewed(report, findings), _policies_in(report)
     if folder and any(finding["steps"] for finding in findings):
         yield words("tty.folder", folder=shown(folder)), "dim"
     for number, finding in enumerate(in_order(findings, report), 1):
@@ -101,7 +101,7 @@ def details(
             through = ", ".join(shown_name(element) for element in finding["through"])
             past = words("tty.past") if finding.get("beside_pseudonymised") else ""
             yield f"   {words('tty.through', names=through, past=past)}", "dim"
-        yield from decision_lines(finding, words)
+        yield from _decision(finding, words)
         yield from _Way(roles, unreviewed, folder, words).lines(finding)
         yield from _paths(finding, words)
         if finding["special_from"]:
@@ -112,6 +112,57 @@ def details(
 def _reason(finding: Mapping[str, Any], words: Words) -> str:
     """Why it is one: in English with durations as they are stated."""
     return shown(finding["reason"]) if words.language == "en" else reason_told(finding, words, str)
+
+
+def enforced_lines(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
+    """Yield what remains if nodes do not keep to their profiles; nothing where nobody asked."""
+    if "enforced" not in report:
+        return
+    added = report["enforced"]["added"]
+    yield "", ""
+    yield words("tty.enforced", findings=words.count(len(added), "tty.finding")), "bold"
+    if elements := [shown_name(element) for element in report["enforced"].get("open", ())]:
+        yield words.count(len(elements), "tty.enforced.unreviewed", names=named(elements, words)), ""
+    by_id = {entry["finding"]["id"]: entry for entry in added}
+
+    def more(finding: Mapping[str, Any]) -> Iterator[Line]:
+        yield from ((f"   {text}", "") for text in _added(report, by_id[finding["id"]], words))
+
+    yield from details(report, [entry["finding"] for entry in added], words, more)
+
+
+def _added(report: Mapping[str, Any], entry: Mapping[str, Any], words: Words) -> Iterator[str]:
+    """Where it is, what makes it possible, what takes it away: splitting first."""
+    if entry.get("plain"):
+        yield words("tty.enforced.plain")
+    if entry.get("beyond") == []:
+        yield words("tty.enforced.types")
+    if robots := entry.get("robots"):
+        everybody = words.count(report["fleet"]["robots"], "ofrobots")
+        yield words("tty.enforced.on", n=str(len(robots)), robots=everybody, names=named(robots, words))
+    if opened := entry.get("opened_by"):
+        yield words("tty.enforced.opened", lines=", ".join(map(place, opened)))
+    if not entry["enclaves"]:
+        return
+    yield words("tty.enforced.by", enclaves=_listed(entry["enclaves"]))
+    key = "tty.enforced.split" if entry["split"] else "tty.enforced.no.split"
+    yield words(key, enclaves=_listed(entry["split"]))
+    if move := entry.get("move"):
+        yield words("tty.enforced.move", profile=shown(move["profile"]), enclave=shown(move["enclave"]))
+    if entry.get("deny"):
+        yield words("tty.enforced.deny", lines="; ".join(_deny(line, words) for line in entry["deny"]))
+        lost = [f"{shown_name(of['node'])} {of['role']} {shown_name(of['channel'])}" for of in entry["loses"]]
+        if lost:
+            yield words("tty.enforced.loses", rights="; ".join(lost))
+
+
+def _deny(line: Mapping[str, Any], words: Words) -> str:
+    values = {what: shown(line[what]) for what in ("role", "enclave", "file")}
+    return words("tty.enforced.line", channel=shown_name(line["channel"]), **values)
+
+
+def _listed(enclaves: list[str]) -> str:
+    return ", ".join(map(shown, enclaves))
 
 
 def law_lines(
@@ -129,14 +180,14 @@ def law_lines(
     for category, finding in by_kind.items():
         for legal in _law(finding, kinds, words):
             yield f"   {words('tty.law.line', kind=category, **legal)}", "magenta"
-        yield from context_lines(kinds.get(category, {}), findings_of[category], words)
-        yield from pointer_lines(report, category, words)
+        yield from _in_contexts(kinds.get(category, {}), findings_of[category], words)
+        yield from _pointers(report, category, words)
         if finding["article9"] == "unknown":
             yield f"   {words('tty.law.unknown', kind=category)}", "yellow"
         if finding["article9"] == "no":
             reason = _text(kinds[category], "reason", words) if category in kinds else ""
             yield f"   {words('tty.law.no', kind=category, reason=reason)}", "dim"
-    yield from further_lines(report, words)
+    yield from _of_contexts(report, words)
 
 
 def _law(finding: Mapping[str, Any], kinds: Mapping[str, Mapping[str, Any]], words: Words) -> Iterator[dict[str, str]]:
@@ -153,13 +204,14 @@ def _law(finding: Mapping[str, Any], kinds: Mapping[str, Mapping[str, Any]], wor
         }
 
 
-def _text(of: Mapping[str, Any], what: str, words: Words) -> str:
+def _text(of: Mapping[str, Any], what: str, words: Words, fit: Callable[[str], str] = str) -> str:
     """A text of the ontology in the reader's language, in English if there is no translation."""
-    return spaced(blanked(of.get("translations", {}).get(words.language, {}).get(what) or of[what]), words.language)
+    text = of.get("translations", {}).get(words.language, {}).get(what) or of[what]
+    return spaced(fit(blanked(text)), words.language)
 
 
-def policies_in(report: Mapping[str, Any]) -> str:
-    """Return the folder that all policies are in, empty if there is none that says anything."""
+def _policies_in(report: Mapping[str, Any]) -> str:
+    """The folder that all policies are in, empty if there is none that says anything."""
     files = [entry["file"] for entry in report["assumptions"].get("policies", ())]
     try:
         return os.path.commonpath([os.path.dirname(file) for file in files]) if files else ""  # noqa: PTH120 - text only
@@ -169,7 +221,7 @@ def policies_in(report: Mapping[str, Any]) -> str:
 
 def _title(report: Mapping[str, Any], finding: Mapping[str, Any], words: Words) -> str:
     data = _data(finding["category"], words, pseudonymised=finding["pseudonymised"])
-    asked = may_be_asked(report, finding["category"], words)
+    asked = _may_be_asked(report, finding["category"], words)
     made = data_made(finding, f"{data}{asked}", words, str, shown_name)
     what = words(f"tty.kind.{finding['kind']}", data=made)
     return words.pair(what, f"{shown_name(finding['source'])} -> {shown_name(finding['leak'])}")
@@ -262,3 +314,86 @@ def _paths(finding: Mapping[str, Any], words: Words) -> Iterator[Line]:
         yield f"   {words('tty.path', path=' -> '.join(shown_name(element) for element in path))}", ""
     if finding.get("paths_bounded"):
         yield f"   {words('tty.bounded', n=len(finding['paths']))}", "yellow"
+
+
+def _may_be_asked(report: Mapping[str, Any], category: str, words: Words) -> str:
+    """Which of the kinds asked for data of another may be, with a space before; empty for what is asked for."""
+    kinds = report["assumptions"].get("may_be_asked", {}).get(category)
+    return words("tty.may.be", kinds=named(kinds, words)) if kinds else ""
+
+
+def _by_line(findings: Iterable[Mapping[str, Any]]) -> list[list[Mapping[str, Any]]]:
+    """Findings in their order; those of channels that one line of a governance leaves unprotected are together."""
+    groups: dict[Any, list[Mapping[str, Any]]] = {}
+    for finding in findings:
+        stands = finding["kind"] == UNPROTECTED and not finding["accepted"]
+        groups.setdefault(finding["reason"] if stands else finding["id"], []).append(finding)
+    return list(groups.values())
+
+
+def _group_line(group: Sequence[Mapping[str, Any]], reason: str, words: Words) -> str:
+    """What findings have in common that one line stands behind, for one reason."""
+    kinds = words.row(words.first(list(dict.fromkeys(finding["category"] for finding in group)), NAMED))
+    channels = {key(finding["leak"]) for finding in group}
+    counts = [words.count(len(group), "tty.finding"), words.count(len(channels), "tty.channel")]
+    return f"{words(f'tty.kind.{UNPROTECTED}', data=kinds)}, {', '.join(counts)}; {reason}"
+
+
+def _decision(finding: Mapping[str, Any], words: Words) -> Iterator[Line]:
+    """What was decided about a finding."""
+    decision = finding.get("decision")
+    if not decision:
+        return
+    from rosprivacy.analysis.decisions import Choice, State  # noqa: PLC0415 - light start
+
+    choice, at = words(f"tty.done.{decision['choice']}"), place(decision)
+    expires = words.date(decision["expires"]) if decision["expires"] else ""
+    if decision["state"] == State.EXPIRED:
+        yield f"   {words('tty.undecided', choice=choice, date=expires, place=at)}", "yellow"
+        return
+    owner = words("tty.owner", owner=shown(decision["owner"])) if decision["owner"] else ""
+    until = words("tty.until", date=expires) if expires else ""
+    basis = f", {', '.join(map(words.basis, decision['legal_basis']))}" if decision["legal_basis"] else ""
+    style = "green" if decision["choice"] == Choice.ACCEPT else "yellow"
+    yield f"   {choice}{owner}{until}{basis}  ({at})", style
+    if decision["reason"]:
+        yield f"      {shown(decision['reason'])}", style
+    for change in decision.get("changed", ()):
+        what = words.known(f"tty.changed.{change['what']}", change["what"].replace("_", " "))
+        before, now = shown(change["before"]), shown(change["now"])
+        yield f"      {words('tty.changed', what=what, before=before, now=now)}", "yellow"
+
+
+def _in_contexts(kind: Mapping[str, Any], findings: Iterable[Mapping[str, Any]], words: Words) -> Iterator[Line]:
+    """What data of a kind may reveal, once for each context and provision, with the sources there."""
+    of_source: dict[tuple[str, str, str], dict[str, None]] = {}
+    for finding in findings:
+        for legal in finding.get("in_context", ()):
+            at = legal["context"], legal["provision"], legal["condition"]
+            of_source.setdefault(at, {})[shown_name(finding["source"])] = None
+    for row in kind.get("in_context", ()):
+        sources = of_source.get((row["context"], row["provision"], row["condition"]), {})
+        if sources:
+            texts = {what: _text(row, what, words, shown) for what in ("provision", "condition")}
+            who = {"kind": kind["name"], "sources": ", ".join(sources), "context": row["context"]}
+            sentence = f"tty.law.context.{row['verdict']}"
+            yield f"   {words(sentence, **who, **texts)}", "magenta"
+
+
+def _pointers(report: Mapping[str, Any], category: str, words: Words) -> Iterator[Line]:
+    """The provisions that a kind of data points at, in one line."""
+    rows = [row for row in looked_at(report) if category in row["categories"]]
+    if rows:
+        yield f"   {words('tty.law.look', kind=category, names=_names(rows, words))}", "dim"
+
+
+def _of_contexts(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
+    """The provisions that each context of the system points at; those of every system are in the report."""
+    for context in report.get("contexts", ()):
+        rows = [row for row in looked_at(report) if context["name"] in row["contexts"]]
+        if rows:
+            yield f"   {words('tty.law.look.context', context=context['name'], names=_names(rows, words))}", "dim"
+
+
+def _names(rows: Iterable[Mapping[str, Any]], words: Words) -> str:
+    return ", ".join(_text(row, "provision", words, shown) for row in rows)

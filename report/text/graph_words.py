@@ -12,7 +12,7 @@ from rosprivacy.analysis.model import CHANNELS
 from rosprivacy.queries.graph_values import Node, Relationship, graph_values, nodes_in
 from rosprivacy.report.naming import kind_of
 from rosprivacy.report.stored import flow_said, record_kind, record_name
-from rosprivacy.report.terminal.finding_lines import verb
+from rosprivacy.report.text.finding_lines import verb
 from rosprivacy.report.words.words import IN_ENGLISH, Words
 
 if TYPE_CHECKING:

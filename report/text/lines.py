@@ -1,4 +1,4 @@
-"""Lines -> lines that fit a terminal: broken between words, what goes on is set in.
+"""Lines of a terminal: what parts of them look alike everywhere, and how they are broken at its width.
 
 In: lines, and how wide the terminal is. Out: lines. In a file or a pipe nothing is broken, so that programs find it.
 """
@@ -6,10 +6,14 @@ In: lines, and how wide the terminal is. Out: lines. In a file or a pipe nothing
 from __future__ import annotations
 
 from textwrap import wrap
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.errors import shown
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+    from rosprivacy.report.words.words import Words
 
 Line = tuple[str, str]  # text, style
 MARGIN = 4  # of what goes on, beyond the line's own
@@ -35,3 +39,25 @@ def wrapped(lines: Iterable[Line], width: int | None) -> Iterator[Line]:
             break_on_hyphens=False,
         )
         yield from ((part, style) for part in broken)
+
+
+def titled(title: str, rows: Iterable[Line]) -> Iterator[Line]:
+    """Yield a part of the report: an empty line, its title, its lines."""
+    yield "", ""
+    yield title, "bold"
+    yield from rows
+
+
+def place(row: Mapping[str, Any]) -> str:
+    """Return a line of a file.
+
+    >>> place({"file": "l.yaml", "line": 3})
+    'l.yaml:3'
+    """
+    return f"{shown(row['file'])}:{row['line']}"
+
+
+def listed(texts: Sequence[str], most: int | None, words: Words, separator: str = ", ") -> str:
+    """Return the first of some texts, and how many more ``-v`` shows; all if ``most`` is None."""
+    left_out = len(texts) - most if most is not None else 0
+    return separator.join(texts[:most]) + (words("tty.more.verbose", n=left_out) if left_out > 0 else "")

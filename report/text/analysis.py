@@ -10,26 +10,29 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import ASSUMED, MERGED
-from rosprivacy.report.called_alike import legs
+from rosprivacy.report.called_alike import legs, named
 from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import shown_name
 from rosprivacy.report.observed_lines import observed_lines
 from rosprivacy.report.review_groups import SHOWN
-from rosprivacy.report.terminal.added_lines import enforced_lines
-from rosprivacy.report.terminal.denied import denied_lines
-from rosprivacy.report.terminal.doubt_lines import doubt_lines
-from rosprivacy.report.terminal.finding_lines import MANY, details, law_lines, overview
-from rosprivacy.report.terminal.fleet import fleet_lines
-from rosprivacy.report.terminal.globs import glob_lines, glob_warnings
-from rosprivacy.report.terminal.labels import absent_lines, overruled_lines, standard_lines
-from rosprivacy.report.terminal.ledger import hanging_lines, ledger_lines, taken_away_lines
-from rosprivacy.report.terminal.next_step import next_lines
-from rosprivacy.report.terminal.reliance import reliance_lines
-from rosprivacy.report.terminal.restriction import asked_lines
-from rosprivacy.report.terminal.review import review_lines
-from rosprivacy.report.terminal.types_told import type_lines
-from rosprivacy.report.terminal.wrapped import wrapped
-from rosprivacy.report.verdict import verdict_sentence
+from rosprivacy.report.text.finding_lines import MANY, details, enforced_lines, law_lines, overview
+from rosprivacy.report.text.fleet import fleet_lines
+from rosprivacy.report.text.lines import place, wrapped
+from rosprivacy.report.text.review import doubt_lines, next_lines, review_lines
+from rosprivacy.report.text.taken_away import (
+    absent_lines,
+    denied_lines,
+    glob_lines,
+    glob_warnings,
+    hanging_lines,
+    ledger_lines,
+    overruled_lines,
+    reliance_lines,
+    standard_lines,
+    taken_away_lines,
+    type_lines,
+)
+from rosprivacy.report.verdict import ALL, asked_factors, asked_level, asked_types, verdict_sentence
 from rosprivacy.report.words.words import IN_ENGLISH, Words
 
 if TYPE_CHECKING:
@@ -37,8 +40,9 @@ if TYPE_CHECKING:
 
     from rich.console import Console
 
+    from rosprivacy.report.text.lines import Line
+
 STYLES = {"leak": "bold red", "undetermined": "bold yellow", "no-leak-found": "bold green"}
-Line = tuple[str, str]  # text, style
 
 
 def print_report(
@@ -158,18 +162,32 @@ def _assumed(report: Mapping[str, Any], words: Words, most: int | None) -> Itera
         yield f"   {words('tty.no.labels')}", ""
     if "decisions" in assumptions:
         taken = assumptions["decisions"]
-        named = {"file": shown(taken["file"]), "sha": taken["sha256"][:12], "date": words.date(taken["today"])}
-        yield f"   {words('tty.file.decisions', **named)}", ""
-    yield from asked_lines(report, words)
+        date = words.date(taken["today"])
+        yield f"   {words('tty.file.decisions', file=shown(taken['file']), sha=taken['sha256'][:12], date=date)}", ""
+    yield from _asked(report, words)
     yield from _files(assumptions["ontologies"], "ontologies", words)
     yield f"   {words('tty.law', date=words.date(assumptions['law_as_of']))}", ""
     yield from _assumed_outside(report, words)
     for taken in assumptions["sanitizers_without_method"]:
-        said = words("tty.no.method", element=shown_name(taken["element"]), kind=taken["category"])
-        yield f"   {said}", "yellow"
+        yield f"   {words('tty.no.method', element=shown_name(taken['element']), kind=taken['category'])}", "yellow"
     yield from absent_lines(report, words)
     yield from overruled_lines(report, words)
     yield f"   {words('tty.word')}", "dim"
+
+
+def _asked(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
+    """What the answer is restricted to (rule S11)."""
+    assumed = report["assumptions"]
+    if assumed["categories_asked"] != ALL:
+        yield f"   {words('tty.only.categories', kinds=', '.join(map(shown, assumed['categories_asked'])))}", ""
+    if assumed["data_types_asked"] != ALL:
+        yield f"   {words('tty.only', what=asked_types(assumed, words))}", ""
+    if "identity_factors_asked" in assumed:
+        yield f"   {words('tty.only.stated', what=asked_factors(assumed, words))}", ""
+    if assumed["article9_only"]:
+        yield f"   {words('tty.only.known', what=asked_level(assumed, words))}", ""
+    for category, kinds in assumed.get("may_be_asked", {}).items():
+        yield f"   {words('tty.also', kind=category, kinds=named(kinds, words))}", ""
 
 
 def _files(files: Iterable[Mapping[str, Any]], role: str, words: Words) -> Iterator[Line]:
@@ -193,12 +211,12 @@ def _assumed_outside(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
 def _diagnostics(report: Mapping[str, Any], words: Words, *, verbose: bool) -> Iterator[Line]:
     """Messages about files: they are in English, as other tools read them."""
     listed = {doubt["doubt"] for doubt in report["doubts"]}
-    told = [d for d in report["diagnostics"] if d.get("code") not in (*ASSUMED, *listed)]
-    notices = [d for d in told if d["severity"] == "notice" and d.get("code") != MERGED]
-    for diagnostic in told:
+    messages = [d for d in report["diagnostics"] if d.get("code") not in (*ASSUMED, *listed)]
+    notices = [d for d in messages if d["severity"] == "notice" and d.get("code") != MERGED]
+    for diagnostic in messages:
         if verbose or diagnostic not in notices:
-            line = f":{diagnostic['line']}" if diagnostic["line"] else ""
             severity = words(f"tty.severity.{diagnostic['severity']}")
-            yield f"{severity}: {shown(diagnostic['file'])}{line}: {diagnostic['message']}", "yellow"
+            at = place(diagnostic) if diagnostic["line"] else shown(diagnostic["file"])
+            yield f"{severity}: {at}: {diagnostic['message']}", "yellow"
     if notices and not verbose:
         yield words.count(len(notices), "tty.notice"), "dim"

@@ -10,7 +10,7 @@ import pytest
 from rich.console import Console
 
 import rosprivacy
-from rosprivacy.report.terminal.analysis import print_report
+from rosprivacy.report.text.analysis import print_report
 from tests.helpers.paths import ROOT
 
 

@@ -1,7 +1,7 @@
-"""Categories -> text: the hierarchy as a tree, or one category with all that the ontology says of it.
+"""What the ontology knows -> text: the categories as a tree, all about one of them, and the law with its dates.
 
-In: a vocabulary and a language. Out: lines of plain text. What comes from the ontology is in that language where it
-has a translation, else in English.
+In: a vocabulary, or provisions, and a language. Out: lines of plain text; no verdict of law. What comes from
+the ontology is in that language where it has a translation, else in English.
 """
 
 from __future__ import annotations
@@ -12,13 +12,19 @@ from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import ARTICLE_10
 from rosprivacy.analysis.text import blanked
 from rosprivacy.ontology.iris import as_published
+from rosprivacy.ontology.provisions import MONTHS, is_old
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from rosprivacy.analysis.model import Category, Legal
+    from rosprivacy.ontology.provisions import Provision
     from rosprivacy.ontology.vocabulary import Vocabulary
 
+ADEQUACY = "Adequacy decisions (GDPR Art. 45)"
+UNCONFIRMED = (
+    "amendment adopted {date}; that the Official Journal has it is not confirmed; look whether it was published"
+)
 WORDS = {
     "en": {
         "definition": "Definition", "names": "Also", "broader": "Broader", "narrower": "Narrower",
@@ -131,3 +137,31 @@ def _legal(legal: Legal, category: Category, language: str) -> str:
 
 def _sources(legal: Legal, language: str) -> str:
     return legal.translations.get(language, {}).get("sources") or ", ".join(legal.sources)
+
+
+def law_lines(provisions: Sequence[Provision], countries: str) -> Iterator[str]:
+    """Yield what is known, each with its date; no legal advice."""
+    yield "Only these are known, in words of the program; what counts is the law itself."
+    yield "'reviewed' is the day on which the entry was last looked at, not a day on which the law was read in force."
+    for provision in provisions:
+        where = f"  {provision.address}" if provision.address else ""
+        yield f"{provision.name}: {provision.title} (reviewed {provision.as_of}){where}"
+        yield f"   {provision.meaning}"
+        if provision.adopted:
+            yield f"   {UNCONFIRMED.format(date=provision.adopted)}"
+    yield f"{ADEQUACY}: reviewed {countries}"
+
+
+def unconfirmed_lines(provisions: Sequence[Provision]) -> list[str]:
+    """Return what rests on law that was adopted, and that we did not find published."""
+    return [f"{one.name}: {UNCONFIRMED.format(date=one.adopted)}" for one in provisions if one.adopted]
+
+
+def old_lines(provisions: Sequence[Provision], countries: str, today: str) -> list[str]:
+    """Return what was last looked at more than six months before today."""
+    dated = [*((provision.name, provision.as_of) for provision in provisions), (ADEQUACY, countries)]
+    return [
+        f"{name}: reviewed {as_of}, more than {MONTHS} months ago; look whether it still holds"
+        for name, as_of in dated
+        if is_old(as_of, today)
+    ]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 
 from rosprivacy.queries.graph_values import Node, Path
-from rosprivacy.report.terminal.graph_words import GraphWords
+from rosprivacy.report.text.graph_words import GraphWords
 from tests.helpers.stored import NAMES, node, relation
 
 CAMERA = node("/camera", "RosNode")

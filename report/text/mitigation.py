@@ -19,6 +19,7 @@ from rosprivacy.analysis.model.reason import NOT_ENCRYPTED, STRANGERS
 from rosprivacy.analysis.text import counted
 from rosprivacy.report.document.analysis import SECTIONS
 from rosprivacy.report.naming import kind_of, shown_name
+from rosprivacy.report.text.lines import place
 from rosprivacy.report.verdict import doubt_phrases
 from rosprivacy.report.words.words import IN_ENGLISH
 
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from rich.console import Console
+
+    from rosprivacy.report.text.lines import Line
 
 LESS = {
     "unread": "can no longer read",
@@ -41,7 +44,6 @@ PROTECT = {
     STRANGERS: "set allow_unauthenticated_participants to false",
 }
 SHOWN, PARTS = 12, 4  # elements that get less, and what of each
-Line = tuple[str, str]  # text, style
 
 
 def print_mitigation(console: Console, report: Mapping[str, Any]) -> None:
@@ -103,7 +105,7 @@ def _protect(proposal: Mapping[str, Any]) -> Iterator[Line]:
     for row in rows:
         names = list(dict.fromkeys(_of(channel) for channel in row["channels"]))
         more = f" and {len(names) - PARTS} more" if len(names) > PARTS else ""
-        yield f"      {shown(row['file'])}:{row['line']}  {PROTECT[row['cause']]}", ""
+        yield f"      {place(row)}  {PROTECT[row['cause']]}", ""
         yield f"         {', '.join(names[:PARTS])}{more}", "dim"
     if not proposal["removes"]:
         yield f"   Proven: analysed anew with this, the verdict is then {proposal['verdict_then']}.", "green"
@@ -165,10 +167,10 @@ def _policy(grants: Iterable[Mapping[str, Any]]) -> Iterator[Line]:
     lines: dict[str, list[str]] = {}
     for grant in grants:
         if grant["role"] == STATED_FLOW:
-            yield f"      {shown(grant['file'])}:{grant['line']}  stated flow", "dim"
+            yield f"      {place(grant)}  stated flow", "dim"
             continue
         what = f"{grant['role']} {grant['kind']} {shown(grant['name'])}  (profile {shown(grant['profile'])}, enclave"
-        lines.setdefault(f"{shown(grant['file'])}:{grant['line']}  {what}", []).append(shown(grant["enclave"]))
+        lines.setdefault(f"{place(grant)}  {what}", []).append(shown(grant["enclave"]))
     for line, enclaves in lines.items():
         yield f"      {line} {', '.join(enclaves)})", "dim"
 
