@@ -27,20 +27,16 @@ SAME_PART = {
     "bags": {"recordings", "report/contract"},  # the answer about bags, and its keys
     "categories": {"cli", "report/text"},  # the command, and what it prints
     "decisions": {"analysis", "report/document"},  # what they mean, and how the document tells them
-    "doubts": {"analysis/findings", "report/document", "report/page"},  # the list of doubts, and how it is told
+    "doubts": {"analysis/findings", "report/page"},  # the list of doubts, and how it is told
     "findings": {"analysis/findings", "report/rdf"},  # findings, and findings as RDF
     "fleet": {"cli", "report/document", "report/text"},  # what is told of a fleet
-    "reliance": {  # what the answer hangs on, and how it is told
-        "analysis/findings",
-        "report/document",
-        "report/page",
-    },
+    "reliance": {"analysis/findings", "report/page"},  # what the answer hangs on, and how it is told
     "review": {"report/page", "report/text"},  # what nobody has reviewed, for each kind of reader
     "ledger": {"analysis/findings", "report/document"},  # what was taken away, and how it is told
     "mitigation": {"", "report/contract", "report/document", "report/text"},  # what is told of proposals
-    "non_ros": {"analysis", "report/document", "report/page"},  # what is told of non-ROS elements
+    "non_ros": {"analysis", "report/page"},  # what is told of non-ROS elements
     "robots": {"report", "report/sarif"},  # which robots a finding stands for, in words and in SARIF
-    "why_not": {"analysis/findings", "cli", "report/document", "report/text"},  # the question, and its answer
+    "why_not": {"analysis/findings", "cli", "report/text"},  # the question, and its answer
     "session": {"explorer", "spark"},  # what lasts from its begin to its end: of a person, and of a cluster
     "typed_channels": {"report/page", "report/rdf"},  # types of channels, as rows and as triples
 }

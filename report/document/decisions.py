@@ -1,17 +1,23 @@
-"""Decisions in what readers get: added to the JSON document.
+"""What people decided, and what the enforced view adds (rule S6): findings of both views with their decisions.
 
-In: a document and decisions joined to its findings. Out: the document with ``decision`` on findings and ``decisions``.
+In: a document and decisions joined to its findings; ``Enforced``. Out: the document with ``decision`` on findings and
+``decisions``; an ``EnforcedEntry``.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, cast
 
+from rosprivacy.analysis.model import Element
+from rosprivacy.report.document.entries import element_dict, finding_entry, place_entries
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from rosprivacy.analysis.decisions import Decided, Decision, State
-    from rosprivacy.report.contract.analysis import AnalysisDocument
+    from rosprivacy.analysis.findings.beyond import Added, DenyLine, Right
+    from rosprivacy.report.answer import Enforced
+    from rosprivacy.report.contract.analysis import AddedEntry, AnalysisDocument, DenyEntry, EnforcedEntry, LostEntry
     from rosprivacy.report.contract.records import ChangedSince, DecisionEntry, FindingEntry, ListedDecision, Target
 
 
@@ -62,3 +68,55 @@ def _target(entry: Decision) -> Target:
     if entry.pseudonymised is not None:
         said["pseudonymised"] = entry.pseudonymised
     return said
+
+
+def enforced_document(enforced: Enforced) -> EnforcedEntry:
+    """Return what the enforced view adds."""
+    answer = enforced.answer
+    findings = [finding_entry(one.finding, answer.contexts) for one in enforced.added]
+    if answer.decided:
+        findings = decided_findings(findings, answer.decided)
+    return {
+        "verdict": str(answer.analysis.verdict),
+        "unreviewed": len(enforced.open),
+        "open": [element_dict(element) for element in enforced.open],
+        "added": [_added(one, finding) for one, finding in zip(enforced.added, findings, strict=True)],
+    }
+
+
+def _added(one: Added, finding: FindingEntry) -> AddedEntry:
+    entry: AddedEntry = {
+        "finding": finding,
+        "beyond": list(one.beyond),
+        "enclaves": list(one.enclaves),
+        "split": list(one.split),
+        "move": {"enclave": one.move[0], "profile": one.move[1]} if one.move else None,
+        "deny": [_deny(line) for line in one.deny],
+        "loses": [_lost(right) for right in one.loses],
+    }
+    if one.robots:
+        entry["robots"] = list(one.robots)
+    if one.plain:
+        entry["plain"] = True
+    if one.opened:
+        entry["opened_by"] = place_entries(one.opened)
+    return entry
+
+
+def _deny(line: DenyLine) -> DenyEntry:
+    return {
+        "file": line.policy,
+        "enclave": line.enclave,
+        "profile": line.node,
+        "role": line.role,
+        "channel": element_dict(Element(line.kind, line.name)),
+    }
+
+
+def _lost(right: Right) -> LostEntry:
+    (robot, kind, name), role, channel = right
+    return {
+        "node": element_dict(Element(kind, name, robot)),
+        "role": role,
+        "channel": element_dict(Element(channel[1], channel[2], channel[0])),
+    }

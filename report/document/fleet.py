@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.report.document.element_entry import element_dict
+from rosprivacy.report.document.entries import element_dict
 from rosprivacy.report.robots import form_rows
 
 if TYPE_CHECKING:

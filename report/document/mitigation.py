@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.model import DISCLOSURE
 from rosprivacy.report.document.analysis import label_key
-from rosprivacy.report.document.element_entry import element_dict
+from rosprivacy.report.document.entries import element_dict
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable

@@ -14,7 +14,7 @@ from rdflib.namespace import PROV
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.findings.processed import of_end
-from rosprivacy.report.document.whole import document
+from rosprivacy.report.document.analysis import document
 from rosprivacy.report.rdf.concepts import texts
 from rosprivacy.report.rdf.facts import changes, emitted_by, kinds_along, label_of, legal_of
 from rosprivacy.report.rdf.individuals import below, names_of

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from rdflib import RDF, Literal
 
-from rosprivacy.report.document.message_types import typed_channels
+from rosprivacy.report.document.stated import typed_channels
 from rosprivacy.report.rdf.individuals import below
 from rosprivacy.report.rdf.terms import RP, Triple, about, text
 

@@ -16,7 +16,7 @@ from rosprivacy.analysis.legal import strongest_first
 from rosprivacy.analysis.model import NO_LEAK_NAMED, Place, Rank, Severity
 from rosprivacy.analysis.policy_lines import in_a_file
 from rosprivacy.analysis.text import counted, utf8
-from rosprivacy.report.document.doubts import verdict_facts
+from rosprivacy.report.document.analysis import verdict_facts
 from rosprivacy.report.element_counts import ElementCount, count_elements
 from rosprivacy.report.places import Places, to_review
 from rosprivacy.report.sarif.beyond_profile import added_results

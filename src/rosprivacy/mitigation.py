@@ -21,8 +21,8 @@ from rosprivacy.ingest.mitigation.deny_patch import Patch, patch
 from rosprivacy.ingest.mitigation.limits_file import read_limits
 from rosprivacy.ingest.mitigation.open_wildcards import open_ended
 from rosprivacy.ingest.policies.flow_graph import build
+from rosprivacy.report.document.analysis import document
 from rosprivacy.report.document.mitigation import mitigation_document
-from rosprivacy.report.document.whole import document
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable

@@ -9,7 +9,7 @@ from rosprivacy.analysis.errors import InputError
 from rosprivacy.analysis.findings.findings import Options
 from rosprivacy.formats import Style, TextFormat, written
 from rosprivacy.report.answer import Answer
-from rosprivacy.report.document.whole import document
+from rosprivacy.report.document.analysis import document
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 from rosprivacy.analysis.legal import recognises
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.report.cnil.pia import cnil_pia
-from rosprivacy.report.document.whole import document
+from rosprivacy.report.document.analysis import document
 from rosprivacy.report.page import article30
 from rosprivacy.report.words.words import Words
 from tests.helpers.answers import answer_of
