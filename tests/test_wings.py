@@ -35,7 +35,6 @@ SAME_PART = {
     "ledger": {"analysis/findings", "report/document"},  # what was taken away, and how it is told
     "mitigation": {"", "report/contract", "report/document", "report/text"},  # what is told of proposals
     "non_ros": {"analysis", "report/page"},  # what is told of non-ROS elements
-    "robots": {"report", "report/sarif"},  # which robots a finding stands for, in words and in SARIF
     "why_not": {"analysis/findings", "cli", "report/text"},  # the question, and its answer
     "session": {"explorer", "spark"},  # what lasts from its begin to its end: of a person, and of a cluster
     "typed_channels": {"report/page", "report/rdf"},  # types of channels, as rows and as triples
