@@ -22,7 +22,7 @@ SAME_PART = {
         "report/contract",
         "report/document",
         "report/text",
-    },  # the answer about one system: keys, document, lines
+    },  # the answer about a system: keys, document, lines
     "answer": {"analysis", "report"},  # the answer, and the one that every format is made of
     "bags": {"recordings", "report/contract"},  # the answer about bags, and its keys
     "categories": {"cli", "report/text"},  # the command, and what it prints
@@ -31,6 +31,8 @@ SAME_PART = {
     "findings": {"analysis/findings", "report/rdf"},  # findings, and findings as RDF
     "fleet": {"cli", "report/document", "report/text"},  # what is told of a fleet
     "reliance": {"analysis/findings", "report/page"},  # what the answer hangs on, and how it is told
+    "records": {"report/contract", "report/document"},  # the rows of a document: their keys, and how they are made
+    "stated": {"report/contract", "report/document"},  # what is stated: its keys, and how they are made
     "review": {"report/page", "report/text"},  # what nobody has reviewed, for each kind of reader
     "ledger": {"analysis/findings", "report/document"},  # what was taken away, and how it is told
     "mitigation": {"", "report/contract", "report/document", "report/text"},  # what is told of proposals

@@ -13,7 +13,9 @@ from rosprivacy.analysis.findings.sanitizing import absent, cleanings, makings, 
 from rosprivacy.analysis.kernel.ranks import in_words
 from rosprivacy.analysis.written_names import literal
 from rosprivacy.report.document.decisions import enforced_document, with_decisions
-from rosprivacy.report.document.entries import (
+from rosprivacy.report.document.fleet import fleet_document
+from rosprivacy.report.document.ledger import counts_of, glob_entries, ledger_rows, reliance_rows
+from rosprivacy.report.document.records import (
     doubt_entry,
     element_dict,
     element_or_none,
@@ -21,8 +23,6 @@ from rosprivacy.report.document.entries import (
     grant_entry,
     place_entries,
 )
-from rosprivacy.report.document.fleet import fleet_document
-from rosprivacy.report.document.ledger import counts_of, glob_entries, ledger_rows, reliance_rows
 from rosprivacy.report.document.stated import (
     category_entry,
     inventory,
@@ -173,15 +173,15 @@ def _stopped(channel: Element, categories: tuple[str, ...], analysis: Analysis) 
     return stopped
 
 
-def _overruled(one: Overruled) -> OverruledEntry:
+def _overruled(overruled: Overruled) -> OverruledEntry:
     """A source or leak that another statement takes away."""
     return {
-        "role": one.role,
-        "categories": list(one.categories),
-        "elements": list(one.names),
-        "file": one.lost.place.file,
-        "line": one.lost.place.line,
-        "by": {"says": in_words(one.by), "file": one.by.place.file, "line": one.by.place.line},
+        "role": overruled.role,
+        "categories": list(overruled.categories),
+        "elements": list(overruled.names),
+        "file": overruled.lost.place.file,
+        "line": overruled.lost.place.line,
+        "by": {"says": in_words(overruled.by), "file": overruled.by.place.file, "line": overruled.by.place.line},
     }
 
 
@@ -196,13 +196,13 @@ def _ways(answer: Answer) -> list[WaysEntry]:
                 "subjects_missing": row.unnamed,
                 "protections": [
                     {
-                        "element": element_dict(one.element),
-                        "category": one.category,
-                        "method": one.method,
-                        "stated": one.stated,
-                        "everywhere": one.everywhere,
+                        "element": element_dict(protection.element),
+                        "category": protection.category,
+                        "method": protection.method,
+                        "stated": protection.stated,
+                        "everywhere": protection.everywhere,
                     }
-                    for one in row.protections
+                    for protection in row.protections
                 ],
             }
         )
@@ -213,8 +213,8 @@ def _ways(answer: Answer) -> list[WaysEntry]:
 
 def _sanitizers(analysis: Analysis, categories: Mapping[str, Category]) -> list[SanitizerEntry]:
     """Who cleans data."""
-    found = recognised(analysis.spread, categories)
-    recognising = {analysis.graph.elements[vertex]: kinds for vertex, kinds in found.items()}
+    kinds_at = recognised(analysis.spread, categories)
+    recognising = {analysis.graph.elements[vertex]: kinds for vertex, kinds in kinds_at.items()}
     return [
         {
             "element": element_dict(cleaning.element),

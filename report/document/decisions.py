@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, cast
 
 from rosprivacy.analysis.model import Element
-from rosprivacy.report.document.entries import element_dict, finding_entry, place_entries
+from rosprivacy.report.document.records import element_dict, finding_entry, place_entries
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -42,7 +42,7 @@ def _decision(entry: Decision, state: State, decided: Decided) -> DecisionEntry:
     changed: list[ChangedSince] = [
         {"what": change.what, "before": change.before, "now": change.now} for change in decided.changed.get(entry, ())
     ]
-    told: DecisionEntry = {
+    decision: DecisionEntry = {
         "choice": str(entry.choice),
         "state": str(state),
         "reason": entry.reason,
@@ -54,52 +54,52 @@ def _decision(entry: Decision, state: State, decided: Decided) -> DecisionEntry:
         "file": entry.place.file,
         "line": entry.place.line,
     }
-    return {**told, "changed": changed} if changed else told
+    return {**decision, "changed": changed} if changed else decision
 
 
 def _target(entry: Decision) -> Target:
     """What an entry says that it is about."""
     keys = ("id", "category", "source", "leak", "robot", "from_robot", "kind")
-    said = cast("Target", {key: getattr(entry, key) for key in keys if getattr(entry, key)})
+    target = cast("Target", {key: getattr(entry, key) for key in keys if getattr(entry, key)})
     if entry.robots:
-        said["robots"] = list(entry.robots)
+        target["robots"] = list(entry.robots)
     if entry.from_robots:
-        said["from_robots"] = list(entry.from_robots)
+        target["from_robots"] = list(entry.from_robots)
     if entry.pseudonymised is not None:
-        said["pseudonymised"] = entry.pseudonymised
-    return said
+        target["pseudonymised"] = entry.pseudonymised
+    return target
 
 
 def enforced_document(enforced: Enforced) -> EnforcedEntry:
     """Return what the enforced view adds."""
     answer = enforced.answer
-    findings = [finding_entry(one.finding, answer.contexts) for one in enforced.added]
+    findings = [finding_entry(added.finding, answer.contexts) for added in enforced.added]
     if answer.decided:
         findings = decided_findings(findings, answer.decided)
     return {
         "verdict": str(answer.analysis.verdict),
         "unreviewed": len(enforced.open),
         "open": [element_dict(element) for element in enforced.open],
-        "added": [_added(one, finding) for one, finding in zip(enforced.added, findings, strict=True)],
+        "added": [_added(added, finding) for added, finding in zip(enforced.added, findings, strict=True)],
     }
 
 
-def _added(one: Added, finding: FindingEntry) -> AddedEntry:
+def _added(added: Added, finding: FindingEntry) -> AddedEntry:
     entry: AddedEntry = {
         "finding": finding,
-        "beyond": list(one.beyond),
-        "enclaves": list(one.enclaves),
-        "split": list(one.split),
-        "move": {"enclave": one.move[0], "profile": one.move[1]} if one.move else None,
-        "deny": [_deny(line) for line in one.deny],
-        "loses": [_lost(right) for right in one.loses],
+        "beyond": list(added.beyond),
+        "enclaves": list(added.enclaves),
+        "split": list(added.split),
+        "move": {"enclave": added.move[0], "profile": added.move[1]} if added.move else None,
+        "deny": [_deny(line) for line in added.deny],
+        "loses": [_lost(right) for right in added.loses],
     }
-    if one.robots:
-        entry["robots"] = list(one.robots)
-    if one.plain:
+    if added.robots:
+        entry["robots"] = list(added.robots)
+    if added.plain:
         entry["plain"] = True
-    if one.opened:
-        entry["opened_by"] = place_entries(one.opened)
+    if added.opened:
+        entry["opened_by"] = place_entries(added.opened)
     return entry
 
 

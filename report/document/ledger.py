@@ -12,7 +12,7 @@ from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.findings.closures import ABSENT
 from rosprivacy.analysis.findings.ledger import BY, REVIEW
 from rosprivacy.analysis.model import STANDARD
-from rosprivacy.report.document.entries import element_dict, element_or_none, place_entries
+from rosprivacy.report.document.records import element_dict, element_or_none, place_entries
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping

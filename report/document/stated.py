@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.contexts import article9_in, revealed
 from rosprivacy.analysis.non_ros import TAKEN, limited, not_stated
-from rosprivacy.report.document.entries import element_dict
+from rosprivacy.report.document.records import element_dict
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
@@ -98,13 +98,13 @@ def situations(vocabulary: Vocabulary, contexts: Collection[str]) -> list[Contex
     """Return the contexts that are stated, with what they mean."""
     return [
         {
-            "name": one.name,
-            "title": one.title,
-            "definition": one.definition,
-            "translations": _texts(one.translations),
+            "name": situation.name,
+            "title": situation.title,
+            "definition": situation.definition,
+            "translations": _texts(situation.translations),
         }
-        for one in vocabulary.pointed.situations
-        if one.name in contexts
+        for situation in vocabulary.pointed.situations
+        if situation.name in contexts
     ]
 
 
@@ -113,21 +113,21 @@ def pointers(vocabulary: Vocabulary, categories: Iterable[str], contexts: Collec
     emitted = [vocabulary.categories[name] for name in categories]
     return [
         {
-            "provision": one.name,
-            "iri": one.iri,
-            "title": one.title,
-            "meaning": one.meaning,
-            "as_of": one.as_of,
-            "applies_from": one.applies,
-            "confirmed": one.confirmed,
-            "adopted": one.adopted,
-            "country": one.country,
-            "address": one.address,
+            "provision": pointer.name,
+            "iri": pointer.iri,
+            "title": pointer.title,
+            "meaning": pointer.meaning,
+            "as_of": pointer.as_of,
+            "applies_from": pointer.applies,
+            "confirmed": pointer.confirmed,
+            "adopted": pointer.adopted,
+            "country": pointer.country,
+            "address": pointer.address,
             "categories": list(kinds),
             "contexts": list(where),
-            "translations": _texts(one.translations),
+            "translations": _texts(pointer.translations),
         }
-        for one, kinds, where in vocabulary.pointed.rows(emitted, contexts)
+        for pointer, kinds, where in vocabulary.pointed.rows(emitted, contexts)
     ]
 
 
@@ -135,7 +135,7 @@ def surroundings(answer: Answer) -> list[SurroundingsEntry]:
     """Return where the elements that bring data in work, as people state it of them or of their system."""
     analysis, bound = answer.shown, answer.bound
     elements = analysis.graph.elements
-    sources = {element for element, said in analysis.roles.items() if any("source" in of for of in said.values())}
+    sources = {element for element, roles in analysis.roles.items() if any("source" in of for of in roles.values())}
     rows: list[SurroundingsEntry] = []
     for vertex, where in sorted(bound.surroundings.items()):
         if elements[vertex] in sources:
@@ -147,11 +147,11 @@ def surroundings(answer: Answer) -> list[SurroundingsEntry]:
 
 def inventory(analysis: Analysis, hierarchy: Hierarchy) -> list[NonRosEntry]:
     """Return every element outside ROS with its facts (rule S9)."""
-    found = analysis.spread
+    spread = analysis.spread
     numbers = {element: i for i, element in enumerate(analysis.graph.elements)}
     rows: list[NonRosEntry] = []
     for element, facts in analysis.outside.items():
-        holds = found.names(found.present(numbers[element]))
+        holds = spread.names(spread.present(numbers[element]))
         row: NonRosEntry = {
             "element": {"robot": element.robot, "kind": element.kind, "name": element.name},
             "file": facts.place.file,
@@ -175,43 +175,35 @@ def without_backups(analysis: Analysis) -> list[Element]:
 
 
 def _facts(facts: NonRosFacts) -> NonRosStated:
-    said: NonRosStated = {}
-    if facts.retention:
-        said["retention"] = _durations(facts.retention)
-    if facts.backups is not None:
-        said["backups"] = facts.backups if isinstance(facts.backups, bool) else str(facts.backups)
-    if facts.encrypted is not None:
-        said["encrypted"] = facts.encrypted
-    if facts.country:
-        said["country"] = facts.country
-    if facts.area:
-        said["area"] = facts.area
-    if facts.operator:
-        said["operator"] = facts.operator
-    if facts.recipient:
-        said["recipient"] = facts.recipient
-    if facts.transfer:
-        said["transfer"] = facts.transfer
-    if facts.contract:
-        said["contract"] = facts.contract
-    if facts.recording:
-        said["recording"] = _recording(facts.recording)
-    return said
+    backups = facts.backups if isinstance(facts.backups, bool | None) else str(facts.backups)
+    entry: NonRosStated = _present(
+        retention=_durations(facts.retention),
+        backups=backups,
+        encrypted=facts.encrypted,
+        country=facts.country,
+        area=facts.area,
+        operator=facts.operator,
+        recipient=facts.recipient,
+        transfer=facts.transfer,
+        contract=facts.contract,
+        recording=_recording(facts.recording) if facts.recording else None,
+    )
+    return entry
+
+
+def _present(**values: Any) -> Any:
+    """Keys with what is stated of each, without those of which nothing is."""
+    return {key: value for key, value in values.items() if value not in (None, "", {}, [])}
 
 
 def _recording(recording: Recording) -> RecordingEntry:
     from rosprivacy.analysis.model.recording import iso  # noqa: PLC0415 - light start
 
-    said: RecordingEntry = {"bag": recording.bag, "bytes": recording.size, "topics": recording.topics}
-    if recording.messages is not None:
-        said["messages"] = recording.messages
-    if recording.start is not None:
-        said["start"] = iso(recording.start)
-    if recording.end is not None:
-        said["end"] = iso(recording.end)
-    if recording.oldest is not None:
-        said["oldest"] = iso(recording.oldest)
-    return said
+    times = {"start": recording.start, "end": recording.end, "oldest": recording.oldest}
+    entry: RecordingEntry = {"bag": recording.bag, "bytes": recording.size, "topics": recording.topics}
+    entry.update(_present(messages=recording.messages))
+    entry.update(_present(**{of: iso(time) for of, time in times.items() if time is not None}))
+    return entry
 
 
 def _durations(stated: tuple[tuple[str, Any], ...]) -> dict[str, str]:
@@ -220,27 +212,27 @@ def _durations(stated: tuple[tuple[str, Any], ...]) -> dict[str, str]:
 
 def _not_known(element: Element, facts: NonRosFacts, holds: tuple[str, ...], hierarchy: Hierarchy) -> NonRosNotKnown:
     """What the answer could not judge: what nobody states, or a retention without a limit to hold it against."""
-    found: NonRosNotKnown = {}
+    entry: NonRosNotKnown = {}
     if missing := not_stated(element, facts):
-        found["missing"] = list(missing)
+        entry["missing"] = list(missing)
     judged = element.kind == "storage" and facts.retention
     if judged and (without := [name for name in holds if not limited(facts, name, hierarchy)]):
-        found["without_limit"] = without
-    return found
+        entry["without_limit"] = without
+    return entry
 
 
 def with_processing(made: AnalysisDocument, answer: Answer) -> AnalysisDocument:
     """Return a document with what is stated of processing; of robots that are alike of one."""
-    beside = answer.fleet.likeness.second if answer.fleet else ()
+    not_shown = answer.fleet.likeness.second if answer.fleet else ()
     stated: list[ProcessingEntry] = []
-    for robot, said in answer.bound.of_robots.items():
-        if robot not in beside:
-            stated.append(_stated(said))
+    for robot, processing in answer.bound.of_robots.items():
+        if robot not in not_shown:
+            stated.append(_stated(processing))
             stated[-1]["robot"] = robot
-    for vertex, said in sorted(answer.bound.processing.items()):
+    for vertex, processing in sorted(answer.bound.processing.items()):
         element = answer.analysis.graph.elements[vertex]
-        if element.robot not in beside:
-            stated.append(_stated(said))
+        if element.robot not in not_shown:
+            stated.append(_stated(processing))
             stated[-1]["element"] = element_dict(element)
     if stated:
         made["processing"] = stated
@@ -249,21 +241,15 @@ def with_processing(made: AnalysisDocument, answer: Answer) -> AnalysisDocument:
     return made
 
 
-def _stated(said: Processing) -> ProcessingEntry:
-    found: ProcessingEntry = {"file": said.place.file, "line": said.place.line}
-    if said.controller:
-        found["controller"] = said.controller
-    if said.dpo:
-        found["dpo"] = said.dpo
-    if said.purposes:
-        found["purposes"] = _by_category(said.purposes)
-    if said.bases:
-        found["legal_bases"] = _by_category(said.bases)
-    return found
+def _stated(stated: Processing) -> ProcessingEntry:
+    entry: ProcessingEntry = {"file": stated.place.file, "line": stated.place.line}
+    purposes, bases = _by_category(stated.purposes), _by_category(stated.bases)
+    entry.update(_present(controller=stated.controller, dpo=stated.dpo, purposes=purposes, legal_bases=bases))
+    return entry
 
 
 def _by_category(stated: ByCategory) -> dict[str, list[str]]:
-    return {category or "every": list(some) for category, some in stated}
+    return {category or "every": list(values) for category, values in stated}
 
 
 def _processed(row: Processed) -> ProcessedEntry:
@@ -282,8 +268,8 @@ def with_types(document: AnalysisDocument, answer: Answer) -> AnalysisDocument:
     """Return a document with the types of channels, where any are known, and what only these close."""
     closed = answer.shown.closed
     types: list[TypesEntry] = [
-        {"element": element_dict(element), "types": [_type(one) for one in some]}
-        for element, some in typed_channels(answer)
+        {"element": element_dict(element), "types": [_type(each) for each in seen]}
+        for element, seen in typed_channels(answer)
     ]
     if types:
         document["types"] = types
@@ -300,13 +286,13 @@ def typed_channels(answer: Answer) -> list[tuple[Element, tuple[MessageType, ...
     """Return the types of each channel that has any, in the order of the graph; both sides of a wildcard once."""
     elements = answer.analysis.graph.elements
     together: dict[Any, tuple[Element, dict[MessageType, None]]] = {}
-    beside = answer.fleet.likeness.second if answer.fleet else ()
+    not_shown = answer.fleet.likeness.second if answer.fleet else ()
     for vertex, types in answer.bound.types.items():
         element = elements[vertex]
-        if element.robot in beside:
+        if element.robot in not_shown:
             continue
         together.setdefault(element.shown_as, (element, {}))[1].update(dict.fromkeys(types))
-    return [(element, tuple(some)) for element, some in together.values()]
+    return [(element, tuple(seen)) for element, seen in together.values()]
 
 
 def _closed(finding: Finding) -> ClosedEntry:
@@ -320,16 +306,8 @@ def _closed(finding: Finding) -> ClosedEntry:
     }
 
 
-def _type(one: MessageType) -> TypeEntry:
-    told: TypeEntry = {"type": one.name, "stated": one.stated, "file": one.place.file, "line": one.place.line}
-    if one.hash:
-        told["hash"] = one.hash
-    if one.writers:
-        told["writers"] = list(one.writers)
-    if one.readers:
-        told["readers"] = list(one.readers)
-    if one.first:
-        told["first"] = one.first
-    if one.last:
-        told["last"] = one.last
-    return told
+def _type(seen: MessageType) -> TypeEntry:
+    entry: TypeEntry = {"type": seen.name, "stated": seen.stated, "file": seen.place.file, "line": seen.place.line}
+    nodes = {"writers": list(seen.writers), "readers": list(seen.readers)}
+    entry.update(_present(hash=seen.hash, **nodes, first=seen.first, last=seen.last))
+    return entry

@@ -17,7 +17,7 @@ from rosprivacy.report.observed_lines import observed_lines
 from rosprivacy.report.review_groups import SHOWN
 from rosprivacy.report.text.finding_lines import MANY, details, enforced_lines, law_lines, overview
 from rosprivacy.report.text.fleet import fleet_lines
-from rosprivacy.report.text.lines import place, wrapped
+from rosprivacy.report.text.line_parts import place, wrapped
 from rosprivacy.report.text.review import doubt_lines, next_lines, review_lines
 from rosprivacy.report.text.taken_away import (
     absent_lines,
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 
     from rich.console import Console
 
-    from rosprivacy.report.text.lines import Line
+    from rosprivacy.report.text.line_parts import Line
 
 STYLES = {"leak": "bold red", "undetermined": "bold yellow", "no-leak-found": "bold green"}
 

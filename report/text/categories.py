@@ -87,8 +87,8 @@ def _entry(category: Category, language: str, *, again: bool) -> str:
     verdicts = [(words["article9"], category.article9)] if category.article9 != "no" else []
     verdicts += [(words["article10"], legal.verdict) for legal in category.law if legal.name == ARTICLE_10]
     factors = f"  [{', '.join(category.identity_factors)}]" if category.identity_factors else ""
-    said = factors + "".join(f"  [{article}: {words[verdict]}]" for article, verdict in verdicts)
-    return f"{category.name}  {shown(category.text('title', language))}{said}" + (
+    notes = factors + "".join(f"  [{article}: {words[verdict]}]" for article, verdict in verdicts)
+    return f"{category.name}  {shown(category.text('title', language))}{notes}" + (
         f"  ({words['above']})" if again else ""
     )
 
@@ -154,7 +154,11 @@ def law_lines(provisions: Sequence[Provision], countries: str) -> Iterator[str]:
 
 def unconfirmed_lines(provisions: Sequence[Provision]) -> list[str]:
     """Return what rests on law that was adopted, and that we did not find published."""
-    return [f"{one.name}: {UNCONFIRMED.format(date=one.adopted)}" for one in provisions if one.adopted]
+    return [
+        f"{provision.name}: {UNCONFIRMED.format(date=provision.adopted)}"
+        for provision in provisions
+        if provision.adopted
+    ]
 
 
 def old_lines(provisions: Sequence[Provision], countries: str, today: str) -> list[str]:

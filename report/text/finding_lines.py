@@ -17,7 +17,7 @@ from rosprivacy.report.looked_at import looked_at
 from rosprivacy.report.made_of import data_made
 from rosprivacy.report.naming import key, shown_name
 from rosprivacy.report.text.fleet import on_robots, robots_of
-from rosprivacy.report.text.lines import place
+from rosprivacy.report.text.line_parts import place
 from rosprivacy.report.words.reasons import reason_told
 from rosprivacy.report.words.typography import spaced
 from rosprivacy.report.words.words import IN_ENGLISH, Words
@@ -25,7 +25,7 @@ from rosprivacy.report.words.words import IN_ENGLISH, Words
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 
-    from rosprivacy.report.text.lines import Line
+    from rosprivacy.report.text.line_parts import Line
 
 MANY = 5  # findings; of more a list of one line each comes first
 NAMED = 4  # kinds of data in one line
@@ -169,9 +169,9 @@ def law_lines(
     report: Mapping[str, Any], findings: Iterable[Mapping[str, Any]], words: Words = IN_ENGLISH
 ) -> Iterator[Line]:
     """Return what a person has to look up about each kind of data that arrives somewhere, once for each kind."""
-    told = in_order(findings, report)
-    by_kind = {finding["category"]: finding for finding in told}
-    findings_of = {kind: [finding for finding in told if finding["category"] == kind] for kind in by_kind}
+    ordered = in_order(findings, report)
+    by_kind = {finding["category"]: finding for finding in ordered}
+    findings_of = {kind: [finding for finding in ordered if finding["category"] == kind] for kind in by_kind}
     if not by_kind:
         return
     kinds = {category["name"]: category for category in report["categories"]}
@@ -194,11 +194,13 @@ def _law(finding: Mapping[str, Any], kinds: Mapping[str, Mapping[str, Any]], wor
     """The provisions of a finding, with the texts that the ontology has of them."""
     stated = kinds.get(finding["category"], {}).get("law", ())
     for legal in finding["law"]:
-        known = (one for one in stated if all(one[key] == legal[key] for key in ("provision", "verdict", "condition")))
-        told = next(known, {**legal, "translations": {}})
-        condition = _text(told, "condition", words).removeprefix(NARROWER)
+        alike = (
+            other for other in stated if all(other[key] == legal[key] for key in ("provision", "verdict", "condition"))
+        )
+        texts = next(alike, {**legal, "translations": {}})
+        condition = _text(texts, "condition", words).removeprefix(NARROWER)
         yield {
-            "provision": _text(told, "provision", words),
+            "provision": _text(texts, "provision", words),
             "may": words(f"tty.may.{legal['verdict']}"),
             "condition": words("tty.law.condition", condition=condition) if condition else "",
         }
@@ -241,9 +243,11 @@ def _style(finding: Mapping[str, Any]) -> str:
 
 def _unreviewed(report: Mapping[str, Any], findings: Iterable[Mapping[str, Any]]) -> set[Any]:
     """(element, category) on the witnesses of some findings that nobody has reviewed."""
-    told = {key(element) for finding in findings for element in finding["witness"]}
+    on_paths = {key(element) for finding in findings for element in finding["witness"]}
     open_here = ((key(question["element"]), question) for question in report["open"])
-    return {(element, name) for element, question in open_here if element in told for name in question["categories"]}
+    return {
+        (element, name) for element, question in open_here if element in on_paths for name in question["categories"]
+    }
 
 
 class _Way(NamedTuple):
@@ -272,13 +276,13 @@ class _Way(NamedTuple):
             # what is there: the data that arrives, at the source the data that leaves, at the leak what gets out too
             last = [] if hop < len(steps) else [finding["category"]]
             here = dict.fromkeys([*data[max(hop - 1, 0) : hop or 1], *last])
-            said = [(name, role) for name in here for role in self.roles.get((key(element), name), ())]
+            roles_of = [(name, role) for name in here for role in self.roles.get((key(element), name), ())]
             notes = [
                 f"{words(f'tty.role.{role}', kind=name)}{self._of_another(finding, hop, role, name)}"
-                for name, role in said
+                for name, role in roles_of
             ]
             notes += [words("tty.unreviewed") for name in here if (key(element), name) in self.unreviewed]
-            style = "red" if any(role == "leak" for _, role in said) else ""
+            style = "red" if any(role == "leak" for _, role in roles_of) else ""
             yield f"   {shown_name(element)}  ({', '.join([kind_in(element, words), *notes])})", style
             if hop < len(steps):
                 before = steps[hop - 1] if hop else steps[hop]
@@ -294,8 +298,8 @@ class _Way(NamedTuple):
         words = self.words
         places = [f"{shown(_within(self.folder, grant['file']))}:{grant['line']}" for grant in step["policy"]]
         more = words("tty.more", n=len(places) - 1) if len(places) > 1 else ""
-        said = verb(step["role"], into_channel=to["kind"] in CHANNELS, words=words)
-        what = f"{said}  {places[0]}{more}" if places else said
+        text = verb(step["role"], into_channel=to["kind"] in CHANNELS, words=words)
+        what = f"{text}  {places[0]}{more}" if places else text
         if (step["category"], step["pseudonymised"]) == (before["category"], before["pseudonymised"]):
             return what
         return what + words("tty.now", data=_data(step["category"], words, pseudonymised=step["pseudonymised"]))

@@ -14,7 +14,7 @@ from rosprivacy.report.robots import forms_in_words
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from rosprivacy.report.text.lines import Line
+    from rosprivacy.report.text.line_parts import Line
     from rosprivacy.report.words.words import Words
 
 FORMS = ("dismissed", "accepted", "pseudonymised")
@@ -75,8 +75,8 @@ def robots_of(report: Mapping[str, Any], finding: Mapping[str, Any], words: Word
 
 
 def _forms(pattern: Mapping[str, Any], words: Words) -> list[tuple[Sequence[str], str]]:
-    said = {form: (words(f"tty.form.{form}.yes"), words(f"tty.form.{form}.no")) for form in FORMS}
-    return forms_in_words(pattern.get("forms", ()), said)
+    forms = {form: (words(f"tty.form.{form}.yes"), words(f"tty.form.{form}.no")) for form in FORMS}
+    return forms_in_words(pattern.get("forms", ()), forms)
 
 
 def _form(share: Mapping[str, Any], words: Words) -> str:

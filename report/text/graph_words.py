@@ -50,10 +50,10 @@ class GraphWords:
             return self._node(value)
         if isinstance(value, Relationship):
             return f"{self._node(value.start)}{self._step(value, value.start)}{self._node(value.end)}"
-        said = self._node(value.nodes[0])
+        text = self._node(value.nodes[0])
         for before, relationship, node in zip(value.nodes, value.relationships, value.nodes[1:], strict=False):
-            said += f"{self._step(relationship, before)}{self._node(node)}"
-        return said
+            text += f"{self._step(relationship, before)}{self._node(node)}"
+        return text
 
     def _node(self, node: Node) -> str:
         element = self.names.element(node)
@@ -67,11 +67,11 @@ class GraphWords:
 
     def _step(self, relationship: Relationship, before: Node) -> str:
         """What is between two nodes, with the place where it stands; an arrow that points where the data goes."""
-        said = self._verb(relationship)
+        text = self._verb(relationship)
         file, line = (relationship.properties.get(key) for key in ("file", "line"))
         if file:
-            said += f" {file}:{line}" if line else f" {file}"
-        return f" | {said} -> " if relationship.start.id == before.id else f" <- {said} | "
+            text += f" {file}:{line}" if line else f" {file}"
+        return f" | {text} -> " if relationship.start.id == before.id else f" <- {text} | "
 
     def _verb(self, relationship: Relationship) -> str:
         if relationship.type != self.names.flow:
@@ -79,5 +79,5 @@ class GraphWords:
         end = self.names.element(relationship.end)
         role, denied = flow_said(relationship)
         into_channel = end is not None and end["kind"] in CHANNELS
-        said = verb(role, into_channel=into_channel, words=self.words)
-        return f"{said} ({self.words('pic.look.denied')})" if denied else said
+        text = verb(role, into_channel=into_channel, words=self.words)
+        return f"{text} ({self.words('pic.look.denied')})" if denied else text

@@ -19,7 +19,7 @@ from rosprivacy.analysis.model.reason import NOT_ENCRYPTED, STRANGERS
 from rosprivacy.analysis.text import counted
 from rosprivacy.report.document.analysis import SECTIONS
 from rosprivacy.report.naming import kind_of, shown_name
-from rosprivacy.report.text.lines import place
+from rosprivacy.report.text.line_parts import place
 from rosprivacy.report.verdict import doubt_phrases
 from rosprivacy.report.words.words import IN_ENGLISH
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from rich.console import Console
 
-    from rosprivacy.report.text.lines import Line
+    from rosprivacy.report.text.line_parts import Line
 
 LESS = {
     "unread": "can no longer read",
@@ -115,8 +115,11 @@ def _statements(statements: Sequence[Mapping[str, Any]]) -> Iterator[Line]:
     """Once per element and reason, whatever the sources."""
     if statements:
         yield "   Without a change of flows, if it is so or can be arranged, label files can state:", ""
-    told = {(_of(one["element"]), one["kind"], one["category"], one["reason"]) for one in statements}
-    for element, kind, category, reason in sorted(told):
+    rows = {
+        (_of(statement["element"]), statement["kind"], statement["category"], statement["reason"])
+        for statement in statements
+    }
+    for element, kind, category, reason in sorted(rows):
         yield f"      of {element}: {STATED[kind]} for {category}  ({shown(reason)})", ""
 
 
@@ -184,7 +187,7 @@ def _written(label: Mapping[str, Any]) -> str:
 
 def _filter(step: Mapping[str, Any]) -> Iterator[Line]:
     """Where the filter stands, who gets what leaves it, and whom it would reach on the other side of the channel."""
-    ends = [list(dict.fromkeys(_of(one[end]) for one in step["between"])) for end in ("from", "to")]
+    ends = [list(dict.fromkeys(_of(flow[end]) for flow in step["between"])) for end in ("from", "to")]
     source, target = (end[0] if len(end) == 1 else f"any of {', '.join(end)}" for end in ends)
     whole = len(step["between"]) > 1
     kinds = ", ".join(step["categories"])
@@ -212,16 +215,18 @@ def _breaks(proposal: Mapping[str, Any]) -> Iterator[Line]:
         yield f"      … and {len(proposal['affected']) - SHOWN} more (--format json has all)", "dim"
 
 
-def _kept(one: Mapping[str, Any]) -> str:
-    way = " -> ".join(shown_name(element) for element in one["way"])
-    if one["reason"] == ITSELF:
-        if one["kind"] in STATED:
-            return f"{one['category']} at {way}: it begins there, so there is no way to cut   [{one['finding']}]"
+def _kept(finding: Mapping[str, Any]) -> str:
+    way = " -> ".join(shown_name(element) for element in finding["way"])
+    if finding["reason"] == ITSELF:
+        if finding["kind"] in STATED:
+            return (
+                f"{finding['category']} at {way}: it begins there, so there is no way to cut   [{finding['finding']}]"
+            )
         return (
-            f"{one['category']} at {way}: it is source and leak, so there is no way to cut; only another role helps, "
-            f"after the node itself has changed   [{one['finding']}]"
+            f"{finding['category']} at {way}: it is source and leak, so there is no way to cut; only another role "
+            f"helps, after the node itself has changed   [{finding['finding']}]"
         )
-    return f"{one['category']} on {way}: no change is allowed anywhere on this way   [{one['finding']}]"
+    return f"{finding['category']} on {way}: no change is allowed anywhere on this way   [{finding['finding']}]"
 
 
 def _closing(report: Mapping[str, Any], doubts: Sequence[str]) -> Iterator[Line]:

@@ -16,7 +16,7 @@ from rosprivacy.report.called_alike import both, kind_in, legs, named
 from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import key, label_name, shown_name
 from rosprivacy.report.review_groups import SHOWN, next_round, review_groups, sources_of
-from rosprivacy.report.text.lines import place
+from rosprivacy.report.text.line_parts import place
 from rosprivacy.report.verdict import doubts_of, lacking, restriction, subject
 from rosprivacy.report.words.words import IN_ENGLISH, Words
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from rosprivacy.report.review_groups import ReviewGroup
-    from rosprivacy.report.text.lines import Line
+    from rosprivacy.report.text.line_parts import Line
 
 SENSORS = (  # what is in the name of a node that brings personal data in, more often than not; the surest first
     "camera", "video", "image", "kinect", "realsense", "depth", "thermal", "microphone", "audio", "voice", "speech",

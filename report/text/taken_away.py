@@ -12,12 +12,12 @@ from rosprivacy.analysis.errors import shown
 from rosprivacy.report.called_alike import both, opening_text
 from rosprivacy.report.document.ledger import hanging
 from rosprivacy.report.naming import infrastructure_file, shown_name
-from rosprivacy.report.text.lines import listed, place, titled
+from rosprivacy.report.text.line_parts import listed, place, titled
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from rosprivacy.report.text.lines import Line
+    from rosprivacy.report.text.line_parts import Line
     from rosprivacy.report.words.words import Words
 
 SHIPPED = "rosprivacy:standard"

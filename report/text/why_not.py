@@ -47,5 +47,5 @@ def _obstacle(obstacle: Obstacle) -> str:
     if obstacle.by in SILENT:
         return f"at {ends}: {SILENT[obstacle.by].format(category=obstacle.category)}"
     where = ", ".join(f"{shown(place.file)}:{place.line}" for place in obstacle.places)
-    said = "its type cannot carry" if obstacle.by == CANNOT else f"{obstacle.by} for"
-    return f"at {ends}: {said} {obstacle.category}, {where}"
+    says = "its type cannot carry" if obstacle.by == CANNOT else f"{obstacle.by} for"
+    return f"at {ends}: {says} {obstacle.category}, {where}"

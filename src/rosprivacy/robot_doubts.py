@@ -10,7 +10,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.answer import writers_and_readers
-from rosprivacy.report.document.entries import doubt_entry
+from rosprivacy.report.document.records import doubt_entry
 from rosprivacy.report.verdict import phrase
 from rosprivacy.report.words.words import IN_ENGLISH
 

@@ -32,7 +32,7 @@ def show(
 
     from rosprivacy.report.json_text import as_text
     from rosprivacy.report.text.finding_lines import details, law_lines
-    from rosprivacy.report.text.lines import wrapped
+    from rosprivacy.report.text.line_parts import wrapped
     from rosprivacy.report.words.words import Words
 
     report = inputs.result(inputs.settings).document()

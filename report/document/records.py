@@ -72,7 +72,7 @@ def finding_entry(finding: Finding, contexts: Contexts) -> FindingEntry:
     reason: FindingMore = {}
     if finding.why:
         reason = {"reason": finding.reason, "because": {"key": finding.why.key, "values": dict(finding.why.values)}}
-    beside: FindingMore = {"beside_pseudonymised": True} if finding.beside else {}
+    plain: FindingMore = {"beside_pseudonymised": True} if finding.beside else {}
     shown: FindingEntry = {
         "id": finding.id,
         "kind": finding.kind,
@@ -93,7 +93,7 @@ def finding_entry(finding: Finding, contexts: Contexts) -> FindingEntry:
         ],
         **reason,
         "accepted": finding.accepted,
-        **beside,
+        **plain,
     }
     if finding.paths:
         shown["paths"] = [[element_dict(element) for element in path] for path in finding.paths]
