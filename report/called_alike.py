@@ -46,3 +46,17 @@ def named(names: Iterable[str], words: Words) -> str:
 def both(parts: Sequence[str], words: Words) -> str:
     """Return parts joined by 'and'."""
     return words("tty.and").join(parts)
+
+
+def opening_text(opening: Mapping[str, Any], ends: str, words: Words) -> str:
+    """Return a finding that there would be if a statement were wrong.
+
+    Parameters
+    ----------
+    ends
+        Which data, from where to where.
+    """
+    more = [] if opening["kind"] == "disclosure" else [words(f"finding.{opening['kind']}")]
+    more += [words("u.dismissed")] if opening["dismissed"] else []
+    more += [] if opening["new"] else [words("u.worse")]
+    return f"{ends} ({words.row(more)})" if more else ends

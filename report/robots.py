@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from rosprivacy.analysis.fleet.patterns import FleetView, Pattern
-    from rosprivacy.report.contract.fleet import FormEntry
+    from rosprivacy.report.contract.analysis import FormEntry
 
 NAMED = 30  # robots in a row
 FORMS = {

@@ -20,7 +20,7 @@ import rosprivacy
 from rosprivacy import settings
 from rosprivacy.analysis import errors
 from rosprivacy.formats import FORMATS
-from rosprivacy.report.document import why_not
+from rosprivacy.report.document.ledger import why_not_document
 from rosprivacy.settings import Settings
 from tests.helpers.daily import one_in
 from tests.helpers.paths import ROOT
@@ -275,7 +275,7 @@ def test_the_networkx_graph_holds_every_element_and_flow_with_what_they_carry(ca
 
 def test_why_not_is_what_the_command_says(care: rosprivacy.Result, cli: Cli) -> None:
     done = cli("why-not", "/lidar", "/uplink", POLICY, "-l", LABELS, "--format", "json")
-    assert why_not.document(care.why_not("/lidar", "/uplink")) == json.loads(done.stdout)
+    assert why_not_document(care.why_not("/lidar", "/uplink")) == json.loads(done.stdout)
     with pytest.raises(rosprivacy.InputError, match="no element is called '/lidr'; did you mean /lidar"):
         care.why_not("/lidr", "/uplink")
 

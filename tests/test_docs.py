@@ -1,6 +1,7 @@
 """The documentation says what is true: its commands run, its label files are read, its option tables are the code's.
 
-``python -m tests.test_docs`` writes ``docs/command-line.md`` anew.
+``python -m tests.test_docs`` writes what is generated anew: tables, ``docs/command-line.md``, the JSON schemas of the
+documents and ``docs/documents.md``.
 """
 
 from __future__ import annotations
@@ -31,9 +32,10 @@ from rosprivacy.ingest.lint import RULES
 from rosprivacy.ontology.vocabulary import TOP, load
 from rosprivacy.queries.library import pack
 from rosprivacy.report.catalogs.words import IN_ENGLISH
-from rosprivacy.report.terminal import categories
+from rosprivacy.report.text import categories
 from tests.fuzzing import record
 from tests.fuzzing.targets import TARGETS
+from tests.helpers import contract
 from tests.helpers.docs import CATEGORIES, blocks
 from tests.helpers.house import MODULES, PACKAGE, ROOMS, WINGS
 from tests.helpers.observed import node_info
@@ -266,6 +268,12 @@ def test_the_option_tables_are_those_of_the_program() -> None:
     assert COMMAND_LINE.read_text("utf-8") == command_line()
 
 
+def test_the_schemas_and_the_page_of_fields_are_those_of_the_types() -> None:
+    assert contract.PAGE.read_text("utf-8") == contract.page()
+    for name, document in contract.DOCUMENTS.items():
+        assert contract.file_of(name).read_text("utf-8") == contract.text(document)
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.name))
 def test_links_lead_somewhere(page: Path) -> None:
     for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", page.read_text("utf-8")):
@@ -389,3 +397,6 @@ if __name__ == "__main__":
     LINT.write_text(lint_page(LINT.read_text("utf-8")), "utf-8")
     SECURITY.write_text(security_page(SECURITY.read_text("utf-8")), "utf-8")
     DATABASE.write_text(database_page(DATABASE.read_text("utf-8")), "utf-8")
+    contract.PAGE.write_text(contract.page(), "utf-8")
+    for name, document in contract.DOCUMENTS.items():
+        contract.file_of(name).write_text(contract.text(document), "utf-8")

@@ -20,7 +20,7 @@ from rosprivacy.reading.robot_system import robot_of
 from rosprivacy.reading.stored_system import answer_stored
 from rosprivacy.report.pictures import views
 from rosprivacy.report.pictures.dot import dot
-from rosprivacy.report.terminal.why_not import lines as why_not_lines
+from rosprivacy.report.text.why_not import lines as why_not_lines
 from rosprivacy.settings import Settings
 from tests.helpers.fleet_files import policy
 

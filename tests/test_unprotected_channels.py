@@ -221,7 +221,7 @@ def test_the_database_gives_the_same(neo4j_server: Connection) -> None:
 def test_the_kinds_of_findings_are_one_list() -> None:
     """Who reads the contract, the ontology and the shapes reads the same kinds."""
     schema = json.loads((ROOT / "docs/analysis.schema.json").read_text("utf-8"))
-    kinds = schema["$defs"]["finding"]["properties"]["kind"]["enum"]
+    kinds = schema["$defs"]["FindingEntry"]["properties"]["kind"]["enum"]
     assert KIND in kinds
     for file in ("ontology/elements.ttl", "report/rdf/findings.shapes.ttl", "report/sarif/rules.py"):
         assert all(f'"{kind}"' in (ROOT / file).read_text("utf-8") for kind in kinds)

@@ -23,7 +23,7 @@ from rosprivacy.report.cnil import lawfulness
 from rosprivacy.report.cnil.answers import Known
 from rosprivacy.report.cnil.markup import Html, escaped, joined, paragraph
 from rosprivacy.report.cnil.told import NAMES, Told
-from rosprivacy.report.document.doubts import verdict_facts
+from rosprivacy.report.document.analysis import verdict_facts
 from rosprivacy.report.element_counts import count_elements
 from rosprivacy.report.inventory import kinds_of
 from rosprivacy.report.verdict import verdict_sentence

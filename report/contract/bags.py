@@ -1,67 +1,82 @@
 """The document ``rosprivacy.bags/1``."""
 
-from __future__ import annotations
+from typing import Annotated, Any, NotRequired, TypedDict
 
-from typing import Any, NotRequired, TypedDict
+from rosprivacy.report.contract.notation import BagVerdict, Confidence, Count, Keywords
 
 
 class SuggestionEntry(TypedDict):
     """What the type of a topic suggests; nothing follows from it."""
 
-    kinds: list[str]
-    confidence: str
+    kinds: Annotated[list[str], "Names of categories."]
+    confidence: Annotated[
+        Confidence,
+        "certain: the type is made to carry it. likely: it does on most robots that work among persons. may: it "
+        "depends on what is in it.",
+    ]
     type: str
-    why: str
-    source: str
+    why: Annotated[str, "The reason."]
+    source: Annotated[str, "What the rule was read from."]
 
 
 class SuggestedKind(TypedDict):
     """A kind that types of a bag suggest, with the surest confidence."""
 
-    kind: str
-    confidence: str
+    kind: Annotated[str, "Name of a category."]
+    confidence: Annotated[Confidence, "The surest of all topics."]
 
 
 class BagTopicEntry(TypedDict):
     """A topic of a bag, and what can be in it."""
 
-    topic: str
-    types: list[str]
+    topic: Annotated[str, "Name of the topic, as the bag has it."]
+    types: Annotated[list[str], "Of its messages; several where the bag names several."]
     type_hashes: list[str]
-    messages: int | None
-    kinds: list[str]
-    suggested: list[SuggestionEntry]
-    unknown: NotRequired[str]
-    why: NotRequired[str]
+    messages: Annotated[Count | None, "How many; null where the bag does not say."]
+    kinds: Annotated[list[str], "Names of categories that can be in it, sorted."]
+    suggested: Annotated[
+        list[SuggestionEntry], "What its types suggest, the surest first: questions for a person, no facts."
+    ]
+    unknown: Annotated[NotRequired[str], "Why nobody can say what is in it; absent where that is known."]
+    why: Annotated[NotRequired[str], "What 'kinds' rests on."]
 
 
 class BagEntry(TypedDict):
     """A bag, and what can be in it."""
 
-    bag: str
-    verdict: str
-    storage: str
+    bag: Annotated[str, "Where it is: a file, or the folder of a recording."]
+    verdict: Annotated[
+        BagVerdict,
+        "personal-data: a kind can be in it. undetermined: nobody can say. nothing-found: by the labels there is "
+        "none; it is no word of law.",
+    ]
+    storage: Annotated[str, "mcap, sqlite3, or what the bag names; empty where nothing could be read."]
     distro: str
     compression: str
-    complete: bool
+    complete: Annotated[bool, "Whether all of its topics are known."]
     files: list[str]
-    bytes: int
-    start: str | None
+    bytes: Count
+    start: Annotated[str | None, "ISO 8601, UTC."]
     end: str | None
-    messages: int | None
+    messages: Count | None
     kinds: list[str]
-    suggested: list[SuggestedKind]
-    open_topics: list[str]
+    suggested: Annotated[
+        list[SuggestedKind], "Kinds that the types of its topics suggest, sorted: questions, no facts."
+    ]
+    open_topics: Annotated[list[str], "Of which nobody can say what is in them."]
     topics: list[BagTopicEntry]
-    gaps: list[str]
-    beside: list[str]
+    gaps: Annotated[list[str], "Why topics may be missing."]
+    beside: Annotated[list[str], "What is in it beside messages, such as attachments; nobody knows what they hold."]
     notes: list[str]
 
 
 class BagsDocument(TypedDict):
-    """All bags that were read."""
+    """What `rosprivacy bag --format json` prints. Keys that are listed here stay; more may be added."""
 
-    format: str
-    verdict: str
-    bags: list[BagEntry]
-    assumptions: dict[str, Any]
+    format: Annotated[str, Keywords(const="rosprivacy.bags/1")]
+    verdict: Annotated[BagVerdict, "The worst of all bags."]
+    bags: Annotated[list[BagEntry], "Sorted by where they are."]
+    assumptions: Annotated[
+        dict[str, Any],
+        "What it rests on: with policies as in rosprivacy.analysis/1, else the label files with their hashes.",
+    ]

@@ -1,72 +1,108 @@
 """What is stated, as a document tells it: of categories by the ontology, of nodes and non-ROS elements by labels."""
 
-from __future__ import annotations
+from typing import Annotated, NotRequired, TypedDict
 
-from typing import NotRequired, TypedDict
+from rosprivacy.report.contract.notation import (
+    Article9,
+    Context,
+    ContextVerdict,
+    Count,
+    Keywords,
+    LawVerdict,
+    Method,
+    NotStated,
+    Texts,
+    closed,
+    one_of,
+    texts,
+)
+from rosprivacy.report.contract.records import ElementEntry, PlaceEntry, Reached
 
-from rosprivacy.report.contract.records import ElementEntry, LawEntry, PlaceEntry, Reached
 
-Texts = dict[str, dict[str, str]]  # language -> what -> text
-
-
-class ProvisionEntry(LawEntry):
+@closed
+class ProvisionEntry(TypedDict):
     """A provision that data of a category can fall under."""
 
+    provision: str
     iri: str
-    meaning: str
-    stated_of: str
+    meaning: Annotated[str, "In our own words."]
+    verdict: LawVerdict
+    condition: Annotated[str, "When, where it is not always."]
+    stated_of: Annotated[str, "The category, or the broader or narrower ones, that the ontology says it of."]
     sources: list[str]
-    as_of: str
-    translations: Texts
+    as_of: Annotated[str, "Date of the law."]
+    translations: Annotated[
+        Texts,
+        texts("provision", "meaning", "condition", "sources"),
+        "Language, and texts in it; sources stand in a row.",
+    ]
 
 
-class ContextProvision(ProvisionEntry):
+@closed
+class ContextProvision(TypedDict):
     """What data of a category may reveal in a context."""
 
-    context: str
+    context: Context
+    provision: str
+    iri: str
+    meaning: Annotated[str, "In our own words."]
+    verdict: ContextVerdict
+    condition: Annotated[str, "When, where it is not always."]
+    stated_of: Annotated[str, "The category, or the broader or narrower ones, that the ontology says it of."]
+    sources: list[str]
+    as_of: Annotated[str, "Date of the law."]
+    translations: Annotated[
+        Texts,
+        texts("provision", "meaning", "condition", "sources"),
+        "Language, and texts in it; sources stand in a row.",
+    ]
 
 
+@closed
 class ContextEntry(TypedDict):
     """A context that is stated of a source or of the system."""
 
-    name: str
+    name: Context
     title: str
     definition: str
-    translations: Texts
+    translations: Annotated[Texts, texts("title", "definition"), "Language, and texts in it."]
 
 
+@closed
 class PointerEntry(TypedDict):
     """A provision to look at beside what is followed into paths."""
 
     provision: str
     iri: str
     title: str
-    meaning: str
-    as_of: str
-    applies_from: str
-    confirmed: NotRequired[bool]
-    adopted: NotRequired[str]
-    country: str
+    meaning: Annotated[str, "In our own words."]
+    as_of: Annotated[str, "The day on which the entry was last looked at; no word that the law was read in force then."]
+    applies_from: Annotated[str, "The day from which it applies, or will; empty where it simply applies."]
+    confirmed: Annotated[NotRequired[bool], "Whether we found that law to be published."]
+    adopted: Annotated[NotRequired[str], "The day on which it was adopted, where it is not confirmed."]
+    country: Annotated[str, "ISO 3166-1 alpha-2; empty for law of the Union."]
     address: str
     categories: list[str]
-    contexts: list[str]
-    translations: Texts
+    contexts: list[Context]
+    translations: Annotated[Texts, texts("provision", "title", "meaning"), "Language, and texts in it."]
 
 
+@closed
 class TypeEntry(TypedDict):
     """A message type of a channel: stated for all writers, or seen with those that are named."""
 
-    type: str
-    stated: bool
+    type: Annotated[str, "pkg/msg/Name, pkg/srv/Name or pkg/action/Name."]
+    stated: Annotated[bool, "Whether a person states it for all who write the channel."]
     file: str
     line: int
     hash: NotRequired[str]
-    writers: NotRequired[list[str]]
+    writers: Annotated[NotRequired[list[str]], "Nodes that were seen with it."]
     readers: NotRequired[list[str]]
     first: NotRequired[str]
     last: NotRequired[str]
 
 
+@closed
 class TypesEntry(TypedDict):
     """The message types of a channel, or of a leg of one."""
 
@@ -74,32 +110,45 @@ class TypesEntry(TypedDict):
     types: list[TypeEntry]
 
 
+@closed
 class SurroundingsEntry(TypedDict):
     """Where an element that brings data in works."""
 
     element: ElementEntry
-    contexts: list[str]
-    country: NotRequired[str]
+    contexts: list[Context]
+    country: Annotated[NotRequired[str], "ISO 3166-1 alpha-2."]
 
 
 class CategoryEntry(TypedDict):
     """A category that is emitted."""
 
-    in_context: NotRequired[list[ContextProvision]]
-    look_at: NotRequired[list[str]]
-
+    in_context: Annotated[
+        NotRequired[list[ContextProvision]],
+        "What data of the category may reveal in a context that is stated, with the provision and why.",
+    ]
+    look_at: Annotated[NotRequired[list[str]], "Provisions of look_at."]
     name: str
     iri: str
-    broader: list[str]
+    broader: Annotated[list[str], "All broader categories, nearest first."]
     title: str
     definition: str
-    data_types: list[str]
-    identity_factors: NotRequired[list[str]]  # not in documents of earlier versions
-    gdpr: str
-    article9: str
-    reason: str
-    law: list[ProvisionEntry]
-    translations: Texts
+    data_types: Annotated[list[str], "image, audio, position, …"]
+    identity_factors: Annotated[
+        NotRequired[list[str]],
+        "What of a person's identity the data tell of, by Article 4(1): name, location, economic, …; empty where "
+        "it is not stated.",
+    ]
+    gdpr: Annotated[str, "The provision that defines its GDPR category."]
+    article9: Annotated[
+        Article9, "The strongest verdict under Article 9(1) GDPR; unknown where the ontology says nothing."
+    ]
+    reason: Annotated[str, "Why it does not fall under Article 9(1), where the ontology says so."]
+    law: Annotated[
+        list[ProvisionEntry], "Provisions that data of the category can fall under; a person judges whether they do."
+    ]
+    translations: Annotated[
+        Texts, texts("title", "definition", "reason", "gdpr"), "Language, and texts in it. English stands beside it."
+    ]
 
 
 class Carried(Reached):
@@ -113,27 +162,27 @@ class RolesEntry(TypedDict):
 
     element: ElementEntry
     category: str
-    roles: list[str]
+    roles: list[Annotated[str, one_of("source", "leak", "sanitizer", "conduit", "derivation")]]
 
 
 class SubjectsEntry(TypedDict):
     """Whom the data of a source is about."""
 
     element: ElementEntry
-    subjects: list[str]
+    subjects: Annotated[list[str], "Groups of persons, such as residents."]
 
 
 class ProcessingEntry(TypedDict, total=False):
     """What people state of a robot or an element: who is responsible, what for, on which basis."""
 
-    robot: str
+    robot: Annotated[str, "Of whom it is stated; empty of a single robot."]
     element: ElementEntry
     file: str
-    line: int
+    line: Count
     controller: str
-    dpo: str
-    purposes: dict[str, list[str]]
-    legal_bases: dict[str, list[str]]
+    dpo: Annotated[str, "The data-protection officer."]
+    purposes: Annotated[dict[str, list[str]], "Category, or every, and what its data are processed for."]
+    legal_bases: Annotated[dict[str, list[str]], "Category, or every, and on which legal basis, such as 6(1)(f)."]
 
 
 class ProcessedEntry(TypedDict):
@@ -145,7 +194,10 @@ class ProcessedEntry(TypedDict):
     officers: list[str]
     purposes: list[str]
     legal_bases: list[str]
-    missing: list[str]
+    missing: Annotated[
+        list[Annotated[str, one_of("purpose", "legal_basis")]],
+        "What is not stated of all data of the kind that get there.",
+    ]
 
 
 class ProtectionEntry(TypedDict):
@@ -153,9 +205,9 @@ class ProtectionEntry(TypedDict):
 
     element: ElementEntry
     category: str
-    method: str
+    method: Method
     stated: bool
-    everywhere: bool
+    everywhere: Annotated[bool, "Whether the data get there in no other form; else some ways lead past it."]
 
 
 class WaysEntry(TypedDict):
@@ -163,9 +215,15 @@ class WaysEntry(TypedDict):
 
     element: NotRequired[ElementEntry]
     category: str
-    subjects: list[str]
-    subjects_missing: bool
-    protections: list[ProtectionEntry]
+    subjects: Annotated[
+        list[str], "Groups of persons that labels name of the sources whose data get there as this kind."
+    ]
+    subjects_missing: Annotated[bool, "Whether data of a source get there of which no label names the persons."]
+    protections: Annotated[
+        list[ProtectionEntry],
+        "Sanitizers on the ways to all such places of this kind and name, told at the first; none that recognises "
+        "or judges persons.",
+    ]
 
 
 class SanitizerEntry(TypedDict):
@@ -173,54 +231,74 @@ class SanitizerEntry(TypedDict):
 
     element: ElementEntry
     category: str
-    method: str
-    stated: bool
-    reached: bool
-    leaves: list[str]
-    leaves_pseudonymised: list[str]
-    beside: list[ElementEntry]
-    cleaning_beside: NotRequired[list[ElementEntry]]
-    places: NotRequired[list[PlaceEntry]]
-    recognises: NotRequired[list[str]]
+    method: Method
+    stated: Annotated[bool, "Whether a label states the method; otherwise it is taken as pseudonymise."]
+    reached: Annotated[bool, "Whether the category gets there."]
+    leaves: Annotated[list[str], "Categories that leave the element all the same."]
+    leaves_pseudonymised: Annotated[list[str], "Categories that leave it pseudonymised: still personal data."]
+    beside: Annotated[list[ElementEntry], "Elements that read the same channels and do not clean the category."]
+    cleaning_beside: Annotated[
+        NotRequired[list[ElementEntry]], "Elements that read the same channels and are said to clean the category, too."
+    ]
+    places: Annotated[NotRequired[list[PlaceEntry]], "The lines of the labels that say so."]
+    recognises: Annotated[
+        NotRequired[list[str]],
+        "Kinds that the element makes by which persons are recognised or judged (Articles 9 and 10 GDPR, Article "
+        "5 AI Act): it protects nobody.",
+    ]
 
 
-DerivationEntry = TypedDict(
-    "DerivationEntry", {"element": ElementEntry, "from": str, "to": str, "reached": bool}
-)  # 'from' is a word of Python
+DerivationEntry = TypedDict(  # 'from' is a word of Python
+    "DerivationEntry",
+    {"element": ElementEntry, "from": str, "to": str, "reached": Annotated[bool, "Whether the first gets there."]},
+)
 
 
 class NonRosNotKnown(TypedDict, total=False):
     """What could not be judged of a non-ROS element."""
 
-    missing: list[str]
-    without_limit: list[str]
+    missing: list[NotStated]
+    without_limit: Annotated[
+        list[str], "Of a storage: categories for which no limit is stated, so that their retention was not judged."
+    ]
 
 
 class RecordingEntry(TypedDict):
     """What the bag that a storage is says of itself."""
 
     bag: str
-    bytes: int
-    topics: int
-    messages: NotRequired[int]
-    start: NotRequired[str]
+    bytes: Count
+    topics: Count
+    messages: Annotated[NotRequired[Count], "Absent where the bag does not say."]
+    start: Annotated[NotRequired[str], "ISO 8601, UTC."]
     end: NotRequired[str]
-    oldest: NotRequired[str]
+    oldest: Annotated[NotRequired[str], "The earliest time that any of its bags says, whatever the others do."]
 
 
 class NonRosStated(TypedDict, total=False):
     """What is stated of a non-ROS element."""
 
-    retention: dict[str, str]
-    backups: bool | str
+    retention: Annotated[dict[str, str], "Of a storage: category, or every, and how long it is kept (ISO 8601)."]
+    backups: Annotated[
+        bool | str,
+        Keywords(type=["boolean", "string"]),
+        "How long data stays in backups after it is deleted; true where that is not known.",
+    ]
     encrypted: bool
-    country: str
-    area: str
+    country: Annotated[str, Keywords(pattern="^[A-Z]{2}$"), "ISO 3166-1."]
+    area: Annotated[
+        str,
+        one_of("eea", "adequate", "partly", "third"),
+        "Where the country lies: in the EEA, outside with an adequacy decision, with one for some recipients, "
+        "without one.",
+    ]
     operator: str
-    recipient: str
-    transfer: str
-    contract: str
-    recording: RecordingEntry
+    recipient: Annotated[str, one_of("controller", "joint-controller", "processor", "third-party")]
+    transfer: Annotated[str, "Stated basis of a transfer out of the EEA; 'none' where it is stated that there is none."]
+    contract: Annotated[str, "On what it is operated, such as a contract under Article 28, in a person's words."]
+    recording: Annotated[
+        RecordingEntry, "Of a storage that is a bag: the bag as the label file names it, and what it says of itself."
+    ]
 
 
 class NonRosEntry(NonRosStated, NonRosNotKnown):
@@ -228,20 +306,26 @@ class NonRosEntry(NonRosStated, NonRosNotKnown):
 
     element: ElementEntry
     file: str
-    line: int
-    holds: list[str]
+    line: Count
+    holds: Annotated[list[str], "Categories that get there."]
 
 
-class OverruledBy(PlaceEntry):
+@closed
+class OverruledBy(TypedDict):
     """The label that takes a source or leak away, and what it says."""
 
     says: str
+    file: str
+    line: int
 
 
-class OverruledEntry(PlaceEntry):
+@closed
+class OverruledEntry(TypedDict):
     """A source or leak that another label takes away."""
 
-    role: str
+    role: Annotated[str, one_of("source", "leak")]
     categories: list[str]
-    elements: list[str]
-    by: OverruledBy
+    elements: Annotated[list[str], "Names of the elements at which it is taken away."]
+    file: str
+    line: int
+    by: Annotated[OverruledBy, "The label that takes it away, and what that says."]

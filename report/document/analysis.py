@@ -1,69 +1,80 @@
-"""Analysis -> the JSON document ``rosprivacy.analysis/1``, a contract (``docs/analysis.schema.json``).
+"""An ``Answer`` -> the JSON document ``rosprivacy.analysis/1``, a contract (``docs/analysis.schema.json``).
 
-In: an ``Analysis`` and what it rests on. Out: plain dicts and lists, sorted, with no time in them (rule S14).
+In: an ``Answer``. Out: plain dicts and lists, sorted, with no time in them (rule S14).
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Any, cast
 
-from rosprivacy.analysis.contexts import article9_in, revealed
 from rosprivacy.analysis.findings.review_order import Behind
 from rosprivacy.analysis.findings.sanitizing import absent, cleanings, makings, recognised
 from rosprivacy.analysis.kernel.ranks import in_words
-from rosprivacy.analysis.legal import turned_special
 from rosprivacy.analysis.written_names import literal
-from rosprivacy.report.document import ledger, reliance
-from rosprivacy.report.document.doubts import doubt_entry
-from rosprivacy.report.document.element_entry import element_dict
-from rosprivacy.report.document.non_ros import inventory, taken_by_kind, without_backups
-from rosprivacy.report.document.pointers import pointers, situations
+from rosprivacy.report.catalogs.words import IN_ENGLISH
+from rosprivacy.report.document.decisions import enforced_document, with_decisions
+from rosprivacy.report.document.fleet import fleet_document
+from rosprivacy.report.document.ledger import counts_of, glob_entries, ledger_rows, reliance_rows
+from rosprivacy.report.document.records import (
+    doubt_entry,
+    element_dict,
+    element_or_none,
+    finding_entry,
+    grant_entry,
+    place_entries,
+)
+from rosprivacy.report.document.stated import (
+    category_entry,
+    inventory,
+    pointers,
+    situations,
+    surroundings,
+    taken_by_kind,
+    with_processing,
+    with_types,
+    without_backups,
+)
+from rosprivacy.report.verdict import doubts_of, phrase, verdict_sentence
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
 
-    from rosprivacy.analysis.answer import Analysis, Finding, OpenQuestion, Step
-    from rosprivacy.analysis.contexts import Contexts
-    from rosprivacy.analysis.hierarchy import Hierarchy
+    from rosprivacy.analysis.answer import Analysis, OpenQuestion
     from rosprivacy.analysis.kernel.overruled import Overruled
-    from rosprivacy.analysis.model import Category, Diagnostic, Element, Flow, FlowGraph, Grant, Legal, Reason
+    from rosprivacy.analysis.model import Category, Diagnostic, Element, Flow, FlowGraph
     from rosprivacy.report.answer import Answer
-    from rosprivacy.report.contract.analysis import AnalysisDocument, Given
+    from rosprivacy.report.contract.analysis import AnalysisDocument, Assumptions
     from rosprivacy.report.contract.records import (
         DeniedEntry,
         DiagnosticEntry,
         ElementEntry,
         EnclaveEntry,
-        FindingEntry,
-        FindingMore,
-        GrantEntry,
         LabelKey,
-        LawEntry,
         OpenEntry,
-        StepEntry,
         Stopped,
-        WhyEntry,
     )
-    from rosprivacy.report.contract.stated import (
-        CategoryEntry,
-        DerivationEntry,
-        OverruledEntry,
-        ProvisionEntry,
-        SanitizerEntry,
-        SurroundingsEntry,
-        Texts,
-        WaysEntry,
-    )
+    from rosprivacy.report.contract.stated import DerivationEntry, OverruledEntry, SanitizerEntry, WaysEntry
 
 FORMAT = "rosprivacy.analysis/1"
 HANGS_ON = "--hangs-on"  # what asks for it
 SECTIONS = {"node": "nodes", "topic": "topics", "service": "services", "action": "actions"}  # of label files
-_KEYS = {"name": "provision"}  # what the contract calls otherwise than the model
 
 
-def analysis_document(answer: Answer) -> AnalysisDocument:
-    """Return the analysis as one JSON object; decisions and a fleet's keys are added in ``whole.py``."""
+def document(answer: Answer) -> AnalysisDocument:
+    """Return the JSON document of an answer."""
+    made = with_types(with_processing(_analysis(answer), answer), answer)
+    if answer.decided:
+        made = with_decisions(made, answer.decided)
+    if answer.fleet:
+        made = fleet_document(made, answer.fleet, answer.fleet_counts(answer.fleet))
+    if answer.enforced:
+        made["enforced"] = enforced_document(answer.enforced)
+    return _with_sentence(made)
+
+
+def _analysis(answer: Answer) -> AnalysisDocument:
+    """The analysis as one JSON object, without what only some answers have."""
     analysis, taken = answer.shown, answer.taken_away
     categories, hierarchy, graph = answer.vocabulary.categories, answer.vocabulary.hierarchy, analysis.graph
     at_sources = answer.contexts
@@ -72,7 +83,7 @@ def analysis_document(answer: Answer) -> AnalysisDocument:
         "format": FORMAT,
         "verdict": str(analysis.verdict),
         "view": graph.view,
-        "categories": [_category(categories[name], hierarchy, contexts) for name in analysis.emitted],
+        "categories": [category_entry(categories[name], hierarchy, contexts) for name in analysis.emitted],
         "findings": [finding_entry(finding, at_sources) for finding in analysis.findings],
         "open": _open(answer, analysis.open),
         "unknown_ends": [
@@ -84,7 +95,7 @@ def analysis_document(answer: Answer) -> AnalysisDocument:
             for end in analysis.unknown_ends
         ],
         "doubts": [doubt_entry(doubt) for doubt in answer.doubts],
-        "taken_away": ledger.rows(taken, element_dict),
+        "taken_away": ledger_rows(taken),
         "carries": [
             {
                 "element": element_dict(carried.element),
@@ -105,7 +116,7 @@ def analysis_document(answer: Answer) -> AnalysisDocument:
             for vertex, groups in sorted(answer.bound.subjects.items())
         ],
         "ways": _ways(answer),
-        "surroundings": _surroundings(answer),
+        "surroundings": surroundings(answer),
         "contexts": situations(answer.vocabulary, contexts),
         "look_at": pointers(answer.vocabulary, analysis.emitted, contexts),
         "sanitizers": _sanitizers(analysis, categories),
@@ -119,8 +130,8 @@ def analysis_document(answer: Answer) -> AnalysisDocument:
         "standard_channels": analysis.standard_channels,
         "diagnostics": [_diagnostic(d) for d in (*answer.diagnostics, *analysis.diagnostics)],
         "assumptions": {
-            **cast("Given", answer.assumptions),
-            "taken_away_by": ledger.counts(taken),
+            **cast("Assumptions", answer.assumptions),
+            "taken_away_by": counts_of(taken),
             "taken_by_kind": taken_by_kind(analysis),
             "backups_taken_as_none": [element_dict(element) for element in without_backups(analysis)],
             "sanitizers_without_method": [
@@ -133,13 +144,13 @@ def analysis_document(answer: Answer) -> AnalysisDocument:
             ],
             "overruled": [_overruled(one) for one in analysis.spread.overruled],
             "absent": [{"element": element_dict(element), "why": why} for element, why in absent(answer.bound, graph)],
-            "globs": ledger.globs(answer.globs(taken), element_dict),
+            "globs": glob_entries(answer.globs(taken)),
         },
     }
     if answer.hangs_on is None:  # so that nobody takes it for 'hangs on nothing'
         document["not_asked"] = [{"key": "hangs_on", "option": HANGS_ON}]
     else:
-        document["hangs_on"] = reliance.rows(answer.hangs_on, element_dict)
+        document["hangs_on"] = reliance_rows(answer.hangs_on)
     return document
 
 
@@ -162,15 +173,15 @@ def _stopped(channel: Element, categories: tuple[str, ...], analysis: Analysis) 
     return stopped
 
 
-def _overruled(one: Overruled) -> OverruledEntry:
+def _overruled(overruled: Overruled) -> OverruledEntry:
     """A source or leak that another statement takes away."""
     return {
-        "role": one.role,
-        "categories": list(one.categories),
-        "elements": list(one.names),
-        "file": one.lost.place.file,
-        "line": one.lost.place.line,
-        "by": {"says": in_words(one.by), "file": one.by.place.file, "line": one.by.place.line},
+        "role": overruled.role,
+        "categories": list(overruled.categories),
+        "elements": list(overruled.names),
+        "file": overruled.lost.place.file,
+        "line": overruled.lost.place.line,
+        "by": {"says": in_words(overruled.by), "file": overruled.by.place.file, "line": overruled.by.place.line},
     }
 
 
@@ -185,13 +196,13 @@ def _ways(answer: Answer) -> list[WaysEntry]:
                 "subjects_missing": row.unnamed,
                 "protections": [
                     {
-                        "element": element_dict(one.element),
-                        "category": one.category,
-                        "method": one.method,
-                        "stated": one.stated,
-                        "everywhere": one.everywhere,
+                        "element": element_dict(protection.element),
+                        "category": protection.category,
+                        "method": protection.method,
+                        "stated": protection.stated,
+                        "everywhere": protection.everywhere,
                     }
-                    for one in row.protections
+                    for protection in row.protections
                 ],
             }
         )
@@ -202,8 +213,8 @@ def _ways(answer: Answer) -> list[WaysEntry]:
 
 def _sanitizers(analysis: Analysis, categories: Mapping[str, Category]) -> list[SanitizerEntry]:
     """Who cleans data."""
-    found = recognised(analysis.spread, categories)
-    recognising = {analysis.graph.elements[vertex]: kinds for vertex, kinds in found.items()}
+    kinds_at = recognised(analysis.spread, categories)
+    recognising = {analysis.graph.elements[vertex]: kinds for vertex, kinds in kinds_at.items()}
     return [
         {
             "element": element_dict(cleaning.element),
@@ -215,7 +226,7 @@ def _sanitizers(analysis: Analysis, categories: Mapping[str, Category]) -> list[
             "leaves_pseudonymised": list(cleaning.pseudonymised),
             "beside": [element_dict(element) for element in cleaning.beside],
             "cleaning_beside": [element_dict(element) for element in cleaning.cleaning_beside],
-            "places": [{"file": place.file, "line": place.line} for place in cleaning.places],
+            "places": place_entries(cleaning.places),
             "recognises": list(recognising.get(cleaning.element, ())),
         }
         for cleaning in cleanings(analysis.spread, analysis.emitted)
@@ -244,69 +255,6 @@ def _enclaves(graph: FlowGraph) -> list[EnclaveEntry]:
     return [{"enclave": enclave, "nodes": sorted(inside)} for enclave, inside in sorted(nodes.items())]
 
 
-def _surroundings(answer: Answer) -> list[SurroundingsEntry]:
-    """Where the elements that bring data in work, as people state it of them or of their system."""
-    analysis, bound = answer.shown, answer.bound
-    elements = analysis.graph.elements
-    sources = {element for element, said in analysis.roles.items() if any("source" in of for of in said.values())}
-    rows: list[SurroundingsEntry] = []
-    for vertex, where in sorted(bound.surroundings.items()):
-        if elements[vertex] in sources:
-            rows.append({"element": element_dict(elements[vertex]), "contexts": list(where.contexts)})
-            if where.country:
-                rows[-1]["country"] = where.country
-    return rows
-
-
-def _category(category: Category, hierarchy: Hierarchy, contexts: frozenset[str]) -> CategoryEntry:
-    return {
-        "name": category.name,
-        "iri": category.iri,
-        "broader": hierarchy.broader(category.name),
-        "title": category.title,
-        "definition": category.definition,
-        "data_types": list(category.data_types),
-        "identity_factors": list(category.identity_factors),
-        "gdpr": category.gdpr,
-        "article9": article9_in(category, contexts),
-        "reason": category.reason,
-        "law": [_legal(legal) for legal in category.law],
-        "in_context": [{**_legal(legal), "context": legal.context} for legal in revealed(category, contexts)],
-        "look_at": list(category.look_at),
-        "translations": _translations(category.translations),
-    }
-
-
-def _translations(texts: Mapping[str, Mapping[str, str]]) -> Texts:
-    """Language -> texts in it; English stands where the facts are."""
-    said = {language: {what: text for what, text in sorted(of.items()) if text} for language, of in texts.items()}
-    return {language: said[language] for language in sorted(said) if said[language]}
-
-
-def _law(law: Iterable[Legal]) -> list[LawEntry]:
-    """Return what a person has to look up about a finding's data: no verdict on the system."""
-    return [{"provision": legal.name, "verdict": legal.verdict, "condition": legal.condition} for legal in law]
-
-
-def _legal(legal: Legal) -> ProvisionEntry:
-    return {
-        "provision": legal.name,
-        "iri": legal.iri,
-        "meaning": legal.meaning,
-        "verdict": legal.verdict,
-        "condition": legal.condition,
-        "stated_of": legal.stated_of,
-        "sources": list(legal.sources),
-        "as_of": legal.as_of,
-        "translations": _translations(
-            {
-                language: {_KEYS.get(what, what): text for what, text in of.items()}
-                for language, of in legal.translations.items()
-            }
-        ),
-    }
-
-
 def _open(answer: Answer, questions: Iterable[OpenQuestion]) -> list[OpenEntry]:
     """Open elements, with what stands behind each."""
     order = answer.review_order
@@ -320,7 +268,7 @@ def _question(question: OpenQuestion, behind: Behind, infrastructure: Collection
         "distance": question.distance,
         "frontier": question.frontier,
         "label": label_key(question.element),
-        "through": element_dict(behind.through) if behind.through else None,
+        "through": element_or_none(behind.through),
         "closes": behind.closes,
         "leaks": behind.leaks,
         "waits": behind.waits,
@@ -331,74 +279,15 @@ def _question(question: OpenQuestion, behind: Behind, infrastructure: Collection
     return shown
 
 
-def _why(why: Reason) -> WhyEntry:
-    return {"key": why.key, "values": dict(why.values)}
-
-
-def finding_entry(finding: Finding, contexts: Contexts) -> FindingEntry:
-    """Return a finding; its data became a special category at ``special_from``, where that was none before."""
-    categories = contexts.categories
-    category, turned = categories[finding.category], turned_special(finding, categories)
-    reason: FindingMore = {"reason": finding.reason, "because": _why(finding.why)} if finding.why else {}
-    beside: FindingMore = {"beside_pseudonymised": True} if finding.beside else {}
-    shown: FindingEntry = {
-        "id": finding.id,
-        "kind": finding.kind,
-        "category": finding.category,
-        "pseudonymised": finding.pseudonymised,
-        "source": element_dict(finding.source),
-        "leak": element_dict(finding.leak),
-        "witness": [element_dict(element) for element in finding.witness],
-        "steps": [_step(step) for step in finding.steps],
-        "disjoint_paths": finding.number_of_paths,
-        "through": [element_dict(element) for element in finding.through],
-        "dismissed": finding.dismissed,
-        "article9": contexts.article9(finding),
-        "special_from": element_dict(turned) if turned else None,
-        "law": _law(category.law),
-        "in_context": [
-            {"context": legal.context, **said} for legal in contexts.revealed(finding) for said in _law((legal,))
-        ],
-        **reason,
-        "accepted": finding.accepted,
-        **beside,
-    }
-    if finding.paths:
-        shown["paths"] = [[element_dict(element) for element in path] for path in finding.paths]
-        shown["paths_bounded"] = finding.bounded
-    return shown
-
-
-def _step(step: Step) -> StepEntry:
-    return {
-        "role": step.role,
-        "category": step.category,
-        "pseudonymised": step.pseudonymised,
-        "policy": [_grant(grant) for grant in step.grants],
-    }
-
-
 def _denied(flow: Flow, graph: FlowGraph) -> DeniedEntry:
     """What one line allows and another denies (rule S5)."""
     return {
         "source": element_dict(graph.elements[flow.source]),
         "target": element_dict(graph.elements[flow.target]),
         "role": flow.role,
-        "allowed_by": [_grant(grant) for grant in flow.grants],
-        "denied_by": [_grant(grant) for grant in flow.denials],
+        "allowed_by": [grant_entry(grant) for grant in flow.grants],
+        "denied_by": [grant_entry(grant) for grant in flow.denials],
     }
-
-
-def _grant(grant: Grant) -> GrantEntry:
-    line: GrantEntry = {
-        "file": grant.place.file,
-        "line": grant.place.line,
-        "enclave": grant.enclave,
-        "profile": grant.node,
-    }
-    if grant.seen:
-        line["seen"] = {"by": list(grant.seen.by), "first": grant.seen.first, "last": grant.seen.last}
-    return line
 
 
 def _diagnostic(diagnostic: Diagnostic) -> DiagnosticEntry:
@@ -411,3 +300,33 @@ def _diagnostic(diagnostic: Diagnostic) -> DiagnosticEntry:
     if diagnostic.code:
         shown["code"] = diagnostic.code
     return shown
+
+
+def verdict_facts(answer: Answer) -> dict[str, Any]:
+    """Return what the verdict's sentence is made of, without the rest of the document."""
+    analysis = answer.shown
+    return {
+        "verdict": str(analysis.verdict),
+        "categories": analysis.emitted,
+        "open": analysis.open,
+        "findings": [{"accepted": finding.accepted} for finding in analysis.findings],
+        "diagnostics": [{"code": diagnostic.code} for diagnostic in analysis.diagnostics],
+        "doubts": [doubt_entry(doubt) for doubt in answer.doubts],
+        "assumptions": answer.assumptions,
+    }
+
+
+def _with_sentence(document: AnalysisDocument) -> AnalysisDocument:
+    """Return a document with the verdict's sentence; what no reader reported as a diagnostic becomes one, too."""
+    more: list[DiagnosticEntry] = [
+        {
+            "file": doubt["file"],
+            "line": doubt["line"],
+            "severity": "warning",
+            "message": phrase([doubt], IN_ENGLISH),
+            "code": doubt["doubt"],
+        }
+        for doubt in doubts_of(document)
+        if not doubt["message"]
+    ]
+    return {**document, "diagnostics": [*document["diagnostics"], *more], "sentence": verdict_sentence(document)}

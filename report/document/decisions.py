@@ -1,17 +1,23 @@
-"""Decisions in what readers get: added to the JSON document.
+"""What people decided, and what the enforced view adds (rule S6): findings of both views with their decisions.
 
-In: a document and decisions joined to its findings. Out: the document with ``decision`` on findings and ``decisions``.
+In: a document and decisions joined to its findings; ``Enforced``. Out: the document with ``decision`` on findings and
+``decisions``; an ``EnforcedEntry``.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, cast
 
+from rosprivacy.analysis.model import Element
+from rosprivacy.report.document.records import element_dict, finding_entry, place_entries
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from rosprivacy.analysis.decisions import Decided, Decision, State
-    from rosprivacy.report.contract.analysis import AnalysisDocument
+    from rosprivacy.analysis.findings.beyond import Added, DenyLine, Right
+    from rosprivacy.report.answer import Enforced
+    from rosprivacy.report.contract.analysis import AddedEntry, AnalysisDocument, DenyEntry, EnforcedEntry, LostEntry
     from rosprivacy.report.contract.records import ChangedSince, DecisionEntry, FindingEntry, ListedDecision, Target
 
 
@@ -36,7 +42,7 @@ def _decision(entry: Decision, state: State, decided: Decided) -> DecisionEntry:
     changed: list[ChangedSince] = [
         {"what": change.what, "before": change.before, "now": change.now} for change in decided.changed.get(entry, ())
     ]
-    told: DecisionEntry = {
+    decision: DecisionEntry = {
         "choice": str(entry.choice),
         "state": str(state),
         "reason": entry.reason,
@@ -48,17 +54,69 @@ def _decision(entry: Decision, state: State, decided: Decided) -> DecisionEntry:
         "file": entry.place.file,
         "line": entry.place.line,
     }
-    return {**told, "changed": changed} if changed else told
+    return {**decision, "changed": changed} if changed else decision
 
 
 def _target(entry: Decision) -> Target:
     """What an entry says that it is about."""
     keys = ("id", "category", "source", "leak", "robot", "from_robot", "kind")
-    said = cast("Target", {key: getattr(entry, key) for key in keys if getattr(entry, key)})
+    target = cast("Target", {key: getattr(entry, key) for key in keys if getattr(entry, key)})
     if entry.robots:
-        said["robots"] = list(entry.robots)
+        target["robots"] = list(entry.robots)
     if entry.from_robots:
-        said["from_robots"] = list(entry.from_robots)
+        target["from_robots"] = list(entry.from_robots)
     if entry.pseudonymised is not None:
-        said["pseudonymised"] = entry.pseudonymised
-    return said
+        target["pseudonymised"] = entry.pseudonymised
+    return target
+
+
+def enforced_document(enforced: Enforced) -> EnforcedEntry:
+    """Return what the enforced view adds."""
+    answer = enforced.answer
+    findings = [finding_entry(added.finding, answer.contexts) for added in enforced.added]
+    if answer.decided:
+        findings = decided_findings(findings, answer.decided)
+    return {
+        "verdict": str(answer.analysis.verdict),
+        "unreviewed": len(enforced.open),
+        "open": [element_dict(element) for element in enforced.open],
+        "added": [_added(added, finding) for added, finding in zip(enforced.added, findings, strict=True)],
+    }
+
+
+def _added(added: Added, finding: FindingEntry) -> AddedEntry:
+    entry: AddedEntry = {
+        "finding": finding,
+        "beyond": list(added.beyond),
+        "enclaves": list(added.enclaves),
+        "split": list(added.split),
+        "move": {"enclave": added.move[0], "profile": added.move[1]} if added.move else None,
+        "deny": [_deny(line) for line in added.deny],
+        "loses": [_lost(right) for right in added.loses],
+    }
+    if added.robots:
+        entry["robots"] = list(added.robots)
+    if added.plain:
+        entry["plain"] = True
+    if added.opened:
+        entry["opened_by"] = place_entries(added.opened)
+    return entry
+
+
+def _deny(line: DenyLine) -> DenyEntry:
+    return {
+        "file": line.policy,
+        "enclave": line.enclave,
+        "profile": line.node,
+        "role": line.role,
+        "channel": element_dict(Element(line.kind, line.name)),
+    }
+
+
+def _lost(right: Right) -> LostEntry:
+    (robot, kind, name), role, channel = right
+    return {
+        "node": element_dict(Element(kind, name, robot)),
+        "role": role,
+        "channel": element_dict(Element(channel[1], channel[2], channel[0])),
+    }

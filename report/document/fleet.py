@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.report.document.element_entry import element_dict
+from rosprivacy.report.document.records import element_dict
 from rosprivacy.report.robots import form_rows
 
 if TYPE_CHECKING:
@@ -19,32 +19,38 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.analysis.fleet.patterns import Deviant, FleetView, Pattern
     from rosprivacy.analysis.fleet.tallies import Share
-    from rosprivacy.report.contract.analysis import AnalysisDocument, StandardFile
-    from rosprivacy.report.contract.fleet import DeviantEntry, FleetEntry, PatternEntry, ShareEntry
+    from rosprivacy.report.contract.analysis import (
+        AnalysisDocument,
+        DeviantEntry,
+        FleetEntry,
+        PatternEntry,
+        ShareEntry,
+        StandardFile,
+    )
 
 
-def fleet_document(told: AnalysisDocument, view: FleetView, counts: Counts) -> AnalysisDocument:
+def fleet_document(document: AnalysisDocument, view: FleetView, counts: Counts) -> AnalysisDocument:
     """Return the document of a fleet; what the whole graph tells, it tells of one robot of those that are alike.
 
     Parameters
     ----------
-    told
+    document
         Of the analysis as ``FleetView.shown`` gives it.
     """
-    standard, likeness = told["assumptions"]["standard_channels"], view.likeness
+    standard, likeness = document["assumptions"]["standard_channels"], view.likeness
     taken: StandardFile | None = {**standard, "taken": counts.standard_channels} if standard else None
     return {
-        **told,
-        "subjects": _without(told["subjects"], likeness),
-        "surroundings": _without(told["surroundings"], likeness),
-        "sanitizers": _without(told["sanitizers"], likeness),
-        "derivations": _without(told["derivations"], likeness),
-        "unreached": _without(told["unreached"], likeness),
+        **document,
+        "subjects": _without(document["subjects"], likeness),
+        "surroundings": _without(document["surroundings"], likeness),
+        "sanitizers": _without(document["sanitizers"], likeness),
+        "derivations": _without(document["derivations"], likeness),
+        "unreached": _without(document["unreached"], likeness),
         "elements": counts.elements,
         "flows": counts.flows,
         "denied_flows": counts.denied_flows,
         "standard_channels": counts.standard_channels,
-        "assumptions": {**told["assumptions"], "standard_channels": taken},
+        "assumptions": {**document["assumptions"], "standard_channels": taken},
         "fleet": _fleet(view),
     }
 

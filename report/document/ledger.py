@@ -1,6 +1,6 @@
-"""The ledger -> the JSON document: what was taken away on the data's side, and on whose word.
+"""What keeps data from going on, and on whose word: the ledger, what the answer hangs on, why data does not get there.
 
-In: ``TakenAway`` rows. Out: plain dicts, in their order.
+In: facts of the analysis. Out: entries, in their order; and which of them a reader has to look at.
 """
 
 from __future__ import annotations
@@ -10,37 +10,36 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.answer import Verdict
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.findings.closures import ABSENT
+from rosprivacy.analysis.model import STANDARD
 from rosprivacy.analysis.whatif.ledger import BY, REVIEW
+from rosprivacy.report.document.records import element_dict, element_or_none, place_entries
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Mapping
+    from collections.abc import Collection, Iterable, Mapping
 
-    from rosprivacy.analysis.model import Element
     from rosprivacy.analysis.whatif.ledger import GlobUse, TakenAway
-    from rosprivacy.report.contract.records import ElementEntry, GlobEntry, LedgerRow
+    from rosprivacy.analysis.whatif.reliance import Reliance
+    from rosprivacy.analysis.whatif.why_not import WhyNot
+    from rosprivacy.report.contract.records import GlobEntry, LedgerRow, RelianceEntry
 
-    Shown = Callable[[Element], ElementEntry]
 
+WHY_NOT = "rosprivacy.why-not/1"
 ANSWERING = (REVIEW, "mundane", "sanitizer")  # what takes the question away whether an element was reviewed
 WORD_OF_A_LABEL = ("mundane", "only", "never", "sanitizer", ABSENT)
 
 
-def rows(taken: Collection[TakenAway], element_dict: Shown) -> list[LedgerRow]:
-    """Return the rows as the contract has them."""
-
-    def shown(element: Element | None) -> ElementEntry | None:
-        return element_dict(element) if element else None
-
+def ledger_rows(taken: Collection[TakenAway]) -> list[LedgerRow]:
+    """Return what was taken away on the data's side."""
     return [
         {
             "by": row.by,
-            "element": shown(row.element),
-            "to": shown(row.to),
+            "element": element_or_none(row.element),
+            "to": element_or_none(row.to),
             "categories": list(row.categories),
-            "places": [{"file": place.file, "line": place.line} for place in row.places],
+            "places": place_entries(row.places),
             "glob": row.glob,
-            "leak": shown(row.leak),
-            "open": shown(row.open),
+            "leak": element_or_none(row.leak),
+            "open": element_or_none(row.open),
             "itself": row.itself,
             "perhaps": row.perhaps,
             "note": row.note,
@@ -49,7 +48,13 @@ def rows(taken: Collection[TakenAway], element_dict: Shown) -> list[LedgerRow]:
     ]
 
 
-def globs(used: Iterable[GlobUse], element_dict: Shown) -> list[GlobEntry]:
+def counts_of(taken: Collection[TakenAway]) -> dict[str, int]:
+    """Return how many there are of each kind, those that there are."""
+    numbers = {by: sum(row.by == by for row in taken) for by in BY}
+    return {by: number for by, number in numbers.items() if number}
+
+
+def glob_entries(used: Iterable[GlobUse]) -> list[GlobEntry]:
     """Return what each glob of the label files decides and closes."""
     return [
         {
@@ -61,8 +66,8 @@ def globs(used: Iterable[GlobUse], element_dict: Shown) -> list[GlobEntry]:
             "reviewed": use.reviewed,
             "flows": use.flows,
             "flows_closed": use.flows_closed,
-            "leak": element_dict(use.leak) if use.leak else None,
-            "open": element_dict(use.open) if use.open else None,
+            "leak": element_or_none(use.leak),
+            "open": element_or_none(use.open),
             "warning": use.warning,
         }
         for use in used
@@ -90,7 +95,76 @@ def by_globs(document: Mapping[str, Any]) -> list[Mapping[str, Any]]:
     return [row for row in document["taken_away"] if row["glob"] and row["by"] in ANSWERING and not row["to"]]
 
 
-def counts(taken: Collection[TakenAway]) -> dict[str, int]:
-    """Return how many there are of each kind, those that there are."""
-    numbers = {by: sum(row.by == by for row in taken) for by in BY}
-    return {by: number for by, number in numbers.items() if number}
+def reliance_rows(statements: Iterable[Reliance]) -> list[RelianceEntry]:
+    """Return what the answer hangs on: a user's statements first, those on which most hangs before others."""
+    return [
+        {
+            "role": row.statement.role,
+            "method": str(row.statement.method or ""),
+            "categories": list(row.statement.categories),
+            "file": row.statement.place.file,
+            "line": row.statement.place.line,
+            "glob": row.statement.glob,
+            "shipped": _shipped(row),
+            "why": row.statement.why,
+            "author": row.statement.author,
+            "elements": [element_dict(element) for element in row.elements],
+            "to": [element_dict(element) for element in row.to],
+            "findings": [
+                {
+                    "kind": opening.kind,
+                    "category": opening.category,
+                    "source": element_dict(opening.source),
+                    "leak": element_dict(opening.leak),
+                    "dismissed": opening.dismissed,
+                    "pseudonymised": opening.pseudonymised,
+                    "new": opening.new,
+                }
+                for opening in row.findings
+            ],
+            "questions": [
+                {"element": element_dict(element), "categories": list(names)} for element, names in row.questions
+            ],
+            "refused": row.refused,
+            "perhaps": row.perhaps,
+        }
+        for row in sorted(statements, key=_order)
+    ]
+
+
+def _shipped(row: Reliance) -> bool:
+    """Whether it stands in a file that is not the user's, such as that of standard channels."""
+    return row.statement.rank[0] <= STANDARD
+
+
+def _order(row: Reliance) -> tuple[object, ...]:
+    standing = sum(not opening.dismissed for opening in row.findings)
+    return (_shipped(row), -standing, -len(row.findings), not (row.refused or row.perhaps), -len(row.questions))
+
+
+def why_not_document(answers: Iterable[WhyNot]) -> dict[str, Any]:
+    """Return why data does not get from one element to another, as one JSON object."""
+    return {
+        "format": WHY_NOT,
+        "answers": [
+            {
+                "category": answer.category,
+                "source": element_dict(answer.source),
+                "leak": element_dict(answer.leak),
+                "finding": answer.finding.id if answer.finding else None,
+                "path": [element_dict(element) for element in answer.path],
+                "obstacles": [
+                    {
+                        "by": obstacle.by,
+                        "element": element_dict(obstacle.element),
+                        "to": element_or_none(obstacle.to),
+                        "category": obstacle.category,
+                        "places": place_entries(obstacle.places),
+                    }
+                    for obstacle in answer.obstacles
+                ],
+                "reached": answer.reached,
+            }
+            for answer in answers
+        ],
+    }

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.model import DISCLOSURE
 from rosprivacy.report.document.analysis import label_key
-from rosprivacy.report.document.element_entry import element_dict
+from rosprivacy.report.document.records import element_dict
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -131,15 +131,15 @@ def _statement(finding: Finding) -> StatementEntry:
     }
 
 
-def _protect(one: Protect) -> ProtectEntry:
+def _protect(line: Protect) -> ProtectEntry:
     """A line of a governance to change; the legs of a service are told apart."""
-    cause, place = one.exposure
+    cause, place = line.exposure
     return {
         "file": place.file,
         "line": place.line,
         "cause": cause,
-        "channels": [element_dict(channel) for channel in one.channels],
-        "findings": [finding.id for finding in one.findings],
+        "channels": [element_dict(channel) for channel in line.channels],
+        "findings": [finding.id for finding in line.findings],
     }
 
 

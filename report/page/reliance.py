@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.text import fit
+from rosprivacy.report.called_alike import opening_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -85,11 +86,7 @@ def _findings(row: Mapping[str, Any], index: Index) -> Iterator[str]:
     for opening in row["findings"]:
         data = index.data(opening["category"], pseudonymised=opening["pseudonymised"])
         ends = [words.row(index.names([opening[end]])) for end in ("source", "leak")]
-        told = words.pair(data, " → ".join(ends))
-        more = [] if opening["kind"] == "disclosure" else [words(f"finding.{opening['kind']}")]
-        more += [words("u.dismissed")] if opening["dismissed"] else []
-        more += [] if opening["new"] else [words("u.worse")]
-        yield f"{told} ({words.row(more)})" if more else told
+        yield opening_text(opening, words.pair(data, " → ".join(ends)), words)
 
 
 def _questions(row: Mapping[str, Any], index: Index) -> Iterator[str]:

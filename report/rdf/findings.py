@@ -16,8 +16,8 @@ from rdflib.namespace import PROV
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.findings.processed import of_end
-from rosprivacy.report.document.message_types import typed_channels
-from rosprivacy.report.document.whole import document
+from rosprivacy.report.document.analysis import document
+from rosprivacy.report.document.stated import typed_channels
 from rosprivacy.report.element_counts import count_elements
 from rosprivacy.report.rdf.concepts import texts
 from rosprivacy.report.rdf.facts import changes, emitted_by, kinds_along, label_of, legal_of

@@ -17,7 +17,7 @@ from rdflib.namespace import PROV
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.ontology.turtle import local_name
-from rosprivacy.report.document.whole import document
+from rosprivacy.report.document.analysis import document
 from rosprivacy.report.rdf.findings import rdf_graph
 from rosprivacy.report.rdf.individuals import names_of
 from rosprivacy.report.rdf.terms import DPV, RP, text

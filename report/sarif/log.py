@@ -12,18 +12,18 @@ from __future__ import annotations
 from itertools import chain, islice
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.legal import strongest_first
 from rosprivacy.analysis.model import NO_LEAK_NAMED, Place, Rank, Severity
 from rosprivacy.analysis.policy_lines import in_a_file
 from rosprivacy.analysis.text import counted, utf8
 from rosprivacy.report.catalogs.words import IN_ENGLISH
-from rosprivacy.report.document.doubts import verdict_facts
+from rosprivacy.report.document.analysis import verdict_facts
 from rosprivacy.report.element_counts import ElementCount, count_elements
 from rosprivacy.report.places import Places, to_review
-from rosprivacy.report.sarif.beyond_profile import added_results
+from rosprivacy.report.robots import note, on_robots
 from rosprivacy.report.sarif.flows import flows_between, further_paths, prose, text
-from rosprivacy.report.sarif.results import LAW, ROOT, Files, Results
-from rosprivacy.report.sarif.robots import with_robots
+from rosprivacy.report.sarif.results import FINDING, LAW, ROOT, Files, Results, added_results
 from rosprivacy.report.sarif.rules import (
     BEYOND_PROFILE,
     NO_LEAK,
@@ -42,6 +42,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.analysis.fleet.counts import Counts
+    from rosprivacy.analysis.fleet.patterns import FleetView, Pattern
     from rosprivacy.analysis.model import Diagnostic, Legal, Pointer
     from rosprivacy.report.answer import Answer
 
@@ -61,7 +63,7 @@ def sarif(answer: Answer, root: Path) -> dict[str, Any]:
         Absolute folder that files are shown relative to: the root of the repository.
     """
     log = _log(answer, root)
-    return with_robots(log, answer.fleet, answer.fleet_counts(answer.fleet)) if answer.fleet else log
+    return _with_robots(log, answer.fleet, answer.fleet_counts(answer.fleet)) if answer.fleet else log
 
 
 def _log(answer: Answer, root: Path) -> dict[str, Any]:
@@ -226,3 +228,31 @@ def _whole(value: Any) -> Any:
     if isinstance(value, dict):
         return {_whole(key): _whole(part) for key, part in value.items()}
     return [_whole(part) for part in value] if isinstance(value, list | tuple) else value
+
+
+def _with_robots(log: dict[str, Any], view: FleetView, counts: Counts) -> dict[str, Any]:
+    """A log in which each result of a finding tells on which robots it is, not only the one that is shown."""
+    patterns = {pattern.finding.id: pattern for pattern in view.patterns}
+    (run,) = log["runs"]
+    results = [_on_its_robots(result, patterns, view) for result in run["results"]]
+    invocation = run["invocations"][0]
+    notices = [*invocation["toolExecutionNotifications"], _notice("note", "fleet", f"{note(view)}.")]
+    invocations = [{**invocation, "toolExecutionNotifications": notices}]
+    channels = {"standardChannels": counts.standard_channels}
+    properties = {**run["properties"], **channels, "robots": sum(map(len, view.likeness.members.values()))}
+    return {**log, "runs": [{**run, "invocations": invocations, "results": results, "properties": properties}]}
+
+
+def _on_its_robots(result: dict[str, Any], patterns: dict[str, Pattern], view: FleetView) -> dict[str, Any]:
+    pattern = patterns.get(result.get("partialFingerprints", {}).get(FINDING, ""))
+    if pattern is None:
+        return result
+    message = {**result["message"], "text": f"{result['message']['text']} {on_robots(pattern, view)}"}
+    more = {
+        "robots": list(map(shown, pattern.robots)),
+        "pattern": pattern.id,
+        "findings": pattern.count,
+        "findingsDismissed": pattern.dismissed,
+        "findingsPseudonymised": pattern.pseudonymised,
+    }
+    return {**result, "message": message, "properties": {**result["properties"], **more}}

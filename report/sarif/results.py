@@ -1,4 +1,4 @@
-"""Findings and open questions as SARIF ``results``, each at a line of a file.
+"""Findings, open questions, doubts and what the enforced view adds, as SARIF ``results``, each at a line of a file.
 
 In: an ``Analysis`` and where things stand. Out: plain dicts, what counts most first.
 """
@@ -15,10 +15,11 @@ from rosprivacy.analysis.legal import turned_special
 from rosprivacy.analysis.model import CONCERNS, MAY_REVEAL, NO_LEAK_NAMED, Place, Rank
 from rosprivacy.analysis.policy_lines import in_a_file
 from rosprivacy.report.made_of import making
-from rosprivacy.report.places import NOWHERE, of_step, to_review
+from rosprivacy.report.places import NOWHERE, Places, of_step, to_review
 from rosprivacy.report.sarif.artifacts import uri_of
-from rosprivacy.report.sarif.flows import flows_of, logical, named, prose, text
+from rosprivacy.report.sarif.flows import flows_between, flows_of, logical, named, prose, text
 from rosprivacy.report.sarif.rules import (
+    BEYOND_PROFILE,
     NO_LEAK,
     NOTHING_FOLLOWED,
     UNREVIEWED,
@@ -28,17 +29,19 @@ from rosprivacy.report.sarif.rules import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
     from pathlib import Path
 
     from rosprivacy.analysis.answer import Analysis, Finding, OpenQuestion
     from rosprivacy.analysis.contexts import Contexts
+    from rosprivacy.analysis.findings.beyond import Added
     from rosprivacy.analysis.model import Category, Doubt, Element, Flow, Legal, Pointer
     from rosprivacy.ontology.pointed import Pointed
-    from rosprivacy.report.places import Places
+    from rosprivacy.report.answer import Enforced
 
 ROOT = "%SRCROOT%"
 LAW = "data-protection-law"
+FINDING = "rosprivacyFinding/v1"  # fingerprint that is the finding's id
 MAX_RELATED = 100
 MISSING = {
     "country": "nobody states its country",
@@ -239,7 +242,7 @@ def reference(legal: Legal | Pointer, number: int) -> dict[str, Any]:
 
 def _fingerprints(digest: str) -> dict[str, str]:
     """The first is the only one that GitHub looks at; by itself it would take the line, which many findings share."""
-    return {"primaryLocationLineHash": f"{digest}:1", "rosprivacyFinding/v1": digest}
+    return {"primaryLocationLineHash": f"{digest}:1", FINDING: digest}
 
 
 def _message(finding: Finding, law: Sequence[Legal], turned: Element | None, place: Place) -> str:
@@ -291,3 +294,66 @@ def _to_check(law: Sequence[Legal]) -> list[str]:
         if concerning
         else said
     )
+
+
+def added_results(enforced: Enforced, rule: int, files: Files) -> Iterator[dict[str, Any]]:
+    """Yield a result for each finding that only the enforced view has, at the line of another's profile that it needs.
+
+    Parameters
+    ----------
+    rule
+        Number of ``BEYOND_PROFILE`` among the rules of the log.
+    """
+    answer = enforced.answer
+    places, between = Places.of(answer.analysis, answer.assumptions), flows_between(answer.analysis)
+    for one in enforced.added:
+        finding = one.finding
+        lines = [place for number in one.beyond for place in of_step(finding.steps[number])]
+        place = files.physical(lines[0] if lines else places.of_finding(finding))
+        digest = hashlib.sha256(f"enforced\0{finding.id}".encode()).hexdigest()[:16]
+        yield {
+            "ruleId": BEYOND_PROFILE.id,
+            "ruleIndex": rule,
+            "level": BEYOND_PROFILE.level,
+            "message": {"text": " ".join(_beyond(one))},
+            "locations": [{"physicalLocation": place, "logicalLocations": [logical(finding.leak)]}],
+            "codeFlows": flows_of(finding, between, places, files.physical),
+            "partialFingerprints": {"rosprivacyEnforced/v1": digest},
+            **({"suppressions": [{"kind": "external", "status": "accepted"}]} if finding.accepted else {}),
+            "properties": {
+                "category": text(finding.category),
+                "finding": finding.id,
+                "enclaves": list(map(text, one.enclaves)),
+                "split": list(map(text, one.split)),
+                **({"robots": list(map(text, one.robots))} if one.robots else {}),
+            },
+        }
+
+
+def _beyond(one: Added) -> Iterator[str]:
+    finding = one.finding
+    ends = f"from {named(finding.source)} to {named(finding.leak)}"
+    if one.beyond:
+        yield f"Only if a node goes beyond its own profile: {text(finding.category)} can get {ends}."
+    else:
+        yield f"Only if a channel carries what its type cannot hold: {text(finding.category)} can get {ends}."
+    if one.plain:
+        yield "The declared view has it, too, but pseudonymised only: this is about the plain data."
+    if one.robots:
+        yield f"On {len(one.robots):,} {'robot' if len(one.robots) == 1 else 'robots'} of the fleet."
+    if one.enclaves:
+        yield f"Nodes share enclave {_row(one.enclaves)}."
+    if one.opened:
+        yield f"Permissions are not asked there: {_row(map(str, one.opened))}."
+    if one.split:
+        yield f"Gone if {_row(one.split)} is split into an enclave for each node."
+    if one.move:
+        yield f"Gone if only {text(one.move[1])} is moved from {text(one.move[0])} to an enclave of its own."
+    if one.deny:
+        lines = "; ".join(f"a DENY to {line.role} {text(line.name)} in {text(line.enclave)}" for line in one.deny)
+        lost = "; ".join(f"{text(node[2])} {role} {text(channel[2])}" for node, role, channel in one.loses)
+        yield f"Gone with {lines}, with which profiles would lose what they allow: {lost}."
+
+
+def _row(names: Iterable[str]) -> str:
+    return ", ".join(map(text, names))

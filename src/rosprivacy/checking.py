@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Diagnostic, Grant, Place, Policy
     from rosprivacy.ingest.deployed.differences import Difference, Loss
     from rosprivacy.ingest.running.granted_and_used import Usage, Use
-    from rosprivacy.report.contract.deployment import CheckDocument, DifferenceEntry
+    from rosprivacy.report.contract.policies import CheckDocument, DifferenceEntry
     from rosprivacy.settings import Settings
 
 CHECK_FORMAT = "rosprivacy.check/1"

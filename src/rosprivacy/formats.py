@@ -122,7 +122,7 @@ def in_pieces(answer: Answer, name: str, style: Style | None = None) -> str | by
 
 
 def _text(answer: Answer, style: Style) -> str:
-    from rosprivacy.report.document.whole import document
+    from rosprivacy.report.document.analysis import document
 
     return text_of(document(answer), style)
 
@@ -130,7 +130,7 @@ def _text(answer: Answer, style: Style) -> str:
 def text_of(told: Mapping[str, Any], style: Style) -> str:
     """Return a document as text, for a terminal if the style says so."""
     from rosprivacy.report.catalogs.words import Words
-    from rosprivacy.report.terminal.analysis import print_report, report_text
+    from rosprivacy.report.text.analysis import print_report, report_text
 
     words = Words(style.language)
     width = terminal_width() if style.colour else None
@@ -148,7 +148,7 @@ def text_of(told: Mapping[str, Any], style: Style) -> str:
 
 def _json(answer: Answer, _: Style) -> Iterator[str]:
     from rosprivacy.report import json_text
-    from rosprivacy.report.document.whole import document
+    from rosprivacy.report.document.analysis import document
 
     return json_text.in_pieces(document(answer))
 
@@ -250,7 +250,7 @@ def _told(
 ) -> tuple[Mapping[str, Any], Earlier | None, Mapping[str, Any] | str, Aliases | None]:
     """The document, the earlier one if there is one, proposals, and what elements are called if names are replaced."""
     from rosprivacy.report.compare.earlier import read_earlier
-    from rosprivacy.report.document.whole import document
+    from rosprivacy.report.document.analysis import document
 
     told = document(answer)
     earlier = read_earlier(style.since) if style.since else None

@@ -20,8 +20,8 @@ from rosprivacy.ingest.mitigation.deny_lines import denials, open_ended, with_de
 from rosprivacy.ingest.mitigation.deny_patch import Patch, patch
 from rosprivacy.ingest.mitigation.limits_file import read_limits
 from rosprivacy.ingest.policies.flow_graph import build
+from rosprivacy.report.document.analysis import document
 from rosprivacy.report.document.mitigation import mitigation_document
-from rosprivacy.report.document.whole import document
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable

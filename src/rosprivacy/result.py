@@ -9,7 +9,7 @@ from rosprivacy.analysis.errors import InputError
 from rosprivacy.analysis.findings.findings import Options
 from rosprivacy.formats import Style, TextFormat, written
 from rosprivacy.report.answer import Answer
-from rosprivacy.report.document.whole import document
+from rosprivacy.report.document.analysis import document
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -68,7 +68,7 @@ class Result(Answer):
 
     def _verdict(self) -> str:
         """The line that every report begins with."""
-        from rosprivacy.report.terminal.analysis import verdict_line  # noqa: PLC0415 - light start
+        from rosprivacy.report.text.analysis import verdict_line  # noqa: PLC0415 - light start
 
         return verdict_line(self.document())[0]
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.answer import writers_and_readers
 from rosprivacy.report.catalogs.words import IN_ENGLISH
-from rosprivacy.report.document.doubts import doubt_entry
+from rosprivacy.report.document.records import doubt_entry
 from rosprivacy.report.verdict import phrase
 
 if TYPE_CHECKING:

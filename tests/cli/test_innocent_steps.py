@@ -16,7 +16,7 @@ import yaml
 from rosprivacy.analysis.model import GOES_NOWHERE, NO_LEAK_NAMED
 from rosprivacy.ingest.labels.label_template import header
 from rosprivacy.labelling.label_lines import next_lines, updated
-from rosprivacy.report.terminal.next_step import EXAMPLE, lacking_step
+from rosprivacy.report.text.review import EXAMPLE, lacking_step
 from rosprivacy.settings import Settings
 from tests.helpers.daily import one_in
 from tests.helpers.innocent_steps import CHANNEL_WORDS, INFRASTRUCTURE, NODE_WORDS, Line, Planted, plant

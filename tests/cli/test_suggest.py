@@ -15,7 +15,6 @@ from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.labelling.interview import Asking, Interview
 from rosprivacy.labelling.suggested_lines import with_accepted, with_suggestions
 from rosprivacy.labelling.suggesting import suggest_labels
-from rosprivacy.report.contract import suggested
 from rosprivacy.settings import Settings
 from tests.helpers.command import LINE, cli, refused
 from tests.helpers.little_robots import HOSTILE, Nodes, policy_of
@@ -492,23 +491,6 @@ def test_nothing_is_applied(cli: Cli, robot: Path) -> None:
     assert done.stdout == cli("suggest", "p.xml", "-l", "l.yaml", cwd=robot).stdout  # S14
     assert {file: file.read_bytes() for file in robot.iterdir()} == before
     assert cli("analyze", "p.xml", "-l", "l.yaml", cwd=robot).stdout == answer
-
-
-def test_the_document_has_the_keys_of_its_types() -> None:
-    entry = SCHEMA["properties"]["suggestions"]["items"]
-    evidence = entry["properties"]["evidence"]["items"]
-    for hint, schema in (
-        (suggested.SuggestionsDocument, SCHEMA),
-        (suggested.ProposalEntry, entry),
-        (suggested.EvidenceEntry, evidence),
-        (suggested.FileOfRun, SCHEMA["properties"]["files"]["items"]),
-        (suggested.ModelEntry, SCHEMA["properties"]["model"]),
-        (suggested.RobotEntry, SCHEMA["properties"]["robots"]["items"]),
-        (suggested.NoticeEntry, SCHEMA["properties"]["notices"]["items"]),
-    ):
-        types = {name: str(type_) for name, type_ in hint.__annotations__.items()}
-        assert {name for name, type_ in types.items() if "NotRequired" not in type_} == set(schema["required"])
-        assert types.keys() == schema["properties"].keys()
 
 
 def test_nothing_to_suggest_is_said(cli: Cli, tmp_path: Path) -> None:

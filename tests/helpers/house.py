@@ -69,7 +69,7 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "catalogs": set(),
         "": {"contract", "catalogs"},
         "document": {"", "contract", "catalogs"},
-        "terminal": {"", "document", "catalogs"},
+        "text": {"", "document", "catalogs"},
         "pictures": {"", "catalogs"},
         "explorer": {"", "pictures", "catalogs"},
         "compare": {"", "contract", "document"},

@@ -31,7 +31,7 @@ from rosprivacy.queries.library import COLUMN_TYPES, find, pack
 from rosprivacy.queries.run import run
 from rosprivacy.reading.robot_system import beyond_of, read_system
 from rosprivacy.report.stored import StoredNames
-from rosprivacy.report.terminal.graph_words import GraphWords
+from rosprivacy.report.text.graph_words import GraphWords
 from rosprivacy.settings import Settings
 from tests.helpers.daily import one_in
 from tests.helpers.paths import ROOT

@@ -19,7 +19,7 @@ from rosprivacy.analysis.legal import recognises
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.report.catalogs.words import Words
 from rosprivacy.report.cnil.pia import cnil_pia
-from rosprivacy.report.document.whole import document
+from rosprivacy.report.document.analysis import document
 from rosprivacy.report.page import article30
 from tests.helpers.answers import answer_of
 from tests.helpers.systems import analysed, systems

@@ -28,7 +28,7 @@ def categories(
 ) -> None:
     """Print the kinds of personal data as a tree, or what is said of one: definition, Article 9, data types, label."""
     from rosprivacy.ontology.vocabulary import TOP, load
-    from rosprivacy.report.terminal import categories as report
+    from rosprivacy.report.text import categories as report
 
     vocabulary = load(ontologies=tuple(ontology or ()))
     found = vocabulary.find(name or TOP)

@@ -28,7 +28,7 @@ def law(
     from rosprivacy.clock import today
     from rosprivacy.ingest.labels.countries import countries
     from rosprivacy.ontology.provisions import provisions
-    from rosprivacy.report.terminal.law import law_lines, old_lines, unconfirmed_lines
+    from rosprivacy.report.text.categories import law_lines, old_lines, unconfirmed_lines
 
     known, adequacy = provisions(lang.value), countries().as_of
     if not check:

@@ -89,7 +89,7 @@ def load(
 
 def _sentence(result: Result) -> str:
     """The verdict in a sentence that names its doubts (rule S11)."""
-    from rosprivacy.report.document.doubts import verdict_facts
+    from rosprivacy.report.document.analysis import verdict_facts
 
     return verdict_sentence(verdict_facts(result))
 

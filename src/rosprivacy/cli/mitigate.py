@@ -48,7 +48,7 @@ def mitigate(
     from rosprivacy.analysis.mitigation.limits import CHANGES
     from rosprivacy.mitigation import run_mitigation
     from rosprivacy.report.json_text import as_text
-    from rosprivacy.report.terminal.mitigation import print_mitigation
+    from rosprivacy.report.text.mitigation import print_mitigation
 
     settings = inputs.settings
     result = inputs.result(settings)

@@ -83,7 +83,7 @@ def _text(rows: Rows, form: RowFormat, *, wide: bool) -> str:
     from rosprivacy.reading.stored_rows import STORED_NAMES
     from rosprivacy.report.json_text import as_text
     from rosprivacy.report.spreadsheet import as_csv
-    from rosprivacy.report.terminal.graph_words import GraphWords
+    from rosprivacy.report.text.graph_words import GraphWords
 
     if form is RowFormat.json:
         objects = [dict(zip(rows.columns, map(plain, row), strict=True)) for row in rows.rows]

@@ -36,11 +36,13 @@ def why_not(
     output: Output = None,
 ) -> None:
     """Tell why data of one element does not get to another: where its way ends, and on whose word."""
-    from rosprivacy.report.document.why_not import document
+    from rosprivacy.report.document.ledger import why_not_document
     from rosprivacy.report.json_text import as_text
-    from rosprivacy.report.terminal.why_not import lines
+    from rosprivacy.report.text.why_not import lines
 
     result = inputs.result(inputs.settings)
     answers = result.why_not(source, leak, *(categories or ()))
-    text = as_text(document(answers)) if format is TextOrJson.json else "".join(f"{line}\n" for line in lines(answers))
-    emit(text, output)
+    if format is TextOrJson.json:
+        emit(as_text(why_not_document(answers)), output)
+    else:
+        emit("".join(f"{line}\n" for line in lines(answers)), output)

@@ -27,8 +27,7 @@ from rosprivacy.ingest.reading.yaml_values import MAX_BYTES
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.reading.robot_system import answer_robot, read_graphs, read_label_files, read_system, standard_channels
 from rosprivacy.report.review_groups import next_round, sources_of
-from rosprivacy.report.terminal.next_step import candidates, lacking_step
-from rosprivacy.report.terminal.review import review_text
+from rosprivacy.report.text.review import candidates, lacking_step, review_text
 from rosprivacy.report.verdict import lacking
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from rdflib import Graph, Literal, URIRef
 
 import rosprivacy
 from rosprivacy.formats import Style, written
-from rosprivacy.report.document.whole import document
+from rosprivacy.report.document.analysis import document
 from rosprivacy.report.rdf.terms import RP
 from rosprivacy.report.redact import LEFT_OUT, redacted
 from tests.helpers.answers import accepting

@@ -33,17 +33,10 @@ from tests.helpers.systems import HIERARCHY, PARENTS, System, analysed, systems
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from tests.helpers.command import Cli
-
 
 FINDING_KINDS = ("disclosure", "storage-limitation", "third-country-transfer", "unprotected-channel")
 CARE_HOME = (["care-home/care-home.policy.xml"], ["care-home/care-home.labels.yaml"])
 VOCABULARY = Vocabulary.of(Category(n, f"urn:{n}", n, n, n, up) for n, up in PARENTS.items())
-
-
-@pytest.fixture(scope="module")
-def care_home() -> dict[str, Any]:
-    return checked(log_of(analyze(*CARE_HOME)))
 
 
 def in_examples(file: str) -> str:
@@ -83,64 +76,11 @@ def test_the_witness_is_a_code_flow_of_one_thread_element_by_element(case: Path)
         assert "source" in label
 
 
-def test_a_wildcard_stands_where_the_line_before_it_does(care_home: dict[str, Any]) -> None:
-    steps = way(care_home["results"][1])
-    (at,) = [i for i, step in enumerate(steps) if "wildcard" in step["message"]["text"]]
-    assert physical(steps[at]) == physical(steps[at - 1])
-
-
-def test_what_the_data_has_become_is_said_on_the_way(care_home: dict[str, Any]) -> None:
-    texts = [step["message"]["text"] for step in way(care_home["results"][0])]
-    assert texts[0] == "/camera is a source of Video."
-    assert texts[3].startswith("/face_recognizer sends FaceTemplate to topic /face_recognizer/faces (publish, profile")
-    assert "sends pseudonymised Video to" in way(care_home["results"][1])[3]["message"]["text"]
-
-
-def test_provisions_are_a_taxonomy_and_a_question_to_check(care_home: dict[str, Any]) -> None:
-    first, _, voice = care_home["results"]
-    about = ["GDPR Art. 32", "GDPR Art. 5(1)(f) integrity and confidentiality"]  # of a disclosure
-    assert [taxon["id"] for taxon in first["taxa"]] == ["GDPR Art. 9(1) biometric data", *about]
-    assert "To be checked: GDPR Art. 9(1) biometric data (conditional: " in first["message"]["text"]
-    health = "GDPR Art. 9(1) data concerning health"  # in the context of the file: care
-    assert [taxon["id"] for taxon in voice["taxa"]] == ["GDPR Art. 9(1)", health, *about]
-    assert f"It may reveal what these speak of: GDPR Art. 9(1), {health}." in voice["message"]["text"]
-    (taxonomy,) = care_home["taxonomies"]
-    assert re.fullmatch(r"\d{4}-\d\d-\d\d", taxonomy["version"])
-
-
-def test_what_data_may_only_reveal_is_named_in_short(tmp_path: Path) -> None:
+def test_what_data_may_only_reveal_is_no_more_than_that(tmp_path: Path) -> None:
     result = small_system(tmp_path, {"/a": "{source: [Location]}"}, last="leak: [Location]")
     (found, *_) = checked(log_of(result, at=tmp_path))["results"]
-    assert "It may reveal what these speak of: GDPR Art. 9(1)." in found["message"]["text"]
-    assert "To be checked" not in found["message"]["text"]
     assert found["properties"]["article9"] == "may-reveal"
     assert len({taxon["id"] for taxon in found["taxa"]}) == len(found["taxa"])
-
-
-def test_where_data_become_special_is_said(care_home: dict[str, Any]) -> None:
-    assert "/face_recognizer makes such data of other data." in care_home["results"][0]["message"]["text"]
-
-
-def test_what_is_made_on_the_way_does_not_come_from_the_source(care_home: dict[str, Any]) -> None:
-    said = [result["message"]["text"].partition(":")[0] for result in care_home["results"]]
-    assert said[0] == "FaceTemplate, made of Video of /camera at /face_recognizer, can get to /uplink"
-    assert "Voice can get from /microphone to /uplink" in said
-
-
-def test_the_labels_at_both_ends_are_related(care_home: dict[str, Any]) -> None:
-    for result in care_home["results"]:
-        assert [r["message"]["text"].split(" is labelled ")[1] for r in result["relatedLocations"]] == [
-            "source here.",
-            "leak here.",
-        ]
-
-
-def test_what_it_rests_on_is_listed_with_its_hash(care_home: dict[str, Any]) -> None:
-    """Rule S12."""
-    roles = {a["location"].get("uri"): (a["roles"], len(a["hashes"]["sha-256"])) for a in care_home["artifacts"]}
-    assert roles["examples/care-home/care-home.policy.xml"] == (["analysisTarget"], 64)
-    assert roles["examples/care-home/care-home.labels.yaml"] == (["userSpecifiedConfiguration"], 64)
-    assert care_home["properties"]["assumptions"]["view"] == "declared"
 
 
 # ---------------------------------------------------------------- stability
@@ -218,7 +158,7 @@ def test_a_finding_that_another_covers_is_a_note_that_says_so(tmp_path: Path) ->
     )
     results = checked(log_of(result, at=tmp_path))["results"]
     assert [r["level"] for r in results if r["ruleId"] == "disclosure"] == ["warning", "note"]
-    assert "goes through /b, which has a finding of its own" in results[1]["message"]["text"]
+    assert results[1]["properties"]["dismissed"]
 
 
 # ---------------------------------------------------------------- places that are no policy line
@@ -240,7 +180,6 @@ def test_a_node_that_is_source_and_leak_is_at_the_line_of_its_label(tmp_path: Pa
     (found, *_) = checked(log_of(result, at=tmp_path))["results"]
     assert physical(found["locations"][0]) == ("l.yaml", 3)
     assert [physical(step) for step in way(found)] == [("l.yaml", 3)]
-    assert found["message"]["text"].startswith("/a brings Video in and lets it out itself: a path to assess.")
 
 
 def test_a_finding_that_no_file_speaks_of_is_at_the_first_line_of_what_it_rests_on(tmp_path: Path) -> None:
@@ -299,8 +238,6 @@ def test_undetermined_is_never_an_empty_list(tmp_path: Path) -> None:
     nothing = small_system(tmp_path, {"/a": "conduit"}, last="conduit: [Video]")
     run = checked(log_of(nothing, at=tmp_path))
     assert [(r["ruleId"], r["level"]) for r in run["results"]] == [("no-data-followed", "warning")]
-    notices = run["invocations"][0]["toolExecutionNotifications"]
-    assert any("no label names a source" in notice["message"]["text"] for notice in notices)
 
 
 def test_no_word_of_it_is_a_legal_verdict() -> None:
@@ -439,7 +376,7 @@ def test_a_file_name_that_is_no_text_is_a_uri_all_the_same(tmp_path: Path) -> No
     json.dumps(log, ensure_ascii=False).encode()
 
 
-# ---------------------------------------------------------------- an independent reader, the command
+# ---------------------------------------------------------------- an independent reader
 
 
 def test_an_independent_reader_opens_it(tmp_path: Path) -> None:
@@ -457,12 +394,3 @@ def test_an_independent_reader_opens_it(tmp_path: Path) -> None:
         ("rosprivacy", "disclosure", "warning", policy, "14"),
         ("rosprivacy", "unreviewed-element", "none", policy, "36"),
     ]
-
-
-def test_the_command_writes_it_and_keeps_its_exit_code(cli: Cli, tmp_path: Path) -> None:
-    file = tmp_path / "found.sarif"
-    arguments = ["analyze", "before.policy.xml", "-l", "run2.labels.yaml", "-f", "sarif", "-o", str(file)]
-    done = cli(*arguments, cwd=EXAMPLES / "factory")
-    assert (done.returncode, done.stdout, done.stderr) == (1, "", "")
-    run = checked(json.loads(file.read_text("utf-8")))
-    assert physical(run["results"][0]["locations"][0]) == ("examples/factory/before.policy.xml", 13)

@@ -15,7 +15,7 @@ from rosprivacy.explorer.questions import GROUPS
 from rosprivacy.explorer.web.element_pane import Pane, is_likely_source, pane_of
 from rosprivacy.explorer.web.titles import title_of
 from rosprivacy.explorer.web.whose import stands_for
-from rosprivacy.report.document.doubts import verdict_facts
+from rosprivacy.report.document.analysis import verdict_facts
 from rosprivacy.report.finding_order import place_of
 from rosprivacy.report.verdict import doubt_phrases, verdict_meaning
 

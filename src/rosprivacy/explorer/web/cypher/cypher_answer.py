@@ -13,7 +13,7 @@ from rosprivacy.queries.graph_values import graph_values, nodes_in
 from rosprivacy.queries.run import as_cell
 from rosprivacy.reading.stored_rows import STORED_NAMES
 from rosprivacy.report.pictures.query_view import query_view
-from rosprivacy.report.terminal.graph_words import GraphWords
+from rosprivacy.report.text.graph_words import GraphWords
 
 if TYPE_CHECKING:
     from rosprivacy.queries.graph_values import GraphValue

@@ -1,0 +1,75 @@
+"""How a field of a document is written down, and the kinds of values that stand in several.
+
+``Annotated[type, keywords, "description"]``: keywords are those of JSON Schema that the type does not say itself.
+``NotRequired`` is what a document may do without: where there is nothing to say, or since it is newer than the format.
+"""
+
+from typing import Annotated, Any, TypeVar
+
+Type = TypeVar("Type")
+SHA256 = "^[0-9a-f]{64}$"
+
+
+class Keywords:
+    """Keywords of JSON Schema, for what a type does not say itself."""
+
+    def __init__(self, **keywords: object) -> None:
+        self.keywords = keywords
+
+
+def closed(document: type[Type]) -> type[Type]:
+    """Mark an object that has no other keys than those that are named; others may gain some."""
+    document.__closed__ = True  # type: ignore[attr-defined]
+    return document
+
+
+def without_keys_of(other: type) -> Any:
+    """Mark an object that has the keys of another one, too, which are described in the document of that."""
+
+    def marked(document: type[Type]) -> type[Type]:
+        document.__elsewhere__ = other  # type: ignore[attr-defined]
+        return document
+
+    return marked
+
+
+def one_of(*values: str) -> Keywords:
+    """Return what says that a value is one of these."""
+    return Keywords(enum=[*values])
+
+
+def texts(*keys: str) -> Keywords:
+    """Return what says which texts there are in each language."""
+    of_a_language = {"type": "object", "properties": {key: {"type": "string"} for key in keys}}
+    return Keywords(additionalProperties=of_a_language | {"additionalProperties": False})
+
+
+Sha256 = Annotated[str, Keywords(pattern=SHA256)]
+Id = Annotated[str, Keywords(pattern="^[0-9a-f]{16}$")]
+Day = Annotated[str, Keywords(pattern=r"^\d{4}-\d{2}-\d{2}$")]
+Count = Annotated[int, Keywords(minimum=0)]
+Positive = Annotated[int, Keywords(minimum=1)]
+Always = Annotated[bool, Keywords(const=True)]  # absent where it is not so
+Texts = dict[str, dict[str, str]]  # language -> what -> text
+
+Verdict = Annotated[str, one_of("leak", "undetermined", "no-leak-found")]
+BagVerdict = Annotated[str, one_of("personal-data", "undetermined", "nothing-found")]
+View = Annotated[str, one_of("declared", "enforced")]
+Severity = Annotated[str, one_of("error", "warning", "notice")]
+Confidence = Annotated[str, one_of("certain", "likely", "may")]
+Article9 = Annotated[str, one_of("always", "conditional", "may-reveal", "no", "unknown")]
+LawVerdict = Annotated[str, one_of("always", "conditional", "may-reveal")]
+ContextVerdict = Annotated[str, one_of("always", "conditional", "may-reveal", "concerns")]
+Context = Annotated[str, one_of("care", "public-space", "school", "union", "workplace", "worship")]
+Method = Annotated[str, one_of("anonymise", "aggregate", "drop", "pseudonymise")]
+Leg = Annotated[str, one_of("request", "response")]
+NotStated = Annotated[str, one_of("country", "occasional")]
+Cause = Annotated[str, one_of("not-encrypted", "strangers")]
+Change = Annotated[str, one_of("review", "filter", "deny")]
+ElementKind = Annotated[
+    str,
+    one_of(
+        "node", "device", "display", "external-system", "participant", "person", "shared-memory", "side-channel",
+        "storage", "topic", "service", "action",
+    ),
+]  # fmt: skip

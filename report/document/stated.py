@@ -1,0 +1,313 @@
+"""What is stated, in the JSON document: of categories and law by the ontology, of elements by people.
+
+In: an ``Answer``, or its parts. Out: entries, sorted or in the order of the graph. No verdict: national law stands
+there with its country, and who shows it chooses by the countries that are stated.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.contexts import article9_in, revealed
+from rosprivacy.analysis.non_ros import TAKEN, limited, not_stated
+from rosprivacy.report.document.records import element_dict
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Mapping
+
+    from rosprivacy.analysis.answer import Analysis, Finding
+    from rosprivacy.analysis.findings.processed import Processed
+    from rosprivacy.analysis.hierarchy import Hierarchy
+    from rosprivacy.analysis.model import (
+        ByCategory,
+        Category,
+        Element,
+        Legal,
+        MessageType,
+        NonRosFacts,
+        Processing,
+    )
+    from rosprivacy.analysis.model.recording import Recording
+    from rosprivacy.ontology.vocabulary import Vocabulary
+    from rosprivacy.report.answer import Answer
+    from rosprivacy.report.contract.analysis import AnalysisDocument, ClosedEntry
+    from rosprivacy.report.contract.notation import Texts
+    from rosprivacy.report.contract.stated import (
+        CategoryEntry,
+        ContextEntry,
+        NonRosEntry,
+        NonRosNotKnown,
+        NonRosStated,
+        PointerEntry,
+        ProcessedEntry,
+        ProcessingEntry,
+        ProvisionEntry,
+        RecordingEntry,
+        SurroundingsEntry,
+        TypeEntry,
+        TypesEntry,
+    )
+
+KEYS = {"name": "provision"}  # what the contract calls otherwise than the model
+
+
+def category_entry(category: Category, hierarchy: Hierarchy, contexts: frozenset[str]) -> CategoryEntry:
+    """Return a category that is emitted, with the law that its data can fall under."""
+    return {
+        "name": category.name,
+        "iri": category.iri,
+        "broader": hierarchy.broader(category.name),
+        "title": category.title,
+        "definition": category.definition,
+        "data_types": list(category.data_types),
+        "identity_factors": list(category.identity_factors),
+        "gdpr": category.gdpr,
+        "article9": article9_in(category, contexts),
+        "reason": category.reason,
+        "law": [_legal(legal) for legal in category.law],
+        "in_context": [{**_legal(legal), "context": legal.context} for legal in revealed(category, contexts)],
+        "look_at": list(category.look_at),
+        "translations": _texts(category.translations),
+    }
+
+
+def _texts(texts: Mapping[str, Mapping[str, str]]) -> Texts:
+    """Language -> texts in it, those that there are; English stands where the facts are."""
+    named = {
+        language: {KEYS.get(what, what): text for what, text in of.items() if text}
+        for language, of in sorted(texts.items())
+    }
+    return {language: dict(sorted(of.items())) for language, of in named.items() if of}
+
+
+def _legal(legal: Legal) -> ProvisionEntry:
+    return {
+        "provision": legal.name,
+        "iri": legal.iri,
+        "meaning": legal.meaning,
+        "verdict": legal.verdict,
+        "condition": legal.condition,
+        "stated_of": legal.stated_of,
+        "sources": list(legal.sources),
+        "as_of": legal.as_of,
+        "translations": _texts(legal.translations),
+    }
+
+
+def situations(vocabulary: Vocabulary, contexts: Collection[str]) -> list[ContextEntry]:
+    """Return the contexts that are stated, with what they mean."""
+    return [
+        {
+            "name": situation.name,
+            "title": situation.title,
+            "definition": situation.definition,
+            "translations": _texts(situation.translations),
+        }
+        for situation in vocabulary.pointed.situations
+        if situation.name in contexts
+    ]
+
+
+def pointers(vocabulary: Vocabulary, categories: Iterable[str], contexts: Collection[str]) -> list[PointerEntry]:
+    """Return the provisions to look at, with the categories and contexts that call for each; every system with none."""
+    emitted = [vocabulary.categories[name] for name in categories]
+    return [
+        {
+            "provision": pointer.name,
+            "iri": pointer.iri,
+            "title": pointer.title,
+            "meaning": pointer.meaning,
+            "as_of": pointer.as_of,
+            "applies_from": pointer.applies,
+            "confirmed": pointer.confirmed,
+            "adopted": pointer.adopted,
+            "country": pointer.country,
+            "address": pointer.address,
+            "categories": list(kinds),
+            "contexts": list(where),
+            "translations": _texts(pointer.translations),
+        }
+        for pointer, kinds, where in vocabulary.pointed.rows(emitted, contexts)
+    ]
+
+
+def surroundings(answer: Answer) -> list[SurroundingsEntry]:
+    """Return where the elements that bring data in work, as people state it of them or of their system."""
+    analysis, bound = answer.shown, answer.bound
+    elements = analysis.graph.elements
+    sources = {element for element, roles in analysis.roles.items() if any("source" in of for of in roles.values())}
+    rows: list[SurroundingsEntry] = []
+    for vertex, where in sorted(bound.surroundings.items()):
+        if elements[vertex] in sources:
+            rows.append({"element": element_dict(elements[vertex]), "contexts": list(where.contexts)})
+            if where.country:
+                rows[-1]["country"] = where.country
+    return rows
+
+
+def inventory(analysis: Analysis, hierarchy: Hierarchy) -> list[NonRosEntry]:
+    """Return every element outside ROS with its facts (rule S9)."""
+    spread = analysis.spread
+    numbers = {element: i for i, element in enumerate(analysis.graph.elements)}
+    rows: list[NonRosEntry] = []
+    for element, facts in analysis.outside.items():
+        holds = spread.names(spread.present(numbers[element]))
+        row: NonRosEntry = {
+            "element": {"robot": element.robot, "kind": element.kind, "name": element.name},
+            "file": facts.place.file,
+            "line": facts.place.line,
+            **_facts(facts),
+            "holds": list(holds),
+            **_not_known(element, facts, holds, hierarchy),
+        }
+        rows.append(row)
+    return rows
+
+
+def taken_by_kind(analysis: Analysis) -> dict[str, str]:
+    """Return what each kind that there is does unless a label says otherwise."""
+    return {kind: TAKEN[kind] for kind in sorted({e.kind for e in analysis.outside} & set(TAKEN))}
+
+
+def without_backups(analysis: Analysis) -> list[Element]:
+    """Return the storages of whose backups nothing is stated: they are taken to have none (rule S9)."""
+    return [e for e, facts in analysis.outside.items() if e.kind == "storage" and facts.backups is None]
+
+
+def _facts(facts: NonRosFacts) -> NonRosStated:
+    backups = facts.backups if isinstance(facts.backups, bool | None) else str(facts.backups)
+    entry: NonRosStated = _present(
+        retention=_durations(facts.retention),
+        backups=backups,
+        encrypted=facts.encrypted,
+        country=facts.country,
+        area=facts.area,
+        operator=facts.operator,
+        recipient=facts.recipient,
+        transfer=facts.transfer,
+        contract=facts.contract,
+        recording=_recording(facts.recording) if facts.recording else None,
+    )
+    return entry
+
+
+def _present(**values: Any) -> Any:
+    """Keys with what is stated of each, without those of which nothing is."""
+    return {key: value for key, value in values.items() if value not in (None, "", {}, [])}
+
+
+def _recording(recording: Recording) -> RecordingEntry:
+    from rosprivacy.analysis.model.recording import iso  # noqa: PLC0415 - light start
+
+    times = {"start": recording.start, "end": recording.end, "oldest": recording.oldest}
+    entry: RecordingEntry = {"bag": recording.bag, "bytes": recording.size, "topics": recording.topics}
+    entry.update(_present(messages=recording.messages))
+    entry.update(_present(**{of: iso(time) for of, time in times.items() if time is not None}))
+    return entry
+
+
+def _durations(stated: tuple[tuple[str, Any], ...]) -> dict[str, str]:
+    return {category or "every": str(duration) for category, duration in stated}
+
+
+def _not_known(element: Element, facts: NonRosFacts, holds: tuple[str, ...], hierarchy: Hierarchy) -> NonRosNotKnown:
+    """What the answer could not judge: what nobody states, or a retention without a limit to hold it against."""
+    entry: NonRosNotKnown = {}
+    if missing := not_stated(element, facts):
+        entry["missing"] = list(missing)
+    judged = element.kind == "storage" and facts.retention
+    if judged and (without := [name for name in holds if not limited(facts, name, hierarchy)]):
+        entry["without_limit"] = without
+    return entry
+
+
+def with_processing(made: AnalysisDocument, answer: Answer) -> AnalysisDocument:
+    """Return a document with what is stated of processing; of robots that are alike of one."""
+    not_shown = answer.fleet.likeness.second if answer.fleet else ()
+    stated: list[ProcessingEntry] = []
+    for robot, processing in answer.bound.of_robots.items():
+        if robot not in not_shown:
+            stated.append(_stated(processing))
+            stated[-1]["robot"] = robot
+    for vertex, processing in sorted(answer.bound.processing.items()):
+        element = answer.analysis.graph.elements[vertex]
+        if element.robot not in not_shown:
+            stated.append(_stated(processing))
+            stated[-1]["element"] = element_dict(element)
+    if stated:
+        made["processing"] = stated
+    if by_kind := [_processed(row) for row in answer.processed]:
+        made["processed_for"] = by_kind
+    return made
+
+
+def _stated(stated: Processing) -> ProcessingEntry:
+    entry: ProcessingEntry = {"file": stated.place.file, "line": stated.place.line}
+    purposes, bases = _by_category(stated.purposes), _by_category(stated.bases)
+    entry.update(_present(controller=stated.controller, dpo=stated.dpo, purposes=purposes, legal_bases=bases))
+    return entry
+
+
+def _by_category(stated: ByCategory) -> dict[str, list[str]]:
+    return {category or "every": list(values) for category, values in stated}
+
+
+def _processed(row: Processed) -> ProcessedEntry:
+    return {
+        "element": element_dict(row.element),
+        "category": row.category,
+        "controllers": list(row.controllers),
+        "officers": list(row.officers),
+        "purposes": list(row.purposes),
+        "legal_bases": list(row.bases),
+        "missing": list(row.missing),
+    }
+
+
+def with_types(document: AnalysisDocument, answer: Answer) -> AnalysisDocument:
+    """Return a document with the types of channels, where any are known, and what only these close."""
+    closed = answer.shown.closed
+    types: list[TypesEntry] = [
+        {"element": element_dict(element), "types": [_type(each) for each in seen]}
+        for element, seen in typed_channels(answer)
+    ]
+    if types:
+        document["types"] = types
+    if closed:
+        document["assumptions"]["type_limits_reached"] = [
+            {"element": element_dict(element), "categories": list(categories)}
+            for element, categories in closed.channels
+        ]
+        document["assumptions"]["closed_by_types"] = [_closed(finding) for finding in closed.findings]
+    return document
+
+
+def typed_channels(answer: Answer) -> list[tuple[Element, tuple[MessageType, ...]]]:
+    """Return the types of each channel that has any, in the order of the graph; both sides of a wildcard once."""
+    elements = answer.analysis.graph.elements
+    together: dict[Any, tuple[Element, dict[MessageType, None]]] = {}
+    not_shown = answer.fleet.likeness.second if answer.fleet else ()
+    for vertex, types in answer.bound.types.items():
+        element = elements[vertex]
+        if element.robot in not_shown:
+            continue
+        together.setdefault(element.shown_as, (element, {}))[1].update(dict.fromkeys(types))
+    return [(element, tuple(seen)) for element, seen in together.values()]
+
+
+def _closed(finding: Finding) -> ClosedEntry:
+    return {
+        "id": finding.id,
+        "kind": finding.kind,
+        "category": finding.category,
+        "source": element_dict(finding.source),
+        "leak": element_dict(finding.leak),
+        "dismissed": finding.dismissed,
+    }
+
+
+def _type(seen: MessageType) -> TypeEntry:
+    entry: TypeEntry = {"type": seen.name, "stated": seen.stated, "file": seen.place.file, "line": seen.place.line}
+    nodes = {"writers": list(seen.writers), "readers": list(seen.readers)}
+    entry.update(_present(hash=seen.hash, **nodes, first=seen.first, last=seen.last))
+    return entry

@@ -1,1 +1,0 @@
-"""A JSON document in, out come lines for the terminal."""
