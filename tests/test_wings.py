@@ -24,20 +24,21 @@ SAME_PART = {
         "report/text",
     },  # the answer about a system: keys, document, lines
     "answer": {"analysis", "report"},  # the answer, and the one that every format is made of
-    "bags": {"recordings", "report/contract"},  # the answer about bags, and its keys
+    "bags": {"", "report", "report/contract"},  # the answer about bags, and its keys
     "categories": {"cli", "report/text"},  # the command, and what it prints
     "decisions": {"analysis", "report/document"},  # what they mean, and how the document tells them
     "doubts": {"analysis/findings", "report/page"},  # the list of doubts, and how it is told
     "findings": {"analysis/findings", "report/rdf"},  # findings, and findings as RDF
     "fleet": {"cli", "report/document", "report/text"},  # what is told of a fleet
-    "reliance": {"analysis/findings", "report/page"},  # what the answer hangs on, and how it is told
+    "lint": {"cli", "ingest", "report"},  # the command, the rules, and what it prints
+    "reliance": {"analysis/whatif", "report/page"},  # what the answer hangs on, and how it is told
     "records": {"report/contract", "report/document"},  # the rows of a document: their keys, and how they are made
     "stated": {"report/contract", "report/document"},  # what is stated: its keys, and how they are made
     "review": {"report/page", "report/text"},  # what nobody has reviewed, for each kind of reader
-    "ledger": {"analysis/findings", "report/document"},  # what was taken away, and how it is told
+    "ledger": {"analysis/whatif", "report/document"},  # what was taken away, and how it is told
     "mitigation": {"", "report/contract", "report/document", "report/text"},  # what is told of proposals
     "non_ros": {"analysis", "report/page"},  # what is told of non-ROS elements
-    "why_not": {"analysis/findings", "cli", "report/text"},  # the question, and its answer
+    "why_not": {"analysis/whatif", "cli", "report/text"},  # the question, and its answer
     "session": {"explorer", "spark"},  # what lasts from its begin to its end: of a person, and of a cluster
 }
 
