@@ -119,13 +119,7 @@ class AccessFile:
 
 
 def read_access(file: str) -> AccessFile:
-    """Read the access control of a configuration.
-
-    Raises
-    ------
-    InputErrors
-        With every problem of the section, each a ``PolicyError`` of one line.
-    """
+    """Read the access control of a configuration; ``InputErrors`` has every problem."""
     try:
         top, _ = json5_values.read(file, lambda line, problem, hint: PolicyError(file, line, problem, hint))
     except PolicyError as error:

@@ -105,16 +105,16 @@ def read_deployed(
     alone = [argument for argument in arguments if not is_keystore(argument)]
     parts = [partial(reading.keystore, argument) for argument in arguments if is_keystore(argument)]
     policies: list[Policy] = []
-    said: list[Diagnostic] = []
+    remarks: list[Diagnostic] = []
     problems: list[InputError] = []
     for part in (*parts, *([partial(reading.alone, alone)] if alone else ())):
         with noting(problems):
             read, more = part()
             policies += read
-            said += more
+            remarks += more
     if problems:
         raise InputErrors(problems)
-    return tuple(policies), tuple(dict.fromkeys(said))
+    return tuple(policies), tuple(dict.fromkeys(remarks))
 
 
 class _Reading(NamedTuple):
@@ -132,13 +132,13 @@ class _Reading(NamedTuple):
         keystore = _Keystore(folder, self)
         policies: list[Policy] = []
         enclaves = keystore.enclaves()
-        said = keystore.said
+        remarks = keystore.remarks
         for enclave in enclaves:
             found = governed(enclave.governance, domains_of(enclave.permissions, self.domain))
             policies += self._granted(enclave.permissions, enclave.sources, found)
-            said += governance_remarks(enclave.governance, enclave.permissions, self.domain)
-        said += self._remarks([enclave.permissions for enclave in enclaves])
-        return policies, sorted(said, key=lambda d: (d.place.file, d.place.line, d.message))
+            remarks += governance_remarks(enclave.governance, enclave.permissions, self.domain)
+        remarks += self._remarks([enclave.permissions for enclave in enclaves])
+        return policies, sorted(remarks, key=lambda d: (d.place.file, d.place.line, d.message))
 
     def alone(self, names: Iterable[str]) -> _Found:
         """What files by themselves grant; each governance counts for the domains that its rules name."""
@@ -146,16 +146,16 @@ class _Reading(NamedTuple):
             raise InputErrors([PolicyError(name, 0, ALONE, "name the keystore") for name in names])
         stated, governances = _read_alone(names, allow_unsigned=self.allow_unsigned)
         policies: list[Policy] = []
-        said: list[Diagnostic] = []
+        remarks: list[Diagnostic] = []
         for permissions, source in stated:
             about = domains_of(permissions, self.domain)
             found = [(hashed, one) for governance, hashed in governances for one in governed(governance, about)]
             sources = tuple(sorted({source, *(hashed for hashed, _ in found)}))
             policies += self._granted(permissions, sources, (one for _, one in found))
-            said += (remark for _, one in found for remark in rule_remarks(one.rule))
+            remarks += (remark for _, one in found for remark in rule_remarks(one.rule))
         read = [permissions for permissions, _ in stated]
-        said += joint_remarks([governance for governance, _ in governances], read, self.domain)
-        return policies, [*said, *self._remarks(read)]
+        remarks += joint_remarks([governance for governance, _ in governances], read, self.domain)
+        return policies, [*remarks, *self._remarks(read)]
 
     def _granted(
         self, permissions: Permissions, sources: tuple[tuple[str, str], ...], found: Iterable[Governed]
@@ -190,7 +190,7 @@ class _Keystore:
     verified: dict[str, SignedText] = field(default_factory=dict)  # by file
     authorities: dict[str, Authority] = field(default_factory=dict)  # by name
     problems: list[InputError] = field(default_factory=list)
-    said: list[Diagnostic] = field(default_factory=list)
+    remarks: list[Diagnostic] = field(default_factory=list)
 
     def enclaves(self) -> list[_Deployed]:
         """Read all enclaves, also such as a certificate alone stands in; raise every problem."""
@@ -202,11 +202,11 @@ class _Keystore:
         if not (folders or self.problems):
             what = f"a keystore without any {PERMISSIONS_FILE}"
             self.problems.append(PolicyError(self.folder, 0, what, "create an enclave in it"))
-        self.said += beside_keystore(self.folder, {*map(os.path.realpath, self.how.besides)})
+        self.remarks += beside_keystore(self.folder, {*map(os.path.realpath, self.how.besides)})
         enclaves = [enclave for folder in folders if (enclave := _Enclave(self, folder).read())]
         if self.problems:
             raise InputErrors(self.problems)
-        self.said += self._signers()
+        self.remarks += self._signers()
         return enclaves
 
     def authority(self, name: str) -> Authority:
@@ -300,7 +300,7 @@ class _Enclave:
             self._warn(file, f"{message}: a middleware refuses it now; it is read, since it can be renewed")
 
     def _warn(self, file: str, message: str) -> None:
-        self.keystore.said.append(warning(Place(file, 0), message))
+        self.keystore.remarks.append(warning(Place(file, 0), message))
 
 
 def _read_alone(

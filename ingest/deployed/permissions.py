@@ -215,7 +215,7 @@ def policy_of(permissions: Permissions, domain: int | None, sources: tuple[tuple
     if domain is None and others:
         what = f"rules for domain {rules[0].domains} and for domain {others[0].domains}"
         raise which_domain(others[0].place, what)
-    said: list[Diagnostic] = []
+    remarks: list[Diagnostic] = []
     profiles: dict[str, Profile] = {}
     grants: list[Grant] = []
     for grant in permissions.grants:
@@ -224,11 +224,11 @@ def policy_of(permissions: Permissions, domain: int | None, sources: tuple[tuple
         if dead:
             message = f"second grant for {enclave}: the middleware uses the first one that is valid"
             message = f"{message}; what this one allows is read too, what it denies is not"
-            said.append(warning(grant.place, message, SEVERAL_PROFILES))
+            remarks.append(warning(grant.place, message, SEVERAL_PROFILES))
         profile = profiles.setdefault(enclave, Profile(enclave, enclave, grant.place))
         grants += _grants(permissions.file, profile, grant, domain, dead=dead)
-        said += _remarks(grant, domain)
-    return Policy(permissions.file, sources, tuple(profiles.values()), tuple(grants), tuple(dict.fromkeys(said)))
+        remarks += _remarks(grant, domain)
+    return Policy(permissions.file, sources, tuple(profiles.values()), tuple(grants), tuple(dict.fromkeys(remarks)))
 
 
 def _grants(file: str, profile: Profile, grant: SubjectGrant, domain: int | None, *, dead: bool) -> Iterator[Grant]:

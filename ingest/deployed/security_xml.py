@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.errors import InputError
 
+BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 LAST_DOMAIN = 2**32 - 1  # as the schema has it
 LAST_OF_ROS = 232  # the ports of UDP suffice for no more
 Spans = tuple[tuple[int, int], ...]
@@ -121,9 +122,6 @@ def written(spans: Spans) -> str:
         str(first) if first == last else f"{first} and above" if last == LAST_DOMAIN else f"{first} to {last}"
         for first, last in spans
     )
-
-
-BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 
 
 @dataclass(frozen=True, slots=True)

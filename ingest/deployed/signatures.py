@@ -35,6 +35,12 @@ if TYPE_CHECKING:
 
 SECONDS = 60
 AUTHORITY = "CA"  # in the arguments: where the certificates of the CA are to be named
+MAX_CERTIFICATE = 2**20
+FINGERPRINT = re.compile(r"(?:[0-9A-Fa-f]{2}:?){32}")
+_PEM = re.compile(rb"-----BEGIN (?:X509 )?CERTIFICATE-----([^-]*)-----END (?:X509 )?CERTIFICATE-----")
+_LINE = re.compile(r"(subject|notBefore|notAfter)=(.*)")
+MAX_SIGNED = 64 * 2**20
+_XML = (b"<?xml", b"<dds")
 ALONE = {"OPENSSL_CONF": os.devnull, "LC_ALL": "C"}
 
 
@@ -54,9 +60,9 @@ def openssl(arguments: list[str], file: str, data: bytes, authority: bytes = b""
         raise PolicyError(file, 0, what, "install openssl, or read it all the same with --allow-unsigned")
     try:
         with tempfile.TemporaryDirectory() as folder:
-            beside = Path(folder, "ca.pem")
-            beside.write_bytes(authority)
-            named = [str(beside) if argument == AUTHORITY else argument for argument in arguments]
+            ca_file = Path(folder, "ca.pem")
+            ca_file.write_bytes(authority)
+            named = [str(ca_file) if argument == AUTHORITY else argument for argument in arguments]
             return subprocess.run(  # noqa: S603 - a fixed program, switches, and a path of ours
                 [program, *named], input=data, capture_output=True, check=False, timeout=SECONDS, env=ALONE
             )
@@ -64,12 +70,6 @@ def openssl(arguments: list[str], file: str, data: bytes, authority: bytes = b""
         raise PolicyError(file, 0, f"not verified: openssl did not end in {SECONDS} s", "check the file") from None
     except OSError as error:
         raise PolicyError(file, 0, f"openssl could not verify it: {shown(str(error))}", "check openssl") from None
-
-
-MAX_CERTIFICATE = 2**20
-FINGERPRINT = re.compile(r"(?:[0-9A-Fa-f]{2}:?){32}")
-_PEM = re.compile(rb"-----BEGIN (?:X509 )?CERTIFICATE-----([^-]*)-----END (?:X509 )?CERTIFICATE-----")
-_LINE = re.compile(r"(subject|notBefore|notAfter)=(.*)")
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,13 +135,7 @@ def pinned(named: tuple[str, ...]) -> frozenset[str]:
 
 
 def read_certificate(file: str) -> Certificate:
-    """Read a certificate.
-
-    Raises
-    ------
-    PolicyError
-        If it cannot be read or is none.
-    """
+    """Read a certificate; ``PolicyError`` if it cannot be read or is none."""
     data = read_regular(file, MAX_CERTIFICATE, partial(PolicyError, file))
     facts = ["-noout", "-subject", "-startdate", "-enddate", "-nameopt", "RFC2253", "-dateopt", "iso_8601"]
     done = openssl(["x509", *facts], file, data)
@@ -161,10 +155,6 @@ def given_by(certificate: Certificate, authority: Authority) -> bool:
 
 def _moment(text: str) -> datetime:
     return datetime.fromisoformat(text.strip()).astimezone(UTC)
-
-
-MAX_SIGNED = 64 * 2**20
-_XML = (b"<?xml", b"<dds")
 
 
 @dataclass(frozen=True, slots=True)

@@ -72,18 +72,18 @@ def policy_of(access: AccessFile, keys: Keys) -> Policy:
     """Return what the process with an access list may send and receive."""
     own = process_of(access)
     profile = Profile(own, own, access.place)
-    said = list(_remarks(access, keys))
+    remarks = list(_remarks(access, keys))
     held = identities(access) if access.decides else {}
-    granted = rights(access, held, keys, said)
+    granted = rights(access, held, keys, remarks)
     grants = [
         dds_grant(profile, access.file, right.place, right.role, right.dds, allow=right.allow) for right in granted
     ]
     if not any(grant.allow for grant in grants):
         where = f" in domain {keys.domain}" if keys.domain != ONE else ""
-        said.append(_warning(access.place, f"nothing is granted{where}: the process can send and receive no data"))
+        remarks.append(_warning(access.place, f"nothing is granted{where}: the process can send and receive no data"))
     digest = hashlib.sha256(contents(Path(access.file), access.file)).hexdigest()
     sources = ((access.file, digest),)
-    return Policy(access.file, sources, (profile,), tuple(dict.fromkeys(grants)), tuple(dict.fromkeys(said)))
+    return Policy(access.file, sources, (profile,), tuple(dict.fromkeys(grants)), tuple(dict.fromkeys(remarks)))
 
 
 def process_of(access: AccessFile) -> str:
@@ -114,7 +114,7 @@ def keys_of(access: AccessFile, domain: int | None, namespaces: Iterable[str]) -
     return Keys(first or ONE, own)
 
 
-def rights(access: AccessFile, held: Held, keys: Keys, said: list[Diagnostic]) -> Iterator[Right]:
+def rights(access: AccessFile, held: Held, keys: Keys, remarks: list[Diagnostic]) -> Iterator[Right]:
     """Yield what passes a list between its process and those at the other end of a link.
 
     Parameters
@@ -135,7 +135,7 @@ def rights(access: AccessFile, held: Held, keys: Keys, said: list[Diagnostic]) -
             yield from _of_rule(rule, keys)
         else:
             for_all = everywhere and all(rule in some for some in held.values())
-            yield from _of_deny(rule, keys, said, late if for_all else None)
+            yield from _of_deny(rule, keys, remarks, late if for_all else None)
 
 
 def _remarks(access: AccessFile, keys: Keys) -> Iterator[Diagnostic]:
@@ -156,7 +156,7 @@ def _of_rule(rule: AccessRule, keys: Keys) -> Iterator[Right]:
                 yield from (Right(True, role, dds, place) for role, dds in _of_message(some, message, ROLES[flow]))
 
 
-def _of_deny(rule: AccessRule, keys: Keys, said: list[Diagnostic], late: frozenset[str] | None) -> Iterator[Right]:
+def _of_deny(rule: AccessRule, keys: Keys, remarks: list[Diagnostic], late: frozenset[str] | None) -> Iterator[Right]:
     """What a deny takes away, and what is said where it takes nothing.
 
     Parameters
@@ -175,11 +175,11 @@ def _of_deny(rule: AccessRule, keys: Keys, said: list[Diagnostic], late: frozens
                 role = ROLES[flow]
                 served = some.what == MESSAGES and message == "put" and role in (late or ())
                 if not why and served and "reply" not in rule.messages:
-                    said.append(_nothing(key, place, f"{LATE[role]} by reply all the same; deny both in one rule"))
+                    remarks.append(_nothing(key, place, f"{LATE[role]} by reply all the same; deny both in one rule"))
                 elif not why:
                     yield from (Right(False, role, dds, place) for role, dds in _of_message(some, message, role))
             if why:
-                said.append(_nothing(key, place, why))
+                remarks.append(_nothing(key, place, why))
 
 
 def _late(rules: Iterable[AccessRule], keys: Keys) -> frozenset[str]:
@@ -307,24 +307,25 @@ def read_zenoh(files: Iterable[str], domain: int | None, *, view: str = View.dec
             keys[access] = keys_of(access, domain, spaces)
     if problems:
         raise InputErrors(problems)
-    said = (*open_remarks(keys), *_joined(spaces), *_one_name(read))
-    policies = [_with(policy_of(access, of_it), said) for access, of_it in keys.items()]
+    remarks = (*open_remarks(keys), *_joined(spaces), *_one_name(read))
+    policies = [_with(policy_of(access, of_it), remarks) for access, of_it in keys.items()]
     sources = tuple(sorted({source for policy in policies for source in policy.sources}))
     if View(view) is View.enforced and (left := open_sessions(keys, sources)).grants:
         policies.append(left)
     return tuple(policies)
 
 
-def _with(policy: Policy, said: Iterable[Diagnostic]) -> Policy:
+def _with(policy: Policy, remarks: Iterable[Diagnostic]) -> Policy:
     """A policy with what is said of its file too: a saved graph keeps it there."""
-    own = (one for one in said if one.place.file == policy.file)
+    own = (one for one in remarks if one.place.file == policy.file)
     return replace(policy, diagnostics=(*policy.diagnostics, *own))
 
 
 def _written_for(read: Iterable[AccessFile]) -> dict[str, Place]:
     """The namespaces that keys of sessions without one are written for, each with a line."""
-    said = (one for access in read if not access.namespace for rule in access.rules for one in rule.key_expressions)
-    return {namespace: place for key, place in said for namespace in namespaces_of([key])}
+    rules = (rule for access in read if not access.namespace for rule in access.rules)
+    keys = (key for rule in rules for key in rule.key_expressions)
+    return {namespace: place for key, place in keys for namespace in namespaces_of([key])}
 
 
 def _joined(spaces: Mapping[str, Place]) -> Iterator[Diagnostic]:

@@ -46,13 +46,7 @@ class Metadata:
 
 
 def read_metadata(file: str) -> Metadata:
-    """Read the ``metadata.yaml`` of a recording.
-
-    Raises
-    ------
-    InputError
-        If it is none.
-    """
+    """Read the ``metadata.yaml`` of a recording; ``InputError`` if it is none."""
     top, _ = yaml_values.read(file, partial(BagError, file))
     said = top.get(TOP) if top.kind == "map" else None
     if said is None or said.kind != "map":
@@ -122,13 +116,7 @@ def is_recording(name: str) -> bool:
 
 
 def read_bag(path: str) -> Bag:
-    """Read what a bag says of itself.
-
-    Raises
-    ------
-    InputError
-        If there is none, or it cannot be read at all.
-    """
+    """Read what a bag says of itself; ``InputError`` if there is none, or it cannot be read at all."""
     try:
         there = Path(path)
         if not path or not there.exists():

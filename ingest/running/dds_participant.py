@@ -169,13 +169,7 @@ def _user_data(qos: Any) -> bytes:
 
 @contextmanager
 def joined(domain: int, settings: str) -> Iterator[Readers]:
-    """Join a domain for a while.
-
-    Raises
-    ------
-    MiddlewareError
-        If that fails.
-    """
+    """Join a domain for a while; ``MiddlewareError`` if that fails."""
     try:
         load_cyclonedds().dds_set_log_mask(FATAL_AND_ERROR)
         configured = Domain(domain, settings)

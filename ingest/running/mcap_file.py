@@ -38,13 +38,7 @@ CUT = "no summary: the recording broke off, or the file is cut"
 
 
 def read_mcap(file: str) -> Recorded:
-    """Read what an MCAP file says of itself.
-
-    Raises
-    ------
-    BagError
-        If it is none.
-    """
+    """Read what an MCAP file says of itself; ``BagError`` if it is none."""
     with bounded_stream(file) as stream:
         if stream.size < len(MAGIC) or stream.read(len(MAGIC)) != MAGIC:
             raise BagError(file, 0, "not an MCAP file", "name a bag: .mcap, .db3, or the folder of a recording")

@@ -207,13 +207,7 @@ class TextFiles:
     at: str = ""
 
     def looks(self, seconds: float | None = None) -> Iterator[Observation]:  # noqa: ARG002 - files have looked already
-        """Read all files.
-
-        Raises
-        ------
-        InputErrors
-            With what is wrong in any of them.
-        """
+        """Read all files; ``InputErrors`` has every problem."""
         seen: list[Observation] = []
         problems: list[InputError] = []
         for file in self.files:

@@ -212,13 +212,7 @@ def continued(before: Observation, now: Observation) -> Observation:
 
 
 def added_up(observations: Iterable[Observation]) -> Observation:
-    """Return several observations as one; the same whatever their order.
-
-    Raises
-    ------
-    ValueError
-        If there is none.
-    """
+    """Return several observations as one; the same whatever their order; ``ValueError`` if there is none."""
     several = tuple(observations)
     if not several:
         raise ValueError("no observation")

@@ -112,13 +112,7 @@ def _of_somebody(endpoint: ObservedEndpoint) -> ObservedEndpoint:
 
 
 def policy_xml(ready: Prepared) -> bytes:
-    """Return the policy.
-
-    Raises
-    ------
-    ValueError
-        If there is nothing in it: a policy cannot be empty.
-    """
+    """Return the policy; ``ValueError`` if there is nothing in it: a policy cannot be empty."""
     if not ready.enclaves:
         raise ValueError("nothing was observed")
     grants: dict[str, Grants] = defaultdict(dict)
@@ -236,13 +230,7 @@ class EarlierFiles:
     files: tuple[tuple[str, str], ...]
 
     def looks(self, seconds: float | None = None) -> Iterator[Observation]:  # noqa: ARG002 - files have looked already
-        """Read all files.
-
-        Raises
-        ------
-        InputErrors
-            With what is wrong in any of them.
-        """
+        """Read all files; ``InputErrors`` has every problem."""
         seen: list[Observation] = []
         problems: list[InputError] = []
         for policy, types in self.files:

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
     from typing import BinaryIO
 
+LAST_TIME = 253_402_300_799 * 10**9  # of the year 9999, in nanoseconds
 MOST_READ = 32 * 2**20  # bytes of one bag: the summary of an MCAP file of about 300 GB
 
 
@@ -81,13 +82,7 @@ class BoundedStream:
 
 @contextmanager
 def bounded_stream(file: str, most: int = MOST_READ) -> Iterator[BoundedStream]:
-    """Open a regular file, and note that it is read.
-
-    Raises
-    ------
-    BagError
-        If it is none, or the system refuses it.
-    """
+    """Open a regular file, and note that it is read; ``BagError`` if it is none, or the system refuses it."""
     path = Path(file)
     try:
         if not path.exists():
@@ -98,9 +93,6 @@ def bounded_stream(file: str, most: int = MOST_READ) -> Iterator[BoundedStream]:
             yield BoundedStream(noted(opened, file), most)
     except OSError as error:
         raise BagError(file, 0, f"cannot be read: {reason(error)}", "check the path and its permissions") from None
-
-
-LAST_TIME = 253_402_300_799 * 10**9  # of the year 9999, in nanoseconds
 
 
 @dataclass(frozen=True, slots=True)

@@ -34,13 +34,7 @@ DAMAGED = "the database is damaged; topics may be missing"
 
 
 def read_sqlite(file: str) -> Recorded:
-    """Read what a ``.db3`` file says of itself.
-
-    Raises
-    ------
-    BagError
-        If it is no database of rosbag2.
-    """
+    """Read what a ``.db3`` file says of itself; ``BagError`` if it is no database of rosbag2."""
     gaps = list(_gaps(file))
     uri = f"file:{quote(str(Path(file).absolute()))}?mode=ro&immutable=1"
     topics: tuple[BagTopic, ...] = ()

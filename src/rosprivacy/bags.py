@@ -44,6 +44,10 @@ if TYPE_CHECKING:
     from rosprivacy.settings import Settings
 
 
+Channel = tuple[str, str, str]  # kind, name, leg
+NO_MESSAGE = "no message of it was recorded"
+
+
 @dataclass(frozen=True, slots=True)
 class BagsAnswer:
     """Bags with what can be in them.
@@ -76,13 +80,7 @@ def answer_bags(
     settings: Settings,
     progress: Callable[[Sequence[str]], Iterable[str]] = lambda files: files,
 ) -> BagsAnswer:
-    """Read bags, and say what kinds of data can be in them.
-
-    Raises
-    ------
-    InputErrors
-        With every problem of the input, one line each.
-    """
+    """Read bags, and say what kinds of data can be in them; ``InputErrors`` has every problem."""
     read = read_bags(bags, progress)
     vocabulary = question_of(settings).vocabulary
     table = read_table(settings.type_limits or TABLE, vocabulary, settings.bounds)
@@ -100,10 +98,6 @@ def answer_bags(
         **suggested_by,
     }
     return BagsAnswer(judged(read, by_labels(files, vocabulary), table), rests_on, vocabulary)
-
-
-Channel = tuple[str, str, str]  # kind, name, leg
-NO_MESSAGE = "no message of it was recorded"
 
 
 @dataclass(frozen=True, slots=True)
