@@ -31,9 +31,9 @@ SQUARE = {
     "ingest/policies/joint_policies.py:_WILDCARD": (BOUNDS.name, "a name in a policy"),
     "ingest/reading/json5_values.py:_TOKEN": (MAX_BYTES, "a file that json5 has read before"),
     "queries/library.py:TEXT": (OURS, "a question that comes with the program"),
+    "queries/reading.py:_EARLIER": (MESSAGE, "a message of the server"),
+    "queries/reading.py:_NAMED": (MESSAGE, "a message of the server"),
     "queries/saved.py:_TOKEN": (OURS, "a question that comes with the program"),
-    "queries/unknown_names.py:_EARLIER": (MESSAGE, "a message of the server"),
-    "queries/unknown_names.py:_NAMED": (MESSAGE, "a message of the server"),
 }
 GLOBS = "analysis/expressions.py:regex"  # made of a stranger's glob, with groups that JavaScript does not have
 SECONDS = 5.0  # of one core; the worst takes a tenth of it

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Bound, ByCategory, Element, Surroundings
 
     Row = dict[str, Any]
-    Said = Mapping[str, Any]
+    Properties = Mapping[str, Any]
 
 BAG = ("bag_bytes", "bag_topics", "bag_messages", "bag_start", "bag_end", "bag_oldest")
 CAUSES = (NOT_ENCRYPTED, STRANGERS)
@@ -60,7 +60,7 @@ class ElementFact(NamedTuple):
 
     field: str
     write: Callable[[Any, Element], Row]
-    read: Callable[[Said, Element, Collection[str]], Any]
+    read: Callable[[Properties, Element, Collection[str]], Any]
     example: str = ""
 
 
@@ -72,22 +72,22 @@ def stated_properties(bound: Bound, vertex: int, element: Element) -> Row:
     return row
 
 
-def _texts(said: Said, key: str) -> list[str]:
-    written = said.get(key) or []
+def _texts(properties: Properties, key: str) -> list[str]:
+    written = properties.get(key) or []
     if not isinstance(written, list) or not all(isinstance(text, str) for text in written):
         raise ValueError(f"{key} is not a list of texts")
     return written
 
 
-def _text(said: Said, key: str) -> str:
-    value = said.get(key)
+def _text(properties: Properties, key: str) -> str:
+    value = properties.get(key)
     if not (value is None or isinstance(value, str)):
         raise ValueError(f"{key} is not a text")
     return value or ""
 
 
-def _place(said: Said, file: str = "file", line: str = "line") -> Place:
-    return Place(_text(said, file), int(said.get(line) or 0))
+def _place(properties: Properties, file: str = "file", line: str = "line") -> Place:
+    return Place(_text(properties, file), int(properties.get(line) or 0))
 
 
 def _surroundings_properties(where: Surroundings | None, element: Element) -> Row:
@@ -125,7 +125,7 @@ def _type_as_json(each: MessageType, robot: str) -> Row:
     return {"type": each.name, **{key: value for key, value in facts.items() if value}}
 
 
-def types_of(said: Said, robot: str) -> tuple[MessageType, ...]:
+def types_of(properties: Properties, robot: str) -> tuple[MessageType, ...]:
     """Return the types that properties state; one without facts is a person's word in the database, for all writers.
 
     Parameters
@@ -133,9 +133,9 @@ def types_of(said: Said, robot: str) -> tuple[MessageType, ...]:
     robot
         Of the channel: whose writers and readers are meant where nothing else is said.
     """
-    names = _texts(said, "types")
+    names = _texts(properties, "types")
     try:
-        stored = [_type_of_json(json.loads(text), robot) for text in said.get("type_facts") or []]
+        stored = [_type_of_json(json.loads(text), robot) for text in properties.get("type_facts") or []]
     except (KeyError, TypeError, AttributeError) as error:
         raise ValueError(f"type_facts are not what was loaded: {error}") from None
     by_hand = [name for name in names if name not in {each.name for each in stored}]
@@ -145,17 +145,17 @@ def types_of(said: Said, robot: str) -> tuple[MessageType, ...]:
     return (*stored, *(MessageType(name, Place(DATABASE, 0), stated=True, robot=robot) for name in by_hand))
 
 
-def _type_of_json(said: Said, robot: str) -> MessageType:
+def _type_of_json(properties: Properties, robot: str) -> MessageType:
     return MessageType(
-        str(said["type"]),
-        Place(str(said.get("file") or DATABASE), int(said.get("line") or 0)),
-        stated=bool(said.get("stated")),
-        hash=str(said.get("hash") or ""),
-        writers=tuple(map(str, said.get("writers") or ())),
-        readers=tuple(map(str, said.get("readers") or ())),
-        first=str(said.get("first") or ""),
-        last=str(said.get("last") or ""),
-        robot=str(said.get("robot") or robot),
+        str(properties["type"]),
+        Place(str(properties.get("file") or DATABASE), int(properties.get("line") or 0)),
+        stated=bool(properties.get("stated")),
+        hash=str(properties.get("hash") or ""),
+        writers=tuple(map(str, properties.get("writers") or ())),
+        readers=tuple(map(str, properties.get("readers") or ())),
+        first=str(properties.get("first") or ""),
+        last=str(properties.get("last") or ""),
+        robot=str(properties.get("robot") or robot),
     )
 
 
@@ -168,10 +168,10 @@ def exposure_properties(exposures: Iterable[Exposure]) -> Row:
     return {"unprotected": [f"{each.cause}: {each.place.file}:{each.place.line}" for each in exposures] or None}
 
 
-def exposures_of(said: Said) -> tuple[Exposure, ...]:
+def exposures_of(properties: Properties) -> tuple[Exposure, ...]:
     """Return the exposures that properties state, sorted; a cause alone is a person's word in the database."""
     exposures = set()
-    for text in _texts(said, "unprotected"):
+    for text in _texts(properties, "unprotected"):
         cause, _, place = text.partition(": ")
         file, _, line = place.rpartition(":")
         if cause not in CAUSES or (place and not line.isdecimal()):
@@ -202,15 +202,15 @@ def _of_element(stated: Processing | None) -> Row:
     return {key: value for key, value in row.items() if key not in ("controller", "dpo")}
 
 
-def processing_of(said: Said, categories: Collection[str]) -> Processing:
+def processing_of(properties: Properties, categories: Collection[str]) -> Processing:
     """Return what properties of an element or a robot state."""
-    controller, dpo = _text(said, "controller"), _text(said, "dpo")
-    purposes = _by_category(said, "purposes", categories)
+    controller, dpo = _text(properties, "controller"), _text(properties, "dpo")
+    purposes = _by_category(properties, "purposes", categories)
     bases = tuple(
-        (category, tuple(map(_basis, texts))) for category, texts in _by_category(said, "legal_bases", categories)
+        (category, tuple(map(_basis, texts))) for category, texts in _by_category(properties, "legal_bases", categories)
     )
     stated = Processing(controller, dpo, purposes, bases)
-    place = _place(said, "stated_in", "stated_at")
+    place = _place(properties, "stated_in", "stated_at")
     return Processing(controller, dpo, purposes, bases, place) if stated else stated
 
 
@@ -219,9 +219,9 @@ def _prefixed(stated: ByCategory) -> Iterator[str]:
     yield from (f"{category}: {text}" if category else text for category, texts in stated for text in texts)
 
 
-def _by_category(said: Said, key: str, categories: Collection[str]) -> ByCategory:
+def _by_category(properties: Properties, key: str, categories: Collection[str]) -> ByCategory:
     by_category: dict[str, set[str]] = {}
-    for written in _texts(said, key):
+    for written in _texts(properties, key):
         category, colon, text = written.partition(": ")
         of, what = (category, text) if colon and category in categories else (EVERY, written)
         by_category.setdefault(of, set()).add(what)
@@ -239,29 +239,29 @@ ELEMENT_FACTS = (
     ElementFact(
         "subjects",
         lambda groups, _: {"subjects": list(groups or ())},
-        lambda said, *_: tuple(sorted(set(_texts(said, "subjects")))),
+        lambda properties, *_: tuple(sorted(set(_texts(properties, "subjects")))),
         "SET n.subjects = ['residents', 'staff']",
     ),
     ElementFact(
         "surroundings",
         _surroundings_properties,
-        lambda said, element, _: surroundings_of(said, ros=element.is_node),
+        lambda properties, element, _: surroundings_of(properties, ros=element.is_node),
         "SET n.context = ['care'], n.country = 'DE'",
     ),
     ElementFact(
         "types",
         lambda types, element: types_properties(types or (), element.robot),
-        lambda said, element, _: () if element.is_node else types_of(said, element.robot),
+        lambda properties, element, _: () if element.is_node else types_of(properties, element.robot),
     ),
     ElementFact(
         "exposed",
         lambda exposures, _: exposure_properties(exposures or ()),
-        lambda said, element, _: exposures_of(said) if element.kind in CHANNELS else (),
+        lambda properties, element, _: exposures_of(properties) if element.kind in CHANNELS else (),
     ),
     ElementFact(
         "processing",
         lambda stated, _: _of_element(stated),
-        lambda said, _, categories: processing_of(said, categories),
+        lambda properties, _, categories: processing_of(properties, categories),
     ),
 )
 
@@ -286,38 +286,38 @@ def outside_properties(facts: NonRosFacts) -> Row:
     }
 
 
-def outside_facts(said: Said, categories: Collection[str]) -> NonRosFacts:
+def outside_facts(properties: Properties, categories: Collection[str]) -> NonRosFacts:
     """Return the facts about an element outside ROS that properties state."""
-    country, recipient, transfer = (_text(said, key) for key in ("country", "recipient", "transfer"))
+    country, recipient, transfer = (_text(properties, key) for key in ("country", "recipient", "transfer"))
     if country and country not in countries().areas:
         raise ValueError(f"country {country!r} is not an ISO 3166-1 code; {countries().hint(country)}")
     if recipient and recipient not in RECIPIENTS:
         raise ValueError(f"recipient {recipient!r} is none of {', '.join(RECIPIENTS)}")
     if transfer and transfer not in (*TRANSFERS, NO_BASIS):
         raise ValueError(f"transfer {transfer!r} is none of {', '.join(TRANSFERS)}")
-    encrypted = said.get("encrypted")
+    encrypted = properties.get("encrypted")
     if not (encrypted is None or isinstance(encrypted, bool)):
         raise ValueError("encrypted is not true or false")
     return NonRosFacts(
-        _durations(said, "retention", categories),
-        _durations(said, "limits", categories),
-        _backups(said.get("backups")),
+        _durations(properties, "retention", categories),
+        _durations(properties, "limits", categories),
+        _backups(properties.get("backups")),
         encrypted=encrypted,
-        operator=_text(said, "operator"),
+        operator=_text(properties, "operator"),
         recipient=recipient,
         transfer=transfer,
-        contract=_text(said, "contract"),
-        place=_place(said),
-        recording=_recording(said),
+        contract=_text(properties, "contract"),
+        place=_place(properties),
+        recording=_recording(properties),
         **(countries().place(country) if country else {}),
     )
 
 
-def _recording(said: Said) -> Recording | None:
-    bag = _text(said, "bag")
+def _recording(properties: Properties) -> Recording | None:
+    bag = _text(properties, "bag")
     if not bag:
         return None
-    numbers = [said.get(key) for key in BAG]
+    numbers = [properties.get(key) for key in BAG]
     for key, number in zip(BAG, numbers, strict=True):
         if not (number is None or (isinstance(number, int) and not isinstance(number, bool))):
             raise ValueError(f"{key} is not a whole number")
@@ -331,8 +331,8 @@ def _durations_written(stated: tuple[tuple[str, Duration], ...]) -> list[str] | 
     return [f"{category}: {duration}" if category else str(duration) for category, duration in stated] or None
 
 
-def _durations(said: Said, key: str, categories: Collection[str]) -> tuple[tuple[str, Duration], ...]:
-    written = said.get(key) or []
+def _durations(properties: Properties, key: str, categories: Collection[str]) -> tuple[tuple[str, Duration], ...]:
+    written = properties.get(key) or []
     stated = []
     for text in [written] if isinstance(written, str) else written:
         category, colon, duration = str(text).rpartition(": ")

@@ -70,8 +70,8 @@ def robot_rows(
         The statements that it rests on.
     """
     placed = Placed(analysis.graph, bound, Likeness({"": (robot,)}), {"": analysis.graph.profiles})
-    said = {"verdict": str(analysis.verdict), **(more or {})}
-    properties, parts = FleetRows(placed, analysis, vocabulary, {"": said}, beyond=beyond).parts("", robot)
+    known = {"verdict": str(analysis.verdict), **(more or {})}
+    properties, parts = FleetRows(placed, analysis, vocabulary, {"": known}, beyond=beyond).parts("", robot)
     del parts["foreign"]  # there is no other robot
     return rows_of(robot, properties, parts)
 
@@ -157,9 +157,9 @@ class FleetRows:
         profiles = self._placed.profiles.get(owner, ())
         roles: dict[str, list[Row]] = {}
         for vertex in own:
-            said = self._placed.bound.elements.get(vertex, ())
-            add_roles(roles, name, ids.of(elements[vertex], name), said, self._vocabulary)
-        found, across = self._findings(owner, name, ids)
+            statements = self._placed.bound.elements.get(vertex, ())
+            add_roles(roles, name, ids.of(elements[vertex], name), statements, self._vocabulary)
+        findings, across = self._findings(owner, name, ids)
         parts: dict[str, Any] = {
             "elements": [
                 element_row(
@@ -181,7 +181,7 @@ class FleetRows:
             "roles": roles,
             "derived": list(self._derived(owner, name, ids)),
             "carried": list(self._carried(owner, name, ids)),
-            "findings": found,
+            "findings": findings,
             "across": across,
             "foreign": [],
         }

@@ -55,7 +55,7 @@ FLOWS = (
     "MATCH (a)-[f:FLOWS_TO]->(b) "
     "RETURN elementId(f) AS key, elementId(a) AS source, elementId(b) AS target, properties(f) AS properties"
 )
-SAID = (
+OF_ROLES = (
     f"MATCH (n)-[r:{'|'.join(sorted(_ROLE_OF))}]->(c:DataCategory) WHERE n:Element OR EXISTS {{ (n)-[:FLOWS_TO]-() }} "
     "RETURN elementId(n) AS key, type(r) AS type, c.name AS category, properties(r) AS properties"
 )
@@ -122,7 +122,7 @@ def _read(transaction: ManagedTransaction, vocabulary: Vocabulary) -> Stored:
         raise InputErrors(reader.problems)
     reader.elements(transaction.run(ELEMENTS))
     reader.flows(transaction.run(FLOWS))
-    reader.said(transaction.run(SAID))
+    reader.roles(transaction.run(OF_ROLES))
     reader.profiles(transaction.run(PROFILES))
     reader.robots(robots)
     reader.by_hand(meaningless_relationships(transaction))
@@ -155,7 +155,7 @@ class _Reader:
         self._vertices: dict[Element, _Vertex] = {}
         self._by_key: dict[str, Element] = {}
         self._flows: list[tuple[Element, Element, str, str, Mapping[str, Any]]] = []
-        self._said: dict[str, list[tuple[str, Statement]]] = defaultdict(list)
+        self._roles: dict[str, list[tuple[str, Statement]]] = defaultdict(list)
         self._foreign_kinds = False
         self._profiles: list[Profile] = []
         self._outside: dict[Element, NonRosFacts] = {}
@@ -217,10 +217,10 @@ class _Reader:
             source, target = self._by_key.get(record["source"]), self._by_key.get(record["target"])
             if not source or not target:  # one of them is a problem of its own
                 continue
-            said = record["properties"]
+            properties = record["properties"]
             try:
-                grants_of(said, ADDED, source)
-                unknown = names_of(said) - set(self._vocabulary.categories)
+                grants_of(properties, ADDED, source)
+                unknown = names_of(properties) - set(self._vocabulary.categories)
             except (KeyError, TypeError, ValueError, AttributeError) as error:
                 which = f"{shown(source.name)} -> {shown(target.name)}"
                 what = f"a flow cannot be understood: {which}: {shown(str(error))}"
@@ -228,10 +228,10 @@ class _Reader:
                 continue
             for name in sorted(unknown):
                 self.problem(f"a flow names the unknown category {shown(name)!r}", "correct it")
-            role = said.get("role")
-            self._flows.append((source, target, role if role in _FLOW_ROLES else ADDED, record["key"], said))
+            role = properties.get("role")
+            self._flows.append((source, target, role if role in _FLOW_ROLES else ADDED, record["key"], properties))
 
-    def said(self, records: Iterable[Record]) -> None:
+    def roles(self, records: Iterable[Record]) -> None:
         for record in records:
             role, category = _ROLE_OF[record["type"]], record["category"]
             if category not in self._vocabulary.categories:
@@ -239,11 +239,11 @@ class _Reader:
                 self.problem(f"unknown category {shown(str(category))!r}", "use one that rosprivacy load wrote")
             elif element := self._by_key.get(record["key"]):  # else a problem of its own
                 try:
-                    said = role_of(role, category, record["properties"])
+                    statement = role_of(role, category, record["properties"])
                 except (TypeError, ValueError) as error:
                     self.not_understood(f"{ROLES[role].type} of {shown(element.name)!r}", error, "a role")
                 else:
-                    self._said[record["key"]].append((category, said))
+                    self._roles[record["key"]].append((category, statement))
 
     def profiles(self, records: Iterable[Record]) -> None:
         for record in records:
@@ -268,7 +268,9 @@ class _Reader:
             return
         sealed = Sealed(self._vocabulary)
         for vertex in self._vertices.values():
-            made = [category for category, said in self._said.get(vertex.key, ()) if said.role == "derivation"]
+            made = [
+                category for category, statement in self._roles.get(vertex.key, ()) if statement.role == "derivation"
+            ]
             name = str(vertex.properties["name"])
             self.problems += sealed.problems(name, vertex.labels, vertex.properties, made)
 
@@ -277,10 +279,10 @@ class _Reader:
         elements = tuple(sorted(self._vertices, key=Element.sort_key))
         number = {element: i for i, element in enumerate(elements)}
         vertices = [self._vertices[element] for element in elements]
-        rows = [FlowRow(number[a], number[b], role, key, said) for a, b, role, key, said in self._flows]
-        rows.sort(key=lambda row: (*row[:3], str(row.said.get("file")), str(row.said.get("line")), row.key))
-        allowed = [row for row in rows if row.said.get("decision") != "deny"]
-        refused = [flow_of(row, elements) for row in rows if row.said.get("decision") == "deny"]
+        rows = [FlowRow(number[a], number[b], role, key, row) for a, b, role, key, row in self._flows]
+        rows.sort(key=lambda row: (*row[:3], str(row.properties.get("file")), str(row.properties.get("line")), row.key))
+        allowed = [row for row in rows if row.properties.get("decision") != "deny"]
+        refused = [flow_of(row, elements) for row in rows if row.properties.get("decision") == "deny"]
         graph = FlowGraph(
             elements,
             tuple(flow_of(row, elements) for row in allowed),
@@ -291,17 +293,17 @@ class _Reader:
         )
         statements: dict[int, tuple[Statement, ...]] = {}
         for v, element in enumerate(elements):
-            said = role_statements(self._said.get(vertices[v].key, ()), element, self._vocabulary)
-            statements[v] = (*said, *(by_kind(element) if element in self._outside else ()))
-        statements = {v: said for v, said in statements.items() if said}
-        restrictions = {i: statements_of(row.said, self._vocabulary.hierarchy) for i, row in enumerate(allowed)}
+            of_element = role_statements(self._roles.get(vertices[v].key, ()), element, self._vocabulary)
+            statements[v] = (*of_element, *(by_kind(element) if element in self._outside else ()))
+        statements = {v: of_element for v, of_element in statements.items() if of_element}
+        restrictions = {i: statements_of(row.properties, self._vocabulary.hierarchy) for i, row in enumerate(allowed)}
         facts: dict[str, Any] = {
             field: {v: stated[element] for v, element in enumerate(elements) if element in stated}
             for field, stated in self._facts.items()
         }
         bound = Bound(
             statements,
-            {i: said for i, said in restrictions.items() if said},
+            {i: of_flow for i, of_flow in restrictions.items() if of_flow},
             flows_through(graph, statements),
             {v: self._outside[element] for v, element in enumerate(elements) if element in self._outside},
             of_robots=self._of_robots,
@@ -315,5 +317,5 @@ class _Reader:
             tuple(vertex.labels for vertex in vertices),
             tuple(vertex.properties for vertex in vertices),
             tuple(row.key for row in allowed),
-            tuple(row.said for row in allowed),
+            tuple(row.properties for row in allowed),
         )

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from rosprivacy.ontology.vocabulary import Vocabulary
 
     Row = dict[str, Any]
-    Said = Mapping[str, Any]
+    Properties = Mapping[str, Any]
 
 HAND = 2  # the tier of what a person added: above every file
 WORDS = ("only", "never")
@@ -61,9 +61,9 @@ def flow_row(robot: str, flow: Flow, source: str, target: str, properties: Row) 
     }
 
 
-def allowed(result: Row, said: Sequence[Statement], hierarchy: Hierarchy) -> Row:
+def allowed(result: Row, statements: Sequence[Statement], hierarchy: Hierarchy) -> Row:
     """Return the properties of an allowed flow: what the analysis says of it, and what labels say."""
-    return {"decision": "allow", **result, **statement_properties(said, hierarchy)}
+    return {"decision": "allow", **result, **statement_properties(statements, hierarchy)}
 
 
 def denied(flow: Flow) -> Row:
@@ -87,27 +87,27 @@ class FlowRow(NamedTuple):
     target: int
     role: str
     key: str
-    said: Said
+    properties: Properties
 
 
 def flow_of(row: FlowRow, elements: tuple[Element, ...]) -> Flow:
     """Return a flow, with the policy lines that allow it, or that take it back."""
     channel = elements[row.target if elements[row.target].is_channel else row.source]
-    flow = Flow(row.source, row.target, row.role, grants_of(row.said, row.role, channel))
-    if row.said.get("decision") != "deny":
+    flow = Flow(row.source, row.target, row.role, grants_of(row.properties, row.role, channel))
+    if row.properties.get("decision") != "deny":
         return flow
     return flow._replace(
-        denials=_grants(map(json.loads, row.said.get("denials") or ()), row.role, channel, allow=False)
+        denials=_grants(map(json.loads, row.properties.get("denials") or ()), row.role, channel, allow=False)
     )
 
 
-def grants_of(said: Said, role: str, channel: Element) -> tuple[Grant, ...]:
+def grants_of(properties: Properties, role: str, channel: Element) -> tuple[Grant, ...]:
     """Return the policy lines that allow a flow."""
-    lines = [said] if said.get("file") else []
-    return _grants([*lines, *map(json.loads, said.get("further") or ())], role, channel, allow=True)
+    lines = [properties] if properties.get("file") else []
+    return _grants([*lines, *map(json.loads, properties.get("further") or ())], role, channel, allow=True)
 
 
-def _grants(lines: Iterable[Said], role: str, channel: Element, *, allow: bool) -> tuple[Grant, ...]:
+def _grants(lines: Iterable[Properties], role: str, channel: Element, *, allow: bool) -> tuple[Grant, ...]:
     return tuple(
         Grant(
             allow=allow,
@@ -123,31 +123,31 @@ def _grants(lines: Iterable[Said], role: str, channel: Element, *, allow: bool) 
     )
 
 
-def _seen(line: Said) -> Seen | None:
+def _seen(line: Properties) -> Seen | None:
     """When a line of an observed policy was seen in use (rule S16)."""
     if not line.get("first_seen"):
         return None
     return Seen(tuple(map(str, line.get("seen_by") or ())), str(line["first_seen"]), str(line.get("last_seen") or ""))
 
 
-def statement_properties(said: Sequence[Statement], hierarchy: Hierarchy) -> Row:
+def statement_properties(statements: Sequence[Statement], hierarchy: Hierarchy) -> Row:
     """Return the properties of a flow of which labels say something: each statement, and two lists for people."""
-    words = {statement.role for statement in said}
+    words = {statement.role for statement in statements}
     return {
-        **{word: list(names) if word in words else None for word, names in _holding(said, hierarchy).items()},
-        "naming": GLOB if said and all(statement.naming == GLOB for statement in said) else None,
-        "said_at": sorted({str(statement.place) for statement in said}) or None,
-        "statements": [json.dumps(_statement_as_json(statement), sort_keys=True) for statement in said] or None,
+        **{word: list(names) if word in words else None for word, names in _holding(statements, hierarchy).items()},
+        "naming": GLOB if statements and all(statement.naming == GLOB for statement in statements) else None,
+        "said_at": sorted({str(statement.place) for statement in statements}) or None,
+        "statements": [json.dumps(_statement_as_json(statement), sort_keys=True) for statement in statements] or None,
     }
 
 
-def names_of(properties: Said) -> set[str]:
+def names_of(properties: Properties) -> set[str]:
     """Return the categories that what is stored of a flow names."""
     stated = {name for statement in _stated(properties) for name in statement.categories}
     return stated.union(*(_names(properties, word) for word in WORDS))
 
 
-def statements_of(properties: Said, hierarchy: Hierarchy) -> tuple[Statement, ...]:
+def statements_of(properties: Properties, hierarchy: Hierarchy) -> tuple[Statement, ...]:
     """Return what is stored as statements: those of files as they were, but for a list that a person changed."""
     stated = _stated(properties)
     holding = _holding(stated, hierarchy)
@@ -157,10 +157,10 @@ def statements_of(properties: Said, hierarchy: Hierarchy) -> tuple[Statement, ..
     return (*(statement for statement in stated if statement.role not in changed), *by_hand)
 
 
-def _holding(said: Sequence[Statement], hierarchy: Hierarchy) -> dict[str, tuple[str, ...]]:
+def _holding(statements: Sequence[Statement], hierarchy: Hierarchy) -> dict[str, tuple[str, ...]]:
     """By word, the names of which one of its statements holds."""
-    named = sorted({name for statement in said for name in statement.categories})
-    holding = {name: decided("", said, name, hierarchy).accepted for name in named}
+    named = sorted({name for statement in statements for name in statement.categories})
+    holding = {name: decided("", statements, name, hierarchy).accepted for name in named}
     return {
         word: tuple(n for n in named if any(s.role == word and n in s.categories for s in holding[n])) for word in WORDS
     }
@@ -181,23 +181,23 @@ def _statement_as_json(statement: Statement) -> Row:
     }
 
 
-def _stated(properties: Said) -> list[Statement]:
+def _stated(properties: Properties) -> list[Statement]:
     return [
         Statement(
-            said["role"],
-            tuple(said["categories"]),
-            (int(said["tier"]), int(said["specificity"])),
-            Place(str(said["file"]), int(said["line"])),
-            naming=said["naming"],
-            why=str(said.get("why") or ""),
-            author=str(said.get("author") or ""),
-            pinned=tuple(said["pinned"]) if "pinned" in said else None,
+            fields["role"],
+            tuple(fields["categories"]),
+            (int(fields["tier"]), int(fields["specificity"])),
+            Place(str(fields["file"]), int(fields["line"])),
+            naming=fields["naming"],
+            why=str(fields.get("why") or ""),
+            author=str(fields.get("author") or ""),
+            pinned=tuple(fields["pinned"]) if "pinned" in fields else None,
         )
-        for said in map(json.loads, properties.get("statements") or ())
+        for fields in map(json.loads, properties.get("statements") or ())
     ]
 
 
-def _names(properties: Said, word: str) -> tuple[str, ...]:
+def _names(properties: Properties, word: str) -> tuple[str, ...]:
     names = properties.get(word) or []
     if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
         raise TypeError(f"{word} is not a list of names")
@@ -205,11 +205,11 @@ def _names(properties: Said, word: str) -> tuple[str, ...]:
 
 
 def add_roles(
-    rows: dict[str, list[Row]], robot: str, key: str, said: Iterable[Statement], vocabulary: Vocabulary
+    rows: dict[str, list[Row]], robot: str, key: str, statements: Iterable[Statement], vocabulary: Vocabulary
 ) -> None:
     """Add one relationship per category that a statement names; one about every category goes to those at the top."""
     top = [category.name for category in vocabulary.categories.values() if not category.broader]
-    for statement in said:
+    for statement in statements:
         if statement.rank == BY_KIND or statement.role == CANNOT:  # nobody said it; who reads the graph takes it so too
             continue
         properties: Row = {
@@ -238,32 +238,33 @@ def _particulars(statement: Statement) -> Row:
     return {"of": statement.categories[0]} if statement.role == "derivation" else {}
 
 
-def role_of(role: str, category: str, said: Said) -> Statement:
+def role_of(role: str, category: str, properties: Properties) -> Statement:
     """Return what the properties of a role say, without its categories; one without ``tier`` is a person's later word.
 
     ``shipped`` is whether it is said of every category.
     """
-    specificity, method, stated = int(said.get("specificity", EXACT)), None, True
+    specificity, method, stated = int(properties.get("specificity", EXACT)), None, True
     if role == "sanitizer":
-        method = Method(said["method"]) if said.get("method") else Method.PSEUDONYMISE
-        stated = bool(said.get("stated", bool(said.get("method"))))
-    made_of = str(said.get("of") or "")
+        method = Method(properties["method"]) if properties.get("method") else Method.PSEUDONYMISE
+        stated = bool(properties.get("stated", bool(properties.get("method"))))
+    earlier = NAME if specificity >= EXACT else SEGMENT  # of versions that wrote no naming
+    made_of = str(properties.get("of") or "")
     if role == "derivation" and not made_of:
         raise ValueError(f"it does not say of what it makes {category}: SET r.of = 'Video'")
     return Statement(
         role,
         (),
-        (int(said.get("tier", HAND)), as_ranked_now(specificity)),
-        Place(str(said.get("file") or DATABASE), int(said.get("line") or 0)),
+        (int(properties.get("tier", HAND)), as_ranked_now(specificity)),
+        Place(str(properties.get("file") or DATABASE), int(properties.get("line") or 0)),
         method,
         stated,
         made_of,
-        tuple(map(str, said.get("through") or ())),
-        shipped=bool(said.get("every")),
-        naming=str(said.get("naming") or (NAME if specificity >= EXACT else SEGMENT)),  # absent in earlier versions
-        why=str(said.get("why") or ""),
-        author=str(said.get("author") or ""),
-        pinned=None if said.get("pinned") is None else tuple(map(str, said["pinned"])),
+        tuple(map(str, properties.get("through") or ())),
+        shipped=bool(properties.get("every")),
+        naming=str(properties.get("naming") or earlier),
+        why=str(properties.get("why") or ""),
+        author=str(properties.get("author") or ""),
+        pinned=None if properties.get("pinned") is None else tuple(map(str, properties["pinned"])),
     )
 
 
@@ -278,18 +279,18 @@ def role_statements(
         (category, what ``role_of`` returns of it).
     """
     together: dict[tuple[Any, ...], list[str]] = defaultdict(list)
-    for category, said in roles:
-        alone = () if said.role in ("only", "never", "mundane") or said.shipped else (category,)
-        together[(*said, *alone)].append(category)
+    for category, statement in roles:
+        alone = () if statement.role in ("only", "never", "mundane") or statement.shipped else (category,)
+        together[(*statement, *alone)].append(category)
     for key, categories in sorted(together.items(), key=lambda item: str(item[0])):
-        said = Statement(*key[: len(Statement._fields)])
-        names, to = () if said.shipped else tuple(sorted(categories)), said.to
-        if said.role == "derivation":  # it is stored the other way round: the target is what is made
-            names, to = (said.to,), categories[0]
-        shipped = said.role == "mundane" and said.rank[0] <= STANDARD
-        if shipped and said.rank[0] == STANDARD and is_log(element.name):  # earlier versions: of every kind
+        statement = Statement(*key[: len(Statement._fields)])
+        names, to = () if statement.shipped else tuple(sorted(categories)), statement.to
+        if statement.role == "derivation":  # it is stored the other way round: the target is what is made
+            names, to = (statement.to,), categories[0]
+        shipped = statement.role == "mundane" and statement.rank[0] <= STANDARD
+        if shipped and statement.rank[0] == STANDARD and is_log(element.name):  # earlier versions: of every kind
             names = without_text(vocabulary)
-        yield said._replace(categories=names, to=to, shipped=shipped)
+        yield statement._replace(categories=names, to=to, shipped=shipped)
 
 
 def flows_through(

@@ -149,12 +149,12 @@ class Names:
         (bits, suffix) -> the labels of these, such as ``BiometricLeak``.
     """
 
-    def __init__(self, found: Spread, vocabulary: Vocabulary, labels: Mapping[str, str]) -> None:
+    def __init__(self, spread: Spread, vocabulary: Vocabulary, labels: Mapping[str, str]) -> None:
         ancestors = vocabulary.hierarchy.ancestors
 
         @cache
         def exact(bits: int) -> list[str]:
-            return list(found.names(bits))
+            return list(spread.names(bits))
 
         @cache
         def broad(bits: int) -> list[str]:
@@ -180,36 +180,36 @@ class Roles:
         self._top = [name for name, above in self._hierarchy.ancestors.items() if len(above) == 1]
         self._known: dict[tuple[Statement, ...], tuple[list[str], list[str]]] = {}
 
-    def of(self, said: tuple[Statement, ...]) -> tuple[list[str], list[str]]:
+    def of(self, statements: tuple[Statement, ...]) -> tuple[list[str], list[str]]:
         """(kinds that leak, kinds that are cleaned)."""
-        if said not in self._known:
-            self._known[said] = self._decided(said, "leak"), self._decided(said, "sanitizer")
-        return self._known[said]
+        if statements not in self._known:
+            self._known[statements] = self._decided(statements, "leak"), self._decided(statements, "sanitizer")
+        return self._known[statements]
 
-    def labels(self, said: tuple[Statement, ...], gets: Iterable[str]) -> list[str]:
+    def labels(self, statements: tuple[Statement, ...], gets: Iterable[str]) -> list[str]:
         """The labels of what is made, let out and cleaned; leaks of kinds that get there or that somebody names.
 
         Who says it of every kind names those at the top.
         """
-        leaks, cleans = self.of(said)
-        words = [s for s in said if s.role == "leak" and s.rank != BY_KIND]
+        leaks, cleans = self.of(statements)
+        words = [s for s in statements if s.role == "leak" and s.rank != BY_KIND]
         named = {name for s in words for name in s.categories or self._top}
         return [
-            *self._as_labels({s.to for s in said if s.role == "derivation"}, "Source"),
+            *self._as_labels({s.to for s in statements if s.role == "derivation"}, "Source"),
             *self._as_labels(set(leaks) & {*gets, *named}, "Leak"),
             *self._as_labels(cleans, "Sanitizer"),
         ]
 
-    def _decided(self, said: tuple[Statement, ...], role: str) -> list[str]:
-        if not any(statement.role == role for statement in said):
+    def _decided(self, statements: tuple[Statement, ...], role: str) -> list[str]:
+        if not any(statement.role == role for statement in statements):
             return []
-        return [category for category in sorted(self._hierarchy.ancestors) if self._holds(said, role, category)]
+        return [category for category in sorted(self._hierarchy.ancestors) if self._holds(statements, role, category)]
 
-    def _holds(self, said: tuple[Statement, ...], role: str, category: str) -> bool:
+    def _holds(self, statements: tuple[Statement, ...], role: str, category: str) -> bool:
         try:
-            return role in facts("", said, category, self._hierarchy).roles
+            return role in facts("", statements, category, self._hierarchy).roles
         except LabelError:  # two labels contradict each other about a kind that nobody brings in: the worse one counts
-            leaks = tuple(statement for statement in said if statement.role == "leak")
+            leaks = tuple(statement for statement in statements if statement.role == "leak")
             return role == "leak" and role in facts("", leaks, category, self._hierarchy).roles
 
     def _as_labels(self, names: Iterable[str], suffix: str) -> list[str]:
@@ -218,22 +218,22 @@ class Roles:
 
 def element_results(analysis: Analysis, bound: Bound, names: Names, roles: Roles) -> Iterator[tuple[Row, list[str]]]:
     """Return properties and category labels of each element, in the order of the graph."""
-    found = analysis.spread
+    spread = analysis.spread
     questions = {question.element.shown_as: question for question in analysis.open}
     for vertex, element in enumerate(analysis.graph.elements):
         question = questions.get(element.shown_as)
-        present, begins = found.present(vertex), found.begins(vertex)
-        said = bound.elements.get(vertex, ())
-        leaks, cleans = roles.of(said)
+        present, begins = spread.present(vertex), spread.begins(vertex)
+        statements = bound.elements.get(vertex, ())
+        leaks, cleans = roles.of(statements)
         labels = [*names.labels(present, ""), *names.labels(begins, "Source")]
-        labels = list(dict.fromkeys((*labels, *roles.labels(said, names.exact(present)))))
+        labels = list(dict.fromkeys((*labels, *roles.labels(statements, names.exact(present)))))
         properties = {
             "carries": names.broad(present),
-            "pseudonymised": names.broad(found.bits.planes(present)[1]),
+            "pseudonymised": names.broad(spread.bits.planes(present)[1]),
             "begins": names.exact(begins),
             "leaks": leaks,
             "sanitizes": cleans,
-            "stops": names.exact(_stopped(found, found.keeps.get(vertex, found.all_bits))),
+            "stops": names.exact(_stopped(spread, spread.keeps.get(vertex, spread.all_bits))),
             **stated_properties(bound, vertex, element),
             "open": list(question.categories) if question else [],
             "frontier": question.frontier if question else None,
@@ -242,21 +242,21 @@ def element_results(analysis: Analysis, bound: Bound, names: Names, roles: Roles
         yield {**properties, "seal": seal_of(properties, labels)}, labels
 
 
-def _stopped(found: Spread, kept: int) -> int:
+def _stopped(spread: Spread, keeps: int) -> int:
     """Kinds that go on neither as they are nor pseudonymised."""
-    return found.all_bits & ~found.bits.in_both_forms(kept)
+    return spread.all_bits & ~spread.bits.in_both_forms(keeps)
 
 
 def flow_results(analysis: Analysis, names: Names) -> Iterator[Row]:
     """Return the properties of each allowed flow, in the order of the graph."""
-    found = analysis.spread
+    spread = analysis.spread
     for index, moved in enumerate(moving(analysis)):
         yield {
-            "carries": names.broad(found.along(index)),
+            "carries": names.broad(spread.along(index)),
             "passes": names.exact(moved.passed) or None,
             "begins": names.exact(moved.begun) or None,
             "made": names.exact(moved.made) or None,
-            "stops": names.exact(_stopped(found, found.passing(index))) or None,
+            "stops": names.exact(_stopped(spread, spread.passing(index))) or None,
         }
 
 

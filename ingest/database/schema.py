@@ -358,27 +358,29 @@ _RELATIONSHIPS = f"""\
 (:Bag)-[:HAS_TOPIC]->(:RecordedTopic) The topic is in the bag.
 (:RecordedTopic)-[:RECORDS]->(:Element) Of which channel of its robot it tells, or of which leg of one.
 """
-_HEAD = re.compile(r"\(:(\w+)(?: {(\w+)}\)|\)-\[:(\w+)\]->\(:(\w+)\)) (.+)")
 
 
-def _read(text: str) -> Iterator[tuple[tuple[str, ...], tuple[Property, ...]]]:
-    """(label, key, type, label of the target, meaning; empty what it lacks) and properties of each kind."""
+def _read(text: str) -> Iterator[tuple[list[str], str, tuple[Property, ...]]]:
+    """The names in the head of each kind (label and key, or label, type and label), its meaning and its properties."""
     for block in re.split(r"\n(?=\()", text.replace("\n" + " " * 8, " ").rstrip("\n")):
         head, *lines = block.split("\n")
-        match = _HEAD.fullmatch(head)
-        assert match, head
+        named, meaning = head.split(") ", maxsplit=1)
         fields = (line.split(maxsplit=2) for line in lines)
-        yield match.groups(""), tuple(Property(name, TYPES[kind], meaning) for name, kind, meaning in fields)
+        yield (
+            re.findall(r"\w+", named),
+            meaning,
+            tuple(Property(name, TYPES[kind], what) for name, kind, what in fields),
+        )
 
 
 NODES = tuple(
     NodeKind(label, key, meaning, properties, _FURTHER_LABELS if label == "Element" else "")
-    for (label, key, _, _, meaning), properties in _read(_NODES)
+    for (label, key), meaning, properties in _read(_NODES)
 )
 ELEMENT, ROBOT, ENCLAVE, CATEGORY, PROVISION, FINDING, ADDED_FINDING, BAG, RECORDED_TOPIC = NODES
 RELATIONSHIPS = tuple(
     RelationshipKind(type_, source, target, meaning, properties)
-    for (source, _, type_, target, meaning), properties in _read(_RELATIONSHIPS)
+    for (source, type_, target), meaning, properties in _read(_RELATIONSHIPS)
 )
 _BY_TYPE = {kind.type: kind for kind in RELATIONSHIPS}
 FLOWS_TO, COULD_FLOW_TO = _BY_TYPE["FLOWS_TO"], _BY_TYPE["COULD_FLOW_TO"]

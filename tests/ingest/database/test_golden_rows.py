@@ -112,7 +112,7 @@ def _of_robot(
 
 
 def _of_fleet(name: str, file: str) -> Iterator[tuple[str, list[str]]]:
-    for view, most in (("declared", None), ("enforced", None), ("declared", 1)):
+    for view, most in (("declared", None), ("enforced", None), ("declared", 1))[:: 2 if name == "fleet" else 1]:
         question = question_of(Settings(view=view))._replace(every=True, most_across=most)
         system = fleet_system(file, question)
         result = answer(system, question)
