@@ -275,7 +275,8 @@ class LabelReader(NameReader):
             others = [other for other, *_ in label.entries if other not in (key, "note", "author")]
             if keyword.alone and statements and others:
                 self.problem(line, f"{key} beside {others[0]}", "a node that is not there does nothing: keep one")
-            yield from statements
+            else:
+                yield from statements
 
     def _none(self, value: Value, blank: Statement) -> Iterator[Statement]:
         """What takes a source or a leak back: of all kinds, or of some."""
