@@ -8,7 +8,7 @@ import pytest
 from lxml import html
 
 import rosprivacy
-from rosprivacy.explorer.web import decided_robots
+from rosprivacy.explorer.web import finding_pane
 from tests.helpers.explorers import Explorer, version
 from tests.helpers.fleet_files import policy, write
 from tests.helpers.full_disk import full_disk
@@ -234,7 +234,7 @@ def test_it_is_said_in_the_language_of_the_page(
 
 
 def test_robots_that_the_page_does_not_offer_are_counted(begun: Explorer, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(decided_robots, "OFFERED", 3)
+    monkeypatch.setattr(finding_pane, "OFFERED", 3)
     client, finding = begun.client(), on_every_robot(begun)
     assert list(radios(client, finding)) == ["of model carrier: 23 robots", "carrier_01 only", "carrier_lent only"]
     assert "4 more can be chosen once some of these are decided" in client.get(f"/?finding={finding.id}").text

@@ -8,7 +8,7 @@ import pytest
 from lxml import html
 
 from rosprivacy.explorer.element_ids import element_id
-from rosprivacy.explorer.web.review.review_questions import asked
+from rosprivacy.explorer.web.review import asked
 from rosprivacy.report.words.words import Words
 from tests.helpers.explorers import Explorer, label, node
 from tests.helpers.little_robots import policy_of
@@ -101,11 +101,11 @@ def test_an_answer_about_every_kind_leaves_what_is_made_of_data(explore: Explore
     client = explorer.client()
     assert label(client, node("/box"), "conduit", about="*").status_code == 303
     box = next(one for one in explorer.session.result.analysis.graph.elements if one.name == "/box")
-    assert explorer.session.said_of(box)["derives"] == [{"from": "Video", "to": "FaceTemplate"}]
+    assert explorer.session.entry_for(box)["derives"] == [{"from": "Video", "to": "FaceTemplate"}]
     gone = Words("en")("x.derives.gone", data="face template")
     assert gone not in client.get("/").text
     assert label(client, node("/box"), "absent", reason="only in tests").status_code == 303
-    assert "derives" not in explorer.session.said_of(box)
+    assert "derives" not in explorer.session.entry_for(box)
     assert gone in client.get("/").text
 
 

@@ -8,8 +8,8 @@ import pytest
 from lxml import html
 
 from rosprivacy.explorer.element_ids import element_id
-from rosprivacy.explorer.web.left_open import left_of
-from rosprivacy.explorer.web.review.review_questions import asked
+from rosprivacy.explorer.web.answered_entries import left_of
+from rosprivacy.explorer.web.review import asked
 from rosprivacy.report.words.words import Words
 from tests.helpers.explorers import BARE, FACTORY, Explorer, copied, node
 from tests.helpers.languages import english_in

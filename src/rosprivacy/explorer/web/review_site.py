@@ -5,29 +5,33 @@ A person is asked in plain words; an answer needs a name, and some a reason. Wor
 
 from __future__ import annotations
 
-from functools import cache
 from typing import TYPE_CHECKING, Any, cast
 from urllib.parse import parse_qs
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
 from starlette.responses import HTMLResponse
 
 from rosprivacy.analysis.errors import RosPrivacyError
 from rosprivacy.explorer.web import forms
-from rosprivacy.explorer.web.application import PROBLEM, Site, Told
-from rosprivacy.explorer.web.left_open import bringing_nothing, leaving, left_of, note_before
-from rosprivacy.explorer.web.rendering import Message
-from rosprivacy.explorer.web.review.review_answers import NONE, REASONED, SKIP, NotYet, answer_in_review
-from rosprivacy.explorer.web.review.review_questions import asked, progress, question_of
-from rosprivacy.explorer.web.review.review_sources import sources_of
-from rosprivacy.explorer.web.review.review_summary import summary_of
-from rosprivacy.explorer.web.saying import label_of
+from rosprivacy.explorer.web.answered_entries import bringing_nothing, label_of, leaving, left_of, note_before
+from rosprivacy.explorer.web.application import PROBLEM, Outcome, Site
+from rosprivacy.explorer.web.page import Message, template
+from rosprivacy.explorer.web.panes import ROBOT, WHOSE
+from rosprivacy.explorer.web.review import (
+    NONE,
+    REASONED,
+    SKIP,
+    NotYet,
+    answer_in_review,
+    asked,
+    progress,
+    question_pane,
+    sources_pane,
+    summary_pane,
+)
 from rosprivacy.explorer.web.view import LONGEST
-from rosprivacy.explorer.web.whose import ROBOT, WHOSE
 from rosprivacy.report.page.html import in_html
 
 if TYPE_CHECKING:
-    from jinja2 import Template
     from starlette.responses import Response
 
     from rosprivacy.explorer.edits import Label
@@ -44,54 +48,52 @@ class ReviewSite(Site):
     _next = FIRST
     _entered: Form | None = None  # what was said last, while it cannot be taken
 
-    def _page(self, query: str, told: Told | None = None) -> Response:
+    def _page(self, query: str, outcome: Outcome | None = None) -> Response:
         with self._lock:
-            standing, words = self.standing, self._words
+            standing, words, history = self.standing, self._words, self.session.history
             self._next = FIRST
             questions = asked(standing)
-            element, step = standing.elements.get(_one(query, "at")), _one(query, "step")
+            element, step = standing.elements.get(_value(query, "at")), _value(query, "step")
             if element is None and step not in STEPS:
-                element = next((one.element for one in questions if not (one.left or one.beyond)), None)
+                element = next((each.element for each in questions if not (each.left or each.beyond)), None)
                 step = "source" if not standing.analysis.emitted else step
-            message, self._message = told.message if told else self._message or self._changed_on_disk(), None
+            message, self._message = outcome.message if outcome else self._message or self._changed_on_disk(), None
             entered, self._entered = self._entered, None
             shared: dict[str, Any] = {
                 "t": in_html(words), "version": standing.version, "message": message,
-                "progress": progress(standing, questions), "unsaved": self.session.unsaved,
-                "can_undo": self.session.can_undo, "read_only": self.door.read_only,
-                "before": self.session.unsaved_from_before, "remarks": self.session.remarks,
+                "progress": progress(standing, questions), "unsaved": history.unsaved, "can_undo": history.can_undo,
+                "read_only": self.door.read_only, "before": history.unsaved_from_before, "remarks": history.remarks,
                 "inputs": self._changed_inputs(),
                 "title": words("rv.title.fleet" if standing.result.fleet else "rv.title"),
             }  # fmt: skip
-            if element is None and step == "source":
-                sources = sources_of(standing, _one(query, "find"), words)
-                text = _template("review_source").render(s=sources, **shared)
-            elif element is None:
-                text = _template("review_summary").render(s=summary_of(standing, questions, words), **shared)
-            else:
-                question = question_of(standing, element, words)
+            if element is not None:
+                question = question_pane(standing, element, words)
                 chosen = [kind.name for kind in question.pane.about if kind.chosen]
-                text = _template("review_question").render(
+                text = template("review_question").render(
                     q=question, by=self._by, methods=forms.METHODS, reasoned=REASONED,
-                    entered={name: _entered(entered, name) for name in FIELDS},
+                    entered={name: "".join(entered.several(name)[:1]) if entered else "" for name in FIELDS},
                     about=entered.several("about") if entered else chosen, **shared,
                 )  # fmt: skip
-        return HTMLResponse(text, told.status if told else 200)
+            elif step == "source":
+                sources = sources_pane(standing, _value(query, "find"), words)
+                text = template("review_source").render(s=sources, **shared)
+            else:
+                text = template("review_summary").render(s=summary_pane(standing, questions, words), **shared)
+        return HTMLResponse(text, outcome.status if outcome else 200)
 
-    def _address(self, query: str) -> str:  # noqa: ARG002 - the next question, whatever was looked at
+    def _address(self, _query: str) -> str:
+        """The next question, whatever was looked at."""
         address, self._next = self._next, FIRST
         return address
 
-    def _label(self, form: Form) -> Told:
-        standing = self.standing
+    def _label(self, form: Form) -> Outcome:
         self._entered = form
-        answer = answer_in_review(form, standing, self._words)
+        answer = answer_in_review(form, self.standing, self._words)
         alone = form.choice("whose", WHOSE) == ROBOT
-        now = standing.entry(answer.element, only_this_robot=alone)
-        said = cast("Label", self._said(answer, now))
-        self.session.answer_for(answer.element, said, only_this_robot=alone)
+        now = self.session.entry_for(answer.element, only_this_robot=alone)
+        self.session.answer_for(answer.element, cast("Label", self._said(answer, now)), only_this_robot=alone)
         self._entered, self._by = None, answer.by
-        return Told(200, self._answered(answer, now, self._words(f"rv.answer.{answer.role}")))
+        return Outcome(200, self._answered(answer, now, self._words(f"rv.answer.{answer.role}")))
 
     def _said(self, answer: Answer, now: Any) -> dict[str, Any]:
         """What the label file then says; ``now`` is what it says now."""
@@ -104,21 +106,22 @@ class ReviewSite(Site):
             label["note"] = note_before(now)
         return label
 
-    def _undo(self, form: Form) -> Told:
+    def _undo(self, form: Form) -> Outcome:
         """Take the last answer back, and ask its question again."""
         last = self.session.edits[-1:]
-        told = super()._undo(form)
+        outcome = super()._undo(form)
         for edit in last:
             at = self.standing.place_of(edit)
             self._next = f"/?at={at}" if at else FIRST
-        return told
+        return outcome
 
-    def _save(self, form: Form) -> Told:
+    def _save(self, form: Form) -> Outcome:
         self._next = SUMMARY
         try:
             return super()._save(form)
         except RosPrivacyError as error:
-            return Told(422, Message(PROBLEM, self._words("rv.refused.save"), detail=tuple(str(error).splitlines())))
+            text = self._words("rv.refused.save")
+            return Outcome(422, Message(PROBLEM, text, detail=tuple(str(error).splitlines())))
 
     def _refused(self, error: Exception) -> Message:
         """What is missing, in the reader's language; else a plain sentence, with what the reader of labels says."""
@@ -127,22 +130,8 @@ class ReviewSite(Site):
         return super()._refused(error)._replace(text=self._words("rv.refused"))
 
 
-def _entered(form: Form | None, name: str) -> str:
-    return "".join(form.several(name)[:1]) if form else ""
-
-
-def _one(query: str, name: str) -> str:
+def _value(query: str, name: str) -> str:
     try:
         return parse_qs(query[:LONGEST], errors="replace").get(name, [""])[0]
     except ValueError:
         return ""
-
-
-@cache
-def _environment() -> Environment:
-    loader = PackageLoader("rosprivacy.explorer.web")
-    return Environment(loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-
-
-def _template(name: str) -> Template:
-    return _environment().get_template(f"{name}.html.j2")

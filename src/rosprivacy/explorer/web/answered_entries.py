@@ -1,19 +1,26 @@
-"""An answer about some kinds of data -> what the label then says of the whole element.
+"""What the label file says of an element after an answer: the entry of now and an answer in, out comes its label.
 
-What the label file says of other kinds stays: an answer about voice leaves alone what was said of video. A limit
-(``only``) stays, too: it is a statement about every kind that it does not name.
+What the file says of other kinds stays: an answer about voice leaves alone what was said of video. A limit (``only``)
+stays, too: it is a statement about every kind that it does not name. What a person leaves to an engineer is kept in the
+note of the entry, in brackets behind whatever it said before, so that it can be taken out once there is an answer: the
+element stays open, since a note says nothing of data.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.explorer.edits import ROLES
 from rosprivacy.explorer.web import forms
 from rosprivacy.ingest.labels.label_reader import NONE
+from rosprivacy.report.words.words import Words
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from rosprivacy.explorer.web.forms import Answer
 
+LANGUAGES = ("en", "de", "fr")  # in which an earlier review may have been
 WHOLE = ("conduit", "sensitive", "mundane")  # words that stand for an entry of a label file: about every kind
 PER_KIND = ("source", "leak", "sanitizer", "conduit", "sensitive", "only", "never")
 
@@ -45,7 +52,7 @@ def label_of(answer: Answer, now: Any) -> dict[str, Any]:
     >>> label_of(forms.Answer(Element("topic", "/scan"), "sensitive", ("Voice",)), {"only": ["Location"]})
     {'only': ['Location', 'Voice']}
     """
-    label = _kept(now, answer) if _of_all(answer) else _without(now, answer)
+    label = _unaffected(now, answer) if _of_all(answer) else _without(now, answer)
     role, kinds = answer.role, list(answer.kinds)
     if role == forms.ABSENT:
         label["absent"] = answer.note
@@ -89,8 +96,8 @@ def _within(limit: tuple[str, ...], answer: Answer, label: dict[str, Any]) -> di
 
 
 def _by_whom(answer: Answer) -> dict[str, str]:
-    said = {"note": answer.note if answer.role != forms.ABSENT else "", "by": answer.by}
-    return {key: text for key, text in said.items() if text}
+    words = {"note": answer.note if answer.role != forms.ABSENT else "", "by": answer.by}
+    return {key: text for key, text in words.items() if text}
 
 
 def _of_all(answer: Answer) -> bool:
@@ -98,7 +105,7 @@ def _of_all(answer: Answer) -> bool:
     return answer.role == forms.ABSENT or (not answer.kinds and answer.role != forms.SOURCE)
 
 
-def _kept(now: Any, answer: Answer) -> dict[str, Any]:
+def _unaffected(now: Any, answer: Answer) -> dict[str, Any]:
     """What an entry says that the element brings in, or makes of data: an answer about every kind takes none back.
 
     Such an answer says what becomes of the data that get there, and nothing of what is made of them.
@@ -113,8 +120,8 @@ def made_by(entry: Any) -> tuple[str, ...]:
     >>> made_by({"derives": [{"from": "Video", "to": "FaceTemplate"}]}), made_by("conduit")
     (('FaceTemplate',), ())
     """
-    said = _as_list(entry.get("derives")) if isinstance(entry, dict) else []
-    return tuple(dict.fromkeys(str(one["to"]) for one in said if isinstance(one, dict) and "to" in one))
+    derivations = _as_list(entry.get("derives")) if isinstance(entry, dict) else []
+    return tuple(dict.fromkeys(str(each["to"]) for each in derivations if isinstance(each, dict) and "to" in each))
 
 
 def _without(now: Any, answer: Answer) -> dict[str, Any]:
@@ -130,29 +137,114 @@ def _without(now: Any, answer: Answer) -> dict[str, Any]:
     both = {forms.SOURCE: "leak", forms.LEAK: "source"}.get(answer.role, "")  # it may bring in and let out the same
     left |= {both: now[both]} if both in now else {}
     if "derives" in now:
-        again = answer.role == forms.DERIVES
-        made = [one for one in _as_list(now["derives"]) if not again or _made(one) != (answer.kinds, answer.to)]
-        left["derives"] = made
-    return {key: said for key, said in left.items() if said}
+        again = (answer.kinds, answer.to) if answer.role == forms.DERIVES else None
+        left["derives"] = [each for each in _as_list(now["derives"]) if again is None or _made(each) != again]
+    return {key: value for key, value in left.items() if value}
 
 
-def _less(said: Any, answer: Answer) -> Any:
+def _less(value: Any, answer: Answer) -> Any:
     """Kinds that are said, without those of an answer; that none is said stays, until one is."""
-    if said is True or said == NONE:
-        return said
-    if isinstance(said, dict):
-        return {kind: how for kind, how in said.items() if kind not in answer.kinds}
-    return [kind for kind in _as_list(said) if kind not in answer.kinds]
+    if value is True or value == NONE:
+        return value
+    if isinstance(value, dict):
+        return {kind: how for kind, how in value.items() if kind not in answer.kinds}
+    return [kind for kind in _as_list(value) if kind not in answer.kinds]
 
 
-def _made(one: Any) -> tuple[Any, Any]:
-    said = one if isinstance(one, dict) else {}
-    return tuple(_as_list(said.get("from"))), said.get("to")
+def _made(derivation: Any) -> tuple[Any, Any]:
+    ends = derivation if isinstance(derivation, dict) else {}
+    return tuple(_as_list(ends.get("from"))), ends.get("to")
 
 
-def _as_map(said: Any) -> dict[str, Any]:
-    return dict(said) if isinstance(said, dict) else dict.fromkeys(_as_list(said))
+def _as_map(value: Any) -> dict[str, Any]:
+    return dict(value) if isinstance(value, dict) else dict.fromkeys(_as_list(value))
 
 
-def _as_list(said: Any) -> list[Any]:
-    return [] if said in (None, NONE) else list(said) if isinstance(said, list | tuple) else [said]
+def _as_list(value: Any) -> list[Any]:
+    return [] if value in (None, NONE) else list(value) if isinstance(value, list | tuple) else [value]
+
+
+# --- notes of a review
+
+
+def left_of(entry: Any) -> str:
+    """Return what is left to the engineer, with who left it; empty for nothing.
+
+    >>> left_of({"note": "near the door [To ask the engineer: A. Lee – does it keep them?]"})
+    'A. Lee – does it keep them?'
+    >>> left_of("conduit")
+    ''
+    """
+    return _parted(entry)[1]
+
+
+def note_before(entry: Any) -> str:
+    """Return the note without what is left to the engineer.
+
+    >>> note_before({"note": "near the door [To ask the engineer: A. Lee]"})
+    'near the door'
+    """
+    return _parted(entry)[0]
+
+
+def leaving(entry: Any, by: str, why: str, words: Words) -> dict[str, Any]:
+    """Return what ``Session.label`` is given so that an element stays as it is, with a note for the engineer.
+
+    >>> leaving(None, "A. Lee", "", Words("en"))
+    {'note': '[To ask the engineer: A. Lee]', 'by': 'A. Lee'}
+    >>> leaving({"leak": ["Voice"], "note": "seen", "author": "B. Roy"}, "A. Lee", "video?", Words("en"))
+    {'leak': ['Voice'], 'note': 'seen [To ask the engineer: A. Lee – video?]'}
+    """
+    whom = f"{by} – {why}" if why else by
+    note = f"{note_before(entry)} [{words('rv.left')}: {whom}]".strip()
+    if says_of_data(entry):  # who said that stays its author
+        return {**_roles(entry), "note": note}
+    return {"note": note, "by": by}
+
+
+def bringing_nothing(entry: Any, by: str, why: str, words: Words) -> dict[str, Any]:
+    """Return what ``Session.label`` is given where a person says that an element brings in no data of persons.
+
+    What the entry says of data that gets there stays.
+
+    >>> bringing_nothing({"leak": ["Voice"], "author": "B. Roy"}, "A. Lee", "a lamp", Words("en"))
+    {'leak': ['Voice'], 'note': 'brings in no data of persons: a lamp (A. Lee)'}
+    """
+    note = words("rv.note.none", why=why)
+    if says_of_data(entry):  # who said that stays its author
+        return {**_roles(entry), "note": f"{note} ({by})"}
+    return {"note": note, "by": by}
+
+
+def brings_nothing(entry: Any) -> bool:
+    """Whether a note of a review says that an element brings in no data of persons; no other note says that.
+
+    >>> brings_nothing({"note": "brings in no data of persons: a lamp"}), brings_nothing({"note": "above the door"})
+    (True, False)
+    """
+    note = note_before(entry)
+    return any(note.startswith(Words(language)("rv.note.none", why="").strip()) for language in LANGUAGES)
+
+
+def says_of_data(entry: Any) -> bool:
+    """Whether an entry says what data does there.
+
+    >>> says_of_data({"note": "a lamp"}), says_of_data("mundane")
+    (False, True)
+    """
+    return bool(_roles(entry))
+
+
+def _roles(entry: Any) -> Mapping[str, Any]:
+    if isinstance(entry, str):
+        return {entry: True}
+    return {key: entry[key] for key in ROLES if key in entry} if isinstance(entry, dict) else {}
+
+
+def _parted(entry: Any) -> tuple[str, str]:
+    note = str(entry.get("note") or "") if isinstance(entry, dict) else ""
+    for language in LANGUAGES:
+        before, mark, left = note.rpartition(f"[{Words(language)('rv.left')}: ")
+        if mark and left.endswith("]"):
+            return before.strip(), left[:-1]
+    return note, ""
