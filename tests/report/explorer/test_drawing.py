@@ -10,13 +10,10 @@ from lxml import etree
 
 from rosprivacy.analysis.text import printable
 from rosprivacy.report.explorer import drawing as module
-from rosprivacy.report.explorer.drawing import Drawing
-from rosprivacy.report.explorer.legend import legend
-from rosprivacy.report.explorer.live_svg import Links
-from rosprivacy.report.explorer.pictures import Pictures, picture_alone
+from rosprivacy.report.explorer.legend import legend, style_sheet
+from rosprivacy.report.explorer.live_svg import Links, unnamed_dot
+from rosprivacy.report.explorer.pictures import Drawing, Pictures, picture_alone
 from rosprivacy.report.explorer.scenes import Scene, Scenes
-from rosprivacy.report.explorer.style_sheet import style_sheet
-from rosprivacy.report.explorer.unnamed_dot import unnamed_dot
 from rosprivacy.report.pictures.looks import DRAWN_ROLES, LINE_LOOKS, PALE
 from rosprivacy.report.pictures.phrases import TEXTS, Phrases
 from rosprivacy.report.words.words import Words

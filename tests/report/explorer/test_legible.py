@@ -9,12 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from rosprivacy.report.explorer.legend import legend
-from rosprivacy.report.explorer.live_svg import Links
+from rosprivacy.report.explorer.legend import legend, style_sheet
+from rosprivacy.report.explorer.live_svg import SMALL, Links
 from rosprivacy.report.explorer.pictures import Pictures
 from rosprivacy.report.explorer.scenes import Scenes
-from rosprivacy.report.explorer.style_sheet import style_sheet
-from rosprivacy.report.explorer.unnamed_dot import SMALL
 from tests.helpers import browser as chrome
 from tests.helpers.graphs import care_home, factory, hospital
 from tests.helpers.pictures import hostile

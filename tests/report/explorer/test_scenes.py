@@ -11,10 +11,8 @@ from hypothesis import strategies as st
 
 from rosprivacy.analysis.findings.why_carried import WhyCarried
 from rosprivacy.analysis.findings.witness import Witness
-from rosprivacy.report.explorer.choice import choose
-from rosprivacy.report.explorer.folding import folded_by_place
-from rosprivacy.report.explorer.joined import Joined
-from rosprivacy.report.explorer.scenes import Scenes
+from rosprivacy.report.explorer.joined import Joined, choose
+from rosprivacy.report.explorer.scenes import Scenes, folded_by_place
 from rosprivacy.report.pictures.looks import ALLOWED, UNTOUCHED
 from rosprivacy.report.words.words import IN_ENGLISH
 from tests.helpers.graphs import care_home, factory

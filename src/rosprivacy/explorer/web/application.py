@@ -31,8 +31,8 @@ from rosprivacy.explorer.web.trials import Trials, kept_trials, trial_pane
 from rosprivacy.explorer.web.view import trial_in, view_of
 from rosprivacy.labelling.knowledge import what_is_known
 from rosprivacy.labelling.suggesting_on_demand import Suggester
+from rosprivacy.report.explorer.legend import style_sheet
 from rosprivacy.report.explorer.pictures import Pictures
-from rosprivacy.report.explorer.style_sheet import style_sheet
 from rosprivacy.report.pictures.phrases import Phrases
 
 if TYPE_CHECKING:
