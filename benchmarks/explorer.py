@@ -31,7 +31,7 @@ from rosprivacy.explorer.session import Session
 from rosprivacy.explorer.web.application import Site
 from rosprivacy.explorer.web.guard import Door
 from rosprivacy.explorer.web.serving import collect_garbage
-from rosprivacy.report.explorer.pictures import Pictures
+from rosprivacy.report.pictures.page_pictures import Pictures
 from rosprivacy.report.words.words import Words
 from rosprivacy.settings import Settings
 

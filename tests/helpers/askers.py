@@ -10,7 +10,7 @@ from lxml import html
 from starlette.testclient import TestClient
 
 from rosprivacy.explorer.session import Session
-from rosprivacy.explorer.web.cypher import StoredSite
+from rosprivacy.explorer.web.cypher_site import StoredSite
 from rosprivacy.explorer.web.guard import Door
 from rosprivacy.ingest.database.loading import load
 from rosprivacy.private_neo4j import connection

@@ -16,7 +16,7 @@ from rosprivacy.analysis.errors import DatabaseError
 from rosprivacy.explorer.element_ids import element_id
 from rosprivacy.explorer.session import Session
 from rosprivacy.explorer.web.application import Site
-from rosprivacy.explorer.web.cypher import StoredSite
+from rosprivacy.explorer.web.cypher_site import StoredSite
 from rosprivacy.explorer.web.guard import Door
 from rosprivacy.explorer.web.review_site import ReviewSite
 from rosprivacy.explorer.web.serving import bound_socket, server

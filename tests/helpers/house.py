@@ -73,7 +73,6 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "document": {"", "contract", "words"},
         "terminal": {"", "document", "words"},
         "pictures": {"", "words"},
-        "explorer": {"", "pictures", "words"},
         "compare": {"", "contract", "document"},
         "page": {"", "document", "pictures", "compare", "words"},
         "bags": {"", "contract"},

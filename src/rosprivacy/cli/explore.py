@@ -79,7 +79,7 @@ def explore(
     with bound_socket(port) as listening:
         door, words = Door(listening.getsockname()[1], read_only), Words(lang.value)
         if ask:
-            from rosprivacy.explorer.web.cypher import StoredSite
+            from rosprivacy.explorer.web.cypher_site import StoredSite
 
             site: Site = StoredSite(session, settings, words, door, ask)
         else:

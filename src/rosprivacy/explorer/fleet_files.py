@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import InputError, InputErrors, LabelError
 from rosprivacy.explorer.edited_file import Conflict, EditedFile, Saved, chosen, read_file
 from rosprivacy.explorer.edits import Edit, differences, place_of
-from rosprivacy.explorer.label_files import Merging, Target
+from rosprivacy.explorer.label_files import Target
 from rosprivacy.explorer.scenarios import tried_on_robots
 from rosprivacy.ingest.fleet.dds_domains import pseudo_robot
 from rosprivacy.ingest.labels.label_file import OURS
@@ -294,7 +294,7 @@ class FleetFiles:
         """Return how those that were looked into differ from what the session read or wrote."""
         return _joint(file.changed_on_disk() for file in self._edited.values())
 
-    def merged(self, edits: Sequence[Edit]) -> Merging:
+    def merged(self, edits: Sequence[Edit]) -> tuple[FleetFiles, list[Edit], tuple[Edit, ...]]:
         """Read those anew that somebody else changed, and hold edits against what they say now."""
         edited, left, both = dict(self._edited), list(edits), list[Edit]()
         for name, file in self._edited.items():
@@ -303,7 +303,7 @@ class FleetFiles:
                 stay, theirs = file.merged(edited[name], _of(name, edits))
                 left = [edit for edit in left if edit.file != name or edit in stay]
                 both += [edit._replace(file=name) for edit in theirs]
-        return Merging(FleetFiles(self._compared_anew(edits), self.asked, edited, self._digests), left, tuple(both))
+        return FleetFiles(self._compared_anew(edits), self.asked, edited, self._digests), left, tuple(both)
 
 
 def _of(file: str, edits: Sequence[Edit]) -> list[Edit]:

@@ -23,11 +23,14 @@ if TYPE_CHECKING:
 
     from rosprivacy.explorer.edited_file import Conflict, Saved
     from rosprivacy.explorer.edits import Edit
+    from rosprivacy.explorer.fleet_files import FleetFiles
     from rosprivacy.explorer.journal import Unsaved
-    from rosprivacy.explorer.label_files import LabelFiles
+    from rosprivacy.explorer.label_files import RobotFiles
     from rosprivacy.question import Question as Asked
     from rosprivacy.result import Result
     from rosprivacy.system import System
+
+    LabelFiles = RobotFiles | FleetFiles
 
 OF_QUESTION = ("ontologies", "type_limits", "decisions")  # files that the answer rests on, whatever system it is about
 
@@ -308,17 +311,17 @@ class History:
         """
         with self.lock:
             self.check_that_it_changes(self.files.name)
-            before, merging = self.files, self.files.merged(self._done)
-            self.files = merging.files
+            before = self.files
+            self.files, edits, both = before.merged(self._done)
             try:
-                self._analyse(merging.edits)
+                self._analyse(edits)
             except BaseException:
                 self.files = before
                 raise
-            self._done = merging.edits
+            self._done = edits
             self.version += 1
             self._journal.begin_anew(self.files.digest, self.files.unsaved(self._done))
-            return merging.both
+            return both
 
     # --- another question ---------------------------------------------------------------------------------------
 

@@ -18,16 +18,14 @@ from rosprivacy.reading.robot_system import read_label_files, robot_system
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
-    from typing import Self, TypeAlias
+    from typing import Self
 
     from rosprivacy.explorer.edited_file import Conflict, Saved
-    from rosprivacy.explorer.fleet_files import FleetFiles
     from rosprivacy.explorer.scenarios import WhatIf
     from rosprivacy.question import Question as Asked
     from rosprivacy.result import Result
     from rosprivacy.system import System
 
-    LabelFiles: TypeAlias = "RobotFiles | FleetFiles"
     Entries = dict[tuple[str, str], Any]  # (section, name) -> what the entry says
 
 SHOWN_ONLY = (
@@ -57,14 +55,6 @@ class Target(NamedTuple):
     alone: bool = True
 
 
-class Merging(NamedTuple):
-    """Label files as they were read anew; ``edits`` and ``both`` are as of ``EditedFile.merged``."""
-
-    files: LabelFiles
-    edits: list[Edit]
-    both: tuple[Edit, ...]
-
-
 class RobotFiles:
     """The label files of one robot; one is edited, others stay as they were read.
 
@@ -91,7 +81,7 @@ class RobotFiles:
         self._files, self._edited, self._at = tuple(files), edited, at
 
     @classmethod
-    def open(cls, policies: Sequence[str], labels: Sequence[str | Labels], asked: Asked) -> Self:
+    def begin(cls, policies: Sequence[str], labels: Sequence[str | Labels], asked: Asked) -> Self:
         """Read policies and label files; the first of these that is a person's is edited. It need not be there yet."""
         where = chosen(labels)
         own = read_file(None if where is None else labels[where], asked.vocabulary, asked.settings)
@@ -191,11 +181,11 @@ class RobotFiles:
         """Return how it differs from what the session read or wrote; None if it does not."""
         return self._edited.changed_on_disk()
 
-    def merged(self, edits: Sequence[Edit]) -> Merging:
-        """Read it anew, and hold edits against what it says now; this here stays as it is."""
+    def merged(self, edits: Sequence[Edit]) -> tuple[RobotFiles, list[Edit], tuple[Edit, ...]]:
+        """Read it anew, and hold edits against what it says now, as ``EditedFile.merged``; this here stays as it is."""
         now = self._read(self.file)
         left, both = self._edited.merged(now, edits)
-        return Merging(RobotFiles(self.read, self.asked, self._files, now, self._at, self.beside), left, both)
+        return RobotFiles(self.read, self.asked, self._files, now, self._at, self.beside), left, both
 
     def _read(self, file: str) -> EditedFile:
         return EditedFile.of(read_file(file or None, self.asked.vocabulary, self.asked.settings))

@@ -40,12 +40,13 @@ if TYPE_CHECKING:
     from rosprivacy.explorer.deciding import How
     from rosprivacy.explorer.edited_file import Conflict, Saved
     from rosprivacy.explorer.edits import Label
-    from rosprivacy.explorer.label_files import LabelFiles, Target
+    from rosprivacy.explorer.history import LabelFiles
+    from rosprivacy.explorer.label_files import Target
     from rosprivacy.explorer.questions import Question
     from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.outputs.finding_table import Findings
     from rosprivacy.question import Question as Asked
-    from rosprivacy.report.explorer.pictures import AlonePicture
+    from rosprivacy.report.pictures.page_pictures import AlonePicture
     from rosprivacy.result import Result
     from rosprivacy.system import System
 
@@ -114,7 +115,7 @@ class Session:
         """
         settings = settings or Settings()
         asked = question_of(_with_decisions_there(settings))
-        files = RobotFiles.open(policies, labels, asked)
+        files = RobotFiles.begin(policies, labels, asked)
         session = cls(files, files.read, asked, settings.decisions)
         return session._journalled(journal, tuple(policies), resume=resume)
 
@@ -347,7 +348,7 @@ class Session:
         'How Video gets to /navigator, and where it can go from there'
         """
         from rosprivacy.outputs.explanation import vertices_called  # noqa: PLC0415 - light start
-        from rosprivacy.report.explorer.pictures import picture_alone  # noqa: PLC0415 - light start
+        from rosprivacy.report.pictures.page_pictures import picture_alone  # noqa: PLC0415 - light start
 
         analysis = self.uncounted.shown
         focus = next((question.element.identity for question in self.questions()), None)

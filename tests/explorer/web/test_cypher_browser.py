@@ -11,7 +11,7 @@ from urllib.parse import urlsplit
 import pytest
 
 from rosprivacy.explorer.session import Session
-from rosprivacy.explorer.web.cypher import StoredSite
+from rosprivacy.explorer.web.cypher_site import StoredSite
 from rosprivacy.explorer.web.guard import Door
 from rosprivacy.explorer.web.serving import bound_socket, server
 from rosprivacy.ingest.database.loading import load

@@ -8,7 +8,7 @@ import pytest
 from lxml import html
 
 from rosprivacy.explorer.element_ids import element_id
-from rosprivacy.explorer.web.review import asked
+from rosprivacy.explorer.web.review_panes import asked
 from rosprivacy.report.words.words import Words
 from tests.helpers.explorers import Explorer, label, node
 from tests.helpers.little_robots import policy_of

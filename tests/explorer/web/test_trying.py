@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from lxml import html
 
 from rosprivacy.explorer.element_ids import element_id
-from rosprivacy.explorer.web.trials import MOST
+from rosprivacy.explorer.web.kept_trials import MOST
 from tests.helpers.explorers import BARE, FACTORY, FILTERED, Explorer, copied, label, node, version
 from tests.helpers.languages import english_in
 

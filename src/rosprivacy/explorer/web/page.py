@@ -21,9 +21,9 @@ from rosprivacy.explorer.web.forms import METHODS
 from rosprivacy.explorer.web.panes import Pane, stands_for, title_of
 from rosprivacy.explorer.web.view import ALL
 from rosprivacy.report.document.doubts import verdict_facts
-from rosprivacy.report.explorer.live_svg import Links
 from rosprivacy.report.finding_order import place_of
 from rosprivacy.report.page.html import in_html
+from rosprivacy.report.pictures.live_svg import Links
 from rosprivacy.report.verdict import doubt_phrases, verdict_meaning
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.suggesting.evidence import Proposal
     from rosprivacy.explorer.web.standing import Standing
     from rosprivacy.explorer.web.view import View
-    from rosprivacy.report.explorer.pictures import Pictures, Shown
+    from rosprivacy.report.pictures.page_pictures import Pictures, Shown
     from rosprivacy.report.words.words import Words
 
 FIRST_ROWS = 60  # of a group of the list; the others are found by name

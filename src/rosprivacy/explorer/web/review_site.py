@@ -16,7 +16,7 @@ from rosprivacy.explorer.web.answered_entries import bringing_nothing, label_of,
 from rosprivacy.explorer.web.application import PROBLEM, Outcome, Site
 from rosprivacy.explorer.web.page import Message, template
 from rosprivacy.explorer.web.panes import ROBOT, WHOSE
-from rosprivacy.explorer.web.review import (
+from rosprivacy.explorer.web.review_panes import (
     NONE,
     REASONED,
     SKIP,

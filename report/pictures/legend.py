@@ -12,15 +12,15 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from markupsafe import Markup
 
-from rosprivacy.report.explorer.live_svg import SIZE, SMALL
+from rosprivacy.report.pictures.live_svg import SIZE, SMALL
 from rosprivacy.report.pictures.looks import BLUE, DRAWN_ROLES, INK, KIND_LOOKS, LINE_LOOKS, OPEN, PALE, TEXT
 from rosprivacy.report.pictures.picture import DRAWN, PRIVACY
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from rosprivacy.report.explorer.scenes import Scene
     from rosprivacy.report.pictures.looks import Look
+    from rosprivacy.report.pictures.scenes import Scene
 
 NODE, TOPIC, SERVICE = "node", "topic", "service"
 _BLOCK = '<polygon class="area" points="4,3 28,3 28,15 4,15"/>'
@@ -88,7 +88,7 @@ def legend(scene: Scene) -> Markup:
 
     >>> from rosprivacy.analysis.example import factory
     >>> from rosprivacy.analysis.findings.findings import analyse
-    >>> from rosprivacy.report.explorer.scenes import Scenes
+    >>> from rosprivacy.report.pictures.scenes import Scenes
     >>> "leak: lets data out" in legend(Scenes(analyse(*factory())).of())
     True
     """

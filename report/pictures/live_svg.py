@@ -39,8 +39,8 @@ from rosprivacy.report.pictures.svg import NAMESPACE, alt_text
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
-    from rosprivacy.report.explorer.scenes import Scene
     from rosprivacy.report.pictures.picture import Box, Key, Line, Picture
+    from rosprivacy.report.pictures.scenes import Scene
 
 
 SIZE = 13  # of letters, in pixels of the page
@@ -76,7 +76,7 @@ def unnamed_dot(scene: Scene) -> str:
 
     >>> from rosprivacy.analysis.example import factory
     >>> from rosprivacy.analysis.findings.findings import analyse
-    >>> from rosprivacy.report.explorer.scenes import Scenes
+    >>> from rosprivacy.report.pictures.scenes import Scenes
     >>> text = unnamed_dot(Scenes(analyse(*factory())).of())
     >>> "camera" in text, "rank=min" in text
     (False, True)

@@ -33,8 +33,8 @@ from rosprivacy.queries.library import Query, pack
 from rosprivacy.queries.run import as_cell
 from rosprivacy.queries.saved import written_out
 from rosprivacy.reading.stored_rows import STORED_NAMES, rows_of
-from rosprivacy.report.explorer.live_svg import Links
 from rosprivacy.report.page.html import in_html
+from rosprivacy.report.pictures.live_svg import Links
 from rosprivacy.report.pictures.query_view import query_view
 from rosprivacy.report.terminal.graph_words import GraphWords
 
@@ -53,7 +53,7 @@ if TYPE_CHECKING:
     from rosprivacy.explorer.web.standing import Standing
     from rosprivacy.queries.graph_values import GraphValue
     from rosprivacy.queries.run import Rows
-    from rosprivacy.report.explorer.pictures import Shown
+    from rosprivacy.report.pictures.page_pictures import Shown
     from rosprivacy.report.pictures.phrases import Phrases
     from rosprivacy.report.pictures.picture import Picture
     from rosprivacy.report.words.words import Words

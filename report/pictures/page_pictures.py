@@ -13,13 +13,13 @@ from threading import Lock
 from typing import TYPE_CHECKING, NamedTuple, Self
 
 from rosprivacy.analysis.errors import DrawingError
-from rosprivacy.report.explorer.legend import legend, style_sheet
-from rosprivacy.report.explorer.live_svg import fits, live_svg, unnamed_dot, without_places
-from rosprivacy.report.explorer.scenes import Scene, Scenes
 from rosprivacy.report.pictures.graphviz import Graphviz, Job, TooLongError, available
 from rosprivacy.report.pictures.layout import DIRECTIONS, ORDERED, way_of
 from rosprivacy.report.pictures.layout import WAYS as ON_PAPER
+from rosprivacy.report.pictures.legend import legend, style_sheet
+from rosprivacy.report.pictures.live_svg import fits, live_svg, unnamed_dot, without_places
 from rosprivacy.report.pictures.phrases import Phrases
+from rosprivacy.report.pictures.scenes import Scene, Scenes
 
 if TYPE_CHECKING:
     from collections.abc import Collection
@@ -30,8 +30,8 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.findings.why_carried import WhyCarried
     from rosprivacy.analysis.findings.witness import Witness
-    from rosprivacy.report.explorer.live_svg import Links
     from rosprivacy.report.pictures.layout import Way
+    from rosprivacy.report.pictures.live_svg import Links
     from rosprivacy.report.pictures.picture import Key, Picture
 
 SECONDS = 8.0
@@ -55,7 +55,7 @@ class Drawing:
     --------
     >>> from rosprivacy.analysis.example import factory
     >>> from rosprivacy.analysis.findings.findings import analyse
-    >>> from rosprivacy.report.explorer.scenes import Scenes
+    >>> from rosprivacy.report.pictures.scenes import Scenes
     >>> with Drawing() as drawing:
     ...     svg = drawing.svg(Scenes(analyse(*factory())).of())
     >>> svg.startswith("<svg"), "/camera" in svg

@@ -9,13 +9,13 @@ import pytest
 from lxml import etree
 
 from rosprivacy.analysis.text import printable
-from rosprivacy.report.explorer import drawing as module
-from rosprivacy.report.explorer.legend import legend, style_sheet
-from rosprivacy.report.explorer.live_svg import Links, unnamed_dot
-from rosprivacy.report.explorer.pictures import Drawing, Pictures, picture_alone
-from rosprivacy.report.explorer.scenes import Scene, Scenes
+from rosprivacy.report.pictures import page_pictures as module
+from rosprivacy.report.pictures.legend import legend, style_sheet
+from rosprivacy.report.pictures.live_svg import Links, unnamed_dot
 from rosprivacy.report.pictures.looks import DRAWN_ROLES, LINE_LOOKS, PALE
+from rosprivacy.report.pictures.page_pictures import Drawing, Pictures, picture_alone
 from rosprivacy.report.pictures.phrases import TEXTS, Phrases
+from rosprivacy.report.pictures.scenes import Scene, Scenes
 from rosprivacy.report.words.words import Words
 from tests.helpers.graphs import care_home, factory
 from tests.helpers.pictures import HOSTILE, hostile

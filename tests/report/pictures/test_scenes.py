@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 from rosprivacy.analysis.findings.why_carried import WhyCarried
 from rosprivacy.analysis.findings.witness import Witness
-from rosprivacy.report.explorer.joined import Joined, choose
-from rosprivacy.report.explorer.scenes import Scenes, folded_by_place
+from rosprivacy.report.pictures.joined import Joined, choose
 from rosprivacy.report.pictures.looks import ALLOWED, UNTOUCHED
+from rosprivacy.report.pictures.scenes import Scenes, folded_by_place
 from rosprivacy.report.words.words import IN_ENGLISH
 from tests.helpers.graphs import care_home, factory
 from tests.helpers.more_systems import wildcards

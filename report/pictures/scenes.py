@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.text import shortened
-from rosprivacy.report.explorer.joined import Joined, choose
 from rosprivacy.report.pictures.flow_lines import Lines, add_cleaned, ends_of_flow, flow_lines
+from rosprivacy.report.pictures.joined import Joined, choose
 from rosprivacy.report.pictures.looks import (
     ALLOWED,
     ASKED,
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.findings.why_carried import WhyCarried
     from rosprivacy.analysis.findings.witness import Witness
     from rosprivacy.analysis.model import Element
-    from rosprivacy.report.explorer.joined import Choice
+    from rosprivacy.report.pictures.joined import Choice
     from rosprivacy.report.pictures.picture import Key, Line
     from rosprivacy.report.words.words import Words
 
