@@ -1,4 +1,4 @@
-"""Suggestions on the page: none that could close a known finding is taken by one key (issue 22)."""
+"""Suggestions on the page: none that could close a known finding is taken by one key."""
 
 from __future__ import annotations
 
@@ -123,7 +123,7 @@ def folded(page: html.HtmlElement) -> bool:
 def test_a_row_says_what_is_surest_and_a_list_with_a_likely_source_is_not_folded(
     explore: Explore, tmp_path: Path
 ) -> None:
-    """users.md U3: the camera with its video before /amcl; body pose is never what its row says."""
+    """The camera with its video before /amcl; body pose is never what its row says."""
     nodes = {
         "amcl": (["/particle_cloud"], ["/scan"]),
         "camera": (["/image", "/tf_static"], []),
@@ -156,7 +156,7 @@ def test_a_row_says_what_is_surest_and_a_list_with_a_likely_source_is_not_folded
 def test_that_a_node_lets_data_out_is_told_although_a_glob_calls_it_a_conduit(
     explore: Explore, tmp_path: Path, entry: str, *, told: bool
 ) -> None:
-    """S11, users.md U1: a glob has not seen the node; a person's full name has."""
+    """S11: a glob has not seen the node; a person's full name has."""
     nodes = {"camera": (["/image"], []), "cloud_uploader": ([], ["/image"]), "recorder": ([], ["/other"])}
     (tmp_path / "robot.policy.xml").write_text(policy_of(nodes), "utf-8")
     said = f'labels: 1\nnodes:\n  /camera: {{source: [Video]}}\n  "/*": conduit\n{entry}topics:\n  /image: sensitive\n'
