@@ -126,7 +126,7 @@ class Shown(NamedTuple):
     Attributes
     ----------
     svg
-        One ``<svg>`` element: ``live_svg.py`` says what a page can rely on, ``style_sheet.py`` how it looks.
+        One ``<svg>`` element: ``live_svg.py`` says what a page can rely on, ``legend.style_sheet`` how it looks.
     legend
         A list of HTML.
     title

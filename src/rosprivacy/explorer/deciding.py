@@ -133,13 +133,6 @@ def record(
         Of a fleet, those that are named, and those that data gets to.
     judge
         Makes the answer under what the file will say, before it is written.
-
-    Raises
-    ------
-    InputErrors
-        If there is no file or no such finding, or the decision is none; nothing is written then.
-    InputError
-        If the file cannot be written; then it is as it was.
     """
     if file is None:
         raise _refused("", "there is no decisions file", "name one when the session begins")

@@ -101,13 +101,7 @@ class FileText:
         return [edit.said for place, edit in last.items() if edit.value != self.says.get(place)]
 
     def new_text(self, edits: Sequence[Edit]) -> NewText:
-        """Return the text of the file with edits; it means what the session says that it means.
-
-        Raises
-        ------
-        InputError
-            If there is no text, or it cannot be changed so.
-        """
+        """Return the text of the file with edits; it means what the session says that it means."""
         if self.text is None:
             what = "are labels from memory, without a text"
             raise InputError(self.name, 0, what, "name a label file when the session begins")
@@ -196,11 +190,6 @@ class EditedFile:
         ----------
         read
             Reads the file anew, so that lines and hash of what it means are those of the file.
-
-        Raises
-        ------
-        InputError
-            If it cannot be written; then it is as it was.
         """
         own = self.own
         if not own.file:
@@ -217,13 +206,7 @@ class EditedFile:
         return self._known(done, edits, read()), done
 
     def saved_as(self, edits: Sequence[Edit], file: str, read: Callable[[], EditedFile]) -> tuple[EditedFile, Saved]:
-        """Write it under another name, where there is none; labels that had no file have this one then.
-
-        Raises
-        ------
-        InputError
-            If it cannot be written, or there is a file of that name.
-        """
+        """Write it under another name, where there is none; labels that had no file have this one then."""
         new = self.own.new_text(edits)
         with one_run(), editing(Path(file)):
             if Path(file).exists():
@@ -308,11 +291,6 @@ def read_file(
     ----------
     alone
         Whether a robot of a fleet reads it as its own: then it outranks what its model's files say.
-
-    Raises
-    ------
-    InputErrors
-        With every problem of the file.
     """
     name = file if isinstance(file, str) else ""
     how = Written(name or MEMORY, vocabulary, settings.bounds, root=settings.include_root or "", own=alone)

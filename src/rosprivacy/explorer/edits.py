@@ -116,13 +116,7 @@ def copied(value: Any) -> Any:
 
 
 def section_of(kind: str, name: str, file: str) -> str:
-    """Return the section of label files for a kind of element.
-
-    Raises
-    ------
-    InputErrors
-        If there is no such kind.
-    """
+    """Return the section of label files for a kind of element."""
     if kind in KINDS:  # the section itself
         return kind
     if kind not in SECTION:

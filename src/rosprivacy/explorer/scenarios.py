@@ -103,13 +103,7 @@ class Scenario(NamedTuple):
 
 
 def tried(system: System, asked: Question, what: WhatIf) -> tuple[Result, tuple[str, ...]]:
-    """Return the answer if something were so, and what to tell of it.
-
-    Raises
-    ------
-    InputErrors
-        If it names what is not there.
-    """
+    """Return the answer if something were so, and what to tell of it."""
     if what.robots:
         raise _not_tried("names robots, and this is one robot", "leave robots away")
     grants, labels = _cut(system.policies, what), _stated(asked, what)
@@ -134,11 +128,6 @@ def tried_on_robots(now: System, read: ReadFleet, asked: Question, what: WhatIf)
     ----------
     read
         Makes the fleet with something otherwise on some robots.
-
-    Raises
-    ------
-    InputErrors
-        If it names what is not there, or no robots.
     """
     assert isinstance(now, FleetSystem), "of a fleet"
     _check_robots(now.fleet, what.robots)

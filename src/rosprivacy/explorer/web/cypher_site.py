@@ -101,13 +101,7 @@ class Asked(NamedTuple):
         return self.query.text if self.query else self.text
 
     def values(self) -> dict[str, Any]:
-        """Return the values of its parameters; what was left empty has its default.
-
-        Raises
-        ------
-        QueryError
-            With every one that is missing, or not of its type.
-        """
+        """Return the values of its parameters; what was left empty has its default."""
         return self.query.values({name: text for name, text in self.given.items() if text}) if self.query else {}
 
     def to_edit(self) -> Asked:
@@ -123,13 +117,7 @@ class Asked(NamedTuple):
 
 
 def asked_in(form: Form) -> tuple[Asked, str]:
-    """Return what a form asks, and whether it is to be asked or to be edited.
-
-    Raises
-    ------
-    FormError
-        If it asks nothing, or something that is not there.
-    """
+    """Return what a form asks, and whether it is to be asked or to be edited."""
     do = form.choice("do", (ASK, EDIT)) if form.one("do") else ASK
     name, at = form.one("ask"), form.one("at")
     if name:
@@ -187,13 +175,7 @@ class Table(NamedTuple):
 
 
 def table_of(rows: Rows, query: Query | None, words: Words) -> Table:
-    """Return a table of at most ``ROWS`` rows and ``LETTERS`` letters.
-
-    Raises
-    ------
-    QueryError
-        If a value cannot be told, since it is too deep.
-    """
+    """Return a table of at most ``ROWS`` rows and ``LETTERS`` letters."""
     meanings = {column.name: column.meaning for column in query.columns} if query else {}
     columns = tuple(Column(printable(name), meanings.get(name, "")) for name in rows.columns)
     told: list[tuple[str, ...]] = []

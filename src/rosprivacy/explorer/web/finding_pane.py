@@ -140,13 +140,7 @@ def _choices(session: Session, finding: Finding, words: Words) -> Pane:
 
 
 def scope_in(form: Form, session: Session, finding: Finding) -> Scope:
-    """Return the robots that a form names; where there are some, it has to name them.
-
-    Raises
-    ------
-    FormError
-        If it names others.
-    """
+    """Return the robots that a form names; where there are some, it has to name them."""
     values = _values(session, finding)
     return values[form.choice("whose", values)] if values else session.scopes(finding)[0]
 

@@ -76,13 +76,7 @@ def roles_of(element: Element) -> tuple[str, ...]:
 
 
 class Form:
-    """The fields of a form.
-
-    Raises
-    ------
-    FormError
-        If it cannot be read.
-    """
+    """The fields of a form."""
 
     def __init__(self, body: bytes) -> None:
         try:
@@ -97,13 +91,7 @@ class Form:
             self._fields.setdefault(name, []).append(value)
 
     def one(self, name: str) -> str:
-        """Return the value of a field; empty if it is not there.
-
-        Raises
-        ------
-        FormError
-            If it is there several times.
-        """
+        """Return the value of a field; empty if it is not there."""
         values = self._fields.get(name, [""])
         if len(values) != 1:
             raise FormError(f"The form says {name} several times.")
@@ -114,39 +102,21 @@ class Form:
         return tuple(dict.fromkeys(self._fields.get(name, ())))
 
     def choice(self, name: str, allowed: Collection[str]) -> str:
-        """Return a value that is one of some.
-
-        Raises
-        ------
-        FormError
-            If it is none of them.
-        """
+        """Return a value that is one of some."""
         value = self.one(name)
         if value not in allowed:
             raise FormError(f"The form has no {name} that can be chosen here.")
         return value
 
     def number(self, name: str) -> int:
-        """Return a number, of at most nine digits.
-
-        Raises
-        ------
-        FormError
-            If it is none.
-        """
+        """Return a number, of at most nine digits."""
         value = self.one(name)
         if not (value.isascii() and value.isdigit() and len(value) < 10):  # noqa: PLR2004 - digits
             raise FormError(f"The form has no {name}.")
         return int(value)
 
     def words(self, name: str) -> str:
-        """Return a text of one line.
-
-        Raises
-        ------
-        FormError
-            If it is too long, or has signs that cannot be printed.
-        """
+        """Return a text of one line."""
         value = " ".join(self.one(name).split())
         if len(value) > LONGEST[name]:
             raise FormError(f"The field {name} has at most {LONGEST[name]} letters.")
@@ -164,11 +134,6 @@ def answer_in(form: Form, elements: Mapping[str, Element], kinds: Collection[str
         Those of the current version, by id.
     kinds
         Names of all kinds of data.
-
-    Raises
-    ------
-    FormError
-        If it says nothing that can be said.
     """
     element = element_in(form, elements)
     role = form.choice("role", roles_of(element))
@@ -185,13 +150,7 @@ def answer_in(form: Form, elements: Mapping[str, Element], kinds: Collection[str
 
 
 def element_in(form: Form, elements: Mapping[str, Element]) -> Element:
-    """Return the element that a form names.
-
-    Raises
-    ------
-    FormError
-        If it is not there.
-    """
+    """Return the element that a form names."""
     at = form.one("element")
     if at not in elements:
         raise FormError("There is no such element any more; choose another one.")
@@ -225,11 +184,6 @@ def decision_in(form: Form, findings: Collection[str]) -> tuple[str, str, How]:
     """Return about which of the findings a form decides, what, and its words.
 
     Where it is written is no matter of the form: that is the file which the command named.
-
-    Raises
-    ------
-    FormError
-        If it decides nothing that can be decided.
 
     Examples
     --------

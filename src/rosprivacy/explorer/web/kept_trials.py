@@ -54,28 +54,14 @@ class Trials:
         return tuple(self._session.scenarios)
 
     def keep(self, name: str, tried: Tried) -> None:
-        """Try something, and keep it under a name; another of that name is replaced.
-
-        Raises
-        ------
-        FormError
-            If there are too many.
-        InputErrors
-            If it names what is not there.
-        """
+        """Try something, and keep it under a name; another of that name is replaced."""
         if name not in self.names and len(self.names) >= MOST:
             raise FormError(f"There are {MOST} trials already: forget one.")
         self._session.scenario(name, tried.what)
         self._says[name] = tried.says
 
     def together(self, form: Form) -> Tried:
-        """Return what two trials that a form names try, as one, and what a person is told of it.
-
-        Raises
-        ------
-        FormError
-            If one of them is not kept.
-        """
+        """Return what two trials that a form names try, as one, and what a person is told of it."""
         names = form.choice("first", self.names), form.choice("second", self.names)
         first, second = (self._session.scenarios[name].what for name in names)
         return Tried(together(first, second), tuple(dict.fromkeys(line for name in names for line in self.says(name))))
@@ -95,13 +81,7 @@ class Trials:
         return self._says.get(name) or (summary_of(self._session.scenarios[name].what),)
 
     def scenario(self, name: str) -> Scenario:
-        """Return what follows, compared with how it stands now.
-
-        Raises
-        ------
-        InputErrors
-            If what is tried is not there any more.
-        """
+        """Return what follows, compared with how it stands now."""
         scenario = self._session.scenarios[name]
         return scenario if scenario.version == self._session.version else self._session.scenario(name, scenario.what)
 

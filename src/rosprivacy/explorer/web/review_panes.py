@@ -159,15 +159,7 @@ def offered(element: Element, *, reached: bool) -> tuple[str, ...]:
 
 
 def answer_in_review(form: forms.Form, standing: Standing, words: Words) -> forms.Answer:
-    """Return what a form says of an element; its role may be ``SKIP`` or ``NONE``, too.
-
-    Raises
-    ------
-    NotYet
-        If something is missing.
-    FormError
-        If nothing can be said so.
-    """
+    """Return what a form says of an element; its role may be ``SKIP`` or ``NONE``, too."""
 
     def need(what: str, *, is_there: object) -> None:
         if not is_there:

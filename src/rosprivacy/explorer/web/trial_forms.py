@@ -155,13 +155,7 @@ class Tried(NamedTuple):
 
 
 def tried_in(form: Form, standing: Standing, words: Words) -> Tried:
-    """Return what a form tries.
-
-    Raises
-    ------
-    FormError
-        If it tries nothing that can be tried.
-    """
+    """Return what a form tries."""
     tried = _KINDS[form.choice("what", _KINDS)](form, standing, words)
     if standing.session.can_mitigate:
         return tried
