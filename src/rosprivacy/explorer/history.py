@@ -189,10 +189,11 @@ class History:
         self._now = _Answered(system, answer(system, self.asked, count_paths=False, before=self.uncounted))
         self._last = None
 
-    def check_that_it_changes(self, place: str) -> None:
-        """Refuse where nothing can be changed."""
+    def check_that_it_changes(self, place: str, *, file: bool = False) -> None:
+        """Refuse where nothing can be changed: an edit, or a file to be written."""
         if self.files.refusal:
-            raise InputError(place, 0, *self.files.refusal)
+            error = InputError(place, 0, *self.files.refusal)
+            raise error if file else InputErrors([error])
 
     # --- what a session before left -----------------------------------------------------------------------------
 
@@ -244,7 +245,7 @@ class History:
             If it cannot be written, or there is no file; nothing is lost then.
         """
         with self.lock:
-            self.check_that_it_changes(self.files.name)
+            self.check_that_it_changes(self.files.name, file=True)
             known = self.files.digest
             try:
                 return self.files.save(self._done)
@@ -260,7 +261,7 @@ class History:
             If it cannot be written, or there is a file of that name; and always of a fleet.
         """
         with self.lock:
-            self.check_that_it_changes(file)
+            self.check_that_it_changes(file, file=True)
             known = self.files.digest
             try:
                 return self.files.save_as(self._done, file)
@@ -310,7 +311,7 @@ class History:
             If it cannot be read, or the edits contradict it; nothing is changed then.
         """
         with self.lock:
-            self.check_that_it_changes(self.files.name)
+            self.check_that_it_changes(self.files.name, file=True)
             before = self.files
             self.files, edits, both = before.merged(self._done)
             try:
