@@ -32,7 +32,7 @@ from rosprivacy.explorer.web.application import Site
 from rosprivacy.explorer.web.guard import Door
 from rosprivacy.explorer.web.serving import collect_garbage
 from rosprivacy.report.catalogs.words import Words
-from rosprivacy.report.explorer.pictures import Pictures
+from rosprivacy.report.pictures.page_pictures import Pictures
 from rosprivacy.settings import Settings
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 PORT = 8700
 HOST = f"http://127.0.0.1:{PORT}"
 ANSWERS, PICTURES, EDITS = 10, 40, 5  # of a round
-FIFTH = 0.2  # of a whole analysis (issue 22)
+FIFTH = 0.2  # of a whole analysis
 EDGE = 0.25  # of an answer that ends data: a fifth on some machines, and on others a little more
 EARLY, LATE = 10, 200  # answers of one session after which its memory is looked at
 GROWN = 1.5  # a count of bytes; in several runs it was 1.2

@@ -45,8 +45,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Element
     from rosprivacy.analysis.modes import View
     from rosprivacy.api import analyze, analyze_fleet, explore, parse_labels, suggest, suggest_fleet
-    from rosprivacy.explorer.fleet_session import FleetSession
-    from rosprivacy.explorer.session import Session
+    from rosprivacy.explorer.session import FleetSession, Session
     from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.labelling.suggested_labels import Suggested
     from rosprivacy.result import Result
@@ -97,7 +96,7 @@ _MODULES = {  # where a name that is no error stands
     "Bounds": "analysis.bounds",
     "Element": "analysis.model",
     "Finding": "analysis.answer",
-    "FleetSession": "explorer.fleet_session",
+    "FleetSession": "explorer.session",
     "Labels": "ingest.labels.label_file",
     "Result": "result",
     "Suggested": "labelling.suggesting",

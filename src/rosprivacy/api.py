@@ -20,8 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
     from typing import Unpack
 
-    from rosprivacy.explorer.fleet_session import FleetSession
-    from rosprivacy.explorer.session import Session
+    from rosprivacy.explorer.session import FleetSession, Session
     from rosprivacy.labelling.suggested_labels import Suggested
     from rosprivacy.result import Result
     from rosprivacy.settings import Path, Paths
@@ -246,16 +245,14 @@ def explore(
     >>> len(hospital.target("carrier_lent").robots), len(hospital.target("carrier_lent", only_this_robot=True).robots)
     (24, 1)
     """
-    if fleet is not None:
-        from rosprivacy.explorer.fleet_session import FleetSession  # noqa: PLC0415 - light start
+    from rosprivacy.explorer.session import Session  # noqa: PLC0415 - light start
 
+    if fleet is not None:
         named = (*several(policies), *_labels(labels))
         if named:
             hint = "leave policies and labels away: the fleet file names them"
             raise InputError(fspath(fleet), 0, "is a fleet, and other files are named beside it", hint)
-        return FleetSession.open_fleet(fspath(fleet), settings)
-    from rosprivacy.explorer.session import Session  # noqa: PLC0415 - light start
-
+        return Session.open_fleet(fspath(fleet), settings)
     return Session.open(several(policies), _labels(labels), settings)
 
 

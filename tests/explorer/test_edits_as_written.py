@@ -16,9 +16,9 @@ from hypothesis import Phase, given, reject, settings
 from hypothesis import strategies as st
 
 from rosprivacy.analysis.errors import InputErrors
+from rosprivacy.explorer.edited_file import Saved
 from rosprivacy.explorer.edits import Edit
 from rosprivacy.explorer.questions import questions
-from rosprivacy.explorer.saving import Saved
 from rosprivacy.explorer.session import Session
 from rosprivacy.reading.robot_system import answer_robot
 from rosprivacy.settings import Settings
@@ -160,7 +160,7 @@ def held(system: Written, deeds: list[Edit | str]) -> None:
                 assert isinstance(deed, Edit)
                 before = session.result
                 wanted = problems(partial(analysed, [*done, deed]))
-                assert problems(partial(session.do, deed)) == wanted
+                assert problems(partial(session.history.do, deed)) == wanted
                 if wanted:
                     assert session.result is before
                     continue

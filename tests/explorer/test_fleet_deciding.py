@@ -9,7 +9,7 @@ import pytest
 
 import rosprivacy
 from rosprivacy.analysis.errors import RosPrivacyError
-from rosprivacy.explorer.fleet_session import FleetSession
+from rosprivacy.explorer.session import Session
 from rosprivacy.settings import Settings
 from tests.helpers.fleet_files import MODELS, policy, write
 
@@ -19,8 +19,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import Finding
     from rosprivacy.analysis.fleet.likeness import Likeness
-    from rosprivacy.explorer.deciding import How
-    from rosprivacy.explorer.decision_scope import Scope
+    from rosprivacy.explorer.deciding import How, Scope
     from rosprivacy.result import Result
 
 SIGNED: How = {"reason": "agreed", "owner": "A. Lee", "legal_basis": ("6(1)(f)",)}
@@ -42,7 +41,7 @@ def small(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path / "fleet.yaml"
 
 
-def begun(fleet: Path) -> FleetSession:
+def begun(fleet: Path) -> Session:
     return rosprivacy.explore(fleet=fleet, settings=Settings(decisions=str(decisions(fleet))))
 
 
@@ -54,7 +53,7 @@ def fresh(fleet: Path) -> Result:
     return rosprivacy.analyze_fleet(fleet, decisions=decisions(fleet))
 
 
-def pattern(session: FleetSession, *, across: bool) -> Finding:
+def pattern(session: Session, *, across: bool) -> Finding:
     """The one finding of the small fleet within a robot, or from one to another."""
     on_robots = [one for one in session.findings if one.leak.name == "/uplink"]
     return next(one for one in on_robots if (one.source.robot != one.leak.robot) == across)
@@ -100,7 +99,7 @@ def test_what_is_decided_is_exactly_what_was_told_and_what_the_file_means(hospit
         if random.random() < 0.5:
             scope = scope.alone
         some = random.sample(scope.robots, random.randint(1, len(scope.robots))) if scope.robots else None
-        scope = scope.chosen(some, scope.to_robots or None) or scope
+        scope = scope.narrowed(some, scope.to_robots or None) or scope
         choice = random.choice(["accept", "accept", "delegate"])
         decided = meant(scope, session.result.fleet.likeness)
         session.decide(
@@ -113,7 +112,7 @@ def test_what_is_decided_is_exactly_what_was_told_and_what_the_file_means(hospit
         assert not any("changed since" in one.message for one in whole.diagnostics)
 
 
-def of(session: FleetSession, robots: Collection[str]) -> set[str]:
+def of(session: Session, robots: Collection[str]) -> set[str]:
     """The robots on which what stays on a robot is accepted, of some."""
     return {source for _, _, source, leak in accepted(session.result) if source == leak and source in robots}
 
@@ -207,7 +206,7 @@ def test_what_is_no_decision_writes_nothing(small: Path, choice: str, said: How)
 
 
 def test_without_a_file_nothing_is_decided(small: Path) -> None:
-    session = FleetSession.open_fleet(str(small))
+    session = Session.open_fleet(str(small))
     with pytest.raises(RosPrivacyError, match="no decisions file"):
         session.decide(session.findings[0].id, "accept", **SIGNED)
 

@@ -19,7 +19,7 @@ from rosprivacy.settings import Settings
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from rosprivacy.explorer.fleet_session import FleetSession
+    from rosprivacy.explorer.session import Session
     from rosprivacy.result import Result
 
 LENT = ("carrier_lent",)
@@ -35,7 +35,7 @@ WILD = """\
 """
 
 
-def begun(file: Path) -> FleetSession:
+def begun(file: Path) -> Session:
     return rosprivacy.explore(fleet=file)
 
 

@@ -11,8 +11,8 @@ import pytest
 
 import rosprivacy
 from rosprivacy.analysis.errors import InputError, InputErrors
-from rosprivacy.explorer.fleet_session import FleetSession
-from rosprivacy.explorer.saving import Conflict, Saved
+from rosprivacy.explorer.edited_file import Conflict, Saved
+from rosprivacy.explorer.session import Session
 from rosprivacy.reading.fleet_system import answer_fleet
 from rosprivacy.settings import Settings
 
@@ -51,8 +51,8 @@ def fresh(file: Path) -> Result:
     return answer_fleet(str(file), Settings())
 
 
-def begun(file: Path, **how: Any) -> FleetSession:
-    return FleetSession.open_fleet(str(file), **how)
+def begun(file: Path, **how: Any) -> Session:
+    return Session.open_fleet(str(file), **how)
 
 
 def held(file: Path) -> dict[str, bytes]:
@@ -187,10 +187,10 @@ def test_what_was_not_saved_is_offered_for_the_files_of_the_fleet_only(small: Pa
     other = json.dumps(["nodes", "/recorder", "conduit", str(tmp_path / "elsewhere.yaml")])
     journal.write_text(f"{journal.read_text()}{other}\n")
     again = begun(small, journal=tmp_path / "state")
-    offered = again.unsaved_from_before
+    offered = again.history.unsaved_from_before
     assert offered is not None
     assert not offered.changed
-    assert [error.partition(": ")[2] for error in again.resume()] == [
+    assert [error.partition(": ")[2] for error in again.history.resume()] == [
         "is no label file of the fleet; name it in the fleet file"
     ]
     assert again.unsaved == 2
@@ -223,7 +223,7 @@ def test_robots_that_somebody_made_alike_meanwhile_stay_apart(tmp_path: Path) ->
         "fleet: 1\nmodels:\n  cart: {policies: [p.xml], labels: [model.yaml]}\n"
         "robots:\n  r1: {model: cart, labels: [one.yaml]}\n  r2: {model: cart, labels: [two.yaml]}\n"
     )
-    session = FleetSession.open_fleet(str(file))
+    session = Session.open_fleet(str(file))
     (tmp_path / "one.yaml").write_text((tmp_path / "two.yaml").read_text())
     session.label("r1:/camera", source=["Video"], note="seen")
     assert isinstance(session.save(), Saved)
@@ -240,7 +240,7 @@ def test_robots_whose_policies_somebody_made_alike_meanwhile_stay_apart(tmp_path
         "fleet: 1\nrobots:\n  r1: {policies: [one.xml], labels: [l.yaml]}\n"
         "  r2: {policies: [two.xml], labels: [l.yaml]}\n"
     )
-    session = FleetSession.open_fleet(str(file))
+    session = Session.open_fleet(str(file))
     assert [finding.leak.full_name for finding in session.findings] == ["r2:/recorder"]
     (tmp_path / "one.xml").write_text(POLICY)
     assert session.changed_inputs == (str(tmp_path / "one.xml"),)
@@ -261,7 +261,7 @@ def test_robots_whose_types_somebody_made_alike_meanwhile_stay_apart(tmp_path: P
         "fleet: 1\nmodels: {m: {policies: [p.xml], labels: [l.yaml]}}\n"
         "robots:\n  r1: {model: m, types: [one.yaml]}\n  r2: {model: m, types: [two.yaml]}\n"
     )
-    session = FleetSession.open_fleet(str(file))
+    session = Session.open_fleet(str(file))
     (tmp_path / "one.yaml").write_text((tmp_path / "two.yaml").read_text())
     session.label("r2:/camera", source=["Video"], note="seen again")
     assert isinstance(session.save(), Saved)

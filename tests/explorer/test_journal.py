@@ -13,9 +13,9 @@ import pytest
 
 from rosprivacy.analysis.errors import InputError
 from rosprivacy.analysis.files_read import one_run
+from rosprivacy.explorer.edited_file import Saved
 from rosprivacy.explorer.edits import Edit
 from rosprivacy.explorer.journal import read_journal
-from rosprivacy.explorer.saving import Saved
 from rosprivacy.explorer.session import Session
 from tests.helpers.factory import FACTORY
 from tests.helpers.full_disk import full_disk
@@ -44,7 +44,7 @@ def test_who_says_nothing_leaves_nothing(file: Path) -> None:
     session = begun(file)
     session.label("/robot_camera", conduit=True)
     session.undo()
-    assert session.unsaved_from_before is None
+    assert session.history.unsaved_from_before is None
     session.close()
     assert list((file.parent / "state").iterdir()) == []
 
@@ -58,15 +58,15 @@ def test_what_was_not_saved_is_offered_and_made_again(file: Path) -> None:
     entries, told = session.entries, session.result.to("json")
     session.close()
     second = begun(file)
-    offered = second.unsaved_from_before
+    offered = second.history.unsaved_from_before
     assert offered is not None
     assert not offered.changed
     assert not offered.torn
     assert second.edits == ()
-    assert second.resume() == ()
+    assert second.history.resume() == ()
     assert second.entries == entries
     assert second.result.to("json") == told
-    assert second.unsaved_from_before is None
+    assert second.history.unsaved_from_before is None
     second.close()
     third = begun(file, resume=True)  # the second one was not saved either
     assert third.entries == entries
@@ -84,11 +84,11 @@ def test_edits_of_another_file_are_a_merge(file: Path) -> None:
     session.close()
     file.write_text(file.read_text().replace("/navigator: conduit", "/navigator: {leak: [Video]}"))
     second = begun(file, resume=True)
-    offered = second.unsaved_from_before
+    offered = second.history.unsaved_from_before
     assert offered is not None
     assert offered.changed
     assert second.edits == ()  # nothing is made in silence
-    assert second.resume() == ()
+    assert second.history.resume() == ()
     assert second.entries["nodes", "/robot_camera"] == "conduit"
     assert second.entries["nodes", "/navigator"] == {"leak": ["Video"]}
 
@@ -103,25 +103,24 @@ def test_what_cannot_be_made_again_stays_offered(file: Path) -> None:
     policy.write_text(FACTORY.joinpath("before.policy.xml").read_text().replace("archive_server", "cloud"))
     file.write_text(file.read_text().replace("archive_server", "cloud"))
     second = Session.open([str(policy)], [str(file)], journal=file.parent / "state")
-    (why,) = second.resume()
+    (why,) = second.history.resume()
     assert "'/archive_server' matches no node" in why
     assert [edit.name for edit in second.edits] == ["/robot_camera"]
-    offered = second.unsaved_from_before
+    offered = second.history.unsaved_from_before
     assert offered is not None
     assert [edit.name for edit in offered.edits] == ["/archive_server"]
 
 
 def test_two_sessions_of_one_file_are_told(file: Path) -> None:
     first, second = begun(file), begun(file)
-    assert (first.other_sessions, second.other_sessions) == (0, 1)
     first.label("/robot_camera", conduit=True)
     second.label("/navigator", leak="Video")
     assert len(journals(file)) == 2
     third = begun(file)
-    assert third.unsaved_from_before is None  # of sessions that run nothing is taken
+    assert third.history.unsaved_from_before is None  # of sessions that run nothing is taken
     for session in (first, second, third):
         session.close()
-    assert begun(file).unsaved_from_before is not None
+    assert begun(file).history.unsaved_from_before is not None
 
 
 @pytest.mark.parametrize("cut", [1, 7, 30])
@@ -133,12 +132,12 @@ def test_a_line_that_was_cut_off_is_left_out_and_told(file: Path, cut: int) -> N
     (journal,) = journals(file)
     journal.write_bytes(journal.read_bytes()[:-cut])
     again = begun(file)
-    offered = again.unsaved_from_before
+    offered = again.history.unsaved_from_before
     assert offered is not None
     names = [edit.name for edit in offered.edits]
     assert names == ["/robot_camera", "/archive_server"][: 2 if cut == 1 else 1]
     assert offered.torn == (cut > 1)
-    assert ("cannot be read" in "".join(again.remarks)) == (cut > 1)
+    assert ("cannot be read" in "".join(again.history.remarks)) == (cut > 1)
 
 
 @pytest.mark.parametrize(
@@ -157,8 +156,8 @@ def test_a_journal_that_cannot_be_read_stays_and_is_told(file: Path, monkeypatch
     session.close()
     monkeypatch.setattr("rosprivacy.explorer.journal.MOST_READ", 10)
     again = begun(file)
-    assert again.unsaved_from_before is None
-    assert "cannot be read" in again.remarks[0]
+    assert again.history.unsaved_from_before is None
+    assert "cannot be read" in again.history.remarks[0]
     again.close()
     assert len(journals(file)) == 1
 
@@ -179,7 +178,7 @@ def test_a_full_disk_loses_nothing_and_is_told(file: Path) -> None:
     old = file.read_bytes()
     with full_disk(200):
         session.label("/archive_server", leak="Video", note="why " * 50)
-        assert "edits are in this session only" in session.remarks[-1]
+        assert "edits are in this session only" in session.history.remarks[-1]
         with pytest.raises(InputError, match="cannot be written"):
             session.save()
     assert file.read_bytes() == old
@@ -194,7 +193,7 @@ def test_a_folder_that_cannot_be_made_is_told(file: Path) -> None:
     (file.parent / "state").write_text("a file")
     session = begun(file)
     session.label("/robot_camera", conduit=True)
-    assert "edits are in this session only" in session.remarks[0]
+    assert "edits are in this session only" in session.history.remarks[0]
 
 
 def test_a_command_can_save_twice(file: Path) -> None:
@@ -240,12 +239,12 @@ def holds_after_a_kill(file: Path, lines: int) -> None:
     said, saved = killed(file, lines)
     session = begun(file, resume=True)
     entry = session.entries["nodes", "/robot_camera"]
-    offered = session.unsaved_from_before  # offered still if it was killed between file and journal
+    offered = session.history.unsaved_from_before  # offered still if it was killed between file and journal
     last = max([int(entry.get("note", -1))] + [int(edit.value["note"]) for edit in (offered.edits if offered else ())])
     assert said <= last <= said + 1
     in_file = Session.open([BEFORE], [str(file)]).entries["nodes", "/robot_camera"]
     assert int(in_file.get("note", -1)) >= saved
-    session.forget()
+    session.history.forget()
     while session.undo():
         pass
     session.close()

@@ -9,7 +9,7 @@ import pytest
 
 import rosprivacy
 from rosprivacy.analysis.errors import InputError
-from rosprivacy.explorer.saving import Conflict, Saved
+from rosprivacy.explorer.edited_file import Conflict, Saved
 from rosprivacy.explorer.session import Session
 from rosprivacy.ingest.labels.edited_entries import Said
 from rosprivacy.ingest.labels.label_writer import with_entries

@@ -12,7 +12,7 @@ from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.mitigation.limits import CHANGES
 from rosprivacy.analysis.mitigation.proposals import ProposedStep
 from rosprivacy.analysis.model import Element
-from rosprivacy.explorer.scenarios import WhatIf, told
+from rosprivacy.explorer.scenarios import WhatIf, summary_of
 from rosprivacy.explorer.session import Session
 from rosprivacy.mitigation import run_mitigation
 from tests.helpers.factory import FACTORY
@@ -127,7 +127,7 @@ def test_what_is_not_there_is_not_tried(session: Session, what: WhatIf) -> None:
     with pytest.raises(InputErrors):
         session.scenario("wrong", what)
     assert session.scenarios == {}
-    assert told(what)
+    assert summary_of(what)
 
 
 @pytest.mark.parametrize("kinds", [CHANGES, ("filter",), ("deny",)])

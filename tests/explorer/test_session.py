@@ -9,8 +9,8 @@ import pytest
 
 import rosprivacy
 from rosprivacy.analysis.errors import InputErrors, LabelError
+from rosprivacy.explorer.edited_file import Conflict, Saved
 from rosprivacy.explorer.edits import Edit
-from rosprivacy.explorer.saving import Conflict, Saved
 from rosprivacy.explorer.session import Session
 from tests.helpers.factory import FACTORY
 
@@ -33,7 +33,7 @@ def session(file: Path) -> Session:
 
 def test_a_session_begins_as_the_analysis(session: Session, file: Path) -> None:
     assert session.result.to("json") == rosprivacy.analyze(BEFORE, file).to("json")
-    assert not session.can_undo
+    assert not session.history.can_undo
     assert session.unsaved == 0
 
 
@@ -90,7 +90,7 @@ def test_a_label_replaces_what_the_file_says(session: Session) -> None:
     assert not session.undo()
     assert (session.version, session.unsaved, len(session.findings)) == (2, 0, 2)
     assert session.redo()
-    assert not session.can_redo
+    assert not session.history.can_redo
     assert len(session.findings) == 1
 
 
@@ -179,7 +179,7 @@ def test_what_was_saved_before_gives_way_to_what_somebody_else_said_later(sessio
 
 def test_what_was_undone_is_saved_although_nothing_is_written(session: Session, file: Path) -> None:
     session.label("/robot_camera", conduit=True)
-    session.do(Edit("channels", "/not_there", None))  # says nothing anew
+    session.history.do(Edit("channels", "/not_there", None))  # says nothing anew
     session.save()
     session.undo()
     session.save()

@@ -10,7 +10,7 @@ import pytest
 from rosprivacy.analysis.errors import RosPrivacyError
 from rosprivacy.explorer.edits import Edit
 from rosprivacy.explorer.scenarios import WhatIf
-from rosprivacy.explorer.stored_session import StoredSession
+from rosprivacy.explorer.session import Session
 from rosprivacy.question import question_of
 from rosprivacy.reading.robot_system import robot_system
 from rosprivacy.settings import Settings
@@ -18,8 +18,8 @@ from rosprivacy.settings import Settings
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-CHANGES: dict[str, Callable[[StoredSession], object]] = {
-    "do": lambda session: session.do(Edit("nodes", "/robot_camera", "conduit")),
+CHANGES: dict[str, Callable[[Session], object]] = {
+    "do": lambda session: session.history.do(Edit("nodes", "/robot_camera", "conduit")),
     "label": lambda session: session.label("/robot_camera", conduit=True),
     "merge": lambda session: session.merge(),
     "save": lambda session: session.save(),
@@ -32,7 +32,9 @@ CHANGES: dict[str, Callable[[StoredSession], object]] = {
 def test_no_change_is_made(change: str) -> None:
     asked = question_of(Settings())
     system = robot_system(("examples/factory/before.policy.xml",), ("examples/factory/run2.labels.yaml",), asked)
-    session = StoredSession(replace(system, under=None), asked)  # as it is read from a database: no labels can follow
+    session = Session.of_stored(
+        replace(system, under=None), asked
+    )  # as it is read from a database: no labels can follow
     found = session.uncounted
     with pytest.raises(RosPrivacyError, match="is shown, and not changed; change the label file"):
         CHANGES[change](session)

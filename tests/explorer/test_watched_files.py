@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 import rosprivacy
-from rosprivacy.explorer.fleet_session import FleetSession
-from rosprivacy.explorer.saving import Saved, digest_of
+from rosprivacy.explorer.edited_file import Saved, digest_of
 from rosprivacy.explorer.session import Session
 from rosprivacy.explorer.watched_files import WatchedFiles
 from rosprivacy.settings import Settings
@@ -40,7 +39,7 @@ def robot(tmp_path: Path) -> Session:
 
 
 @pytest.fixture
-def fleet(tmp_path: Path) -> FleetSession:
+def fleet(tmp_path: Path) -> Session:
     """Two robots that are alike, since their own label files say the same."""
     (tmp_path / "p.xml").write_text(POLICY)
     (tmp_path / "model.yaml").write_text(SOURCE)
@@ -50,7 +49,7 @@ def fleet(tmp_path: Path) -> FleetSession:
         "fleet: 1\nmodels:\n  cart: {policies: [p.xml], labels: [model.yaml]}\n"
         "robots:\n  r1: {model: cart, labels: [one.yaml]}\n  r2: {model: cart, labels: [two.yaml]}\n"
     )
-    return FleetSession.open_fleet(str(tmp_path / "fleet.yaml"))
+    return Session.open_fleet(str(tmp_path / "fleet.yaml"))
 
 
 def test_a_label_file_that_is_not_edited_is_told_and_the_answer_stays(robot: Session, tmp_path: Path) -> None:
@@ -95,7 +94,7 @@ def test_labels_from_memory_are_no_file(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["two.yaml", "p.xml", "fleet.yaml", "model.yaml"])
 def test_each_file_of_a_fleet_is_told_also_one_that_another_was_read_for(
-    fleet: FleetSession, tmp_path: Path, name: str
+    fleet: Session, tmp_path: Path, name: str
 ) -> None:
     assert list(fleet.changed_inputs) == []
     with (tmp_path / name).open("a") as file:
@@ -104,7 +103,7 @@ def test_each_file_of_a_fleet_is_told_also_one_that_another_was_read_for(
 
 
 def test_a_label_file_that_was_answered_into_is_told_as_one_that_can_be_taken_in(
-    fleet: FleetSession, tmp_path: Path
+    fleet: Session, tmp_path: Path
 ) -> None:
     fleet.label("r2:/recorder", conduit=True, note="seen", only_this_robot=True)
     assert list(fleet.changed_inputs) == []

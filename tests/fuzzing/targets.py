@@ -171,7 +171,7 @@ def _taken_up() -> None:
     with closing(Session.open(["base.xml"], ["edited.yaml"], Settings(today=TODAY))) as session:
         for edit in read_journal(Path("journal.jsonl")).edits:
             with suppress(InputErrors):
-                session.do(edit)
+                session.history.do(edit)
         session.save()
         saved = rosprivacy.analyze("base.xml", "edited.yaml", today=TODAY)
         assert [one.id for one in saved.findings] == [one.id for one in session.findings]

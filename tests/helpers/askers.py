@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from lxml import html
 from starlette.testclient import TestClient
 
-from rosprivacy.explorer.stored_session import StoredSession
-from rosprivacy.explorer.web.cypher.cypher_site import StoredSite
+from rosprivacy.explorer.session import Session
+from rosprivacy.explorer.web.cypher_site import StoredSite
 from rosprivacy.explorer.web.guard import Door
 from rosprivacy.ingest.database.loading import load
 from rosprivacy.private_neo4j import connection
@@ -51,7 +51,7 @@ def told(answer: Any) -> str:
 @contextmanager
 def asker(to: Connection, *, read_only: bool = True, language: str = "en", seconds: float = 20.0) -> Iterator[Asker]:
     with connection.open_driver(to) as driver:
-        session = StoredSession.open_database(driver)
+        session = Session.open_database(driver)
     door = Door(PORT, read_only)
     opens = partial(connection.open_driver, to)
     site = StoredSite(session, Settings(), Words(language), door, opens, seconds)

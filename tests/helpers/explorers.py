@@ -6,18 +6,22 @@ import re
 import shutil
 import threading
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from starlette.testclient import TestClient
 
+from rosprivacy.analysis.errors import DatabaseError
 from rosprivacy.explorer.element_ids import element_id
-from rosprivacy.explorer.fleet_session import FleetSession
 from rosprivacy.explorer.session import Session
 from rosprivacy.explorer.web.application import Site
+from rosprivacy.explorer.web.cypher_site import StoredSite
 from rosprivacy.explorer.web.guard import Door
-from rosprivacy.explorer.web.review.review_site import ReviewSite
+from rosprivacy.explorer.web.review_site import ReviewSite
 from rosprivacy.explorer.web.serving import bound_socket, server
+from rosprivacy.question import question_of
+from rosprivacy.reading.robot_system import robot_system
 from rosprivacy.report.catalogs.words import Words
 from rosprivacy.settings import Settings
 from tests.helpers.paths import ROOT
@@ -57,7 +61,7 @@ class Explorer:
         settings = Settings(include_root=str(root) if root else None, decisions=str(decisions) if decisions else None)
         self.labels, self.door = labels, Door(port, read_only)
         self.session = (
-            FleetSession.open_fleet(str(policy), settings, journal=journal)
+            Session.open_fleet(str(policy), settings, journal=journal)
             if fleet
             else Session.open([str(policy)], [str(labels)], settings, journal=journal)
         )
@@ -70,6 +74,24 @@ class Explorer:
         client.headers["origin"] = f"http://127.0.0.1:{self.door.port}"
         assert client.get(self.door.link).status_code == 200
         return client
+
+
+class _Stored(Explorer):
+    """What stands in a database, as a page shows it; the server is gone when it is asked."""
+
+    def __init__(self, policy: Path, labels: Path, *, port: int = PORT) -> None:
+        asked = question_of(Settings())._replace(every=True)
+        system = replace(robot_system((str(policy),), (str(labels),), asked), under=None)
+        self.labels, self.door, self.session = labels, Door(port, read_only=True), Session.of_stored(system, asked)
+        self.site = StoredSite(self.session, Settings(), Words("en"), self.door, _gone)
+        self.app = self.site.application()
+
+
+def _gone() -> NoReturn:
+    raise DatabaseError("no Neo4j answers there")
+
+
+begin_stored = _Stored
 
 
 def node(name: str) -> str:

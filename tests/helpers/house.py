@@ -71,7 +71,6 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "document": {"", "contract", "catalogs"},
         "text": {"", "document", "catalogs"},
         "pictures": {"", "catalogs"},
-        "explorer": {"", "pictures", "catalogs"},
         "compare": {"", "contract", "document"},
         "page": {"", "document", "pictures", "compare", "catalogs"},
         "bags": {"", "contract"},

@@ -62,7 +62,7 @@ def explore(
     from rosprivacy.explorer.journal import journal_folder
     from rosprivacy.explorer.web.application import Site
     from rosprivacy.explorer.web.guard import Door
-    from rosprivacy.explorer.web.review.review_site import ReviewSite
+    from rosprivacy.explorer.web.review_site import ReviewSite
     from rosprivacy.explorer.web.serving import bound_socket
     from rosprivacy.report.catalogs.words import Words
 
@@ -79,7 +79,7 @@ def explore(
     with bound_socket(port) as listening:
         door, words = Door(listening.getsockname()[1], read_only), Words(lang.value)
         if ask:
-            from rosprivacy.explorer.web.cypher.cypher_site import StoredSite
+            from rosprivacy.explorer.web.cypher_site import StoredSite
 
             site: Site = StoredSite(session, settings, words, door, ask)
         else:
@@ -99,18 +99,16 @@ def explore(
 
 def _session(inputs: Inputs, journal: Path | None) -> tuple[Session, Opens | None]:
     """Read what is named; for a database, also what opens a driver to it again, and starts no server."""
-    from rosprivacy.explorer.fleet_session import FleetSession
     from rosprivacy.explorer.session import Session
-    from rosprivacy.explorer.stored_session import StoredSession
 
     if inputs.from_database:
         from rosprivacy.private_neo4j.connection import connection, open_driver
 
         opens = partial(open_driver, connection(inputs.neo4j))
         with opens() as driver:
-            return StoredSession.open_database(driver, inputs.settings), opens
+            return Session.open_database(driver, inputs.settings), opens
     if inputs.fleet:
-        return FleetSession.open_fleet(inputs.fleet, inputs.settings, journal=journal), None
+        return Session.open_fleet(inputs.fleet, inputs.settings, journal=journal), None
     return Session.open(inputs.named, tuple(inputs.labels or ()), inputs.settings, journal=journal), None
 
 

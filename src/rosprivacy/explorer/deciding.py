@@ -2,41 +2,44 @@
 
 In: a finding as it is found now, of a fleet with robots, and an entry. Out: the file with it. What others wrote
 meanwhile stays: the file is read anew each time, and one writer works at a time. Nothing is written unless the file
-then says of these robots what was decided, and the answer can be made of it.
+then says of these robots what was decided, and the answer can be made of it. On a fleet a decision is about exactly the
+robots that are named, whoever joins later (rule S10).
 """
 
 from __future__ import annotations
 
 import os
+from collections import defaultdict
 from dataclasses import replace
 from datetime import date
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypedDict
 
+from rosprivacy.analysis.case import Case
 from rosprivacy.analysis.decisions import State
 from rosprivacy.analysis.errors import DecisionError, InputErrors, shown
 from rosprivacy.analysis.files_read import one_run
-from rosprivacy.analysis.fleet.likeness import NO_ROBOTS
+from rosprivacy.analysis.fleet.likeness import NO_ROBOTS, pattern_id
 from rosprivacy.analysis.remembered import as_written
 from rosprivacy.clock import judged_on, today
-from rosprivacy.decided import about_today
-from rosprivacy.explorer.decision_scope import cases, scope_of, scopes, target
+from rosprivacy.decided import about_today, in_fleet
 from rosprivacy.ingest.decisions.decision_writer import text_in, with_decision
 from rosprivacy.ingest.decisions.decisions_file import is_date, parse_decisions
 from rosprivacy.report.atomic import write_texts
 from rosprivacy.report.editing import editing
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Mapping
+    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.answer import Finding
     from rosprivacy.analysis.decisions import Decisions
     from rosprivacy.analysis.fleet.likeness import Likeness
-    from rosprivacy.analysis.remembered import About
-    from rosprivacy.explorer.decision_scope import Scope
     from rosprivacy.result import Result
 
+    Named = Collection[str] | None  # robots, by id; None for all that are alike
+
 LEAST = {"accept": ("reason", "owner")}  # what a person signs
+ENDS = 2  # robots of one kind that are enough to see what holds between any two
 
 
 class Ruling(NamedTuple):
@@ -70,95 +73,172 @@ class How(TypedDict, total=False):
     legal_basis: tuple[str, ...]
 
 
-class Robots(NamedTuple):
-    """The robots of a fleet that a decision names; None for all that are alike, as of ``Session.decide``."""
+class Scope(NamedTuple):
+    """The robots that a decision is about; none where a finding is on no robot.
 
-    robots: Collection[str] | None = None
-    to_robots: Collection[str] | None = None
+    Attributes
+    ----------
+    finding
+        Of one of them: it stands for all.
+    robots
+        Where data begins; where that is on no robot, where it gets to.
+    to_robots
+        Where data gets to, if that is another robot; else empty.
+    """
+
+    finding: Finding
+    robots: tuple[str, ...] = ()
+    to_robots: tuple[str, ...] = ()
+
+    @property
+    def alone(self) -> Scope:
+        """The same for the robot of the finding only."""
+        source, leak = self.finding.source.robot, self.finding.leak.robot
+        if self.to_robots:
+            return self._replace(robots=(source,), to_robots=(leak,))
+        return self._replace(robots=tuple(robot for robot in (source, leak) if robot in self.robots)[:1])
+
+    def narrowed(self, robots: Named, to_robots: Named) -> Scope | None:
+        """Return the same for some of them, None for all; None if others are named, or none."""
+        ends = []
+        for named, known in ((robots, self.robots), (to_robots, self.to_robots)):
+            if named is not None and (not named or not set(named) <= set(known)):
+                return None
+            ends.append(known if named is None else tuple(robot for robot in known if robot in named))
+        return self._replace(robots=ends[0], to_robots=ends[1])
+
+
+def scopes(findings: Iterable[Finding], likeness: Likeness, finding: Finding) -> tuple[Scope, ...]:
+    """Return what can be decided about at once: that finding with all that are alike, and each other of its pattern."""
+    pattern = pattern_id(finding, likeness)
+    like = [other for other in findings if (other.kind, other.category) == (finding.kind, finding.category)]
+    same = [other for other in like if likeness.count(other) and pattern_id(other, likeness) == pattern]
+    return tuple(_whole(other, likeness) for other in sorted(same, key=lambda other: other.id != finding.id))
+
+
+def _whole(finding: Finding, likeness: Likeness) -> Scope:
+    begins, ends = likeness.placed(finding.source.robot), likeness.placed(finding.leak.robot)
+    return Scope(finding, begins, ends) if likeness.across(finding) else Scope(finding, begins or ends)
 
 
 def record(
-    file: str | None, result: Result, finding: str, said: Ruling, robots: Robots, judge: Callable[[Decisions], None]
-) -> None:
+    file: str | None, result: Result, finding: str, ruling: Ruling, robots: tuple[Named, Named],
+    judge: Callable[[Decisions], None],
+) -> None:  # fmt: skip
     """Write a decision about a finding into the decisions file, which is made if it is not there.
 
     Parameters
     ----------
+    robots
+        Of a fleet, those that are named, and those that data gets to.
     judge
         Makes the answer under what the file will say, before it is written.
-
-    Raises
-    ------
-    InputErrors
-        If there is no file or no such finding, or the decision is none; nothing is written then.
-    InputError
-        If the file cannot be written; then it is as it was.
     """
     if file is None:
         raise _refused("", "there is no decisions file", "name one when the session begins")
-    found = next((one for one in result.analysis.findings if one.id == finding), None)
-    if found is None:
+    about = next((each for each in result.analysis.findings if each.id == finding), None)
+    if about is None:
         raise _refused(file, f"{shown(finding)!r} is no finding", "take the id of one that is found now")
-    _check(file, said)
+    _check(file, ruling)
     likeness = result.fleet.likeness if result.fleet else NO_ROBOTS
-    scope = scope_of(scopes(result.analysis.findings, likeness, found), file, *robots)
-    entry = {**target(scope, likeness), **_entry(said), "made_about": as_written(_about(result, scope.finding))}
+    scope = _scope_of(scopes(result.analysis.findings, likeness, about), file, *robots)
+    entry = {**_target(scope, likeness), **_entry(ruling), "made_about": _made_about(result, scope.finding)}
+    remark = f"{about.category}: {about.source.name} -> {about.leak.name}"  # what a person reads beside an id
     path = Path(file)
     with one_run(), editing(path):
-        text = with_decision(file, text_in(path), entry, _remark(found), result.vocabulary)
+        text = with_decision(file, text_in(path), entry, remark, result.vocabulary)
         decisions = parse_decisions(file, text, result.vocabulary, judged_on(os.environ))
         _check_meaning(decisions, scope, likeness, entry)
         judge(decisions)
         write_texts([(path, text)], edited=path)
 
 
-def _about(result: Result, finding: Finding) -> About:
-    """What is there now; of a fleet without the number of paths, which changes with the robots that are alike."""
+def _check(file: str, ruling: Ruling) -> None:
+    if ruling.expires and not is_date(ruling.expires):
+        raise _refused(file, f"{shown(ruling.expires)!r} is not a date", "write YYYY-MM-DD")
+    if ruling.expires and ruling.expires < today(os.environ):
+        raise _refused(file, f"{ruling.expires} is over: it would decide nothing", "name a day to come")
+    for name in LEAST.get(ruling.choice, ()):
+        if not getattr(ruling, name):
+            raise _refused(file, f"an acceptance without {name}", f"say the {name}: it is what a person signs")
+
+
+def _scope_of(known: Sequence[Scope], file: str, robots: Named, to_robots: Named) -> Scope:
+    """The scope that a person names; the first if no robots are named. Robots that are named have to be alike."""
+    fitting = [narrowed for scope in known if (narrowed := scope.narrowed(robots, to_robots))]
+    if len(fitting) == 1 or (fitting and fitting[0].finding is known[0].finding):
+        return fitting[0]
+    named = ", ".join(map(shown, (*(robots or ()), *(to_robots or ())))) or "no robot"
+    if fitting:
+        raise _refused(file, f"of {named} data gets to several kinds of robots", "name those that it gets to, too")
+    raise _refused(file, f"it is not on {named}, or they are not alike", "decide about robots that are alike at a time")
+
+
+def _target(scope: Scope, likeness: Likeness) -> dict[str, Any]:
+    """What an entry says that it is about: the pattern, and each robot by its name."""
+    entry: dict[str, Any] = {"id": pattern_id(scope.finding, likeness)}
+    if scope.robots:
+        entry["robots"] = list(scope.to_robots or scope.robots)
+    if scope.to_robots:
+        entry["from_robots"] = list(scope.robots)
+    return {**entry, "pseudonymised": True} if scope.finding.pseudonymised else entry
+
+
+def _entry(ruling: Ruling) -> dict[str, Any]:
+    """As the file has it, in its order."""
+    entry = {
+        "decision": ruling.choice,
+        "reason": ruling.reason,
+        "owner": ruling.owner,
+        "legal_basis": list(ruling.legal_basis),
+        "date": date.fromisoformat(today(os.environ)),
+        "expires": date.fromisoformat(ruling.expires) if ruling.expires else None,
+        "ticket": ruling.ticket,
+    }
+    return {key: value for key, value in entry.items() if value}
+
+
+def _made_about(result: Result, finding: Finding) -> Mapping[str, object]:
+    """What is so now; of a fleet without the number of paths, which changes with the robots that are alike."""
     about = about_today(result.analysis, None)[finding.id]
-    return replace(about, disjoint_paths=0) if result.fleet else about
+    return as_written(replace(about, disjoint_paths=0) if result.fleet else about)
 
 
 def _check_meaning(decisions: Decisions, scope: Scope, likeness: Likeness, entry: Mapping[str, Any]) -> None:
     """See that the entry decides what it was made about: no other decides it, too, and it is not over."""
-    of = entry["id"], set(entry.get("robots", ())), set(entry.get("from_robots", ()))
-    for case in cases(scope, likeness, decisions.told_apart):
+    written = entry["id"], set(entry.get("robots", ())), set(entry.get("from_robots", ()))
+    for case in _cases(scope, likeness, decisions.told_apart):
         foremost = decisions.foremost(case)
-        other = next((one for one in foremost if (one.id, set(one.robots), set(one.from_robots)) != of), None)
+        other = next((each for each in foremost if (each.id, set(each.robots), set(each.from_robots)) != written), None)
         if other or not foremost:
-            where = f"line {other.place.line} decides it, too" if other else "the entry would not be about it"
-            raise _refused(decisions.file, where, "change or remove that entry, and begin again")
+            why = f"line {other.place.line} decides it, too" if other else "the entry would not be about it"
+            raise _refused(decisions.file, why, "change or remove that entry, and begin again")
         if decisions.state(foremost[0]) is State.EXPIRED:
             over = f"{foremost[0].expires} is over: it would decide nothing"
             raise _refused(decisions.file, over, "name a day to come")
 
 
-def _check(file: str, said: Ruling) -> None:
-    if said.expires and not is_date(said.expires):
-        raise _refused(file, f"{shown(said.expires)!r} is not a date", "write YYYY-MM-DD")
-    if said.expires and said.expires < today(os.environ):
-        raise _refused(file, f"{said.expires} is over: it would decide nothing", "name a day to come")
-    for name in LEAST.get(said.choice, ()):
-        if not getattr(said, name):
-            raise _refused(file, f"an acceptance without {name}", f"say the {name}: it is what a person signs")
+def _cases(scope: Scope, likeness: Likeness, kind_of: Callable[[str], object]) -> Iterator[Case]:
+    """What a decision is about: one case for those robots that entries do not tell apart."""
+    whole = in_fleet(Case.of(scope.finding), likeness)
+    begins, ends = _of_each_kind(scope.robots, kind_of), _of_each_kind(scope.to_robots, kind_of)
+    pairs = [(begin, end) for begin in begins for end in ends if begin != end]
+    if not scope.to_robots:
+        source, leak = whole.robots
+        pairs = [(robot if source else "", robot if leak else "") for robot in begins] or [("", "")]
+    for pair in pairs:
+        source_end, leak_end = (
+            replace(end, robot=robot) if robot else end
+            for end, robot in zip((whole.source, whole.leak), pair, strict=True)
+        )
+        yield whole._replace(source=source_end, leak=leak_end, robots=pair)
 
 
-def _entry(said: Ruling) -> dict[str, Any]:
-    """As the file has it, in its order."""
-    entry = {
-        "decision": said.choice,
-        "reason": said.reason,
-        "owner": said.owner,
-        "legal_basis": list(said.legal_basis),
-        "date": date.fromisoformat(today(os.environ)),
-        "expires": date.fromisoformat(said.expires) if said.expires else None,
-        "ticket": said.ticket,
-    }
-    return {key: value for key, value in entry.items() if value}
-
-
-def _remark(finding: Finding) -> str:
-    """What a person reads beside an id."""
-    return f"{finding.category}: {finding.source.name} -> {finding.leak.name}"
+def _of_each_kind(robots: Iterable[str], kind_of: Callable[[str], object]) -> list[str]:
+    kinds: dict[object, list[str]] = defaultdict(list)
+    for robot in robots:
+        kinds[kind_of(robot)].append(robot)
+    return [robot for kind in kinds.values() for robot in kind[:ENDS]]
 
 
 def _refused(file: str, problem: str, hint: str) -> InputErrors:

@@ -1,4 +1,4 @@
-"""What a person says of one element: words of Python -> the entry that a label file would have of it.
+"""Edits of a label file: what a person says of one element, and what differs between two states of a file.
 
 In: what the file says of the element now, and what is said of it anew. Out: ``Edit``.
 """
@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rosprivacy.ontology.vocabulary import Vocabulary
+
+    Entries = Mapping[tuple[str, str], Any]  # (section, name) -> what the entry says
 
 SECTION = {
     "node": "nodes",
@@ -113,13 +115,7 @@ def copied(value: Any) -> Any:
 
 
 def section_of(kind: str, name: str, file: str) -> str:
-    """Return the section of label files for a kind of element.
-
-    Raises
-    ------
-    InputErrors
-        If there is no such kind.
-    """
+    """Return the section of label files for a kind of element."""
     if kind in KINDS:  # the section itself
         return kind
     if kind not in SECTION:
@@ -189,3 +185,14 @@ def _as_list(key: str, said: Any) -> Any:
 def _all(vocabulary: Vocabulary) -> list[str]:
     """The kinds of data that have no broader one: together, all."""
     return sorted(name for name in vocabulary.categories if not vocabulary.hierarchy.broader(name))
+
+
+def differences(before: Entries, after: Entries) -> list[Edit]:
+    """Return the edits that make of some entries others.
+
+    >>> changed = differences({("nodes", "/a"): "conduit"}, {("nodes", "/b"): {"leak": ["Video"]}})
+    >>> [(edit.section, edit.name, edit.value) for edit in changed]
+    [('nodes', '/a', None), ('nodes', '/b', {'leak': ['Video']})]
+    """
+    keys = dict.fromkeys([*before, *after])
+    return [Edit(*key, after.get(key)) for key in keys if before.get(key) != after.get(key)]

@@ -1,13 +1,11 @@
-"""What an edit does: what differs between two answers of a session, and between two states of its label file.
+"""What an edit does: what differs between two answers of a session.
 
-In: results, or entries by section and name. Out: ``Change``, ``Difference``, edits.
+In: two results. Out: ``Difference``; with the edit that is between them ``Change``.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
-
-from rosprivacy.explorer.edits import Edit
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -15,10 +13,8 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Verdict
     from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.analysis.fleet.patterns import FleetView
+    from rosprivacy.explorer.edits import Edit
     from rosprivacy.result import Result
-
-    Entries = Mapping[tuple[str, str], Any]
-
 
 OPENED, CLOSED, PLAINER = "opened", "closed", "plainer"
 
@@ -145,55 +141,3 @@ def _open(result: Result, likeness: Likeness) -> dict[object, frozenset[str]]:
             at = likeness.alike(element).shown_as
             found[at] = found.get(at, frozenset()).union(likeness.placed(element.robot) or ("",))
     return found
-
-
-class Merged(NamedTuple):
-    """What somebody else said of entries that this session said something of, too.
-
-    Attributes
-    ----------
-    theirs
-        What the file now says, where what was said here was saved before: it stands.
-    both
-        What the file now says, where this session says something else that is not saved.
-    """
-
-    theirs: tuple[Edit, ...]
-    both: tuple[Edit, ...]
-
-
-def merged(known: Entries, theirs: Entries, mine: Entries) -> Merged:
-    """Return where an edited label file and a session speak of the same entry.
-
-    Parameters
-    ----------
-    known, theirs
-        What the file said as the session knows it, and what it says now.
-    mine
-        What the session says.
-
-    Examples
-    --------
-    >>> place = ("nodes", "/a")
-    >>> [edit.value for edit in merged({}, {place: "conduit"}, {place: {"leak": ["Video"]}}).both]
-    ['conduit']
-    >>> [edit.value for edit in merged({place: "mundane"}, {place: "conduit"}, {place: "mundane"}).theirs]
-    ['conduit']
-    """
-    found: dict[bool, list[Edit]] = {True: [], False: []}
-    for edit in differences(known, theirs):
-        place = edit.section, edit.name
-        if mine.get(place) != edit.value:
-            found[mine.get(place) == known.get(place)].append(edit)
-    return Merged(tuple(found[True]), tuple(found[False]))
-
-
-def differences(before: Entries, after: Entries) -> list[Edit]:
-    """Return the edits that make of some entries others.
-
-    >>> changed = differences({("nodes", "/a"): "conduit"}, {("nodes", "/b"): {"leak": ["Video"]}})
-    >>> [(edit.section, edit.name, edit.value) for edit in changed]
-    [('nodes', '/a', None), ('nodes', '/b', {'leak': ['Video']})]
-    """
-    keys = dict.fromkeys([*before, *after])
-    return [Edit(*key, after.get(key)) for key in keys if before.get(key) != after.get(key)]

@@ -6,44 +6,45 @@ is a function of what was read and of the edits; undo takes the last edit away.
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from threading import RLock
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rosprivacy.analysis.errors import InputErrors
+from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.answering import answer
 from rosprivacy.explorer.edits import copied
 from rosprivacy.explorer.effects import Change, compared
-from rosprivacy.explorer.remembering import Remembering, remembering
+from rosprivacy.explorer.journal import Journal
 from rosprivacy.explorer.watched_files import WatchedFiles, files_in
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
 
-    from rosprivacy.analysis.answer import Verdict
+    from rosprivacy.explorer.edited_file import Conflict, Saved
     from rosprivacy.explorer.edits import Edit
-    from rosprivacy.explorer.label_files import LabelFiles
-    from rosprivacy.explorer.remembering import Unsaved
-    from rosprivacy.explorer.saving import Conflict, Saved
-    from rosprivacy.outputs import Findings
+    from rosprivacy.explorer.fleet_files import FleetFiles
+    from rosprivacy.explorer.journal import Unsaved
+    from rosprivacy.explorer.label_files import RobotFiles
     from rosprivacy.question import Question as Asked
     from rosprivacy.result import Result
     from rosprivacy.system import System
 
+    LabelFiles = RobotFiles | FleetFiles
+
 OF_QUESTION = ("ontologies", "type_limits", "decisions")  # files that the answer rests on, whatever system it is about
 
 
-class _State(NamedTuple):
-    """Where a session was: the edits that were made, and what followed from them."""
+class _Answered(NamedTuple):
+    """A system, and what follows: without the number of paths, and, once somebody asked, whole."""
 
-    said: str  # the edits, as text: 1 is no True there, nor a list what it becomes later
     system: System
     uncounted: Result
-    whole: Result | None
+    whole: Result | None = None
 
 
 class History:
-    """Edits of label files with undo, redo, journal and saving, and the answer after each; as of any session.
+    """Edits of label files with undo, redo, journal and saving, and the answer after each.
 
     Every method may be called from several threads.
 
@@ -51,31 +52,38 @@ class History:
     ----------
     version
         Grows with every change of the state.
-    uncounted
-        The answer of now, but for how many paths of a finding share no flow: what each edit shows at once.
     """
 
     def __init__(self, files: LabelFiles, system: System, asked: Asked) -> None:
-        self._lock = RLock()
-        self._files, self._system, self._asked = files, system, asked
+        self.lock = RLock()
+        self.files, self.asked = files, asked
+        self.version = 0
         self._done: list[Edit] = []
         self._undone: list[Edit] = []
-        self._remembers = Remembering()
+        self._now = _Answered(system, answer(system, asked, count_paths=False))
+        self._last: tuple[str, _Answered] | None = None  # edits, as text, before the last edit, undo or redo
+        self._journal = Journal()
         self._watched = WatchedFiles()
-        self.version = 0
-        self.uncounted = answer(system, asked, count_paths=False)
-        self._whole: Result | None = None
-        self._last: _State | None = None  # before the last edit, undo or redo
         self._watched.changed(self._others())
 
-    def _remember(self, folder: Path, file: str, named: tuple[str, ...], *, resume: bool) -> None:
+    def remember(self, folder: Path, named: tuple[str, ...], *, resume: bool) -> None:
         """Begin a journal; make the edits again that a session before left, if that is wanted and still the same."""
-        self._remembers = remembering(folder, file, self._files.digest, named, self._system)
-        offered = self.unsaved_from_before
+        self._journal = Journal.begin(folder, self.files.file, self.files.digest, named, self.system)
+        offered = self._journal.offered
         if resume and offered and not offered.changed:
             self.resume()
 
     # --- what is so now -----------------------------------------------------------------------------------------
+
+    @property
+    def system(self) -> System:
+        """The system of now, under the label files with the edits."""
+        return self._now.system
+
+    @property
+    def uncounted(self) -> Result:
+        """The answer of now, but for how many paths of a finding share no flow: what each edit shows at once."""
+        return self._now.uncounted
 
     @property
     def result(self) -> Result:
@@ -84,21 +92,13 @@ class History:
         Until edits are saved, the label file has a name and a hash that say so, and a new entry is told with a line
         below the last one.
         """
-        with self._lock:
-            if self._whole is None:
-                counted = self.uncounted.options.count_paths
-                self._whole = self.uncounted if counted else answer(self._system, self._asked)
-            return self._whole
-
-    @property
-    def findings(self) -> Findings:
-        """The findings of now."""
-        return self.result.findings
-
-    @property
-    def verdict(self) -> Verdict:
-        """The verdict of now (rule S12)."""
-        return self.uncounted.analysis.verdict
+        with self.lock:
+            if self._now.whole is None:
+                uncounted = self._now.uncounted
+                whole = uncounted if uncounted.options.count_paths else answer(self._now.system, self.asked)
+                self._now = self._now._replace(whole=whole)
+            assert self._now.whole is not None
+            return self._now.whole
 
     @property
     def edits(self) -> tuple[Edit, ...]:
@@ -118,41 +118,34 @@ class History:
     @property
     def unsaved(self) -> int:
         """How many entries say something else than the file on the disk, as this session knows it."""
-        return len(self._files.unsaved(self._done))
+        return len(self.files.unsaved(self._done))
 
     @property
     def unsaved_from_before(self) -> Unsaved | None:
         """What a session left that ended before it was saved, the newest first; None if there is nothing."""
-        return self._remembers.offered
-
-    @property
-    def other_sessions(self) -> int:
-        """How many other sessions edit the same label file now."""
-        return self._remembers.others
+        return self._journal.offered
 
     @property
     def remarks(self) -> tuple[str, ...]:
         """What a person has to know of the session itself, the newest last."""
-        return self._remembers.remarks
+        if self.files.refusal:
+            problem, hint = self.files.refusal
+            return (f"{problem[0].upper()}{problem[1:]}: {hint}.",)
+        return tuple(self._journal.remarks)
 
     @property
     def entries(self) -> dict[tuple[str, str], Any]:
         """What the label file says with the edits: (section, name) -> entry; of a fleet with the file in the name."""
-        return self._files.entries(self._done)
+        return self.files.entries(self._done)
 
     # --- edits --------------------------------------------------------------------------------------------------
 
     def do(self, edit: Edit) -> Change:
-        """Make an edit that is whole already, such as one that was written down.
-
-        Raises
-        ------
-        InputErrors
-            As ``Session.label``.
-        """
-        with self._lock:
+        """Make an edit that is whole already, such as one that was written down; errors as of ``label``."""
+        with self.lock:
+            self.check_that_it_changes(edit.name)
             before = self.uncounted
-            edit = self._files.entry(edit, self._done)._replace(value=copied(edit.value))
+            edit = self.files.entry(edit, self._done)._replace(value=copied(edit.value))
             self._go([*self._done, edit], [])
             return Change(edit, self.version, *compared(before, self.uncounted))
 
@@ -164,43 +157,43 @@ class History:
         InputErrors
             If the label file, merged meanwhile, does not allow it; nothing is changed then.
         """
-        with self._lock:
-            if not self._done:
-                return False
-            self._go(self._done[:-1], [*self._undone, self._done[-1]])
-            return True
+        with self.lock:
+            if self._done:
+                self._go(self._done[:-1], [*self._undone, self._done[-1]])
+                return True
+            return False
 
     def redo(self) -> bool:
-        """Make the edit again that was taken back last; return whether there was one.
-
-        Raises
-        ------
-        InputErrors
-            As ``undo``.
-        """
-        with self._lock:
-            if not self._undone:
-                return False
-            self._go([*self._done, self._undone[-1]], self._undone[:-1])
-            return True
+        """Make the edit again that was taken back last; return whether there was one; errors as of ``undo``."""
+        with self.lock:
+            if self._undone:
+                self._go([*self._done, self._undone[-1]], self._undone[:-1])
+                return True
+            return False
 
     def _go(self, done: list[Edit], undone: list[Edit]) -> None:
         """Be where these edits are made and those are taken back."""
-        said = self._files.differences(self._done, done)
-        here, last = _State(repr(self._done), self._system, self.uncounted, self._whole), self._last
-        if last is not None and last.said == repr(done):  # as undo has it, and redo after it
-            _, self._system, self.uncounted, self._whole = last
+        changed = self.files.differences(self._done, done)
+        here = repr(self._done), self._now  # as text: 1 is no True there, nor a list what it becomes later
+        if self._last is not None and self._last[0] == repr(done):  # as undo has it, and redo after it
+            self._now = self._last[1]
         else:
             self._analyse(done)
         self._done, self._undone, self._last = done, undone, here
         self.version += 1
-        self._remembers.note(said, self._files.unsaved(done))
+        self._journal.note(changed, self.files.unsaved(done))
 
     def _analyse(self, edits: Sequence[Edit]) -> None:
         """Have the answer after edits; if they are wrong, that of before is kept."""
-        system = self._files.system(edits)
-        uncounted = answer(system, self._asked, count_paths=False, before=self.uncounted)
-        self._system, self.uncounted, self._whole, self._last = system, uncounted, None, None
+        system = self.files.system(edits)
+        self._now = _Answered(system, answer(system, self.asked, count_paths=False, before=self.uncounted))
+        self._last = None
+
+    def check_that_it_changes(self, place: str, *, file: bool = False) -> None:
+        """Refuse where nothing can be changed: an edit, or a file to be written."""
+        if self.files.refusal:
+            error = InputError(place, 0, *self.files.refusal)
+            raise error if file else InputErrors([error])
 
     # --- what a session before left -----------------------------------------------------------------------------
 
@@ -212,30 +205,28 @@ class History:
         tuple of str
             Why some cannot be made: these stay offered.
         """
-        with self._lock:
-            offered = self._remembers.offered
-            if offered is None:
-                return ()
+        with self.lock:
+            offered = self._journal.offered
             refused: list[Edit] = []
             why: list[str] = []
-            for edit in offered.edits:
+            for edit in offered.edits if offered else ():
                 try:
-                    if self._files.entry(edit, self._done).value != edit.value:
+                    if self.files.entry(edit, self._done).value != edit.value:
                         self.do(edit)
                 except InputErrors as error:
                     refused.append(edit)
                     why += map(str, error.errors)
-            self._remembers.settle(refused)
+            self._journal.settle(refused)
             return tuple(why)
 
     def forget(self) -> None:
         """Throw away what a session before left."""
-        with self._lock:
-            self._remembers.settle()
+        with self.lock:
+            self._journal.settle()
 
     def close(self) -> None:
         """Let go of the journal; what is not saved stays in it."""
-        self._remembers.close()
+        self._journal.close()
 
     # --- the files ----------------------------------------------------------------------------------------------
 
@@ -253,12 +244,13 @@ class History:
         InputError
             If it cannot be written, or there is no file; nothing is lost then.
         """
-        with self._lock:
-            known = self._files.digest
+        with self.lock:
+            self.check_that_it_changes(self.files.name, file=True)
+            known = self.files.digest
             try:
-                return self._files.save(self._done)
+                return self.files.save(self._done)
             finally:
-                self._written(known)
+                self._go_on_with_written(known)
 
     def save_as(self, file: str) -> Saved:
         """Write the label file with the edits under another name, where there is none; the session goes on with it.
@@ -268,25 +260,27 @@ class History:
         InputError
             If it cannot be written, or there is a file of that name; and always of a fleet.
         """
-        with self._lock:
-            known = self._files.digest
+        with self.lock:
+            self.check_that_it_changes(file, file=True)
+            known = self.files.digest
             try:
-                return self._files.save_as(self._done, file)
+                return self.files.save_as(self._done, file)
             finally:
-                self._written(known)
+                self._go_on_with_written(known)
 
-    def _written(self, known: str) -> None:
+    def _go_on_with_written(self, known: str) -> None:
         """Go on with what was written, also where one of several files could not be."""
+        unsaved = self.files.unsaved(self._done)
         # an edit and its undoing write nothing, and are saved all the same: the answer is that of the file then
-        if self._files.digest != known or not self._files.unsaved(self._done):
-            self._remembers.begin_anew(self._files.digest, self._files.unsaved(self._done))
+        if self.files.digest != known or not unsaved:
+            self._journal.begin_anew(self.files.digest, unsaved)
             self._analyse(self._done)
             self.version += 1
 
     def changed_on_disk(self) -> Conflict | None:
         """Return how the label file differs from what this session read or wrote; None if it does not."""
-        with self._lock:
-            return self._files.changed_on_disk()
+        with self.lock:
+            return self.files.changed_on_disk()
 
     @property
     def changed_inputs(self) -> tuple[str, ...]:
@@ -294,13 +288,13 @@ class History:
 
         The answer stays one about what was read. Label files that answers went to are told by ``changed_on_disk``.
         """
-        with self._lock:
+        with self.lock:
             return self._watched.changed(self._others())
 
     def _others(self) -> list[tuple[str, str]]:
         """The files that the answer rests on and that answers do not go to, with their hashes."""
         asked = {key: self.uncounted.assumptions.get(key) for key in OF_QUESTION}
-        return [*self._files.beside, *files_in(asked)]
+        return [*self.files.beside, *files_in(asked)]
 
     def merge(self) -> tuple[Edit, ...]:
         """Read the label file anew, and make the edits again on what it says now.
@@ -316,15 +310,40 @@ class History:
         InputErrors
             If it cannot be read, or the edits contradict it; nothing is changed then.
         """
-        with self._lock:
-            before, found = self._files, self._files.merged(self._done)
-            self._files = found.files
+        with self.lock:
+            self.check_that_it_changes(self.files.name, file=True)
+            before = self.files
+            self.files, edits, both = before.merged(self._done)
             try:
-                self._analyse(found.edits)
+                self._analyse(edits)
             except BaseException:
-                self._files = before
+                self.files = before
                 raise
-            self._done = found.edits
+            self._done = edits
             self.version += 1
-            self._remembers.begin_anew(self._files.digest, self._files.unsaved(self._done))
-            return found.both
+            self._journal.begin_anew(self.files.digest, self.files.unsaved(self._done))
+            return both
+
+    # --- another question ---------------------------------------------------------------------------------------
+
+    def ask(self, asked: Asked) -> None:
+        """Have the answer to another question, such as one with other decisions."""
+        self._ask(asked)
+        self._analyse(self._done)
+
+    def _ask(self, asked: Asked) -> None:
+        self.asked = asked
+        self.files.ask(asked, self._done)
+
+    @contextmanager
+    def undone_if_it_fails(self) -> Iterator[None]:
+        """Go back to the question and the answer of before, if something fails; else it is a new version."""
+        asked, now = self.asked, self._now
+        try:
+            yield
+        except BaseException:
+            if asked is not self.asked:
+                self._ask(asked)
+            self._now = now
+            raise
+        self.version += 1

@@ -1,4 +1,4 @@
-"""What was said and not saved yet, written down at once: it outlives a process that ends in the midst of it.
+"""The journal of a session: what is not saved yet, written down at once, outlives a process that ends in its midst.
 
 In: each entry as it says something else. Out: a file of JSON lines in the user's state folder, through to the disk; and
 what sessions before this one left there. A line that was cut off by a kill or a full disk is left out, and told.
@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from filelock import BaseFileLock
+
+    from rosprivacy.system import System
 
 FORMAT = "rosprivacy.session"
 MOST = 16  # journals of one label file: of sessions that run, and of those that ended
@@ -49,8 +51,27 @@ class Base(NamedTuple):
     policies: str
 
 
+NOTHING = Base("", "")
+
+
+class Unsaved(NamedTuple):
+    """What a session left that ended before it was saved, as it is offered to a person.
+
+    Attributes
+    ----------
+    changed
+        Whether policies or the label file are other ones now: making the edits again is then a merge.
+    torn
+        How many lines of its journal cannot be read, such as one that was cut off.
+    """
+
+    edits: tuple[Edit, ...]
+    changed: bool
+    torn: int
+
+
 class Left(NamedTuple):
-    """What a session left that ended before it was saved.
+    """The journal of a session that ended before it was saved.
 
     Attributes
     ----------
@@ -71,31 +92,51 @@ class Left(NamedTuple):
 class Journal:
     """The journal of one session, with its lock; and the journals that sessions before it left.
 
+    Parameters
+    ----------
+    folder
+        None for a session without a journal: nothing is written, and nothing was left.
+    about
+        The label file that is edited, or policies as a user named them.
+
     Attributes
     ----------
-    others
-        How many sessions edit the same label file now.
     left
         The newest first; they are locked too, so that no other session takes them up.
     remarks
         What a person has to know of it.
     """
 
-    def __init__(self, folder: Path, about: str, base: Base) -> None:
+    def __init__(self, folder: Path | None = None, about: str = "", base: Base = NOTHING) -> None:
         self.base = base
-        self.others = 0
         self.left: list[Left] = []
         self.remarks: list[str] = []
         self._locks: dict[Path, BaseFileLock] = {}
         self._file: Path | None = None
         self._size, self._limit = 0, LONGEST
         self._whole = False  # whether the file holds all that was said
+        if folder is None:
+            return
         try:
             folder.mkdir(mode=0o700, parents=True, exist_ok=True)
             self._take(folder, hashlib.sha256(about.encode("utf-8", "surrogatepass")).hexdigest()[:32])
         except OSError as error:
             self._fails(folder, error)
         self.left.sort(key=lambda one: one.file.stat().st_mtime_ns, reverse=True)
+
+    @classmethod
+    def begin(cls, folder: Path, file: str, digest: str, named: tuple[str, ...], system: System) -> Journal:
+        """Begin a journal about a label file that holds what a digest says; both are empty where there is none."""
+        read = sorted({source for policy in system.policies for source in policy.sources})
+        policies = hashlib.sha256(repr(read).encode("utf-8", "surrogatepass")).hexdigest()
+        return cls(folder, str(Path(file).resolve()) if file else repr(named), Base(digest, policies))
+
+    @property
+    def offered(self) -> Unsaved | None:
+        """What the newest of the sessions before left; None if there is nothing."""
+        if not self.left:
+            return None
+        return Unsaved(self.left[0].edits, self.left[0].base != self.base, self.left[0].torn)
 
     def _take(self, folder: Path, name: str) -> None:
         """Lock a file of our own, and what nobody holds."""
@@ -110,7 +151,6 @@ class Journal:
             try:
                 lock.acquire()
             except filelock.Timeout:
-                self.others += 1
                 continue
             self._locks[file] = lock
             if file.exists():
@@ -137,14 +177,14 @@ class Journal:
         Path(f"{file}.lock").unlink(missing_ok=True)
         lock.release()
 
-    def take_up(self, left: Left, edits: Iterable[Edit] = ()) -> None:
-        """Forget what a session left; ``edits`` of it stay, for another time."""
-        edits = tuple(edits)
-        self.left.remove(left)
+    def settle(self, refused: Iterable[Edit] = ()) -> None:
+        """Forget what the newest of the sessions before left, but for what could not be made again."""
+        if not self.left:
+            return
+        left, edits = self.left.pop(0), tuple(refused)
         if edits:
-            kept = left._replace(edits=edits)
-            write_texts([(left.file, _text(kept.base, edits))])
-            self.left.insert(0, kept)
+            write_texts([(left.file, _text(left.base, edits))])
+            self.left.insert(0, left._replace(edits=edits))
         else:
             self._drop(left.file)
 
@@ -166,6 +206,10 @@ class Journal:
             self._whole = True
         except OSError as error:
             self._fails(self._file, error)
+
+    def begin_anew(self, digest: str, unsaved: Iterable[Edit]) -> None:
+        """Go on with a label file that holds something else now: what was saved is forgotten."""
+        self.rewrite(self.base._replace(labels=digest), unsaved)
 
     def rewrite(self, base: Base, edits: Iterable[Edit]) -> None:
         """Write the whole journal anew; without edits there is none."""
@@ -203,7 +247,7 @@ class Journal:
 
 def read_journal(file: Path) -> Left:
     """Read what a session left; what cannot be read of it is counted."""
-    base, edits, torn = Base("", ""), dict[tuple[str, str, str], Edit](), 0
+    base, edits, torn = NOTHING, dict[tuple[str, str, str], Edit](), 0
     try:
         if file.stat().st_size > MOST_READ:
             return Left(file, base, (), 1)

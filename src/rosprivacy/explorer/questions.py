@@ -65,26 +65,29 @@ class Question(NamedTuple):
         return self.group in (WAITS, PROPOSED)
 
 
-def questions(result: Result, order: Mapping[Shown, Behind] | None = None) -> tuple[Question, ...]:
+def questions(
+    result: Result, outliers: Collection[str] = (), order: Mapping[Shown, Behind] | None = None
+) -> tuple[Question, ...]:
     """Return what is left to decide: nodes that data reaches first, channels, what lies behind; what can wait last.
 
     Parameters
     ----------
+    outliers
+        Robots of a fleet of which is asked before others.
     order
         ``result.review_order``, by who has it already.
     """
-    shown = result.shown
     order = result.review_order if order is None else order
-    rows = (_question(q, order.get(q.element.shown_as, Behind()), result.infrastructure) for q in shown.open)
+    rows = (_question(q, order.get(q.element.shown_as, Behind()), result.infrastructure) for q in result.shown.open)
     asked: dict[tuple[str, str, str], Question] = {}
     categories = result.vocabulary.categories
-    for one in sorted(rows, key=lambda one: _urgency(one, categories)):
-        key = one.element.robot, one.section, one.name
-        first = asked.setdefault(key, one)
-        if first is not one:  # the other leg of a service or an action: one label answers for both
-            kinds = tuple(sorted({*first.kinds, *one.kinds}))
-            asked[key] = first._replace(kinds=kinds, steps=min(first.steps, one.steps))
-    return tuple(asked.values())
+    for question in sorted(rows, key=lambda question: _urgency(question, categories)):
+        key = question.element.robot, question.section, question.name
+        first = asked.setdefault(key, question)
+        if first is not question:  # the other leg of a service or an action: one label answers for both
+            kinds = tuple(sorted({*first.kinds, *question.kinds}))
+            asked[key] = first._replace(kinds=kinds, steps=min(first.steps, question.steps))
+    return tuple(sorted(asked.values(), key=lambda each: (each.can_wait, each.element.robot not in outliers)))
 
 
 def _question(asked: OpenQuestion, behind: Behind, proposed: Collection[tuple[str, str]]) -> Question:
@@ -101,8 +104,8 @@ def _question(asked: OpenQuestion, behind: Behind, proposed: Collection[tuple[st
     )  # fmt: skip
 
 
-def _urgency(one: Question, categories: Mapping[str, Category]) -> tuple[object, ...]:
+def _urgency(question: Question, categories: Mapping[str, Category]) -> tuple[object, ...]:
     """What is reviewed first; of what is alike, what the heaviest kind of data reaches."""
-    place = one.element.sort_key() if one.group == PROPOSED else ()  # others come in that order, by their steps
-    heaviest = min(categories[kind].weight for kind in one.kinds)
-    return GROUPS.index(one.group), -one.leaks, -one.closes, one.steps, place or heaviest
+    place = question.element.sort_key() if question.group == PROPOSED else ()  # others come in that order, by steps
+    heaviest = min(categories[kind].weight for kind in question.kinds)
+    return GROUPS.index(question.group), -question.leaks, -question.closes, question.steps, place or heaviest

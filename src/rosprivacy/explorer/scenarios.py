@@ -1,7 +1,8 @@
-"""Try before you do: the answer if something were other than it is, beside the answer of now (issue 22).
+"""Try before you do: the answer if something were other than it is, beside the answer of now.
 
 In: a system as a session has it, and ``WhatIf``. Out: the answer, and what a person has to know of it. Nothing of it is
-an edit: the label file and the policies stay as they are.
+an edit: label files and policies stay as they are. On a fleet something is otherwise on some robots, which are then not
+alike to others, and the answer is that of the whole fleet.
 """
 
 from __future__ import annotations
@@ -17,24 +18,32 @@ from rosprivacy.analysis.model import Method
 from rosprivacy.analysis.text import counted
 from rosprivacy.answering import answer
 from rosprivacy.explorer.edits import section_of
+from rosprivacy.ingest.fleet.dds_domains import pseudo_robot
 from rosprivacy.ingest.labels.edited_entries import KINDS, same_name
 from rosprivacy.ingest.labels.label_file import parse_labels
 from rosprivacy.ingest.mitigation.deny_lines import open_ended, with_denied
+from rosprivacy.reading.fleet_system import FleetSystem
+from rosprivacy.reading.robot_reader import Tried
 from rosprivacy.reading.robot_system import lenient_system
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sized
+    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sized
 
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.mitigation.proposals import ProposedStep
-    from rosprivacy.analysis.model import Grant, Policy, Statement
+    from rosprivacy.analysis.model import Element, Grant, Policy, Statement
     from rosprivacy.explorer.effects import Difference
+    from rosprivacy.ingest.fleet.fleet_file import Fleet
     from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.question import Question
     from rosprivacy.result import Result
     from rosprivacy.system import System
 
     End = str | Mapping[str, str]
+    ReadFleet = Callable[[Collection[str], Tried], tuple[FleetSystem, list[InputError]]]
+
+
+TRIED, LOOK_AGAIN = "what is tried", "look at how it stands now, and try again"
 
 
 class WhatIf(NamedTuple):
@@ -93,77 +102,109 @@ class Scenario(NamedTuple):
 
 
 def tried(system: System, asked: Question, what: WhatIf) -> tuple[Result, tuple[str, ...]]:
-    """Return the answer if something were so, and what to tell of it.
-
-    Raises
-    ------
-    InputErrors
-        If it names what is not there.
-    """
+    """Return the answer if something were so, and what to tell of it."""
     if what.robots:
-        raise InputErrors([InputError("what is tried", 0, "names robots, and this is one robot", "leave robots away")])
-    grants, labels = cut(system.policies, what), stated(asked, what)
+        raise _not_tried("names robots, and this is one robot", "leave robots away")
+    grants, labels = _cut(system.policies, what), _stated(asked, what)
     files = (*system.labels, labels) if labels else system.labels
     remarks: tuple[str, ...] = ()
     if grants:
         read = with_denied(system.policies, grants), system.diagnostics
-        there, problems = lenient_system(read, list(files), asked, system.types)
+        changed, problems = lenient_system(read, list(files), asked, system.types)
         remarks = tuple(map(str, problems))
     elif labels:
         assert system.under is not None, "of one robot"
-        there = system.under(files)
+        changed = system.under(files)
     else:
-        there = system
-    return answer(with_steps(doubting(there, asked, what), what), asked), remarks
+        changed = system
+    return answer(_with_steps(_doubting(changed, asked, what), what), asked), remarks
 
 
-def cut(policies: Iterable[Policy], what: WhatIf) -> list[Grant]:
-    """Return the lines that are set to DENY.
+def tried_on_robots(now: System, read: ReadFleet, asked: Question, what: WhatIf) -> tuple[Result, tuple[str, ...]]:
+    """Return the answer of the fleet if something were so on some robots, and what to tell of it.
 
-    Raises
-    ------
-    InputErrors
-        If a line allows nothing.
+    Parameters
+    ----------
+    read
+        Makes the fleet with something otherwise on some robots.
     """
-    policies = tuple(policies)
-    found = [
-        grant
-        for policy in policies
-        for grant in policy.grants
-        if grant.allow and (grant.place.file, grant.place.line) in what.cut
-    ]
-    lines = {(grant.place.file, grant.place.line) for grant in found}
+    assert isinstance(now, FleetSystem), "of a fleet"
+    _check_robots(now.fleet, what.robots)
+    groups = (group for group in now.groups if any(robot.id in what.robots for robot in group.robots))
+    policies = {policy.file: policy for group in groups for policy in now.members[group.robots[0].id].policies}
+    system, missing = read(what.robots, Tried(frozenset(_cut(policies.values(), what)), _stated(asked, what)))
+    result = answer(_filtered(_doubting(system, asked, what), now.fleet, what), asked)
+    return result, tuple(dict.fromkeys(map(str, missing)))
+
+
+def _check_robots(fleet: Fleet, robots: Collection[str]) -> None:
+    known = {robot.id for robot in (*fleet.robots, *fleet.infrastructure)}
+    hint = "name robots of the fleet, such as those of target(robot)"
+    problems = [f"{shown(name)!r} is no robot of the fleet" for name in robots if name not in known]
+    if not robots:
+        problems = ["does not say on which robots"]
+    if problems:
+        raise InputErrors([InputError(TRIED, 0, problem, hint) for problem in problems])
+
+
+def _filtered(system: System, fleet: Fleet, what: WhatIf) -> System:
+    """The fleet with the steps on each robot; a filter there is read by wildcards of its robot and its domain only."""
+    if not what.steps:
+        return system
+    domains = {robot.id: robot.domain for robot in (*fleet.robots, *fleet.infrastructure)}
+    elements, wild = system.graph.elements, open_ended(system.graph)
+    names = {element.shown_as for element in elements}
+    changed = False
+    for robot in dict.fromkeys(element.robot for element in elements if element.robot in what.robots):
+        steps = tuple(step for each in what.steps for step in _on(each, robot, what.robots, names))
+        if steps:
+            near = {robot, pseudo_robot(domains[robot])} if domains[robot] else {robot}
+            read_by = {kind: frozenset(v for v in at if elements[v].robot in near) for kind, at in wild.items()}
+            system = _with_steps(system, what._replace(steps=steps), read_by)
+            changed = True
+    if not changed:
+        raise _not_tried("is on none of these robots", LOOK_AGAIN)
+    return system
+
+
+def _on(step: ProposedStep, robot: str, robots: Collection[str], names: Collection[object]) -> Iterator[ProposedStep]:
+    """A step as it is on a robot, if its elements are there."""
+
+    def moved(element: Element) -> Element:
+        return replace(element, robot=robot) if element.robot in robots else element
+
+    between = tuple((moved(a), moved(b)) for a, b in step.between)
+    between = tuple((a, b) for a, b in between if a.shown_as in names and b.shown_as in names)
+    channel = moved(step.channel) if step.channel else None
+    if between or (channel and channel.shown_as in names):
+        yield replace(step, between=between, channel=channel)
+
+
+def _cut(policies: Iterable[Policy], what: WhatIf) -> list[Grant]:
+    """The lines that are set to DENY."""
+    grants = [grant for policy in policies for grant in policy.grants]
+    named = [grant for grant in grants if grant.allow and (grant.place.file, grant.place.line) in what.cut]
+    lines = {(grant.place.file, grant.place.line) for grant in named}
     hint = "name a line that allows something"
     problems = [InputError(*place, "allows nothing", hint) for place in what.cut if place not in lines]
     if problems:
         raise InputErrors(problems)
     chosen = {grant for step in what.steps if step.kind == DENY for grant in step.grants}
-    return found + [grant for policy in policies for grant in policy.grants if grant in chosen]
+    return named + [grant for grant in grants if grant in chosen]
 
 
-def stated(asked: Question, what: WhatIf) -> Labels | None:
-    """Return what a label file would say; None for nothing."""
+def _stated(asked: Question, what: WhatIf) -> Labels | None:
+    """What a label file would say; None for nothing."""
     flows: list[dict[str, Any]] = [{"from": a, "to": b, "never": list(kinds)} for a, b, kinds in what.filters]
     flows += [{"from": a, "to": b} for a, b in what.flows]
     if not (flows or what.elements):
         return None
-    said = {"labels": 1, "elements": dict(what.elements), "flows": flows}
-    return parse_labels(said, asked.vocabulary, name="what is tried", bounds=asked.settings.bounds)
+    entries = {"labels": 1, "elements": dict(what.elements), "flows": flows}
+    return parse_labels(entries, asked.vocabulary, name=TRIED, bounds=asked.settings.bounds)
 
 
-def with_steps(system: System, what: WhatIf, wild: Mapping[str, frozenset[int]] | None = None) -> System:
-    """Return the system after reviews and filters; what is set to DENY is gone already.
-
-    Parameters
-    ----------
-    wild
-        As of ``with_changes``; None for all wildcards of the graph.
-
-    Raises
-    ------
-    InputErrors
-        If there is nothing any more to review or to filter.
-    """
+def _with_steps(system: System, what: WhatIf, wild: Mapping[str, frozenset[int]] | None = None) -> System:
+    """The system after reviews and filters; what is set to DENY is gone already. ``wild`` is as of ``with_changes``."""
     steps = [step for step in what.steps if step.kind != DENY]
     if not steps:
         return system
@@ -172,65 +213,63 @@ def with_steps(system: System, what: WhatIf, wild: Mapping[str, frozenset[int]] 
     ends = {(elements[flow.source].shown_as, elements[flow.target].shown_as) for flow in flows}
     channels = {element.identity for element in elements if element.is_channel}
     for step in steps:
-        there = any((a.shown_as, b.shown_as) in ends for a, b in step.between)
+        is_there = any((a.shown_as, b.shown_as) in ends for a, b in step.between)
         if step.channel:
-            there = step.channel.identity in channels
-        if not there:
-            problem = f"there is nothing any more {'to filter' if step.kind == FILTER else 'to review'}"
-            raise InputErrors([InputError("what is tried", 0, problem, "look at how it stands now, and try again")])
+            is_there = step.channel.identity in channels
+        if not is_there:
+            what_for = "to filter" if step.kind == FILTER else "to review"
+            raise _not_tried(f"there is nothing any more {what_for}", LOOK_AGAIN)
     wild = open_ended(system.graph) if wild is None else wild
     graph, bound = with_changes(system.graph, system.bound, steps, wild)
     return replace(system, graph=graph, bound=bound)
 
 
-def doubting(system: System, asked: Question, what: WhatIf) -> System:
-    """Return the system without what some sanitizers are said to clean.
-
-    Raises
-    ------
-    InputErrors
-        If one is none.
-    """
+def _doubting(system: System, asked: Question, what: WhatIf) -> System:
+    """The system without what some sanitizers are said to clean."""
     elements = dict(system.bound.elements)
     for kind, name, kinds in what.doubted:
-        section = section_of(kind, name, "what is tried")
+        section = section_of(kind, name, TRIED)
         hierarchy = asked.vocabulary.hierarchy
-        touched = 0
-        for vertex, said in system.bound.elements.items():
+        cleans_nothing = True
+        for vertex, statements in system.bound.elements.items():
             element = system.graph.elements[vertex]
             if what.robots and element.robot not in what.robots:
                 continue
             if element.kind in KINDS[section] and same_name(element.name, name):
-                elements[vertex] = tuple(one for one in said if not any(_cleans(one, kinds, hierarchy)))
-                touched += len(elements[vertex]) < len(said)
-        if not touched:
+                left = tuple(each for each in statements if not _cleans(each, kinds, hierarchy))
+                elements[vertex] = left
+                cleans_nothing &= len(left) == len(statements)
+        if cleans_nothing:
             problem = f"{shown(name)!r} is no sanitizer" + (f" of {', '.join(kinds)}" if kinds else "")
-            raise InputErrors([InputError("what is tried", 0, problem, "name one that cleans something")])
+            raise _not_tried(problem, "name one that cleans something")
     return replace(system, bound=replace(system.bound, elements=elements)) if what.doubted else system
 
 
-def _cleans(said: Statement, kinds: tuple[str, ...], hierarchy: Hierarchy) -> Iterator[bool]:
+def _cleans(statement: Statement, kinds: tuple[str, ...], hierarchy: Hierarchy) -> bool:
     """Whether a statement says that something is cleaned, of one of some kinds or of any."""
-    if said.role == "sanitizer" and said.method is not Method.ABSENT:
-        yield from (
-            not kinds or any(hierarchy.overlap(one, kind) is not None for kind in kinds) for one in said.categories
-        )
+    if statement.role != "sanitizer" or statement.method is Method.ABSENT:
+        return False
+    return any(
+        not kinds or any(hierarchy.overlap(category, kind) is not None for kind in kinds)
+        for category in statement.categories
+    )
 
 
-def told(what: WhatIf) -> str:
+def summary_of(what: WhatIf) -> str:
     """Return in few words how much is tried.
 
-    >>> told(WhatIf(cut=(("p.xml", 3),), doubted=(("nodes", "/blur", ()),)))
+    >>> summary_of(WhatIf(cut=(("p.xml", 3),), doubted=(("nodes", "/blur", ()),)))
     '1 line cut, 1 sanitizer doubted'
     """
-    parts: dict[str, Sized] = {
-        "change made": what.steps,
-        "line cut": what.cut,
-        "flow filtered": what.filters,
-        "element added": what.elements,
-    }
-    more: dict[str, Sized] = {"flow added": what.flows, "sanitizer doubted": what.doubted}
-    return ", ".join(_few(len(some), name) for name, some in {**parts, **more}.items() if some)
+    parts: list[tuple[Sized, str, str]] = [
+        (what.steps, "change", "made"),
+        (what.cut, "line", "cut"),
+        (what.filters, "flow", "filtered"),
+        (what.elements, "element", "added"),
+        (what.flows, "flow", "added"),
+        (what.doubted, "sanitizer", "doubted"),
+    ]
+    return ", ".join(f"{counted(len(part), noun)} {verb}" for part, noun, verb in parts if part)
 
 
 def together(first: WhatIf, second: WhatIf) -> WhatIf:
@@ -247,14 +286,13 @@ def together(first: WhatIf, second: WhatIf) -> WhatIf:
     True
     """
     if first.robots != second.robots:
-        problem = "is not about the same robots"
-        raise InputErrors([InputError("what is tried", 0, problem, "try both on the same robots")])
+        raise _not_tried("is not about the same robots", "try both on the same robots")
     renamed = {name: _free(name, first, second) for name in second.elements}
     flows = tuple((_renamed(a, renamed), _renamed(b, renamed)) for a, b in second.flows)
     return WhatIf(
         cut=tuple(dict.fromkeys((*first.cut, *second.cut))),
         filters=tuple(dict.fromkeys((*first.filters, *second.filters))),
-        elements={**first.elements, **{renamed[name]: said for name, said in second.elements.items()}},
+        elements={**first.elements, **{renamed[name]: facts for name, facts in second.elements.items()}},
         flows=(*first.flows, *(flow for flow in flows if flow not in first.flows)),
         doubted=tuple(dict.fromkeys((*first.doubted, *second.doubted))),
         steps=tuple(dict.fromkeys((*first.steps, *second.steps))),
@@ -264,13 +302,13 @@ def together(first: WhatIf, second: WhatIf) -> WhatIf:
 
 def _free(name: str, first: WhatIf, second: WhatIf) -> str:
     """A name for an element of the second: its own, unless the first has another element of that name."""
-    if name not in first.elements or _told_of(name, first) == _told_of(name, second):
+    if name not in first.elements or _stated_of(name, first) == _stated_of(name, second):
         return name
     taken = first.elements.keys() | second.elements.keys()
     return next(other for number in count(2) if (other := f"{name} {number}") not in taken)
 
 
-def _told_of(name: str, what: WhatIf) -> object:
+def _stated_of(name: str, what: WhatIf) -> object:
     return what.elements[name], [flow for flow in what.flows if name in map(_name_of, flow)]
 
 
@@ -282,6 +320,5 @@ def _name_of(end: End) -> str:
     return end if isinstance(end, str) else next(iter(end.values()))
 
 
-def _few(number: int, name: str) -> str:
-    noun, _, done = name.partition(" ")
-    return f"{counted(number, noun)} {done}"
+def _not_tried(problem: str, hint: str) -> InputErrors:
+    return InputErrors([InputError(TRIED, 0, problem, hint)])

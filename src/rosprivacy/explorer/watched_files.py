@@ -10,7 +10,7 @@ from pathlib import Path
 from stat import S_ISREG
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rosprivacy.explorer.saving import digest_of
+from rosprivacy.explorer.edited_file import digest_of
 from rosprivacy.ingest.labels.label_file import OURS
 from rosprivacy.ingest.reading.bounded_file import contents
 
@@ -45,9 +45,11 @@ class WatchedFiles:
         read
             (file, SHA-256 of what was read). What comes with the program does not change.
         """
-        there = ((file, digest) for file, digest in read if not file.startswith(OURS))
-        held = ((file, digest, self._holds(file)) for file, digest in there)
-        return tuple(sorted({file for file, digest, now in held if now not in (digest, self._first[file], None)}))
+        changed = set[str]()
+        for file, digest in read:
+            if not file.startswith(OURS) and self._holds(file) not in (digest, self._first[file], None):
+                changed.add(file)
+        return tuple(sorted(changed))
 
     def _holds(self, file: str) -> str | None:
         """The SHA-256 of what a file holds; empty if it cannot be read, None for what can be read only once."""
@@ -77,7 +79,7 @@ def files_in(rests_on: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     >>> list(files_in({"view": "declared", "types": [{"file": "t", "sha256": "1"}], "decisions": None}))
     [('t', '1')]
     """
-    for said in rests_on.values():
-        for one in said if isinstance(said, list) else [said]:
-            if isinstance(one, dict) and "file" in one and "sha256" in one:
-                yield one["file"], one["sha256"]
+    for rows in rests_on.values():
+        for row in rows if isinstance(rows, list) else [rows]:
+            if isinstance(row, dict) and "file" in row and "sha256" in row:
+                yield row["file"], row["sha256"]

@@ -12,9 +12,7 @@ from starlette.testclient import TestClient
 
 from rosprivacy.explorer.element_ids import element_id
 from rosprivacy.explorer.web.application import Site
-from rosprivacy.explorer.web.cypher.cypher_answer import BOXES, LETTERS, LONGEST_CELL, ROWS
-from rosprivacy.explorer.web.cypher.cypher_form import LONGEST_TEXT
-from rosprivacy.explorer.web.cypher.cypher_site import AT_ONCE, StoredSite
+from rosprivacy.explorer.web.cypher_site import AT_ONCE, BOXES, LETTERS, LONGEST_CELL, LONGEST_TEXT, ROWS, StoredSite
 from rosprivacy.explorer.web.guard import LARGEST
 from rosprivacy.private_neo4j import connection
 from rosprivacy.private_neo4j.connection import Connection

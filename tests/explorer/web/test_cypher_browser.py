@@ -10,8 +10,8 @@ from urllib.parse import urlsplit
 
 import pytest
 
-from rosprivacy.explorer.stored_session import StoredSession
-from rosprivacy.explorer.web.cypher.cypher_site import StoredSite
+from rosprivacy.explorer.session import Session
+from rosprivacy.explorer.web.cypher_site import StoredSite
 from rosprivacy.explorer.web.guard import Door
 from rosprivacy.explorer.web.serving import bound_socket, server
 from rosprivacy.ingest.database.loading import load
@@ -56,7 +56,7 @@ def served(browser: WebDriver, to: Connection, language: str = "en") -> Iterator
     """The page on a server that ends after the page was left; the console stays silent, and only it is asked."""
     opens = partial(connection.open_driver, to)
     with opens() as driver:
-        session = StoredSession.open_database(driver)
+        session = Session.open_database(driver)
     with bound_socket(0) as listening:
         door = Door(listening.getsockname()[1], True)
         site = StoredSite(session, Settings(), Words(language), door, opens, 2.0)

@@ -102,15 +102,6 @@ def test_texts_stay_texts_in_the_file(begun: Explorer, tmp_path: Path) -> None:
     assert entry.reason == evil
 
 
-def test_without_the_option_the_page_says_how_to_start(explore: Explore, tmp_path: Path) -> None:
-    explorer = explore(BARE, copied(FACTORY / "run2.labels.yaml", tmp_path))
-    client = explorer.client()
-    there = html.fromstring(client.get(f"/?finding={explorer.session.findings[0].id}").text)
-    assert not there.xpath("//form[@id='decide']")
-    assert "--decisions decisions.yaml" in there.text_content()
-    assert decide(explorer, client, **SIGNED).status_code == 422
-
-
 def test_a_full_disk_or_a_closed_folder_is_told(begun: Explorer, tmp_path: Path) -> None:
     (tmp_path / "d.yaml").mkdir()
     answer = decide(begun, begun.client(), **SIGNED)

@@ -8,7 +8,7 @@ import pytest
 from lxml import html
 
 import rosprivacy
-from rosprivacy.explorer.web import decided_robots
+from rosprivacy.explorer.web import finding_pane
 from tests.helpers.explorers import Explorer, version
 from tests.helpers.fleet_files import policy, write
 from tests.helpers.full_disk import full_disk
@@ -73,18 +73,6 @@ def open_on(file: Path, hospital: Path, finding: Finding) -> set[str]:
     }
     (found,) = (one for one in fleet.patterns if said[one] == what)
     return {robot for form, robots in found.forms if not form.accepted for robot in robots}
-
-
-def test_it_is_told_about_how_many_robots_and_which(begun: Explorer) -> None:
-    client = begun.client()
-    finding = on_every_robot(begun)
-    assert list(radios(client, finding))[:2] == ["of model carrier: 23 robots", "carrier_01 only"]
-    assert "of model guide: 12 robots" in radios(client, finding)
-    assert "carrier_lent only" in radios(client, finding)
-    form = html.fromstring(client.get(f"/?finding={finding.id}").text).get_element_by_id("decide")
-    assert "carrier_22, carrier_23" in form.cssselect("details p")[0].text_content()
-    assert "a robot that joins later" in form.text_content()
-    assert form.cssselect(".whose input[checked]")[0].get("value") == finding.id
 
 
 def test_of_what_gets_from_robot_to_robot_both_ends_are_told(begun: Explorer) -> None:
@@ -216,25 +204,8 @@ def test_a_decision_on_a_full_disk_decides_nothing(begun: Explorer, file: Path) 
     assert decide(client, finding, **SIGNED, whose=finding.id).status_code == 303
 
 
-def test_without_the_option_the_page_says_how_to_start(explore: Explore, hospital: Path) -> None:
-    explorer = explore(hospital, hospital, fleet=True)
-    client, finding = explorer.client(), on_every_robot(explorer)
-    page = html.fromstring(client.get(f"/?finding={finding.id}").text)
-    assert not page.xpath("//form[@id='decide']")
-    assert "--decisions decisions.yaml" in page.text_content()
-    assert decide(client, finding, **SIGNED, whose=finding.id).status_code == 422
-
-
-@pytest.mark.parametrize(("language", "told"), [("de", "vom Modell carrier: 23 Roboter"), ("fr", "du modèle carrier")])
-def test_it_is_said_in_the_language_of_the_page(
-    explore: Explore, hospital: Path, file: Path, language: str, told: str
-) -> None:
-    explorer = explore(hospital, hospital, fleet=True, decisions=file, language=language)
-    assert any(told in words for words in radios(explorer.client(), on_every_robot(explorer)))
-
-
 def test_robots_that_the_page_does_not_offer_are_counted(begun: Explorer, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(decided_robots, "OFFERED", 3)
+    monkeypatch.setattr(finding_pane, "OFFERED", 3)
     client, finding = begun.client(), on_every_robot(begun)
     assert list(radios(client, finding)) == ["of model carrier: 23 robots", "carrier_01 only", "carrier_lent only"]
     assert "4 more can be chosen once some of these are decided" in client.get(f"/?finding={finding.id}").text

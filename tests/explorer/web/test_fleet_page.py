@@ -37,24 +37,6 @@ def on(robot: str, name: str) -> str:
     return element_id((robot, "node", name))
 
 
-def test_robots_that_are_alike_are_one_and_others_come_first(explore: Explore, hospital: Path) -> None:
-    page = html.fromstring(explore(hospital, hospital, fleet=True).client().get("/").text)
-    rows = [row.text_content() for row in page.cssselect("#rows .row")]
-    asked = [row for row in rows if "from a source" in row]
-    assert asked[0].startswith("carrier_lent:/")
-    assert "not as its model" in asked[0]
-    assert any(row.startswith("carrier_01:/recorder") and "stands for 23 robots" in row for row in asked)
-    assert not [row for row in rows if row.startswith("carrier_02:")]
-
-
-def test_two_ways_out_of_the_same_data_at_one_place_are_told_apart(explore: Explore, hospital: Path) -> None:
-    page = html.fromstring(explore(hospital, hospital, fleet=True).client().get("/").text)
-    for row in page.cssselect("#rows li"):
-        told = [way.text_content() for way in row.cssselect(".way")]
-        assert len(set(told)) == len(told)
-    assert "transfer to a third country" in page.get_element_by_id("rows").text_content()
-
-
 def test_an_answer_is_of_the_model_or_of_one_robot(explore: Explore, hospital: Path) -> None:
     explorer = explore(hospital, hospital, fleet=True)
     client = explorer.client()

@@ -9,8 +9,8 @@ import pytest
 from lxml import html
 
 from rosprivacy.explorer.element_ids import element_id
-from rosprivacy.explorer.web.left_open import left_of
-from rosprivacy.explorer.web.review.review_questions import asked
+from rosprivacy.explorer.web.answered_entries import left_of
+from rosprivacy.explorer.web.review_panes import asked
 from rosprivacy.reading.fleet_system import answer_fleet
 from rosprivacy.report.catalogs.words import Words
 from rosprivacy.settings import Settings

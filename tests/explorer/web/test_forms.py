@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from rosprivacy.analysis.model import Element
 from rosprivacy.explorer.element_ids import element_id
+from rosprivacy.explorer.web.answered_entries import label_of
 from rosprivacy.explorer.web.forms import EVERY, METHODS, Answer, Form, FormError, answer_in, roles_of
-from rosprivacy.explorer.web.saying import label_of
 
 NODE, TOPIC = Element("node", "/recorder"), Element("topic", "/video")
 STORE = Element("storage", "disk")

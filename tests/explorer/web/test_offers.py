@@ -1,4 +1,4 @@
-"""Suggestions on the page: none that could close a known finding is taken by one key (issue 22)."""
+"""Suggestions on the page: none that could close a known finding is taken by one key."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import pytest
 from lxml import html
 
 from rosprivacy.explorer.element_ids import element_id
-from rosprivacy.explorer.web.review.review_questions import asked
+from rosprivacy.explorer.web.review_panes import asked
 from rosprivacy.report.catalogs.words import Words
 from tests.helpers.explorers import Explorer, label, node
 from tests.helpers.little_robots import policy_of
@@ -101,11 +101,11 @@ def test_an_answer_about_every_kind_leaves_what_is_made_of_data(explore: Explore
     client = explorer.client()
     assert label(client, node("/box"), "conduit", about="*").status_code == 303
     box = next(one for one in explorer.session.result.analysis.graph.elements if one.name == "/box")
-    assert explorer.session.said_of(box)["derives"] == [{"from": "Video", "to": "FaceTemplate"}]
+    assert explorer.session.entry_for(box)["derives"] == [{"from": "Video", "to": "FaceTemplate"}]
     gone = Words("en")("x.derives.gone", data="face template")
     assert gone not in client.get("/").text
     assert label(client, node("/box"), "absent", reason="only in tests").status_code == 303
-    assert "derives" not in explorer.session.said_of(box)
+    assert "derives" not in explorer.session.entry_for(box)
     assert gone in client.get("/").text
 
 
@@ -123,7 +123,7 @@ def folded(page: html.HtmlElement) -> bool:
 def test_a_row_says_what_is_surest_and_a_list_with_a_likely_source_is_not_folded(
     explore: Explore, tmp_path: Path
 ) -> None:
-    """users.md U3: the camera with its video before /amcl; body pose is never what its row says."""
+    """The camera with its video before /amcl; body pose is never what its row says."""
     nodes = {
         "amcl": (["/particle_cloud"], ["/scan"]),
         "camera": (["/image", "/tf_static"], []),
@@ -156,7 +156,7 @@ def test_a_row_says_what_is_surest_and_a_list_with_a_likely_source_is_not_folded
 def test_that_a_node_lets_data_out_is_told_although_a_glob_calls_it_a_conduit(
     explore: Explore, tmp_path: Path, entry: str, *, told: bool
 ) -> None:
-    """S11, users.md U1: a glob has not seen the node; a person's full name has."""
+    """S11: a glob has not seen the node; a person's full name has."""
     nodes = {"camera": (["/image"], []), "cloud_uploader": ([], ["/image"]), "recorder": ([], ["/other"])}
     (tmp_path / "robot.policy.xml").write_text(policy_of(nodes), "utf-8")
     said = f'labels: 1\nnodes:\n  /camera: {{source: [Video]}}\n  "/*": conduit\n{entry}topics:\n  /image: sensitive\n'

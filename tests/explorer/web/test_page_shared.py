@@ -95,5 +95,5 @@ def test_suggestions_for_an_element_are_those_that_are_made_for_all(
             order = dict.fromkeys(one.label.element.identity for one in every if one.label.role in roles)
             whole = tuple(tuple(one for one in every if one.label.element.identity == at) for at in order)
             assert standing.suggestions.of_role(*roles) == whole
-        assert questions(session.result, standing.order) == session.questions()
+        assert questions(session.result, order=standing.order) == session.questions()
     assert told

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from rosprivacy.analysis.errors import InputError, InputErrors
-from rosprivacy.explorer.stored_session import StoredSession
+from rosprivacy.explorer.session import Session
 from rosprivacy.explorer.web.application import Site
 from rosprivacy.explorer.web.guard import Door
 from rosprivacy.ingest.database.loading import load
@@ -31,7 +31,7 @@ def test_what_is_in_a_database_is_shown_and_not_changed(neo4j_server: Connection
         result = care_home()
         load(driver, [rows_of("h1", result)], result.vocabulary)
         before = driver.execute_query("MATCH (n)-[r]->(m) RETURN count(n), count(r)").records
-        session = StoredSession.open_database(driver)
+        session = Session.open_database(driver)
         assert session.result.to("json") == answer_unwritten(driver, Settings()).to("json")
         after = driver.execute_query("MATCH (n)-[r]->(m) RETURN count(n), count(r)").records
     door = Door(PORT, True)

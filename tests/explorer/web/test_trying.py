@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from lxml import html
 
 from rosprivacy.explorer.element_ids import element_id
-from rosprivacy.explorer.web.trials.kept_trials import MOST
+from rosprivacy.explorer.web.kept_trials import MOST
 from tests.helpers.explorers import BARE, FACTORY, FILTERED, Explorer, copied, label, node, version
 from tests.helpers.languages import english_in
 
@@ -46,23 +46,6 @@ def page(client: TestClient, address: str) -> Any:
 
 def text(of: Any, part: str) -> str:
     return " ".join(" ".join(of.get_element_by_id(part).itertext()).split())
-
-
-def test_a_finding_says_its_path_with_policy_lines_and_what_the_law_says(explore: Explore, labels: Path) -> None:
-    client = explore(BARE, labels).client()
-    ways = page(client, "/").xpath("//a[@class='way']")
-    assert [one.text for one in ways] == ["video of persons from /robot_camera", "video of persons from /safety_camera"]
-    assert [one.get("data-key") for one in ways] == ["o", None]
-    there = page(client, ways[0].get("href"))
-    said = text(there, "element")
-    assert "Video of persons can get from /robot_camera to /archive_server, which lets it out." in said
-    assert "before.policy.xml:48 (enclave /factory, profile /robot_camera)" in said
-    assert "Article 9(1) GDPR: such data may reveal special categories" in said
-    assert "as it is, not pseudonymised" in said
-    assert "to assess disclosure" in said
-    assert "/new_pose topic not reviewed" in said
-    assert there.xpath("//a[@class='way'][@data-key='o']")[0].text == "video of persons from /safety_camera"
-    assert page(client, there.xpath("//a[@data-key='b']/@href")[0]).get_element_by_id("answers").tag == "form"
 
 
 def test_what_closes_a_finding_is_one_click_from_being_tried(explore: Explore, labels: Path) -> None:
@@ -138,17 +121,6 @@ def test_a_trial_shows_how_it_would_be(explore: Explore, labels: Path) -> None:
     opened = there.xpath("//h3[.='What opens']/following-sibling::ul[1]//a/@href")
     assert "storage on trial" in text(page(client, opened[0]), "element")
     assert "storage on trial" not in text(page(client, "/"), "rows")
-
-
-def test_a_line_cut_closes_what_mitigate_would_say(explore: Explore, labels: Path) -> None:
-    client = explore(BARE, labels).client()
-    forms = page(client, f"/?at={CAMERA}").xpath("//form[input[@value='cut']]")
-    lines = forms[0].xpath(".//option/@value")
-    assert all(re.fullmatch("l[0-9a-f]{16}", line) for line in lines)
-    address = tried(client, what="cut", line=lines[0]).headers["location"]
-    said = text(page(client, address), "element")
-    assert "before.policy.xml:48 is set to DENY. That holds for the whole enclave." in said
-    assert "1 path to assess closes" in said
 
 
 def test_a_doubt_opens_what_the_sanitizer_closes(explore: Explore, tmp_path: Path) -> None:

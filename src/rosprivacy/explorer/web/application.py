@@ -18,25 +18,22 @@ from starlette.responses import HTMLResponse, JSONResponse, PlainTextResponse, R
 from starlette.routing import Route
 
 from rosprivacy.analysis.errors import RosPrivacyError, shown
-from rosprivacy.explorer.saving import Conflict
+from rosprivacy.explorer.edited_file import Conflict
 from rosprivacy.explorer.web import forms
-from rosprivacy.explorer.web.beside import beside
-from rosprivacy.explorer.web.decided_robots import chosen_in, scope_told
-from rosprivacy.explorer.web.decision_form import decision_in
+from rosprivacy.explorer.web.answered_entries import label_of, limit_of, made_by
+from rosprivacy.explorer.web.finding_pane import finding_pane, scope_in, scope_in_words
 from rosprivacy.explorer.web.guard import Guard
-from rosprivacy.explorer.web.page import page_of
-from rosprivacy.explorer.web.page_picture import drawn, pictures_of
-from rosprivacy.explorer.web.rendering import Message, rendered
-from rosprivacy.explorer.web.saying import label_of, limit_of, made_by
+from rosprivacy.explorer.web.kept_trials import Trials, kept_trials, trial_pane
+from rosprivacy.explorer.web.page import Message, draw_picture, page_of, render_page
+from rosprivacy.explorer.web.panes import ROBOT, WHOSE, Pane, title_of, titles_of
 from rosprivacy.explorer.web.standing import Standing
-from rosprivacy.explorer.web.titles import title_of
-from rosprivacy.explorer.web.trials.kept_trials import Trials
-from rosprivacy.explorer.web.trials.trial_forms import TOGETHER, tried_in
+from rosprivacy.explorer.web.trial_forms import TOGETHER, offers_at, tried_in
 from rosprivacy.explorer.web.view import trial_in, view_of
-from rosprivacy.explorer.web.whose import ROBOT, WHOSE
 from rosprivacy.labelling.knowledge import what_is_known
 from rosprivacy.labelling.suggesting_on_demand import Suggester
-from rosprivacy.report.explorer.style_sheet import style_sheet
+from rosprivacy.report.pictures.legend import style_sheet
+from rosprivacy.report.pictures.page_pictures import Pictures
+from rosprivacy.report.pictures.phrases import Phrases
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -66,7 +63,7 @@ DONE, PROBLEM = "done", "problem"
 READING = ("/try", "/drop")  # what is tried is kept in memory only
 
 
-class Told(NamedTuple):
+class Outcome(NamedTuple):
     """What came of a request: a status of HTTP, what a person is told, and the trial that is looked at then."""
 
     status: int
@@ -95,13 +92,14 @@ class Site:
         self._known = Suggester(what_is_known(session.uncounted.vocabulary, settings))
         self._standing = Standing(session, self._known)
         self._trials = Trials(session, self._known)
-        self._pictures = pictures_of(session.uncounted.vocabulary, words)
+        self._phrases = Phrases.told(words, titles_of(session.uncounted.vocabulary, words))
+        self._pictures = Pictures(self._phrases)
         self._by = ""
         self._message: Message | None = None
 
     def application(self) -> ASGIApp:
         """Return what a server runs."""
-        posts: dict[str, Callable[[Form], Told]] = {
+        posts: dict[str, Callable[[Form], Outcome]] = {
             "/label": self._label, "/undo": self._undo, "/redo": self._redo, "/save": self._save, "/merge": self._merge,
             "/resume": self._resume, "/forget": self._forget, "/try": self._try, "/drop": self._drop,
             "/decide": self._decide,
@@ -136,7 +134,7 @@ class Site:
     async def _get(self, request: Request) -> Response:
         return await run_in_threadpool(self._page, request.url.query)
 
-    def _post(self, work: Callable[[Form], Told]) -> Callable[[Request], object]:
+    def _post(self, work: Callable[[Form], Outcome]) -> Callable[[Request], object]:
         async def handle(request: Request) -> Response:
             body = await request.body()
             return await run_in_threadpool(self._changed, work, body, request.url.query)
@@ -166,26 +164,38 @@ class Site:
 
     # --- what is answered ---------------------------------------------------------------------------------------
 
-    def _page(self, query: str, told: Told | None = None) -> Response:
+    def _page(self, query: str, outcome: Outcome | None = None) -> Response:
         with self._lock:
             standing, view, problem = self._looked_at(query)
             page = page_of(standing, view, self._words)
             new = problem or self._message or self._changed_on_disk()
-            message, self._message = told.message if told else new, None
-            text = rendered(
+            message, self._message = outcome.message if outcome else new, None
+            text = render_page(
                 page,
                 self._words,
-                drawn(self._pictures, standing, page),
-                beside(standing, self.standing, page, self._trials, self._words),
+                draw_picture(self._pictures, standing, page),
+                self._beside(standing, page),
+                read_only=self.door.read_only,
                 message=message,
-                left=self.session.unsaved_from_before,
-                remarks=self.session.remarks,
+                left=self.session.history.unsaved_from_before,
+                remarks=self.session.history.remarks,
                 inputs=self._changed_inputs(),
                 by=self._by,
-                read_only=self.door.read_only,
                 asks=self.asks,
             )
-        return HTMLResponse(text, told.status if told else 200)
+        return HTMLResponse(text, outcome.status if outcome else 200)
+
+    def _beside(self, standing: Standing, page: Pane) -> Pane:
+        """What stands beside the system: the finding in hand, the trial that is looked at, what can be tried here."""
+        view, words = page.view, self._words
+        finding = standing.findings.get(view.finding)
+        can_try = page.pane and not (finding or view.trial or self.session.is_stored)
+        return Pane(
+            finding=finding_pane(standing, finding, view, words) if finding else None,
+            trial=trial_pane(self.standing, self._trials, view, words) if view.trial else None,
+            offers=offers_at(standing, standing.elements[page.pane.id], words) if can_try else None,
+            kept=kept_trials(self._trials, view, words),
+        )
 
     def _looked_at(self, query: str) -> tuple[Standing, View, Message | None]:
         """How it stands, or would stand under a trial; the view; why a trial cannot be looked at any more."""
@@ -215,21 +225,21 @@ class Site:
             return ""
         return self._words("x.inputs", files=self._words.row(self._words.first(changed, MOST_NAMED)))
 
-    def _changed(self, work: Callable[[Form], Told], body: bytes, query: str) -> Response:
+    def _changed(self, work: Callable[[Form], Outcome], body: bytes, query: str) -> Response:
         """Do what a form says; a page that is loaded again does it no second time."""
         with self._lock:
             try:
                 form = forms.Form(body)
                 stale = form.number("version") != self.session.version
-                told = Told(409, Message(PROBLEM, self._words("x.stale"))) if stale else work(form)
+                outcome = Outcome(409, Message(PROBLEM, self._words("x.stale"))) if stale else work(form)
             except (forms.FormError, RosPrivacyError) as error:
-                told = Told(422, self._refused(error))
-            if told.status != 200:  # noqa: PLR2004 - of HTTP
-                return self._page(query, told)
-            self._message = told.message
+                outcome = Outcome(422, self._refused(error))
+            if outcome.status != 200:  # noqa: PLR2004 - of HTTP
+                return self._page(query, outcome)
+            self._message = outcome.message
             address = self._address(query)
-            if told.trial:
-                address = self._looked_at(query)[1].to("")._replace(find="", trial=told.trial).address
+            if outcome.trial:
+                address = self._looked_at(query)[1].to("")._replace(find="", trial=outcome.trial).address
         return RedirectResponse(address, 303)
 
     def _refused(self, error: Exception) -> Message:
@@ -242,89 +252,89 @@ class Site:
 
     # --- what a form does ---------------------------------------------------------------------------------------
 
-    def _label(self, form: Form) -> Told:
+    def _label(self, form: Form) -> Outcome:
         standing = self.standing
         answer = forms.answer_in(form, standing.elements, standing.vocabulary.categories)
         alone = form.choice("whose", WHOSE) == ROBOT
-        label, now = None, standing.entry(answer.element, only_this_robot=alone)
+        label, now = None, self.session.entry_for(answer.element, only_this_robot=alone)
         if answer.role != forms.NOTHING:
             label = cast("Label", label_of(answer, now))
         self.session.answer_for(answer.element, label, only_this_robot=alone)
         self._by = answer.by or self._by
-        return Told(200, self._answered(answer, now, self._words(f"x.answer.{answer.role}")))
+        return Outcome(200, self._answered(answer, now, self._words(f"x.answer.{answer.role}")))
 
     def _answered(self, answer: Answer, before: Any, what: str) -> Message:
         """Tell what was answered, and what was said that it takes away: a limit, or derivations."""
-        told = self._words("x.changed", what=f"{shown(answer.element.full_name)} – {what}")
+        text = self._words("x.changed", what=f"{shown(answer.element.full_name)} – {what}")
         limit = limit_of(before) if answer.role == forms.SENSITIVE and not answer.kinds else ()
         made = made_by(before) if answer.role == forms.ABSENT else ()
         gone = (("x.limit.gone", limit), ("x.derives.gone", made))
-        return Message(DONE, told, tuple(self._words(key, data=self._titles(kinds)) for key, kinds in gone if kinds))
+        return Message(DONE, text, tuple(self._words(key, data=self._titles(kinds)) for key, kinds in gone if kinds))
 
     def _titles(self, kinds: Iterable[str]) -> str:
         vocabulary = self.standing.vocabulary
-        found = (vocabulary.find(kind) for kind in kinds)
-        return self._words.row(title_of(one.name, vocabulary, self._words) for one in found if one)
+        known = filter(None, map(vocabulary.find, kinds))
+        return self._words.row(title_of(kind.name, vocabulary, self._words) for kind in known)
 
-    def _undo(self, _: Form) -> Told:
-        return Told(200, Message(DONE, self._words("x.undone")) if self.session.undo() else None)
+    def _undo(self, _: Form) -> Outcome:
+        return Outcome(200, Message(DONE, self._words("x.undone")) if self.session.undo() else None)
 
-    def _redo(self, _: Form) -> Told:
-        return Told(200, Message(DONE, self._words("x.redone")) if self.session.redo() else None)
+    def _redo(self, _: Form) -> Outcome:
+        return Outcome(200, Message(DONE, self._words("x.redone")) if self.session.redo() else None)
 
-    def _save(self, _: Form) -> Told:
+    def _save(self, _: Form) -> Outcome:
         done = self.session.save()
         if isinstance(done, Conflict):
             text = self._words("x.conflict", file=shown(done.file))
-            return Told(409, Message(PROBLEM, text, diff=done.diff))
+            return Outcome(409, Message(PROBLEM, text, diff=done.diff))
         text = self._words("x.saved_one" if done.lines == 1 else "x.saved_other", file=shown(done.file), n=done.lines)
-        return Told(200, Message(DONE, text, detail=done.remarks))
+        return Outcome(200, Message(DONE, text, detail=done.remarks))
 
-    def _merge(self, _: Form) -> Told:
+    def _merge(self, _: Form) -> Outcome:
         both = self.session.merge()
         if both:
             names = tuple(f"{edit.section}: {shown(edit.name)}" for edit in both)
-            return Told(200, Message(PROBLEM, self._words("x.merged.both"), names))
-        return Told(200, Message(DONE, self._words("x.merged")))
+            return Outcome(200, Message(PROBLEM, self._words("x.merged.both"), names))
+        return Outcome(200, Message(DONE, self._words("x.merged")))
 
-    def _resume(self, _: Form) -> Told:
-        left = self.session.unsaved_from_before
-        refused = self.session.resume()
+    def _resume(self, _: Form) -> Outcome:
+        left = self.session.history.unsaved_from_before
+        refused = self.session.history.resume()
         text = self._words("x.resumed", n=len(left.edits) if left else 0)
-        return Told(200, Message(PROBLEM if refused else DONE, text, detail=tuple(map(shown, refused))))
+        return Outcome(200, Message(PROBLEM if refused else DONE, text, detail=tuple(map(shown, refused))))
 
-    def _forget(self, _: Form) -> Told:
-        self.session.forget()
-        return Told(200, Message(DONE, self._words("x.forgotten")))
+    def _forget(self, _: Form) -> Outcome:
+        self.session.history.forget()
+        return Outcome(200, Message(DONE, self._words("x.forgotten")))
 
-    def _try(self, form: Form) -> Told:
+    def _try(self, form: Form) -> Outcome:
         """Try something; nothing that is kept anywhere changes."""
         both = form.one("what") == TOGETHER
         tried = self._trials.together(form) if both else tried_in(form, self.standing, self._words)
         name = form.words("name") or self._new_name()
-        self._trials.keep(name, tried.what, tried.says)
-        return Told(200, trial=name)
+        self._trials.keep(name, tried)
+        return Outcome(200, trial=name)
 
     def _new_name(self) -> str:
         numbers = (self._words("x.trial.name", n=number) for number in count(1))
         return next(name for name in numbers if name not in self._trials.names)
 
-    def _drop(self, form: Form) -> Told:
+    def _drop(self, form: Form) -> Outcome:
         name = form.choice("name", self._trials.names)
         self._trials.drop(name)
-        return Told(200, Message(DONE, self._words("x.trial.dropped", name=name)))
+        return Outcome(200, Message(DONE, self._words("x.trial.dropped", name=name)))
 
-    def _decide(self, form: Form) -> Told:
+    def _decide(self, form: Form) -> Outcome:
         """Write a decision about a finding into the file that the command named."""
-        said = decision_in(form, self.standing.findings)
-        about = chosen_in(form, self.session, self.standing.findings[said.finding])
-        told = scope_told(self.session, about, self._words)  # before it is decided, as it was chosen
-        robots, to_robots = about.robots or None, about.to_robots or None
-        self.session.decide(about.finding.id, said.choice, robots=robots, to_robots=to_robots, **said.how)
-        self._by = said.how["owner"] or self._by
-        what = self._words.row(filter(None, (self._words(f"d.{said.choice}"), told)))
-        told = self._words("x.decided.to", file=shown(str(self.session.decisions_file)), what=what)
-        return Told(200, Message(DONE, told))
+        finding, choice, how = forms.decision_in(form, self.standing.findings)
+        scope = scope_in(form, self.session, self.standing.findings[finding])
+        whose = scope_in_words(self.session, scope, self._words)  # before it is decided, as it was chosen
+        robots, to_robots = scope.robots or None, scope.to_robots or None
+        self.session.decide(scope.finding.id, choice, robots=robots, to_robots=to_robots, **how)
+        self._by = how["owner"] or self._by
+        what = self._words.row(filter(None, (self._words(f"d.{choice}"), whose)))
+        text = self._words("x.decided.to", file=shown(str(self.session.decisions_file)), what=what)
+        return Outcome(200, Message(DONE, text))
 
 
 async def _static(request: Request) -> Response:

@@ -1,19 +1,18 @@
-"""What the page shows of the element in hand: the path by which data gets there, what can be said of it, what could be.
+"""The pane of the element in hand: the path by which data gets there, what can be said of it, what could be.
 
 In: a session as it stands, an element, a view. Out: a ``Pane``.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import Confidence
 from rosprivacy.analysis.suggesting.written import written
 from rosprivacy.explorer.element_ids import element_id
 from rosprivacy.explorer.web import forms
-from rosprivacy.explorer.web.titles import title_of
-from rosprivacy.explorer.web.whose import ROBOT, Whose, stands_for, whose
+from rosprivacy.explorer.web.panes import ROBOT, Pane, stands_for, title_of, whose
 from rosprivacy.ingest.suggestions.accepting import LIMITING, could_close
 
 if TYPE_CHECKING:
@@ -36,151 +35,44 @@ KEYS = {
 }  # fmt: skip
 
 
-class Line(NamedTuple):
-    """Where a policy line stands: file and number, and with the folders of the file."""
-
-    short: str
-    whole: str
-
-
-class Hop(NamedTuple):
-    """An element of a path, and the step that leads on from it, with the policy lines that allow it.
-
-    Attributes
-    ----------
-    of, role
-        Kind of the element and role of the step, as the model names them.
-    """
-
-    name: str
-    kind: str
-    address: str
-    of: str
-    role: str = ""
-    verb: str = ""
-    lines: tuple[Line, ...] = ()
-    more: int = 0
-    data: str = ""
-
-
-class Way(NamedTuple):
-    """How a kind of data gets to the element."""
-
-    kind: str
-    title: str
-    hops: tuple[Hop, ...]
-
-
-class About(NamedTuple):
-    """A kind of data that an answer can be about."""
-
-    name: str
-    title: str
-    chosen: bool
-
-
-class Offer(NamedTuple):
-    """What could be said of the element, with reasons; the fields are those of the form.
-
-    Attributes
-    ----------
-    takes
-        Whether it takes data away.
-    closes
-        The known findings that it could close: then nobody takes it by one key.
-    sure
-        Whether it is more than perhaps a source: then it is not folded.
-    """
-
-    told: str
-    reasons: tuple[str, ...]
-    fields: tuple[tuple[str, str], ...]
-    takes: bool
-    closes: tuple[str, ...]
-    sure: bool
-
-
-class Pane(NamedTuple):
-    """The element in hand.
-
-    Attributes
-    ----------
-    said
-        What labels say of it, in words.
-    is_open
-        Whether nobody has said what it does with some kind of data.
-    roles
-        (role, key) of what can be said of it.
-    kinds
-        (name, title) of every kind of data.
-    brings
-        The kind that is chosen first where it is said to bring data in.
-    labelled
-        Whether the label file says something of it.
-    robots
-        For how many robots it stands.
-    whose
-        The label files of a fleet that an answer can go to.
-    """
-
-    id: str
-    name: str
-    kind: str
-    enclaves: tuple[str, ...]
-    said: tuple[str, ...]
-    is_open: bool
-    asked: str
-    ways: tuple[Way, ...]
-    about: tuple[About, ...]
-    offers: tuple[Offer, ...]
-    roles: tuple[tuple[str, str], ...]
-    kinds: tuple[tuple[str, str], ...]
-    brings: str
-    labelled: bool
-    robots: str
-    whose: tuple[Whose, ...]
-
-
-def pane_of(standing: Standing, element: Element, view: View, words: Words) -> Pane:
+def element_pane(standing: Standing, element: Element, view: View, words: Words) -> Pane:
     """Return what the page shows of an element."""
     at = element_id(element.identity)
-    is_open = standing.open_kinds.get(at, ())
-    carried = sorted({*standing.carried.get(at, ()), *is_open})  # a broader kind is open beside a narrower one
+    open_kinds = standing.open_kinds.get(at, ())
+    carried = sorted({*standing.carried.get(at, ()), *open_kinds})  # a broader kind is open beside a narrower one
     here = [kind for kind in carried if kind not in view.hidden]
-    asked = [kind for kind in is_open if kind not in view.hidden]
+    asked = [kind for kind in open_kinds if kind not in view.hidden]
     offers = standing.suggestions.of(element.identity)
-    chosen = whose(standing.session, element, words)
-    alone = any(one.chosen and one.value == ROBOT for one in chosen)
-    labelled = standing.entry(element, only_this_robot=alone) is not None
-    roles = [role for role in forms.roles_of(element) if role != forms.NOTHING or labelled]
+    files = whose(standing.session, element, words)
+    alone = any(file.chosen and file.value == ROBOT for file in files)
+    labelled = standing.session.entry_for(element, only_this_robot=alone) is not None
     return Pane(
         id=at,
         name=shown(element.full_name),
         kind=words.known(f"kind.{element.kind}", element.kind),
         enclaves=_enclaves(standing, element),
-        said=tuple(_said(standing, at, words)),
-        is_open=bool(is_open),
+        said=tuple(_roles(standing, at, words)),
+        is_open=bool(open_kinds),
         asked=words.row(title_of(kind, standing.vocabulary, words) for kind in asked or here),
         ways=tuple(_ways(standing, element, asked or here, view, words)),
         about=_about(standing, carried, asked or [kind for kind in here if not _ends(standing, at, kind)], words),
-        offers=tuple(_offer(one, standing, words) for one in offers if _whole(one)),
-        roles=tuple((role, KEYS[role]) for role in roles),
+        offers=tuple(_offer(offer, standing, words) for offer in offers if _is_whole(offer)),
+        roles=tuple((role, KEYS[role]) for role in forms.roles_of(element) if role != forms.NOTHING or labelled),
         kinds=_all_kinds(standing, words),
-        brings=next((one.label.kind for one in offers if one.label.role == forms.SOURCE), "PersonalData"),
-        labelled=labelled,
+        brings=next((offer.label.kind for offer in offers if offer.label.role == forms.SOURCE), "PersonalData"),
         robots=stands_for(standing, element, words),
-        whose=chosen,
+        whose=files,
     )
 
 
 def _enclaves(standing: Standing, element: Element) -> tuple[str, ...]:
     if not element.is_node:
         return ()
-    found = {one.enclave for one in standing.analysis.graph.profiles if one.node == element.name}
-    return tuple(shown(one) for one in sorted(found))
+    enclaves = {profile.enclave for profile in standing.analysis.graph.profiles if profile.node == element.name}
+    return tuple(shown(enclave) for enclave in sorted(enclaves))
 
 
-def _said(standing: Standing, at: str, words: Words) -> Iterable[str]:
+def _roles(standing: Standing, at: str, words: Words) -> Iterable[str]:
     """What labels say that it does, kind by kind."""
     for kind, roles in sorted(standing.roles.get(at, {}).items()):
         title = title_of(kind, standing.vocabulary, words)
@@ -191,9 +83,12 @@ def _said(standing: Standing, at: str, words: Words) -> Iterable[str]:
                 yield words(f"role.{role}", data=title)
 
 
-def _about(standing: Standing, carried: Sequence[str], chosen: Sequence[str], words: Words) -> tuple[About, ...]:
-    offered = carried or standing.analysis.emitted
-    return tuple(About(kind, title_of(kind, standing.vocabulary, words), kind in chosen) for kind in offered)
+def _about(standing: Standing, carried: Sequence[str], chosen: Sequence[str], words: Words) -> tuple[Pane, ...]:
+    """The kinds of data that an answer can be about."""
+    return tuple(
+        Pane(name=kind, title=title_of(kind, standing.vocabulary, words), chosen=kind in chosen)
+        for kind in carried or standing.analysis.emitted
+    )
 
 
 def _ends(standing: Standing, at: str, kind: str) -> bool:
@@ -203,77 +98,91 @@ def _ends(standing: Standing, at: str, kind: str) -> bool:
 
 def _all_kinds(standing: Standing, words: Words) -> tuple[tuple[str, str], ...]:
     kinds = ((name, title_of(name, standing.vocabulary, words)) for name in standing.vocabulary.categories)
-    return tuple(sorted(kinds, key=lambda one: (one[1].casefold(), one[0])))
+    return tuple(sorted(kinds, key=lambda kind: (kind[1].casefold(), kind[0])))
 
 
-def _whole(one: Proposal) -> bool:
+# --- what could be said of it -----------------------------------------------------------------------------------
+
+
+def _is_whole(offer: Proposal) -> bool:
     """Whether an answer can be made of it: how something is cleaned is never guessed."""
-    return one.label.role != forms.SANITIZER or one.label.method is not None
+    return offer.label.role != forms.SANITIZER or offer.label.method is not None
 
 
-def is_likely_source(one: Proposal) -> bool:
+def is_likely_source(offer: Proposal) -> bool:
     """Return whether it is more than perhaps so that an element brings data in."""
-    return one.label.role == forms.SOURCE and one.confidence is not Confidence.MAY
+    return offer.label.role == forms.SOURCE and offer.confidence is not Confidence.MAY
 
 
-def _offer(one: Proposal, standing: Standing, words: Words) -> Offer:
-    """What could be said, as the form says it."""
-    label = one.label
+def _offer(offer: Proposal, standing: Standing, words: Words) -> Pane:
+    """What could be said, with reasons; the fields are those of the form."""
+    label = offer.label
     role = {"derivation": forms.DERIVES, "never": forms.MUNDANE}.get(label.role, label.role)
     to = title_of(label.to, standing.vocabulary, words) if label.to else ""
-    told = words(f"x.offer.{role}", data=title_of(label.kind, standing.vocabulary, words), to=to)
     fields = [("role", role), ("about" if role != forms.SOURCE else "brings", label.kind or forms.EVERY)]
     fields += [("method", str(label.method.value))] if label.method else []
     fields += [("makes", label.to)] if label.to else []
-    reasons = words.first([shown(reason.reason) for reason in one.evidence], REASONS)
-    said = written(label).said
-    closes = could_close(said, _findings(standing, words), standing.vocabulary)
-    takes = not LIMITING.isdisjoint(said)
-    return Offer(told, reasons, tuple(fields), takes, words.first(closes, FINDINGS), is_likely_source(one))
+    entry = written(label).said
+    closes = could_close(entry, _findings(standing, words), standing.vocabulary)
+    return Pane(
+        told=words(f"x.offer.{role}", data=title_of(label.kind, standing.vocabulary, words), to=to),
+        reasons=words.first([shown(reason.reason) for reason in offer.evidence], REASONS),
+        fields=tuple(fields),
+        takes=not LIMITING.isdisjoint(entry),  # data away
+        closes=words.first(closes, FINDINGS),  # known findings: then nobody takes it by one key
+        sure=is_likely_source(offer),  # then it is not folded
+    )
 
 
 def _findings(standing: Standing, words: Words) -> Iterable[tuple[str, str]]:
     """All findings, whatever a page shows of them: (kind, what to tell of it)."""
-    for one in standing.result.analysis.findings:
-        data = title_of(one.category, standing.vocabulary, words)
-        way = f"{shown(one.source.full_name)} → {shown(one.leak.full_name)}"
-        yield one.category, words.pair(data, way)
+    for finding in standing.result.analysis.findings:
+        data = title_of(finding.category, standing.vocabulary, words)
+        way = f"{shown(finding.source.full_name)} → {shown(finding.leak.full_name)}"
+        yield finding.category, words.pair(data, way)
 
 
-def _ways(standing: Standing, element: Element, kinds: Iterable[str], view: View, words: Words) -> Iterable[Way]:
+# --- how data gets there ----------------------------------------------------------------------------------------
+
+
+def _ways(standing: Standing, element: Element, kinds: Iterable[str], view: View, words: Words) -> Iterable[Pane]:
     """One shortest path for each kind; the same path of several kinds once."""
-    told: dict[tuple[Element, ...], str] = {}
+    seen = set()
     for kind in kinds:
         paths = [path for part in standing.parts(element.identity) if (path := standing.why.path(part, kind))]
-        if paths:
-            path = min(paths, key=lambda one: len(one.steps))
-            if path.elements not in told:
-                told[path.elements] = kind
-                yield Way(kind, title_of(kind, standing.vocabulary, words), tuple(_hops(path, standing, view, words)))
+        path = min(paths, key=lambda path: len(path.steps), default=None)
+        if path and path.elements not in seen:
+            seen.add(path.elements)
+            title = title_of(kind, standing.vocabulary, words)
+            yield Pane(title=title, hops=tuple(_hops(path, standing, view, words)))
 
 
-def _hops(path: Witness, standing: Standing, view: View, words: Words) -> Iterable[Hop]:
+def _hops(path: Witness, standing: Standing, view: View, words: Words) -> Iterable[Pane]:
+    """The elements of a path, each with the step that leads on from it, and the policy lines that allow it."""
     before = ""
     for number, element in enumerate(path.elements):
         kind = words.known(f"kind.{element.kind}", element.kind)
-        kind = words.row([kind, words(f"leg.{element.leg}")]) if element.leg else kind
-        address = view.to(element_id(element.identity)).address
-        hop = Hop(shown(element.full_name), kind, address, element.kind)
-        if number < len(path.steps):
-            step = path.steps[number]
-            data = _data(step, standing, words)
-            lines = tuple(dict.fromkeys(_line(grant) for grant in step.grants))
-            hop = hop._replace(
-                role=step.role, verb=words(f"verb.{step.role}"), lines=lines[:LINES], more=len(lines[LINES:]),
-                data="" if data == before else data,
-            )  # fmt: skip
-            before = data
-        yield hop
+        step = path.steps[number] if number < len(path.steps) else None
+        data = _data(step, standing, words) if step else ""
+        lines = tuple(dict.fromkeys(_line(grant) for grant in step.grants)) if step else ()
+        yield Pane(
+            name=shown(element.full_name),
+            kind=words.row([kind, words(f"leg.{element.leg}")]) if element.leg else kind,
+            address=view.to(element_id(element.identity)).address,
+            of=element.kind,
+            role=step.role if step else "",
+            verb=words(f"verb.{step.role}") if step else "",
+            lines=tuple(Pane(short=short, whole=whole) for short, whole in lines[:LINES]),
+            more=len(lines[LINES:]),
+            data="" if data == before else data,
+        )
+        before = data
 
 
-def _line(grant: Grant) -> Line:
+def _line(grant: Grant) -> tuple[str, str]:
+    """Where a policy line stands: file and number, and with the folders of the file."""
     whole = shown(str(grant.place))
-    return Line(whole.replace("\\", "/").rpartition("/")[2], whole)
+    return whole.replace("\\", "/").rpartition("/")[2], whole
 
 
 def _data(step: Step, standing: Standing, words: Words) -> str:

@@ -6,9 +6,11 @@ that the vocabulary has. Forms are read with the standard library: they have tex
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, NamedTuple
 from urllib.parse import parse_qsl
 
+from rosprivacy.analysis.decisions import Choice
 from rosprivacy.analysis.model import Method
 from rosprivacy.analysis.text import printable
 
@@ -16,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
 
     from rosprivacy.analysis.model import Element
+    from rosprivacy.explorer.deciding import How
 
 MOST_FIELDS = 1_000
 LONGEST = {
@@ -34,7 +37,7 @@ DERIVES, ABSENT, MUNDANE, SENSITIVE, NOTHING = "derives", "absent", "mundane", "
 OF_NODES = (SOURCE, LEAK, SANITIZER, CONDUIT, DERIVES, ABSENT, NOTHING)
 OF_CHANNELS = (MUNDANE, SENSITIVE, NOTHING)
 OF_OTHERS = (SOURCE, LEAK, SANITIZER, CONDUIT, DERIVES, NOTHING)  # outside ROS
-METHODS = tuple(one.value for one in (Method.ANONYMISE, Method.PSEUDONYMISE, Method.AGGREGATE, Method.DROP))
+METHODS = tuple(method.value for method in (Method.ANONYMISE, Method.PSEUDONYMISE, Method.AGGREGATE, Method.DROP))
 
 
 class FormError(Exception):
@@ -73,13 +76,7 @@ def roles_of(element: Element) -> tuple[str, ...]:
 
 
 class Form:
-    """The fields of a form.
-
-    Raises
-    ------
-    FormError
-        If it cannot be read.
-    """
+    """The fields of a form."""
 
     def __init__(self, body: bytes) -> None:
         try:
@@ -94,13 +91,7 @@ class Form:
             self._fields.setdefault(name, []).append(value)
 
     def one(self, name: str) -> str:
-        """Return the value of a field; empty if it is not there.
-
-        Raises
-        ------
-        FormError
-            If it is there several times.
-        """
+        """Return the value of a field; empty if it is not there."""
         values = self._fields.get(name, [""])
         if len(values) != 1:
             raise FormError(f"The form says {name} several times.")
@@ -111,39 +102,21 @@ class Form:
         return tuple(dict.fromkeys(self._fields.get(name, ())))
 
     def choice(self, name: str, allowed: Collection[str]) -> str:
-        """Return a value that is one of some.
-
-        Raises
-        ------
-        FormError
-            If it is none of them.
-        """
+        """Return a value that is one of some."""
         value = self.one(name)
         if value not in allowed:
             raise FormError(f"The form has no {name} that can be chosen here.")
         return value
 
     def number(self, name: str) -> int:
-        """Return a number, of at most nine digits.
-
-        Raises
-        ------
-        FormError
-            If it is none.
-        """
+        """Return a number, of at most nine digits."""
         value = self.one(name)
         if not (value.isascii() and value.isdigit() and len(value) < 10):  # noqa: PLR2004 - digits
             raise FormError(f"The form has no {name}.")
         return int(value)
 
     def words(self, name: str) -> str:
-        """Return a text of one line.
-
-        Raises
-        ------
-        FormError
-            If it is too long, or has signs that cannot be printed.
-        """
+        """Return a text of one line."""
         value = " ".join(self.one(name).split())
         if len(value) > LONGEST[name]:
             raise FormError(f"The field {name} has at most {LONGEST[name]} letters.")
@@ -161,28 +134,37 @@ def answer_in(form: Form, elements: Mapping[str, Element], kinds: Collection[str
         Those of the current version, by id.
     kinds
         Names of all kinds of data.
-
-    Raises
-    ------
-    FormError
-        If it says nothing that can be said.
     """
-    chosen = form.one("element")
-    if chosen not in elements:
-        raise FormError("There is no such element any more; choose another one.")
-    element = elements[chosen]
+    element = element_in(form, elements)
     role = form.choice("role", roles_of(element))
-    said = Answer(element, role, (), "", "", form.words("note"), form.words("by"))
+    answer = Answer(element, role, note=form.words("note"), by=form.words("by"))
     if role == NOTHING:
-        return said
+        return answer
     if role == ABSENT:
-        return said._replace(note=_reason(form))
-    if role == SOURCE:
-        return said._replace(kinds=(form.choice("brings", kinds),))
-    said = said._replace(kinds=_about(form, kinds, may_be_every=role in (CONDUIT, SENSITIVE, MUNDANE)))
-    if role == SANITIZER:
-        return said._replace(method=form.choice("method", METHODS))
-    return said._replace(to=form.choice("makes", kinds)) if role == DERIVES else said
+        reason = form.words("reason")
+        if not reason:
+            raise FormError("Say why it is not on the robot.")
+        return answer._replace(note=reason)
+    about = () if role == SOURCE else _about(form, kinds, may_be_every=role in (CONDUIT, SENSITIVE, MUNDANE))
+    return with_details(answer, form, kinds, about)
+
+
+def element_in(form: Form, elements: Mapping[str, Element]) -> Element:
+    """Return the element that a form names."""
+    at = form.one("element")
+    if at not in elements:
+        raise FormError("There is no such element any more; choose another one.")
+    return elements[at]
+
+
+def with_details(answer: Answer, form: Form, kinds: Collection[str], about: tuple[str, ...]) -> Answer:
+    """Return an answer with what its role asks for: the kind that comes in, the method, the kind that is made."""
+    if answer.role == SOURCE:
+        return answer._replace(kinds=(form.choice("brings", kinds),))
+    answer = answer._replace(kinds=about)
+    if answer.role == SANITIZER:
+        return answer._replace(method=form.choice("method", METHODS))
+    return answer._replace(to=form.choice("makes", kinds)) if answer.role == DERIVES else answer
 
 
 def _about(form: Form, kinds: Collection[str], *, may_be_every: bool) -> tuple[str, ...]:
@@ -190,7 +172,7 @@ def _about(form: Form, kinds: Collection[str], *, may_be_every: bool) -> tuple[s
     about = form.several("about")
     if EVERY in about and may_be_every:
         return ()
-    about = tuple(one for one in about if one not in ("", EVERY))
+    about = tuple(kind for kind in about if kind not in ("", EVERY))
     if not about:
         raise FormError("Choose the kinds of data that the answer is about.")
     if not set(about).issubset(kinds):
@@ -198,8 +180,23 @@ def _about(form: Form, kinds: Collection[str], *, may_be_every: bool) -> tuple[s
     return about
 
 
-def _reason(form: Form) -> str:
-    reason = form.words("reason")
-    if not reason:
-        raise FormError("Say why it is not on the robot.")
-    return reason
+def decision_in(form: Form, findings: Collection[str]) -> tuple[str, str, How]:
+    """Return about which of the findings a form decides, what, and its words.
+
+    Where it is written is no matter of the form: that is the file which the command named.
+
+    Examples
+    --------
+    >>> form = Form(b"finding=00112233445566ff&choice=accept&reason=why&owner=A.+Lee&legal_basis=6(1)(f),+9(2)(h)")
+    >>> decision_in(form, ["00112233445566ff"])[2]["legal_basis"]
+    ('6(1)(f)', '9(2)(h)')
+    """
+    bases = tuple(base.strip() for base in re.split("[,;]", form.words("legal_basis")) if base.strip())
+    how: How = {
+        "reason": form.words("reason"),
+        "owner": form.words("owner"),
+        "expires": form.words("expires"),
+        "ticket": form.words("ticket"),
+        "legal_basis": bases,
+    }
+    return form.choice("finding", findings), form.choice("choice", [choice.value for choice in Choice]), how

@@ -26,13 +26,7 @@ SSH_PARTS = 4  # of SSH_CONNECTION: address and port of the client, address and 
 
 
 def bound_socket(port: int) -> socket.socket:
-    """Return a socket of this machine alone; with port 0 the system chooses one.
-
-    Raises
-    ------
-    InputError
-        If the port is taken, or may not be used.
-    """
+    """Return a socket of this machine alone; with port 0 the system chooses one."""
     try:
         return socket.create_server((ADDRESS, port))
     except OSError as error:

@@ -5,6 +5,7 @@ In: a ``Session``. Out: elements by id, questions, suggestions, why data gets to
 
 from __future__ import annotations
 
+import os
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -17,7 +18,7 @@ from rosprivacy.mitigation import REPORTED, run_mitigation
 from rosprivacy.report.document.analysis import label_key
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
     from typing import Any
 
     from rosprivacy.analysis.answer import Analysis, Finding
@@ -59,9 +60,7 @@ class Standing:
     def questions(self) -> Sequence[Question]:
         """What is left to decide, of each element once: the legs of a service are one question to a person."""
         seen: dict[tuple[str, str, str], Question] = {}
-        outliers = self.session.outliers  # robots that are not as their model
-        asked = questions(self.result, self.order)
-        for question in sorted(asked, key=lambda one: (one.can_wait, one.element.robot not in outliers)):
+        for question in questions(self.result, self.session.outliers, self.order):
             identity = question.element.identity
             first = seen.setdefault(identity, question)
             if first is not question:
@@ -131,32 +130,36 @@ class Standing:
     @cached_property
     def places(self) -> Mapping[tuple[str, str], Sequence[str]]:
         """Section and name, as a label file says them -> ids of elements; of robots that are alike, of the first."""
-        second = self.result.fleet.likeness.second if self.result.fleet else ()
-        found: dict[tuple[str, str], list[str]] = {}
+        places: dict[tuple[str, str], list[str]] = {}
         for at, element in self.elements.items():
-            if element.robot not in second:
+            if element.robot not in self.second:
                 key = label_key(element)
-                found.setdefault((key["section"], key["name"]), []).append(at)
-        return found
+                places.setdefault((key["section"], key["name"]), []).append(at)
+        return places
+
+    @property
+    def second(self) -> Collection[str]:
+        """Robots that only stand beside others that they are alike to."""
+        return self.result.fleet.likeness.second if self.result.fleet else ()
 
     @cached_property
     def spoken(self) -> frozenset[str]:
         """Ids of the elements that a label file speaks of, by their names."""
-        there = [(self.elements[at].robot, place, at) for place, some in self.places.items() for at in some]
-        says = {robot: self.session.speaks_of(robot) for robot in dict.fromkeys(robot for robot, _, _ in there)}
-        return frozenset(at for robot, place, at in there if says[robot].get(place) is not None)
+        places = [(self.elements[at].robot, place, at) for place, ids in self.places.items() for at in ids]
+        says = {robot: self.session.entries_for(robot) for robot in dict.fromkeys(robot for robot, _, _ in places)}
+        return frozenset(at for robot, place, at in places if says[robot].get(place) is not None)
 
     def place_of(self, edit: Edit) -> str:
         """Return the id of an element that an edit is about, an open one first; empty if there is none now."""
-        named = self.places.get((edit.section, edit.name), ())
-        there = [at for at in named if self.session.is_about(edit, self.elements[at])]
-        return next((at for at in self.open_kinds if at in there), there[0] if there else "")
+        file = os.path.realpath(edit.file)
+        about = [
+            at
+            for at in self.places.get((edit.section, edit.name), ())
+            if any(os.path.realpath(target.file) == file for target in self.session.targets_of(self.elements[at]))
+        ]
+        return next((at for at in self.open_kinds if at in about), about[0] if about else "")
 
-    def said_of(self, element: Element) -> tuple[Any, ...]:
+    def entries_of(self, element: Element) -> tuple[Any, ...]:
         """Return what label files say of an element: a robot's own first, and that of its model."""
-        said = (self.entry(element, only_this_robot=True), self.entry(element))
-        return tuple(one for one in said if one is not None)
-
-    def entry(self, element: Element, *, only_this_robot: bool = False) -> Any:
-        """Return what the label file, with the edits, says of an element; None for nothing."""
-        return self.session.said_of(element, only_this_robot=only_this_robot)
+        entries = (self.session.entry_for(element, only_this_robot=alone) for alone in (True, False))
+        return tuple(entry for entry in entries if entry is not None)

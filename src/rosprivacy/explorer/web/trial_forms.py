@@ -1,0 +1,276 @@
+"""What can be tried at an element, and posted forms of trials: offers out, forms in, out comes what is tried.
+
+All is chosen from closed lists: elements by ids, a flow by the ids of its ends, a policy line by an id of its own,
+kinds of data by names of the vocabulary, proposals by their number. Nothing that a browser sends is the name of a file.
+"""
+
+from __future__ import annotations
+
+import re
+from hashlib import sha256
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.kernel.vertices import by_identity
+from rosprivacy.analysis.many_flows import parted
+from rosprivacy.analysis.mitigation.limits import FILTER, REVIEW
+from rosprivacy.analysis.mitigation.proposals import ProposedStep
+from rosprivacy.analysis.text import fit
+from rosprivacy.explorer.element_ids import DIGITS, element_id
+from rosprivacy.explorer.scenarios import WhatIf
+from rosprivacy.explorer.web.forms import EVERY, FormError, element_in
+from rosprivacy.explorer.web.panes import MODEL, ROBOT, WHOSE, Pane, robots_in_words, title_of
+from rosprivacy.report.document.analysis import label_key
+from rosprivacy.report.naming import name
+from rosprivacy.report.page.closing import change_told
+from rosprivacy.report.page.index import Index
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Mapping
+
+    from rosprivacy.analysis.model import Element, Flow, Place
+    from rosprivacy.explorer.session import Session
+    from rosprivacy.explorer.web.forms import Form
+    from rosprivacy.explorer.web.standing import Standing
+    from rosprivacy.report.catalogs.words import Words
+
+MOST = 60  # of one list; a line or a flow further away has an element nearer to it
+TOGETHER = "together"  # of two trials that are kept
+ALL_STEPS = ""  # in the place of one change of a proposal
+COUNTRY = re.compile(r"[A-Z]{2}")
+LONGEST_DAYS = 5  # digits
+
+
+# --- what can be tried ------------------------------------------------------------------------------------------
+
+
+def offers_at(standing: Standing, element: Element, words: Words) -> Pane:
+    """Return what can be tried at an element: filters beside it, policy lines, a storage, a doubt of its cleaning."""
+    at = element_id(element.identity)
+    ends = ((flow, _id(flow.source, standing), _id(flow.target, standing)) for flow in _flows(standing, element))
+    flows = [flow for flow, source, target in ends if {source, target} <= standing.carried.keys()]
+    kinds = standing.carried.get(at, ())
+    whose = tuple(_whose(standing.session, element, words))
+    shared = standing.session.is_fleet and not whose  # what is on no robot is changed in the fleet file
+    places = dict.fromkeys(grant.place for flow in flows for grant in flow.grants)
+    if standing.result.fleet:  # a line of the fleet file is none of a policy
+        places = {place: None for place in places if line_id(place) in lines_of(standing)}
+    return Pane(
+        element=at,
+        flows=tuple(_between(flows, standing))[:MOST],
+        lines=() if shared else tuple(_offer(line_id(place), fit(str(place))) for place in places)[:MOST],
+        kinds=tuple(_offer(kind, title_of(kind, standing.vocabulary, words)) for kind in kinds),
+        cleans=_cleans(standing, at) and not shared,
+        whose=whose,
+        shared=shared,
+    )
+
+
+def _offer(value: str, text: str) -> Pane:
+    """A value of a form, and what a person reads."""
+    return Pane(value=value, told=text)
+
+
+def _whose(session: Session, element: Element, words: Words) -> Iterator[Pane]:
+    """All robots of the model, and this one only; once where these are the same."""
+    model, alone = (session.robots_like(element.robot, only_this_robot=alone) for alone in (False, True))
+    if model != alone:
+        yield _offer(MODEL, robots_in_words(session, model, words))
+    if alone:
+        yield _offer(ROBOT, robots_in_words(session, alone, words))
+
+
+def _between(flows: Iterable[Flow], standing: Standing) -> Iterator[Pane]:
+    elements = standing.analysis.graph.elements
+    seen: set[str] = set()
+    for flow in flows:
+        source, target = elements[flow.source], elements[flow.target]
+        value = flow_id(source, target)
+        if value not in seen:
+            seen.add(value)
+            yield _offer(value, f"{shown(source.full_name)} → {shown(target.full_name)}")
+
+
+def flow_id(source: Element, target: Element) -> str:
+    """Return what names the flows between two elements.
+
+    >>> from rosprivacy.analysis.model import Element
+    >>> flow_id(Element("node", "/camera"), Element("topic", "/video"))
+    'e367b8bde1c84db46.ee42e87f26bf77176'
+    """
+    return f"{element_id(source.identity)}.{element_id(target.identity)}"
+
+
+def line_id(place: Place) -> str:
+    """Return what names a line of a policy; it is no name of a file."""
+    return f"l{sha256(f'{place.file}{chr(0)}{place.line}'.encode('utf-8', 'surrogatepass')).hexdigest()[:DIGITS]}"
+
+
+def lines_of(standing: Standing) -> Mapping[str, Place]:
+    """Return the lines that allow something, by their ids."""
+    grants = (grant for policy in standing.result.policies for grant in policy.grants if grant.allow)
+    return {line_id(place): place for place in dict.fromkeys(grant.place for grant in grants)}
+
+
+def _cleans(standing: Standing, at: str) -> bool:
+    """Whether labels say that an element ends some kind of data."""
+    return any("sanitizer" in roles for roles in standing.roles.get(at, {}).values())
+
+
+def _ends_of(standing: Standing, flow: str) -> tuple[tuple[Element, Element], ...]:
+    """The ends of the flows that an id names: the legs of services are flows of their own."""
+    first, _, second = flow.partition(".")
+    elements = standing.elements
+    if first not in elements or second not in elements:
+        return ()
+    wanted = elements[first].identity, elements[second].identity
+    graph = standing.analysis.graph
+    ends = ((graph.elements[each.source], graph.elements[each.target]) for each in _flows(standing, elements[first]))
+    return tuple(dict.fromkeys((a, b) for a, b in ends if (a.identity, b.identity) == wanted))
+
+
+def _flows(standing: Standing, element: Element) -> Iterator[Flow]:
+    """The flows of an element from and to others; of meetings those only that it takes part in."""
+    graph = standing.analysis.graph
+    here = set(by_identity(standing.analysis.spread)[element.identity])
+    stored, meetings = parted(graph.flows)
+    yield from (flow for _, flow in stored if (flow.source in here) != (flow.target in here))
+    for meeting in meetings:
+        yield from (meeting.flow(a, b) for a in meeting.written if a in here for b in meeting.read if b not in here)
+        yield from (meeting.flow(a, b) for b in meeting.read if b in here for a in meeting.written if a not in here)
+
+
+def _id(vertex: int, standing: Standing) -> str:
+    return element_id(standing.analysis.graph.elements[vertex].identity)
+
+
+# --- forms ------------------------------------------------------------------------------------------------------
+
+
+class Tried(NamedTuple):
+    """What is tried, and what a person is told of it."""
+
+    what: WhatIf
+    says: tuple[str, ...]
+
+
+def tried_in(form: Form, standing: Standing, words: Words) -> Tried:
+    """Return what a form tries."""
+    tried = _KINDS[form.choice("what", _KINDS)](form, standing, words)
+    if standing.session.can_mitigate:
+        return tried
+    if not tried.what.robots:
+        raise FormError("It belongs to no robot: what the fleet file states is changed there.")
+    return tried._replace(says=(*tried.says, robots_in_words(standing.session, tried.what.robots, words)))
+
+
+def _robots(form: Form, standing: Standing, *elements: Element) -> tuple[str, ...]:
+    """Of a fleet, on which robots it is tried: those of the model of the first element on a robot, or that one."""
+    alone = form.choice("whose", WHOSE) == ROBOT
+    robots = (standing.session.robots_like(element.robot, only_this_robot=alone) for element in elements)
+    return next(filter(None, robots), ())
+
+
+def _filter(form: Form, standing: Standing, words: Words) -> Tried:
+    """One of a policy: it has a channel of its own, and what wildcards take past it gets past it."""
+    ends = _ends_of(standing, form.one("flow"))
+    if not ends:
+        raise FormError("There is no such step any more; choose another one.")
+    kinds, data = _kinds(form, standing, words)
+    source, target = (shown(end.full_name) for end in ends[0])
+    step = ProposedStep(FILTER, 0, kinds or _all(standing), between=ends)
+    what = WhatIf(steps=(step,), robots=_robots(form, standing, *ends[0]))
+    return Tried(what, (words("z.filter", source=source, target=target, data=data),))
+
+
+def _cut(form: Form, standing: Standing, words: Words) -> Tried:
+    lines = lines_of(standing)
+    place = lines[form.choice("line", lines)]
+    element = standing.elements.get(form.one("element"))
+    robots = _robots(form, standing, element) if element else ()
+    what = WhatIf(cut=((place.file, place.line),), robots=robots)
+    return Tried(what, (words("x.try.says.cut", line=shown(str(place))),))
+
+
+def _storage(form: Form, standing: Standing, words: Words) -> Tried:
+    element = element_in(form, standing.elements)
+    called = words("x.try.storage.name")
+    facts = {"kind": "storage", **_facts(form)}
+    robots = _robots(form, standing, element)
+    what = WhatIf(elements={called: facts}, flows=((_end(element), called),), robots=robots)
+    says = [words("x.try.says.storage", element=shown(element.full_name))]
+    says += [words.pair(words("c.retention"), words.duration(facts["retention"]))] if "retention" in facts else []
+    says += [words.pair(words("c.place"), facts["country"])] if "country" in facts else []
+    return Tried(what, tuple(says))
+
+
+def _facts(form: Form) -> dict[str, str]:
+    """What is stated of the storage; what is not said is not known."""
+    days, country = form.one("days"), form.one("country").upper()
+    if days and not (days.isascii() and days.isdigit() and len(days) <= LONGEST_DAYS and int(days)):
+        raise FormError("Say for how many days it keeps data, in digits, or leave it empty.")
+    if country and not COUNTRY.fullmatch(country):
+        raise FormError("Name the country by its two letters, such as DE, or leave it empty.")
+    facts = {"retention": f"P{int(days)}D" if days else "", "country": country}
+    return {key: value for key, value in facts.items() if value}
+
+
+def _end(element: Element) -> str | Mapping[str, str]:
+    """An end of a flow, as label files write it."""
+    written = label_key(element)["name"]
+    return {element.kind: written} if element.is_node or element.is_channel else written
+
+
+def _doubt(form: Form, standing: Standing, words: Words) -> Tried:
+    element = element_in(form, standing.elements)
+    if not _cleans(standing, form.one("element")):
+        raise FormError("It is not said to clean anything.")
+    kinds, data = _kinds(form, standing, words)
+    robots = _robots(form, standing, element)
+    what = WhatIf(doubted=((element.kind, element.name, kinds),), robots=robots)
+    return Tried(what, (words("x.try.says.doubt", element=shown(element.full_name), data=data),))
+
+
+def _proposal(form: Form, standing: Standing, words: Words) -> Tried:
+    """A proposal of ``mitigate``, whole or one change of it."""
+    mitigation = standing.mitigation if standing.session.can_mitigate else None
+    proposals = mitigation.proposals if mitigation else ()
+    number = form.number("proposal")
+    if mitigation is None or number >= len(proposals) or not proposals[number].steps:
+        raise FormError("There is no such proposal any more; ask again what closes it.")
+    steps = proposals[number].steps
+    rows = mitigation.document()["proposals"][number]["steps"]
+    if form.one("step") != ALL_STEPS:
+        at = form.number("step")
+        if at >= len(steps):
+            raise FormError("There is no such change any more; ask again what closes it.")
+        steps, rows = steps[at : at + 1], rows[at : at + 1]
+    index = Index(standing.document, words)
+    return Tried(WhatIf(steps=steps), tuple(_change(row, index) for row in rows))
+
+
+def _change(step: Mapping[str, Any], index: Index) -> str:
+    """A change with its policy lines, in one sentence; of a review, what it is taken to find."""
+    if step["kind"] == REVIEW:
+        data = index.all_data(step["categories"])
+        return index.words("x.try.says.review", channel=name(step["channel"]), data=data)
+    change = change_told(step, index)
+    return f"{change.text} ({', '.join(change.lines)})" if change.lines else change.text
+
+
+def _kinds(form: Form, standing: Standing, words: Words) -> tuple[tuple[str, ...], str]:
+    """Kinds of data that it is about, none for every kind; and what they are called."""
+    kind = form.choice("data", [EVERY, *standing.vocabulary.categories])
+    chosen = "" if kind == EVERY else kind
+    return ((chosen,) if chosen else ()), title_of(chosen, standing.vocabulary, words)
+
+
+def _all(standing: Standing) -> tuple[str, ...]:
+    """The kinds of data that have no broader one: together, all."""
+    vocabulary = standing.vocabulary
+    return tuple(sorted(kind for kind in vocabulary.categories if not vocabulary.hierarchy.broader(kind)))
+
+
+_KINDS: dict[str, Callable[[Form, Standing, Words], Tried]] = {
+    "filter": _filter, "cut": _cut, "storage": _storage, "doubt": _doubt, "proposal": _proposal,
+}  # fmt: skip
