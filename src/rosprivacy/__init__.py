@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from rosprivacy.explorer.fleet_session import FleetSession
     from rosprivacy.explorer.session import Session
     from rosprivacy.ingest.labels.label_file import Labels
-    from rosprivacy.labelling.suggested_labels import Suggested
+    from rosprivacy.labelling.suggesting import Suggested
     from rosprivacy.result import Result
 
 __all__ = [

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.modes import Article9Level, View
     from rosprivacy.explorer.fleet_session import FleetSession
     from rosprivacy.explorer.session import Session
-    from rosprivacy.labelling.suggested_labels import Suggested
+    from rosprivacy.labelling.suggesting import Suggested
     from rosprivacy.result import Result
 
 Path: TypeAlias = str | PathLike[str]

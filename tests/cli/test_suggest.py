@@ -12,7 +12,7 @@ import pytest
 
 import rosprivacy
 from rosprivacy.analysis.errors import InputErrors
-from rosprivacy.labelling.interview import Asking, Interview
+from rosprivacy.labelling.model_interview import Asking, Interview
 from rosprivacy.labelling.suggested_lines import with_accepted, with_suggestions
 from rosprivacy.labelling.suggesting import suggest_labels
 from rosprivacy.report.contract import suggested

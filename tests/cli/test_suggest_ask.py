@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, ClassVar
 import pytest
 
 import rosprivacy
-from rosprivacy.analysis.suggesting.question_rows import GOES_THROUGH, Question
+from rosprivacy.analysis.suggesting.label_questions import GOES_THROUGH, Question
 from rosprivacy.labelling.asking import asked_now
 from rosprivacy.labelling.conversation import FOUND_SINCE, Conversation
 from rosprivacy.labelling.suggesting import suggest_labels

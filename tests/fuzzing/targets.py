@@ -15,13 +15,10 @@ import rosprivacy
 from rosprivacy.analysis import durations
 from rosprivacy.analysis.errors import InputError, InputErrors, QueryError
 from rosprivacy.analysis.model import Confidence, Element, Place, Profile
-from rosprivacy.analysis.suggesting.asked_elements import Asked
-from rosprivacy.analysis.suggesting.by_package import package_evidence
 from rosprivacy.analysis.suggesting.evidence import HIDING
 from rosprivacy.analysis.suggesting.library_rules import CPP, PYTHON, NodeUse
-from rosprivacy.analysis.suggesting.model_answers import judged
 from rosprivacy.analysis.suggesting.name_rules import of_topic
-from rosprivacy.analysis.suggesting.nodes_of_packages import nodes_of_packages
+from rosprivacy.analysis.suggesting.packages import nodes_of_packages, package_evidence
 from rosprivacy.explorer.journal import read_journal
 from rosprivacy.explorer.session import Session
 from rosprivacy.ingest.bags.bag_folders import read_bags
@@ -33,8 +30,7 @@ from rosprivacy.ingest.keystore.grants import policy_of
 from rosprivacy.ingest.keystore.open_topics import open_topics
 from rosprivacy.ingest.keystore.permissions_file import read_permissions
 from rosprivacy.ingest.labels.label_file import parse_labels, read_labels
-from rosprivacy.ingest.language_model.answer_text import answers_in
-from rosprivacy.ingest.language_model.exchange_file import read_exchanges
+from rosprivacy.ingest.language_model import answers_in, read_exchanges
 from rosprivacy.ingest.mitigation.limits_file import read_limits
 from rosprivacy.ingest.packages.package_file import read_package
 from rosprivacy.ingest.policies import common_names, names
@@ -42,10 +38,10 @@ from rosprivacy.ingest.policies.policy_xml import read_policy
 from rosprivacy.ingest.policies.saved_graph import read_saved
 from rosprivacy.ingest.suggestions.accepting import accept
 from rosprivacy.ingest.suggestions.comments import taken_apart
-from rosprivacy.ingest.suggestions.library_file import read_library_rules
-from rosprivacy.ingest.suggestions.name_file import read_name_rules
+from rosprivacy.ingest.suggestions.rule_files import read_library_rules, read_name_rules
 from rosprivacy.ingest.zenoh_access.zenoh_inputs import read_zenoh
 from rosprivacy.labelling.annotating import annotated, differences
+from rosprivacy.labelling.model_interview import Asked, judged
 from rosprivacy.mitigation import run_mitigation
 from rosprivacy.ontology.own import with_own
 from rosprivacy.ontology.vocabulary import load

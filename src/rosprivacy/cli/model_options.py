@@ -18,7 +18,7 @@ from rosprivacy.cli.inputs import refuse
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from rosprivacy.labelling.interview import Asking, Interview
+    from rosprivacy.labelling.model_interview import Asking, Interview
 
 PANEL = "A language model, only if you ask one"
 LONGEST_NAME = 200
@@ -132,8 +132,8 @@ class ModelOptions(NamedTuple):
     @property
     def asking(self) -> Asking:
         """What is asked, and where."""
-        from rosprivacy.ingest.language_model.address import address_of
-        from rosprivacy.labelling.interview import Asking
+        from rosprivacy.ingest.language_model import address_of
+        from rosprivacy.labelling.model_interview import Asking
 
         address = address_of(self.url or "", unencrypted=self.unencrypted)
         return Asking(self.model or "", address.url, self.mask, self.requests)
@@ -155,9 +155,8 @@ class ModelOptions(NamedTuple):
             yield from self._live(output)
 
     def _live(self, output: Path | None) -> Iterator[Interview]:
-        from rosprivacy.ingest.language_model.address import address_of
-        from rosprivacy.ingest.language_model.model_server import KEY, Server
-        from rosprivacy.labelling.interview import Interview
+        from rosprivacy.ingest.language_model import KEY, Server, address_of
+        from rosprivacy.labelling.model_interview import Interview
 
         address = address_of(self.url or "", unencrypted=self.unencrypted)
         server = Server(address, os.environ.get(KEY, "").strip(), self.timeout, _told)
@@ -171,8 +170,8 @@ class ModelOptions(NamedTuple):
                 _write(self.record, interview)
 
     def _replayed(self, file: str) -> Interview:
-        from rosprivacy.ingest.language_model.exchange_file import read_exchanges, replayed
-        from rosprivacy.labelling.interview import Asking, Interview
+        from rosprivacy.ingest.language_model import read_exchanges, replayed
+        from rosprivacy.labelling.model_interview import Asking, Interview
 
         there = read_exchanges(file)
         asking = Asking(there.model, there.url, there.masked, sys.maxsize, there.date)  # nothing is sent: no bound
@@ -199,7 +198,7 @@ def _refuse_existing(file: Path, output: Path | None) -> None:
 
 def _write(file: Path, interview: Interview) -> None:
     from rosprivacy.clock import today
-    from rosprivacy.ingest.language_model.exchange_file import Exchanges, as_document
+    from rosprivacy.ingest.language_model import Exchanges, as_document
     from rosprivacy.report.atomic import write_texts
     from rosprivacy.report.json_text import as_text
 

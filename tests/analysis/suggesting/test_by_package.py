@@ -9,8 +9,7 @@ import pytest
 
 import rosprivacy
 from rosprivacy.analysis.model import Confidence
-from rosprivacy.analysis.suggesting.by_package import package_evidence
-from rosprivacy.analysis.suggesting.nodes_of_packages import nodes_of_packages
+from rosprivacy.analysis.suggesting.packages import nodes_of_packages, package_evidence
 from rosprivacy.ingest.packages.package_folders import catalogue
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.question import question_of

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import Confidence
-from rosprivacy.analysis.suggesting.written import written
+from rosprivacy.analysis.suggesting.evidence import written
 from rosprivacy.explorer.element_ids import element_id
 from rosprivacy.explorer.web import forms
 from rosprivacy.explorer.web.titles import title_of
