@@ -1,4 +1,4 @@
-"""``rosprivacy suggest --model``: what is sent, and what is made of the answers of a recorded server (issue 21)."""
+"""``rosprivacy suggest --model``: what is sent, and what is made of the answers of a recorded server."""
 
 from __future__ import annotations
 

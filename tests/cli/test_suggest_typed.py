@@ -1,4 +1,4 @@
-"""``suggest --ask``: a label that no question offers is typed as a line; it takes nothing away (issue 21)."""
+"""``suggest --ask``: a label that no question offers is typed as a line; it takes nothing away."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ import os
 import sys
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import typer
 
@@ -23,72 +23,39 @@ if TYPE_CHECKING:
 PANEL = "A language model, only if you ask one"
 LONGEST_NAME = 200
 
+
+def _asks(name: str, says: str, metavar: str | None = None, **more: Any) -> Any:
+    """An option that says how a language model is asked."""
+    if metavar and "min" not in more:
+        more["show_default"] = False
+    return typer.Option(name, metavar=metavar, help=says, rich_help_panel=PANEL, **more)
+
+
 Model = Annotated[
     str | None,
-    typer.Option(
-        "--model",
-        metavar="NAME",
-        help="Ask this language model for more suggestions: its name, as its server knows it.",
-        show_default=False,
-        rich_help_panel=PANEL,
-    ),
+    _asks("--model", "Ask this language model for more suggestions: its name, as its server knows it.", "NAME"),
 ]
 ModelUrl = Annotated[
     str | None,
-    typer.Option(
+    _asks(
         "--model-url",
-        metavar="URL",
-        help="Where it is: the address of an OpenAI-compatible server, up to /v1. A key is read from "
-        "ROSPRIVACY_MODEL_KEY.",
-        show_default=False,
-        rich_help_panel=PANEL,
+        "Where it is: the address of an OpenAI-compatible server, up to /v1. A key is read from ROSPRIVACY_MODEL_KEY.",
+        "URL",
     ),
 ]
-DryRun = Annotated[
-    bool,
-    typer.Option("--dry-run", help="Print what would be sent, and where to; send nothing.", rich_help_panel=PANEL),
-]
-MaskNames = Annotated[
-    bool,
-    typer.Option(
-        "--mask", help="Send placeholders for words of names that are not in the shipped rules.", rich_help_panel=PANEL
-    ),
-]
-Record = Annotated[
-    Path | None,
-    typer.Option(
-        "--record",
-        metavar="FILE",
-        help="Write what was sent and answered into a new file.",
-        show_default=False,
-        rich_help_panel=PANEL,
-    ),
-]
+DryRun = Annotated[bool, _asks("--dry-run", "Print what would be sent, and where to; send nothing.")]
+MaskNames = Annotated[bool, _asks("--mask", "Send placeholders for words of names that are not in the shipped rules.")]
+Record = Annotated[Path | None, _asks("--record", "Write what was sent and answered into a new file.", "FILE")]
 Replay = Annotated[
-    str | None,
-    typer.Option(
-        "--replay",
-        metavar="FILE",
-        help="Take the answers from a file that --record wrote; send nothing.",
-        show_default=False,
-        rich_help_panel=PANEL,
-    ),
+    str | None, _asks("--replay", "Take the answers from a file that --record wrote; send nothing.", "FILE")
 ]
-Requests = Annotated[
-    int, typer.Option("--model-requests", metavar="N", min=1, help="Send at most so many.", rich_help_panel=PANEL)
-]
-Timeout = Annotated[
-    int,
-    typer.Option(
-        "--model-timeout", metavar="SECONDS", min=1, help="How long to wait for one answer.", rich_help_panel=PANEL
-    ),
-]
+Requests = Annotated[int, _asks("--model-requests", "Send at most so many.", "N", min=1)]
+Timeout = Annotated[int, _asks("--model-timeout", "How long to wait for one answer.", "SECONDS", min=1)]
 Unencrypted = Annotated[
     bool,
-    typer.Option(
+    _asks(
         "--model-unencrypted",
-        help="Send over plain http to any host, where others on the way can read all of it, the key too.",
-        rich_help_panel=PANEL,
+        "Send over plain http to any host, where others on the way can read all of it, the key too.",
     ),
 ]
 
@@ -173,9 +140,9 @@ class ModelOptions(NamedTuple):
         from rosprivacy.ingest.language_model import read_exchanges, replayed
         from rosprivacy.labelling.model_interview import Asking, Interview
 
-        there = read_exchanges(file)
-        asking = Asking(there.model, there.url, there.masked, sys.maxsize, there.date)  # nothing is sent: no bound
-        return Interview(asking, replayed(file, there), _told, ((file, there.sha256),))
+        record = read_exchanges(file)
+        asking = Asking(record.model, record.url, record.masked, sys.maxsize, record.date)  # nothing is sent: no bound
+        return Interview(asking, replayed(file, record), _told, ((file, record.sha256),))
 
 
 def _told(line: str) -> None:

@@ -2,8 +2,8 @@
 
 Sent are names, types and comments, nothing else: no file, no policy, no label. Names can be masked: words that
 everybody uses stay, each other word becomes a placeholder. A request is one instruction, closed lists, and the elements
-as data; it has a bounded size, and the same elements give the same bytes. Names are JSON in ASCII between two marks that no name
-can hold, since they are the hash of what stands between them.
+as data; it has a bounded size, and the same elements give the same bytes. Names are JSON in ASCII between two marks
+that no name can hold, since they are the hash of what stands between them.
 
 An answer is data of anybody. It can say one of the roles that were asked for, of an element that was sent, of a kind
 that there is, with a quote of what was sent; whatever else it says is dropped and counted. All of it is ``may``, and it

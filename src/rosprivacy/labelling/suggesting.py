@@ -53,7 +53,7 @@ NOT_OPEN = 2**31  # behind every open element
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Suggested:
-    """What a person is asked.
+    """What a person is asked about the elements of an answer; under which rules; and what could not be looked at.
 
     Attributes
     ----------
@@ -63,20 +63,10 @@ class Suggested:
         Identities of the elements that are open.
     by_hand
         Labels that would take away data of which a finding is known: they are told, and not written into a label file.
-    result
-        The answer that they belong to.
-    rules
-        (file, SHA-256) of the rules.
-    model
-        What was asked of a language model, if one was asked.
     unplaced
         Uses of libraries in source code that a rule speaks about, and that belong to no node that is known here.
-    unread
-        What source code could not be read.
     of_others
         Folders with code of others that were left out.
-    notices
-        What a reader has to know of the packages, and of names in source code.
     """
 
     proposals: tuple[Proposal, ...]

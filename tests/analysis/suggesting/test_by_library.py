@@ -1,4 +1,4 @@
-"""What libraries say of nodes, by what these write and read: the rules of ``by_library.py`` (issue 21)."""
+"""What libraries say of nodes, by what these write and read: the rules of ``by_library.py``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is left of the answers of a language model: closed lists, and a quote of what was sent (issue 21)."""
+"""What is left of the answers of a language model: closed lists, and a quote of what was sent."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What several reasons for one label come to (issue 21; docs/suggestions.md)."""
+"""What several reasons for one label come to (docs/suggestions.md)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where a language model may be, by its address alone (issue 21; docs/language-model.md)."""
+"""Where a language model may be, by its address alone (docs/language-model.md)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Files of packages: what is read, and each problem at its line (issue 21, point 3)."""
+"""Files of packages: what is read, and each problem at its line."""
 
 from __future__ import annotations
 

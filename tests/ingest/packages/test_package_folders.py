@@ -1,4 +1,4 @@
-"""Which files of packages are read: the catalogue, files, folders, and what installed packages ship (issue 21)."""
+"""Which files of packages are read: the catalogue, files, folders, and what installed packages ship."""
 
 from __future__ import annotations
 

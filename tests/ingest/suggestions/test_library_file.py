@@ -1,4 +1,4 @@
-"""Rules about libraries: what ships, which name speaks about a use, and what is wrong with a file (issue 21)."""
+"""Rules about libraries: what ships, which name speaks about a use, and what is wrong with a file."""
 
 from __future__ import annotations
 

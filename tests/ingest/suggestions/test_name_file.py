@@ -1,4 +1,4 @@
-"""Rules about names: each family of the shipped file, the format, and a user's own file (issue 21)."""
+"""Rules about names: each family of the shipped file, the format, and a user's own file."""
 
 from __future__ import annotations
 
