@@ -34,12 +34,11 @@ if TYPE_CHECKING:
 
 
 class Traffic(NamedTuple):
-    """By vertex of a node the vertices of channels that it writes and reads, and the other way round; sorted."""
+    """By vertex of a node the vertices of channels that it writes and reads; by channel who writes it; sorted."""
 
     writes: Mapping[int, tuple[int, ...]]
     reads: Mapping[int, tuple[int, ...]]
     writers: Mapping[int, tuple[int, ...]]
-    readers: Mapping[int, tuple[int, ...]]
 
 
 def traffic(graph: FlowGraph, bound: Bound) -> Traffic:
@@ -49,13 +48,13 @@ def traffic(graph: FlowGraph, bound: Bound) -> Traffic:
     >>> graph, bound, _ = factory()
     >>> known = traffic(graph, bound)
     >>> named = lambda vertices: [graph.elements[vertex].name for vertex in vertices]
-    >>> named(known.writes[CAMERA]), named(known.reads[FILTER]), named(known.readers[known.writes[CAMERA][0]])
-    (['/video'], ['/video'], ['/face_id', '/filter'])
+    >>> named(known.writes[CAMERA]), named(known.reads[FILTER]), named(known.writers[known.writes[CAMERA][0]])
+    (['/video'], ['/video'], ['/camera'])
     """
     is_channel = [element.is_channel for element in graph.elements]
     standard = standard_in(bound)
     found: list[dict[int, set[int]]] = [defaultdict(set) for _ in Traffic._fields]
-    writes, reads, writers, readers = found
+    writes, reads, writers = found
     for _, flow in parted(graph.flows)[0]:  # a meeting is one of channels
         source, target = flow.source, flow.target
         if is_channel[source] == is_channel[target] or source in standard or target in standard:
@@ -65,7 +64,6 @@ def traffic(graph: FlowGraph, bound: Bound) -> Traffic:
             writers[target].add(source)
         else:
             reads[target].add(source)
-            readers[source].add(target)
     return Traffic(*({at: tuple(sorted(ends)) for at, ends in sorted(one.items())} for one in found))
 
 

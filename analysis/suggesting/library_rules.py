@@ -137,9 +137,6 @@ class LibraryRules(NamedTuple):
         return any(self.spoken(section, use) for section in (self.brings_in, self.lets_out, self.makes))
 
 
-NO_LIBRARIES = LibraryRules({}, {}, {}, {})
-
-
 def _above(name: str) -> Iterator[str]:
     """A name and those above it, the longest first.
 
