@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from measure import Row, timed, timed_or_counted
 
 from rosprivacy.ingest.code.source_files import read_sources
-from rosprivacy.labelling.code_said import code_said
+from rosprivacy.labelling.knowledge import code_said
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

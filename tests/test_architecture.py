@@ -62,7 +62,7 @@ OF_ITS_OWN = {  # modules that touch files in another way, and why none of these
     "report/compare/earlier.py": "notes what it reads; and what is shipped",
     "report/atomic.py": "the one writer",
     "ingest/running/zenoh_door.py": "opens a session, no file",
-    "ingest/language_model/model_server.py": "opens a connection, no file",
+    "ingest/language_model.py": "opens a connection, no file",
     "ingest/policies/policy_xml.py": "asks xinclude.py to open",
     "ingest/running/observed_files.py": "asks xinclude.py to open",
     "ingest/lint.py": "asks xinclude.py to open what a policy was read from",

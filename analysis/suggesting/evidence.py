@@ -1,8 +1,13 @@
-"""One reason to label an element, and what all reasons for one label come to: questions for a person, never facts."""
+"""One reason to label an element, what all reasons for one label come to, and the label as a label file has it.
+
+All of it are questions for a person, never facts.
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from rosprivacy.analysis.written_names import literal
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.model import Confidence, Element, Method, Place
@@ -12,21 +17,13 @@ SANITIZER, CONDUIT, MUNDANE, NEVER = "sanitizer", "conduit", "mundane", "never"
 ROLES = (SOURCE, LEAK, DERIVATION, SENSITIVE, SANITIZER, CONDUIT, MUNDANE, NEVER)  # in the order in which they are told
 TAKING_AWAY = frozenset([SANITIZER, MUNDANE, NEVER])  # a wrong one can hide a leak
 HIDING = TAKING_AWAY | {CONDUIT}  # or that nobody looked
-OF_NODES = frozenset([SOURCE, LEAK, DERIVATION, SANITIZER, CONDUIT])  # the others are said of channels
 CODE, PACKAGE, TYPE, NAMED, DATA_FLOW, NEIGHBOUR = "code", "package", "type", "name", "data-flow", "neighbour"
 MODEL = "model"  # a language model, which read names and types; it makes nothing surer than may
 GLOBBED = "glob"  # a label that says otherwise, and names no element
-GROUNDS = (
-    GLOBBED,
-    CODE,
-    PACKAGE,
-    TYPE,
-    NAMED,
-    DATA_FLOW,
-    NEIGHBOUR,
-    MODEL,
-)  # what evidence comes from, in the order of reasons
-INDEPENDENT = frozenset([CODE, TYPE, NAMED])  # the others know types and names, or are drawn from them
+GROUNDS = (GLOBBED, CODE, PACKAGE, TYPE, NAMED, DATA_FLOW, NEIGHBOUR, MODEL)  # in the order of reasons
+ANYTHING = "PersonalData"  # the broadest category: a type that can carry it can carry anything
+
+Identity = tuple[str, str, str]  # of an element
 
 
 class Label(NamedTuple):
@@ -35,13 +32,9 @@ class Label(NamedTuple):
     Attributes
     ----------
     element
-        Without leg and side: ``whole`` gives it. A node for the roles ``OF_NODES``, else a channel.
-    role
-        One of ``ROLES``.
+        Without leg and side: ``whole`` gives it. A node, or, of ``sensitive``, ``mundane`` and ``never``, a channel.
     kind
         Name of the category; empty for every one, of a conduit and of a mundane channel only.
-    method
-        Of a sanitizer.
     to
         Of a derivation: the category that comes out.
     """
@@ -61,8 +54,7 @@ class Evidence(NamedTuple):
     ground
         One of ``GROUNDS``: the provider.
     reason
-        A few words that quote the input, such as ``type sensor_msgs/msg/Image of /camera``; text of the input is
-        shown as it is, so whoever prints it makes it harmless.
+        A few words that quote the input as it is, so whoever prints it makes it harmless.
     place
         Of the rule, or the line of code.
     family
@@ -85,28 +77,45 @@ class Evidence(NamedTuple):
 
 
 class Proposal(NamedTuple):
-    """A label that a person is asked about.
-
-    Attributes
-    ----------
-    confidence
-        What all evidence comes to.
-    evidence
-        The surest first; each reason once.
-    """
+    """A label that a person is asked about, how sure all evidence makes it, and the evidence: the surest first."""
 
     label: Label
     confidence: Confidence
     evidence: tuple[Evidence, ...]
 
 
-def whole(element: Element) -> Element:
-    """Return the element that a label speaks of: legs and sides are parts of one (rule S1).
+class WrittenLabel(NamedTuple):
+    """What stands in a label file: ``section: {name: said}``."""
 
-    >>> from rosprivacy.analysis.model import Element
-    >>> whole(Element("service", "/map", leg="request"))
-    Element(kind='service', name='/map', robot='', leg='', side='', without=())
-    """
+    section: str
+    name: str
+    said: dict[str, Any]
+
+
+def whole(element: Element) -> Element:
+    """Return the element that a label speaks of: legs and sides are parts of one (rule S1)."""
     if not element.leg and not element.side:
         return element
     return type(element)(element.kind, element.name, element.robot)
+
+
+def written(label: Label) -> WrittenLabel:
+    """Return what a label is in a label file.
+
+    ``mundane`` is ``never`` of the broadest category, and a conduit for every kind is one of the broadest: it means the
+    same, and there is room for a note beside it.
+
+    >>> from rosprivacy.analysis.model import Element, Method
+    >>> node = Element("node", "/n")
+    >>> written(Label(node, "source", "Video")).said, written(Label(node, "sanitizer", "Video", Method.DROP)).said
+    ({'source': ['Video']}, {'sanitizer': {'Video': 'drop'}})
+    >>> written(Label(Element("topic", "/a*"), "mundane"))
+    WrittenLabel(section='topics', name='=/a*', said={'never': ['PersonalData']})
+    """
+    kind = label.kind or ANYTHING
+    said: dict[str, Any] = {NEVER if label.role == MUNDANE else label.role: [kind]}
+    if label.role == SANITIZER:
+        said = {SANITIZER: {kind: str(label.method)}}
+    elif label.role == DERIVATION:
+        said = {"derives": [{"from": kind, "to": label.to}]}
+    return WrittenLabel(f"{label.element.kind}s", literal(label.element.name), said)

@@ -27,15 +27,7 @@ _END = re.compile(r"(?:\.|::|[(]| )[^.:( ]*$")  # of a name: its last part, with
 
 
 class NodeUse(NamedTuple):
-    """One thing that the code of a node uses.
-
-    Attributes
-    ----------
-    name
-        As the imports of its file resolve it.
-    language
-        ``python`` or ``c++``.
-    """
+    """One thing that the code of a node uses, named as the imports of its file resolve it; ``python`` or ``c++``."""
 
     name: str
     language: str
@@ -49,8 +41,6 @@ class LibraryRule(NamedTuple):
     ----------
     kinds
         Names of categories: what it brings in, or lets out; of what it makes something.
-    why
-        The reason, in a few words.
     to
         The categories that are made; none where it makes nothing.
     where
@@ -81,9 +71,9 @@ class LibraryRule(NamedTuple):
         """Return what the rule says of the uses that it speaks about, and the one that shows it best.
 
         >>> from rosprivacy.analysis.model import Confidence, Place
-        >>> said = LibraryRule((), Confidence.LIKELY, "a database", Place("libraries.yaml", 1), writes=("commit",))
+        >>> rule = LibraryRule((), Confidence.LIKELY, "a database", Place("libraries.yaml", 1), writes=("commit",))
         >>> uses = [NodeUse(f"sqlite3.connect.{name}", "python", Place("a.py", 1)) for name in ("cursor", "commit")]
-        >>> [(str(rule.confidence), use.name) for rule, use in (said.of_uses(uses), said.of_uses(uses[:1]))]
+        >>> [(str(one.confidence), use.name) for one, use in (rule.of_uses(uses), rule.of_uses(uses[:1]))]
         [('likely', 'sqlite3.connect.commit'), ('may', 'sqlite3.connect.cursor')]
         """
         if not self.writes:
@@ -93,24 +83,14 @@ class LibraryRule(NamedTuple):
 
 
 class Names(NamedTuple):
-    """Rules by name.
+    """Rules by name; by what names begin with (written with ``*`` at its end); by a part of an address.
 
-    Attributes
-    ----------
-    starred
-        By what names begin with: what was written with ``*`` at its end.
-    addresses
-        By a part of an address.
-
-    Examples
-    --------
     >>> from rosprivacy.analysis.model import Confidence, Place
     >>> rule = LibraryRule(("Voice",), Confidence.LIKELY, "a microphone", Place("libraries.yaml", 1))
-    >>> names = Names({"sounddevice.InputStream": rule}, {"Pa_Open": rule})
-    >>> [bool(names.of(name)) for name in ("sounddevice.InputStream.read", "sounddevice.play", "Pa_OpenStream")]
-    [True, False, True]
-    >>> bool(Names({}, {}, {"api.openai.com": rule}).of("@ https://api.openai.com/v1"))
-    True
+    >>> names = Names({"sounddevice.InputStream": rule}, {"Pa_Open": rule}, {"api.openai.com": rule})
+    >>> asked = ("sounddevice.InputStream.read", "sounddevice.play", "Pa_OpenStream", "@ https://api.openai.com/v1")
+    >>> [bool(names.of(name)) for name in asked]
+    [True, False, True, True]
     """
 
     rules: Mapping[str, LibraryRule]
@@ -125,18 +105,15 @@ class Names(NamedTuple):
         for above in _above(name):
             if above in self.rules:
                 return above, self.rules[above]
-        begins = [own for own in self.starred if name.startswith(own)]
-        longest = max(begins, key=len, default="")
+        longest = max((own for own in self.starred if name.startswith(own)), key=len, default="")
         return (longest, self.starred[longest]) if longest else None
 
 
 class LibraryRules(NamedTuple):
-    """The rules of all files, by language.
+    """The rules of all files, by language: what a node brings in, lets out, or makes of another kind.
 
     Attributes
     ----------
-    brings_in, lets_out, makes
-        What a node brings in, lets out, or makes of another kind.
     silent
         Names that suggest nothing; they speak where no rule has a longer name.
     """
@@ -148,19 +125,16 @@ class LibraryRules(NamedTuple):
 
     def spoken(self, section: Mapping[str, Names], use: NodeUse) -> LibraryRule | None:
         """Return the rule of a section that speaks about a use, if there is one."""
-        said = section[use.language].of(use.name) if use.language in section else None
-        if said is None:
+        found = section[use.language].of(use.name) if use.language in section else None
+        if found is None:
             return None
-        name, rule = said
+        name, rule = found
         quiet = self.silent.get(use.language, frozenset())
         return None if any(above in quiet for above in _above(use.name) if len(above) >= len(name)) else rule
 
     def speaks(self, use: NodeUse) -> bool:
         """Return whether any rule speaks about a use."""
         return any(self.spoken(section, use) for section in (self.brings_in, self.lets_out, self.makes))
-
-
-NO_LIBRARIES = LibraryRules({}, {}, {}, {})
 
 
 def _above(name: str) -> Iterator[str]:

@@ -7,8 +7,8 @@ last part speaks; a part with nothing but neutral words hands over to the one be
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass, field
 from functools import lru_cache
-from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
@@ -29,8 +29,6 @@ class NameRule(NamedTuple):
     ----------
     kinds
         Names of categories; none where the words say that data leave the robot, or that a topic carries none.
-    why
-        The reason, in a few words.
     instead_of
         Categories: where another word of the name suggests one of these, it is the kinds of this rule instead.
     any_type
@@ -45,71 +43,32 @@ class NameRule(NamedTuple):
     any_type: bool = False
 
 
-class NameRules(NamedTuple):
-    """The rules of all files, by phrase.
+@dataclass(frozen=True)
+class NameRules:
+    """The rules of all files; a field is a section of the file, which says what it means (docs/suggestions.md)."""
 
-    Attributes
-    ----------
-    carries
-        Of topics: what is sent through them.
-    nothing
-        Of topics: that they are not made for personal data.
-    brings_in, lets_out
-        Of nodes: that they are sources of kinds, or leaks.
-    silent
-        Phrases that suggest nothing wherever they stand last, such as ``camera_info``.
-    neutral
-        Words that say nothing by themselves, such as ``raw``.
-    becomes
-        Category -> the categories that nodes make of it, each with its rule.
-    tells
-        Category -> what a node may tell of persons that takes such data and need not hand them on, each with its rule.
-    computed
-        Categories that programs work out of other data, so that who writes them is seldom where they come from.
-    not_by_type
-        Categories of which a type that says no more than ``may`` makes no source by itself.
-    entered
-        Categories that somebody enters, where a service is asked for whose name speaks of them, such as ``order``.
-    wanted
-        Phrases: what a topic with them last carries is wished, such as ``goal_pose``, and was not measured.
-    commanding
-        Words: a topic that begins with one in its last part carries a command, such as ``cmd_audio``.
-    reworked
-        Words: a topic with one of them carries what somebody made of other data, such as ``debug``.
-    reworking
-        Words: a node with one of them in its name works on what others bring in, such as ``detector``.
-    simulated
-        Words: a node or topic with one of them in its name stands for what nobody measured.
-    driving
-        Words: a node with one of them in its name talks with its own device.
-    unprompted
-        Of topics: what a node brings in that writes one, and reads none.
-    broadened
-        Categories that are asked about wherever a narrower one is.
-    understood
-        Words: a topic with one of them carries what somebody wants, where its writer reads what somebody said.
-    """
-
-    carries: Mapping[Phrase, NameRule]
-    nothing: Mapping[Phrase, NameRule]
-    brings_in: Mapping[Phrase, NameRule]
-    lets_out: Mapping[Phrase, NameRule]
-    silent: frozenset[Phrase]
-    neutral: frozenset[str]
-    becomes: Mapping[str, Mapping[str, NameRule]]
-    computed: frozenset[str] = frozenset()
-    not_by_type: frozenset[str] = frozenset()
-    entered: frozenset[str] = frozenset()
-    wanted: frozenset[Phrase] = frozenset()
-    commanding: frozenset[str] = frozenset()
-    reworked: frozenset[str] = frozenset()
-    reworking: frozenset[str] = frozenset()
-    simulated: frozenset[str] = frozenset()
-    understood: frozenset[str] = frozenset()
-    driving: frozenset[str] = frozenset()
-    unprompted: Mapping[Phrase, NameRule] = MappingProxyType({})
-    tells: Mapping[str, Mapping[str, NameRule]] = MappingProxyType({})
-    broadened: frozenset[str] = frozenset()
+    # phrase -> rule: of topics what is sent through them, and that nothing is; of nodes what they bring in or let out
+    carries: Mapping[Phrase, NameRule] = field(default_factory=dict)
+    nothing: Mapping[Phrase, NameRule] = field(default_factory=dict)
+    brings_in: Mapping[Phrase, NameRule] = field(default_factory=dict)
+    lets_out: Mapping[Phrase, NameRule] = field(default_factory=dict)
+    unprompted: Mapping[Phrase, NameRule] = field(default_factory=dict)  # what who writes such a topic, and reads none
+    # category -> category -> rule: what nodes make of it; what of persons a node may tell that takes such data
+    becomes: Mapping[str, Mapping[str, NameRule]] = field(default_factory=dict)
+    tells: Mapping[str, Mapping[str, NameRule]] = field(default_factory=dict)
+    silent: frozenset[Phrase] = frozenset()  # suggest nothing wherever they stand last, such as camera_info
+    wanted: frozenset[Phrase] = frozenset()  # what a topic with them last carries is wished, such as goal_pose
+    neutral: frozenset[str] = frozenset()  # words that say nothing by themselves, such as raw
+    commanding: frozenset[str] = frozenset()  # a topic that begins so in its last part is a command, such as cmd_audio
+    reworked: frozenset[str] = frozenset()  # a topic with one carries what was made of other data, such as debug
+    reworking: frozenset[str] = frozenset()  # a node with one works on what others bring in, such as detector
+    simulated: frozenset[str] = frozenset()  # a node or topic with one stands for what nobody measured
+    understood: frozenset[str] = frozenset()  # a topic with one carries what somebody wants, if its writer reads speech
+    driving: frozenset[str] = frozenset()  # a node with one talks with its own device
+    computed: frozenset[str] = frozenset()  # categories that programs work out, so that who writes them is no source
+    not_by_type: frozenset[str] = frozenset()  # of which a type that says no more than may makes no source by itself
+    entered: frozenset[str] = frozenset()  # that somebody enters, where a service is asked for that is called so
+    broadened: frozenset[str] = frozenset()  # that are asked about wherever a narrower one is
 
 
 class Spoken(NamedTuple):
@@ -117,6 +76,11 @@ class Spoken(NamedTuple):
 
     rule: NameRule
     words: Phrase
+
+    @property
+    def quoted(self) -> str:
+        """The words, as a reason quotes them."""
+        return f"'{'_'.join(self.words)}'"
 
 
 @lru_cache(maxsize=2**16)
@@ -131,43 +95,27 @@ def words(name: str) -> Phrase:
 
 
 def of_topic(name: str, rules: NameRules) -> Spoken | None:
-    """Return the rule that says what a topic of this name carries, if there is one.
-
-    >>> from rosprivacy.analysis.suggesting.example_names import NAMES
-    >>> names = ("/head/camera/image_raw", "/camera/depth/image_raw", "/camera/info")
-    >>> [said and (said.rule.kinds, said.words) for said in (of_topic(name, NAMES) for name in names)]
-    [(('Video',), ('image',)), (('DepthImage',), ('depth',)), None]
-    """
+    """Return the rule that says what a topic of this name carries, if there is one."""
     parts = name.split("/")[::-1]
-    for part in map(words, parts):
-        if not rules.neutral.issuperset(part):
-            spoken = _last(part, rules.carries, rules.silent)
-            commands = spoken and part[0] in rules.commanding and not spoken.rule.any_type
-            return None if commands else _instead(spoken, parts, rules)
-    return None
+    part = _speaking(parts, rules)
+    spoken = _last(part, rules.carries, rules.silent)
+    if spoken is None or (part[0] in rules.commanding and not spoken.rule.any_type):
+        return None
+    return _instead(spoken, parts, rules)
 
 
 def is_silent(name: str, rules: NameRules) -> bool:
-    """Return whether a topic is called like a command or a state of the machine.
-
-    >>> from rosprivacy.analysis.suggesting.example_names import NAMES
-    >>> [is_silent(name, NAMES) for name in ("/camera/info", "/robot/cmd_vel", "/camera/image_raw", "/other")]
-    [True, True, False, False]
-    """
-    part = next((part for part in map(words, name.split("/")[::-1]) if not rules.neutral.issuperset(part)), ())
+    """Return whether a topic is called like a command or a state of the machine."""
+    part = _speaking(name.split("/")[::-1], rules)
     if not part or of_topic_nothing(name, rules):
         return bool(part)
     return part[0] in rules.commanding or not rules.silent.isdisjoint(_ending_at(part, len(part)))
 
 
 def of_topic_nothing(name: str, rules: NameRules) -> Spoken | None:
-    """Return the rule that says that a topic of this name is not made for personal data, if there is one.
-
-    >>> from rosprivacy.analysis.suggesting.example_names import NAMES
-    >>> of_topic_nothing("/robot/cmd_vel", NAMES).words, of_topic_nothing("/robot/cmd_vel/face", NAMES)
-    (('cmd', 'vel'), None)
-    """
-    return _last(words(name.rpartition("/")[2]), rules.nothing, frozenset(), whole=True)
+    """Return the rule that says that a topic of this whole name is not made for personal data, if there is one."""
+    part = _own(name)
+    return Spoken(rules.nothing[part], part) if part in rules.nothing else None
 
 
 def ends_with(name: str, phrases: frozenset[Phrase]) -> bool:
@@ -176,7 +124,7 @@ def ends_with(name: str, phrases: frozenset[Phrase]) -> bool:
     >>> ends_with("/nav/goal_pose", frozenset([("goal", "pose")])), ends_with("/goal/x", frozenset([("goal",)]))
     (True, False)
     """
-    part = words(name.rpartition("/")[2])
+    part = _own(name)
     return not phrases.isdisjoint(_ending_at(part, len(part)))
 
 
@@ -186,7 +134,7 @@ def has_word(name: str, some: frozenset[str]) -> bool:
     >>> has_word("/sim/fake_camera", frozenset(["fake"])), has_word("/fake/camera", frozenset(["fake"]))
     (True, False)
     """
-    return not some.isdisjoint(words(name.rpartition("/")[2]))
+    return not some.isdisjoint(_own(name))
 
 
 def of_node(name: str, rules: Mapping[Phrase, NameRule], silent: frozenset[Phrase] = frozenset()) -> Spoken | None:
@@ -196,22 +144,21 @@ def of_node(name: str, rules: Mapping[Phrase, NameRule], silent: frozenset[Phras
     ----------
     silent
         Phrases that suggest nothing as the last words: ``get_camera_params`` is no camera.
-
-    Examples
-    --------
-    >>> from rosprivacy.analysis.suggesting.example_names import NAMES
-    >>> of_node("/front/camera_driver", NAMES.brings_in).words, of_node("/camera/pose", NAMES.brings_in)
-    (('camera',), None)
     """
-    return _last(words(name.rpartition("/")[2]), rules, silent)
+    return _last(_own(name), rules, silent)
 
 
-def _last(
-    part: Phrase, rules: Mapping[Phrase, NameRule], silent: frozenset[Phrase], *, whole: bool = False
-) -> Spoken | None:
+def _own(name: str) -> Phrase:
+    return words(name.rpartition("/")[2])
+
+
+def _speaking(parts: Sequence[str], rules: NameRules) -> Phrase:
+    """The words of the first part with any that is not neutral."""
+    return next((part for part in map(words, parts) if not rules.neutral.issuperset(part)), ())
+
+
+def _last(part: Phrase, rules: Mapping[Phrase, NameRule], silent: frozenset[Phrase]) -> Spoken | None:
     """The rule about the last words of a part that a rule is about; of several phrases there the longest."""
-    if whole:
-        return Spoken(rules[part], part) if part in rules else None
     for phrase in _phrases(part):
         if phrase in silent:
             return None
@@ -232,10 +179,8 @@ def _ending_at(part: Phrase, end: int) -> tuple[Phrase, ...]:
     return tuple(part[start:end] for start in range(max(0, end - LONGEST_PHRASE), end))
 
 
-def _instead(spoken: Spoken | None, parts: Sequence[str], rules: NameRules) -> Spoken | None:
+def _instead(spoken: Spoken, parts: Sequence[str], rules: NameRules) -> Spoken:
     """What another word of the name makes of what its last one says: a depth image is no video."""
-    if spoken is None:
-        return None
     for part in parts:
         for phrase in _phrases(words(part)):
             rule = rules.carries.get(phrase)

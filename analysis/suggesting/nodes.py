@@ -9,24 +9,21 @@ what others bring in (a detector), where the name of the topic says that somebod
 out (a pose, a map) the name of the topic says what goes through it, and not where it comes from: it agrees with
 nothing, and no type makes its source certain. A goal is where the robot shall go: who writes it or asks for it is no
 source of where somebody is.
+
+A node that writes velocities has them from somewhere. If it reads no topic and serves nothing, they come from a person
+(keys, a joystick, a page), or the program makes them up: so it ``may`` be a source. The same is true of such a node
+that asks for a service or an action, or writes what can be anything or what somebody wants (a goal), and of which
+nothing else says what it brings in: to say nothing of it would be to say that nothing comes in there.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.model import Confidence, Method, interface_of
-from rosprivacy.analysis.suggesting.carried_kinds import ANYTHING, Clue, cannot_carry
-from rosprivacy.analysis.suggesting.clues_of_nodes import (
-    WrittenChannel,
-    brought_in,
-    by_kind,
-    doubtful,
-    of_reader,
-    of_writer,
-    surest,
-)
+from rosprivacy.analysis.suggesting.channels import Clue
 from rosprivacy.analysis.suggesting.evidence import (
+    ANYTHING,
     DATA_FLOW,
     DERIVATION,
     LEAK,
@@ -37,67 +34,157 @@ from rosprivacy.analysis.suggesting.evidence import (
     Evidence,
     Label,
 )
-from rosprivacy.analysis.suggesting.name_rules import has_word, is_silent, of_node
-from rosprivacy.analysis.suggesting.weighing import surer
-
-SAID, WANTED = "SpeechTranscript", "VoiceCommand"
+from rosprivacy.analysis.suggesting.name_rules import ends_with, has_word, is_silent, of_node, words
+from rosprivacy.analysis.suggesting.weighing import SURENESS, weaker
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.model import Bound, Element, FlowGraph
-    from rosprivacy.analysis.suggesting.carried_kinds import Rules
-    from rosprivacy.analysis.suggesting.clues_of_nodes import ByKind
-    from rosprivacy.analysis.suggesting.name_rules import Spoken
-    from rosprivacy.analysis.suggesting.traffic import Traffic
+    from rosprivacy.analysis.suggesting.channels import Rules, Traffic
+    from rosprivacy.analysis.suggesting.name_rules import NameRule, NameRules, Spoken
 
     Clues = Mapping[int, tuple[Clue, ...]]
+    ByKind = dict[str, list[Clue]]
+SAID, WANTED = "SpeechTranscript", "VoiceCommand"
 
 
-def of_nodes(graph: FlowGraph, bound: Bound, told: Traffic, clues: Clues, rules: Rules) -> Iterator[Evidence]:
+class _Written(NamedTuple):
+    """A channel that a node writes, with the names of its types, and what is thought that goes into it."""
+
+    element: Element
+    types: Sequence[str]
+    clues: Sequence[Clue]
+
+
+def of_nodes(graph: FlowGraph, bound: Bound, known: Traffic, clues: Clues, rules: Rules) -> Iterator[Evidence]:
     """Yield what is suggested of each node.
 
     Parameters
     ----------
     clues
         What types and names suggest of channels.
-
-    Examples
-    --------
-    >>> from rosprivacy.analysis.example import factory
-    >>> from rosprivacy.analysis.suggesting.carried_kinds import Rules, carried_kinds
-    >>> from rosprivacy.analysis.suggesting.example_names import NAMES
-    >>> from rosprivacy.analysis.suggesting.traffic import traffic
-    >>> graph, bound, hierarchy = factory()
-    >>> rules = Rules({}, {}, NAMES, hierarchy)
-    >>> said = of_nodes(graph, bound, traffic(graph, bound), carried_kinds(graph, bound, rules), rules)
-    >>> for one in said:
-    ...     print(one.label.element.name, one.label.role, one.label.kind, one.label.to or one.reason)
-    /archive leak PersonalData 'archive' in the name of the node: it keeps what it gets
-    /camera source Video 'video' in the name /video
-    /camera source Video 'camera' in the name of the node: pictures
-    /face_id derivation Video FaceTemplate
     """
     names, types = rules.names, {at: [said.name for said in some] for at, some in bound.types.items()}
-    heard = {at: of_reader(some, names) for at, some in clues.items()}
-    sent = {at: of_writer(graph.elements[at], some, names) for at, some in heard.items()}
+    heard = {at: _for_reader(some, names) for at, some in clues.items()}
+    sent = {at: _for_writer(graph.elements[at], some, names) for at, some in heard.items()}
     unknown = _Unknown(graph, types, clues, rules)
     for vertex, element in enumerate(graph.elements):
         if not element.is_node:
             continue
-        written, read = told.writes.get(vertex, ()), told.reads.get(vertex, ())
+        written, read = known.writes.get(vertex, ()), known.reads.get(vertex, ())
         if read and (spoken := of_node(element.name, names.lets_out)):
-            reason = f"'{'_'.join(spoken.words)}' in the name of the node: {spoken.rule.why}"
+            reason = f"{spoken.quoted} in the name of the node: {spoken.rule.why}"
             label = Label(element, LEAK, ANYTHING)
             yield Evidence(label, NAMED, spoken.rule.confidence, reason, spoken.rule.place)
         if written:
-            channels = [WrittenChannel(graph.elements[one], types.get(one, ()), sent.get(one, ())) for one in written]
-            into = by_kind(heard.get(one, ()) for one in read)
+            channels = [_Written(graph.elements[one], types.get(one, ()), sent.get(one, ())) for one in written]
+            into = _by_kind(heard.get(one, ()) for one in read)
             node = _Node(element, rules, channels, into, unknown.reader(read))
             yield from node.outputs()
             yield from node.by_name()
             yield from node.understood()
             yield from node.dropped()
+
+
+def unprompted(graph: FlowGraph, known: Traffic, names: NameRules) -> Iterator[Evidence]:
+    """Yield what nodes bring in that write a topic of the section ``unprompted``, read none, and serve nothing."""
+    for vertex, written in known.writes.items() if names.unprompted else ():
+        topics = (graph.elements[one] for one in written if graph.elements[one].kind == "topic")
+        said = ((topic, spoken) for topic in topics if (spoken := of_node(topic.name, names.unprompted)))
+        first = next(said, None) if _gets_nothing(vertex, graph, known) else None
+        if first:
+            topic, spoken = first
+            because = f"writes {spoken.quoted} ({topic.name}), and reads no topic"
+            yield from _unprompted(graph.elements[vertex], spoken.rule, because)
+
+
+def of_the_rest(
+    graph: FlowGraph, bound: Bound, known: Traffic, rules: Rules, sources: Collection[Element]
+) -> Iterator[Evidence]:
+    """Yield what nodes may bring in that get nothing, and of which nothing else says what they bring in.
+
+    Parameters
+    ----------
+    sources
+        Nodes that are suggested as sources.
+    """
+    rule, elements = rules.names.unprompted.get(()), graph.elements
+    for vertex, written in known.writes.items() if rule else ():
+        if rule and elements[vertex] not in sources and _gets_nothing(vertex, graph, known):
+            free = [one for one in written if _takes_anything(one, graph, bound, rules)]
+            free += [one for one in written if ends_with(elements[one].name, rules.names.wanted)]
+            if free:
+                does = "asks for" if elements[free[0]].leg else "writes"
+                because = f"{does} {elements[free[0]].name}, and reads no topic"
+                yield from _unprompted(elements[vertex], rule, because)
+
+
+def broader_sources(evidence: Iterable[Evidence], rules: Rules) -> Iterator[Evidence]:
+    """Yield that a node may be a source of a broader kind that is ``broadened``, for each source of a narrower one.
+
+    What is known names one narrower kind, and persons often another one: a node that is called after a transcript often
+    writes a command. So the broader kind is asked about, as long as nobody has named the narrower one.
+    """
+    sources = [one for one in evidence if one.label.role == SOURCE]
+    labels = {one.label for one in sources}
+    for one in sources:
+        for kind in sorted(rules.names.broadened & rules.hierarchy.ancestors[one.label.kind].keys()):
+            label = one.label._replace(kind=kind)
+            if label not in labels:
+                labels.add(label)
+                reason = f"{one.reason}; it may also be of another sort of {kind}"
+                yield Evidence(label, DATA_FLOW, Confidence.MAY, reason, one.place, beside=one.label.kind)
+
+
+def _gets_nothing(vertex: int, graph: FlowGraph, known: Traffic) -> bool:
+    return all(graph.elements[one].leg not in ("", "request") for one in known.reads.get(vertex, ()))
+
+
+def _takes_anything(channel: int, graph: FlowGraph, bound: Bound, rules: Rules) -> bool:
+    """Whether a request goes there, or a message of a type that can carry anything, or that nobody has looked at."""
+    element, types = graph.elements[channel], bound.types.get(channel, ())
+    if element.kind != "topic":
+        return element.leg == "request"
+    suggested = [rules.suggestions.get((interface_of(one.name), "")) for one in types]
+    return any(one is None or any(ANYTHING in rule.kinds for rule in one) for one in suggested)
+
+
+def _unprompted(element: Element, rule: NameRule, because: str) -> Iterator[Evidence]:
+    for kind in rule.kinds:
+        yield Evidence(Label(element, SOURCE, kind), DATA_FLOW, rule.confidence, f"{because}: {rule.why}", rule.place)
+
+
+def _by_kind(channels: Iterable[Sequence[Clue]]) -> ByKind:
+    """What channels are thought to carry, by kind; that they can carry anything says nothing of a node."""
+    found: ByKind = {}
+    for clues in channels:
+        for clue in clues:
+            if clue.kind != ANYTHING:
+                found.setdefault(clue.kind, []).append(clue)
+    return found
+
+
+def _for_reader(clues: tuple[Clue, ...], names: NameRules) -> tuple[Clue, ...]:
+    """What is thought of a topic, as far as it says something of who reads it: not what only a weak type says."""
+    weak = names.not_by_type - {clue.kind for clue in clues if clue.ground == NAMED}
+    return tuple(clue for clue in clues if clue.kind not in weak or clue.confidence is not Confidence.MAY)
+
+
+def _for_writer(channel: Element, clues: tuple[Clue, ...], names: NameRules) -> tuple[Clue, ...]:
+    """What is thought of a channel, for who writes it: what a goal or a request may carry, it does not bring in."""
+    if channel.leg != "request" and not ends_with(channel.name, names.wanted):
+        return clues
+    return tuple(clue for clue in clues if clue.confidence is not Confidence.MAY)
+
+
+def _doubtful(clue: Clue) -> Clue:
+    """A clue as one that is no more than ``may``, and agrees with nothing."""
+    return clue._replace(ground=DATA_FLOW, confidence=Confidence.MAY)
+
+
+def _surest(clues: Sequence[Clue]) -> Clue:
+    return min(clues, key=lambda one: SURENESS[one.confidence])  # of several the first
 
 
 class _Unknown:
@@ -132,56 +219,64 @@ class _Node:
         self,
         element: Element,
         rules: Rules,
-        written: Sequence[WrittenChannel],
+        written: Sequence[_Written],
         into: ByKind,
         reads_unknown: Callable[[], bool],
     ) -> None:
-        self.element, self.rules, self.written = element, rules, written
-        self.out, self.into, self.reads_unknown = by_kind(one.clues for one in written), into, reads_unknown
+        self.element, self.rules, self.names, self.written = element, rules, rules.names, written
+        self.out, self.into, self.reads_unknown = _by_kind(one.clues for one in written), into, reads_unknown
         self.named = of_node(element.name, rules.names.brings_in, rules.names.silent)
 
     def outputs(self) -> Iterator[Evidence]:
-        """Yield for each kind that is written whether the node brings it in or makes it of what it reads."""
+        """Yield for each kind that is written whether the node brings it in or makes it of what it reads.
+
+        A kind that it also reads it makes again if programs work it out: where the robot is, by a scan and its wheels.
+        """
         for kind, clues in self.out.items():
             made_of = self._made_of(kind)
             if self._reads(kind):
-                yield from self._made_again(kind, clues, made_of)
-                continue
-            for one in made_of:
-                yield self._derived(one, kind, surest(clues))
-            if not made_of:
+                again = [one for one in made_of if kind in self.names.computed and one not in self.names.computed]
+                yield from (self._derived(one, kind, _doubtful(_surest(clues))) for one in again)
+            elif made_of:
+                yield from (self._derived(one, kind, _surest(clues)) for one in made_of)
+            else:
                 yield from self._written(kind)
 
     def _written(self, kind: str) -> Iterator[Evidence]:
         """Yield what its channels say of a source; only its own name, or its code, says that it brings the kind in."""
-        clues = [clue for channel in self.written for clue in brought_in(kind, channel, self.rules.names)]
-        clues = [*map(doubtful, clues)] if self._in_doubt() else clues
+        clues = [clue for channel in self.written for clue in self._brought_in(kind, channel)]
+        if self._in_doubt():
+            clues = [*map(_doubtful, clues)]
         names_it = self.named is not None and self.rules.related_to_one(kind, self.named.rule.kinds)
         typed = any(clue.ground == TYPE for clue in clues)
         for clue in clues:
-            weaker = clue.ground == TYPE and clue.confidence is Confidence.LIKELY and not names_it
-            sure = Confidence.MAY if weaker else clue.confidence
+            by_type_only = clue.ground == TYPE and clue.confidence is Confidence.LIKELY and not names_it
+            sure = Confidence.MAY if by_type_only else clue.confidence
             alone = clue.ground == NAMED and typed and not names_it
-            label = self._label(SOURCE, kind)
-            yield Evidence(label, clue.ground, sure, clue.reason, clue.place, alone=alone)
+            yield Evidence(self._label(SOURCE, kind), clue.ground, sure, clue.reason, clue.place, alone=alone)
 
-    def _made_again(self, kind: str, clues: Sequence[Clue], made_of: Sequence[str]) -> Iterator[Evidence]:
-        """Yield what is made of what sensors say and of the same kind: where the robot is, by a scan and its wheels."""
-        computed = self.rules.names.computed
-        for one in made_of:
-            if kind in computed and one not in computed:
-                yield self._derived(one, kind, surest(clues))._replace(confidence=Confidence.MAY)
+    def _brought_in(self, kind: str, channel: _Written) -> Iterator[Clue]:
+        """What is thought of a channel and a kind, as far as it says that who writes it brings that in."""
+        clues = [clue for clue in channel.clues if clue.kind == kind]
+        others = self.names.reworked | self.names.simulated
+        made = bool(clues) and any(not others.isdisjoint(part) for part in map(words, channel.element.name.split("/")))
+        for clue in clues:
+            if made or (kind in self.names.computed and clue.confidence is Confidence.MAY):
+                yield _doubtful(clue)
+            elif kind in self.names.computed:
+                yield clue._replace(confidence=Confidence.LIKELY)
+            else:
+                yield clue
 
     def _made_of(self, kind: str) -> list[str]:
-        return [one for one in self.into if kind in self.rules.names.becomes.get(one, ())]
+        return [one for one in self.into if kind in self.names.becomes.get(one, ())]
 
     def _derived(self, source: str, made: str, second: Clue) -> Evidence:
-        first = surest(self.into[source])
-        sure = first.confidence if surer(second.confidence, first.confidence) else second.confidence
-        sure = Confidence.LIKELY if sure is Confidence.CERTAIN else sure
-        rule = self.rules.names.becomes[source][made]
+        first = _surest(self.into[source])
+        sure = weaker(Confidence.LIKELY, weaker(first.confidence, second.confidence))
+        rule = self.names.becomes[source][made]
         reason = f"reads {source} ({first.reason}) and writes {made} ({second.reason}); {rule.why}"
-        label = Label(self.element, DERIVATION, source, to=made)
+        label = self._label(DERIVATION, source)._replace(to=made)
         return Evidence(label, DATA_FLOW, sure, reason, rule.place)
 
     def by_name(self) -> Iterator[Evidence]:
@@ -190,34 +285,29 @@ class _Node:
         What it writes has to be able to carry them.
         """
         spoken = self.named
-        if spoken is None:
-            return
-        for kind in spoken.rule.kinds:
-            if self._reads(kind):
-                continue
-            made_of = self._made_of(kind)
-            stays = not made_of and self._stays(kind)
-            if spoken.rule.any_type or not (stays or self._cannot_write(kind)):
-                yield from self._by_its_name(kind, spoken, made_of)
+        for kind in spoken.rule.kinds if spoken else ():
+            if spoken and not self._reads(kind):
+                made_of = self._made_of(kind)
+                stays = not made_of and self._stays(kind)
+                if spoken.rule.any_type or not (stays or self._cannot_write(kind)):
+                    yield from self._by_its_name(kind, spoken, made_of)
 
     def _by_its_name(self, kind: str, spoken: Spoken, made_of: Sequence[str]) -> Iterator[Evidence]:
         rule = spoken.rule
-        reason = f"'{'_'.join(spoken.words)}' in the name of the node: {rule.why}"
-        for one in made_of:
-            yield self._derived(one, kind, Clue(kind, NAMED, rule.confidence, reason, rule.place))
+        clue = Clue(kind, NAMED, rule.confidence, f"{spoken.quoted} in the name of the node: {rule.why}", rule.place)
+        yield from (self._derived(one, kind, clue) for one in made_of)
         if not made_of:
-            alone = kind in self.rules.names.computed or self._in_doubt()
-            ground, sure = (DATA_FLOW, Confidence.MAY) if alone else (NAMED, rule.confidence)
-            yield Evidence(self._label(SOURCE, kind), ground, sure, reason, rule.place)
+            clue = _doubtful(clue) if kind in self.names.computed or self._in_doubt() else clue
+            yield Evidence(self._label(SOURCE, kind), clue.ground, clue.confidence, clue.reason, clue.place)
 
     def understood(self) -> Iterator[Evidence]:
         """Yield that what somebody said becomes a command, where a topic that is written is called so and can be it."""
-        names, rule = self.rules.names, self.rules.names.becomes.get(SAID, {}).get(WANTED)
+        rule = self.names.becomes.get(SAID, {}).get(WANTED)
         if rule is None or SAID not in self.into or WANTED in self.out:
             return
         for element, types, _ in self.written:
-            said = element.kind == "topic" and has_word(element.name, names.understood)
-            if said and not cannot_carry(WANTED, element, types, self.rules):
+            named = element.kind == "topic" and has_word(element.name, self.names.understood)
+            if named and not self.rules.cannot_carry(WANTED, element, types):
                 reason = f"its name, as who writes it reads {SAID}: {element.name}"
                 yield self._derived(SAID, WANTED, Clue(WANTED, NAMED, Confidence.MAY, reason, rule.place))
                 return
@@ -225,7 +315,7 @@ class _Node:
     def dropped(self) -> Iterator[Evidence]:
         """Yield the kinds that come in for sure enough and that nothing that is written is made for."""
         for kind, clues in self.into.items():
-            first = surest(clues)
+            first = _surest(clues)
             if first.ground == TYPE and first.confidence is not Confidence.MAY and self._cannot_write(kind):
                 reason = f"reads {kind} ({first.reason}), and no type of what it writes is made for it"
                 label = self._label(SANITIZER, kind)._replace(method=Method.DROP)
@@ -233,20 +323,19 @@ class _Node:
 
     def _in_doubt(self) -> bool:
         """Whether what it writes was perhaps not measured by it, by its name or by what it reads."""
-        name, names = self.element.name, self.rules.names
-        return has_word(name, names.simulated) or has_word(name, names.reworking) or self.reads_unknown()
+        return has_word(self.element.name, self.names.simulated | self.names.reworking) or self.reads_unknown()
 
     def _stays(self, kind: str) -> bool:
         """Whether data seem to stay in the node: what it writes is made of them (a microphone that writes text)."""
         if self.rules.related_to_one(kind, self.out):
             return False
-        return not self.rules.names.becomes.get(kind, {}).keys().isdisjoint(self.out)
+        return not self.names.becomes.get(kind, {}).keys().isdisjoint(self.out)
 
     def _reads(self, kind: str) -> bool:
         return self.rules.related_to_one(kind, self.into)
 
     def _cannot_write(self, kind: str) -> bool:
-        return all(cannot_carry(kind, element, types, self.rules) for element, types, _ in self.written)
+        return all(self.rules.cannot_carry(kind, element, types) for element, types, _ in self.written)
 
     def _label(self, role: str, kind: str) -> Label:
         return Label(self.element, role, kind)

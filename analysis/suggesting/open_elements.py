@@ -1,4 +1,4 @@
-"""What a person could say of elements that data reach and that nobody has reviewed (rule S11).
+"""What a person could say of channels, and of elements that data reach and that nobody has reviewed (rule S11).
 
 A node there passes data on: a conduit. Where no policy lets them go on, it lets them out, or is an end of them: a leak
 or a conduit, and no rule knows which. If a person says that it lets another kind out, it may let this one out, too. A
@@ -11,7 +11,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import Confidence, Place
-from rosprivacy.analysis.suggesting.carried_kinds import no_leg_carries, suggests_nothing
 from rosprivacy.analysis.suggesting.evidence import (
     CONDUIT,
     DATA_FLOW,
@@ -32,8 +31,8 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import OpenQuestion
     from rosprivacy.analysis.model import Bound, Element, FlowGraph
-    from rosprivacy.analysis.suggesting.carried_kinds import Clue, Rules
-    from rosprivacy.analysis.suggesting.traffic import Traffic
+    from rosprivacy.analysis.suggesting.channels import Clue, Rules, Traffic
+    from rosprivacy.analysis.suggesting.evidence import Identity
 
 FLOWS = Place("the policies", 0)  # where a reason stands that is drawn from who writes and reads what
 NOWHERE = "and no policy lets it go on: a leak if the node keeps it, shows it, or sends it elsewhere, else a conduit"
@@ -41,94 +40,72 @@ SHOWN = 3  # names in a reason
 
 
 def of_channels(graph: FlowGraph, clues: Mapping[int, tuple[Clue, ...]]) -> Iterator[Evidence]:
-    """Yield of each channel that it may carry what its types and its name suggest.
-
-    >>> from rosprivacy.analysis.example import factory
-    >>> from rosprivacy.analysis.suggesting.carried_kinds import Rules, carried_kinds
-    >>> from rosprivacy.analysis.suggesting.example_names import NAMES
-    >>> graph, bound, hierarchy = factory()
-    >>> said = of_channels(graph, carried_kinds(graph, bound, Rules({}, {}, NAMES, hierarchy)))
-    >>> [(one.label.element.name, one.label.role, one.label.kind) for one in said]
-    [('/faces', 'sensitive', 'FaceTemplate'), ('/video', 'sensitive', 'Video')]
-    """
-    for vertex, said in clues.items():
-        for clue in said:
+    """Yield of each channel that it may carry what its types and its name suggest."""
+    for vertex, some in clues.items():
+        for clue in some:
             label = Label(whole(graph.elements[vertex]), SENSITIVE, clue.kind)
             yield Evidence(label, clue.ground, clue.confidence, clue.reason, clue.place)
 
 
 def of_open(
-    questions: Iterable[OpenQuestion], graph: FlowGraph, bound: Bound, told: Traffic, rules: Rules
+    questions: Iterable[OpenQuestion], graph: FlowGraph, bound: Bound, known: Traffic, rules: Rules
 ) -> Iterator[Evidence]:
     """Yield what could be said of open elements, for each kind that reaches them.
 
-    >>> from rosprivacy.analysis.answer import OpenQuestion
-    >>> from rosprivacy.analysis.example import FILTERED, factory
-    >>> from rosprivacy.analysis.suggesting.carried_kinds import Rules
-    >>> from rosprivacy.analysis.suggesting.example_names import NAMES
-    >>> from rosprivacy.analysis.suggesting.traffic import traffic
-    >>> graph, bound, hierarchy = factory()
-    >>> asked = [OpenQuestion(graph.elements[FILTERED], ("Video",), 3, False)]
-    >>> (said,) = of_open(asked, graph, bound, traffic(graph, bound), Rules({}, {}, NAMES, hierarchy))
-    >>> said.label.role, said.reason
-    ('sensitive', 'neighbour of /filter, which Video reaches')
+    What is said of one leg is a label of the whole: ``never`` is proposed only if no leg is made for the kind.
     """
     at: dict[tuple[str, str, str, str], list[int]] = {}
-    legs: dict[tuple[str, str, str], set[str]] = {}
+    legs: dict[Identity, set[str]] = {}
     asked = tuple(questions)
     identities = {question.element.identity for question in asked}
     for vertex, element in enumerate(graph.elements):
         if element.identity in identities:
             at.setdefault(element.shown_as, []).append(vertex)
             legs.setdefault(element.identity, set()).add(element.leg)
+
+    def named(vertices: Iterable[int], ends: Mapping[int, tuple[int, ...]]) -> list[str]:
+        return sorted({graph.elements[one].name for vertex in vertices for one in ends.get(vertex, ())})
+
     for question in asked:
-        vertices = at[question.element.shown_as]
-        if question.element.is_node:
-            statements = [one for vertex in vertices for one in bound.elements.get(vertex, ())]
-            let_out = sorted({kind for one in statements if one.role == LEAK for kind in one.categories})
-            yield from _let_out(question, let_out) if let_out else _passed_on(question, vertices, graph, told)
-        elif question.element.is_channel:
-            yield from _at_channel(question, vertices, legs[question.element.identity], graph, bound, told, rules)
+        element = question.element
+        vertices = at[element.shown_as]
+        if element.is_node:
+            leaks = [one for vertex in vertices for one in bound.elements.get(vertex, ()) if one.role == LEAK]
+            let_out = sorted({kind for one in leaks for kind in one.categories})
+            yield from _at_node(question, let_out, named(vertices, known.writes))
+        elif element.is_channel:
+            types = sorted({one.name for vertex in vertices for one in bound.types.get(vertex, ())})
+            yield from _at_channel(question, types, legs[element.identity], named(vertices, known.writers), rules)
 
 
-def _let_out(question: OpenQuestion, kinds: Sequence[str]) -> Iterator[Evidence]:
+def _at_node(question: OpenQuestion, let_out: Sequence[str], written: Sequence[str]) -> Iterator[Evidence]:
     for kind in question.categories:
-        reason = f"it gets {kind}, and a label says that it lets {_some(kinds)} out"
-        yield Evidence(Label(whole(question.element), LEAK, kind), DATA_FLOW, Confidence.MAY, reason, FLOWS)
-
-
-def _passed_on(question: OpenQuestion, vertices: Sequence[int], graph: FlowGraph, told: Traffic) -> Iterator[Evidence]:
-    written = sorted({graph.elements[one].name for vertex in vertices for one in told.writes.get(vertex, ())})
-    goes = f"which can go on to {_some(written)}" if written else NOWHERE
-    for kind in question.categories:
-        for role in (CONDUIT,) if written else (LEAK, CONDUIT):
+        roles: tuple[str, ...]
+        if let_out:
+            roles, rest = (LEAK,), f"and a label says that it lets {_some(let_out)} out"
+        elif written:
+            roles, rest = (CONDUIT,), f"which can go on to {_some(written)}"
+        else:
+            roles, rest = (LEAK, CONDUIT), NOWHERE
+        for role in roles:
             label = Label(whole(question.element), role, kind)
-            yield Evidence(label, DATA_FLOW, Confidence.MAY, f"it gets {kind}, {goes}", FLOWS)
+            yield Evidence(label, DATA_FLOW, Confidence.MAY, f"it gets {kind}, {rest}", FLOWS)
 
 
 def _at_channel(
-    question: OpenQuestion,
-    vertices: Sequence[int],
-    legs: Collection[str],
-    graph: FlowGraph,
-    bound: Bound,
-    told: Traffic,
-    rules: Rules,
+    question: OpenQuestion, types: Sequence[str], legs: Collection[str], writers: Sequence[str], rules: Rules
 ) -> Iterator[Evidence]:
-    """What is said of one leg is a label of the whole: never is proposed if no leg is made for the kind."""
     element = question.element
-    types = sorted({said.name for vertex in vertices for said in bound.types.get(vertex, ())})
     nothing = of_topic_nothing(element.name, rules.names) if element.kind == "topic" else None
-    writers = sorted({graph.elements[one].name for vertex in vertices for one in told.writers.get(vertex, ())})
     for kind in question.categories:
         never = Label(whole(element), NEVER, kind)
-        if types and all(no_leg_carries(kind, name, legs, rules) for name in types):
+        if types and all(rules.no_leg_carries(kind, name, legs) for name in types):
             reason = f"type {_some(types)} of {element.name} is not made for {kind}"
             place = _place(types, element, rules)
-            family = str(place) if all(suggests_nothing(kind, name, legs, rules) for name in types) else ""
+            family = str(place) if all(rules.suggests_nothing(kind, name, legs) for name in types) else ""
             yield Evidence(never, TYPE, Confidence.MAY, reason, place, family)
         elif nothing:
-            reason = f"'{'_'.join(nothing.words)}' is its name: {nothing.rule.why}"
+            reason = f"{nothing.quoted} is its name: {nothing.rule.why}"
             yield Evidence(never, NAMED, Confidence.MAY, reason, nothing.rule.place)
         else:
             reason = f"neighbour of {_some(writers)}, which {kind} reaches" if writers else f"{kind} reaches it"
@@ -144,7 +121,7 @@ def _place(types: Sequence[str], element: Element, rules: Rules) -> Place:
     """The line of the table that says what a type cannot carry, or what it suggests."""
     for name in types:
         limit = rules.limits.get((name, element.leg))
-        said = rules.suggestions.get((name, element.leg), ())
-        if limit or said:
-            return limit.place if limit else said[0].place
+        suggested = rules.suggestions.get((name, element.leg), ())
+        if limit or suggested:
+            return limit.place if limit else suggested[0].place
     return FLOWS

@@ -1,53 +1,78 @@
-"""Evidence of all providers -> proposals: what several reasons for one label come to.
+"""What all reasons for a label come to, by one table; and which of these proposals a person is asked about.
 
-The rules, in full (docs/suggestions.md):
+A proposal is as sure as its surest evidence of a ground that may stand alone (``WEIGHTS``). Where two grounds that may
+agree each say no more than ``may``, both together are ``likely``; agreement never makes anything ``certain``. What
+takes data away is ``may`` for a kind of which a finding is known.
 
-1. A proposal is as sure as its surest evidence.
-2. Where two independent grounds (code, type, name) each say no more than ``may``, both together are ``likely``. Who
-   wrote of a package that it ``may`` knew its types. Agreement never makes anything ``certain``: that is for one ground
-   to say. Of a leak it is none: a name that says cloud, and code that writes a file, speak of two ways out. Of a
-   derivation neither: the name of a package and the library that it stands on say the same thing once.
-3. What could hide a leak (sanitizer, conduit, mundane, never) is ``may``, whatever agrees; it is ``likely`` only if the
-   catalogue of packages says so.
-4. What takes data away (all of these but conduit) is ``may`` also there, for a kind of which a finding is known.
+A person's word is never proposed away: where a label of a user, by a name or a glob, speaks of an element for a kind,
+no proposal does. But a glob that calls nodes conduits has not seen each of them (rule S11): that one lets data out is
+proposed all the same. Where proposals for one element go against each other, the one that could hide something is left
+out.
 """
 
 from __future__ import annotations
 
 from collections import defaultdict
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.model import Confidence
 from rosprivacy.analysis.suggesting.evidence import (
+    CODE,
+    CONDUIT,
+    DATA_FLOW,
     DERIVATION,
+    GLOBBED,
     GROUNDS,
-    HIDING,
-    INDEPENDENT,
     LEAK,
+    MUNDANE,
+    NAMED,
+    NEIGHBOUR,
+    NEVER,
     PACKAGE,
     ROLES,
+    SANITIZER,
+    SENSITIVE,
+    SOURCE,
     TAKING_AWAY,
+    TYPE,
+    Evidence,
     Proposal,
 )
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Sequence
 
-    from rosprivacy.analysis.suggesting.evidence import Evidence, Label
+    from rosprivacy.analysis.hierarchy import Hierarchy
+    from rosprivacy.analysis.model import Bound, FlowGraph, Statement
+    from rosprivacy.analysis.suggesting.evidence import Identity, Label
 
+
+class Weight(NamedTuple):
+    """Of a role: the grounds that are as sure as they say, those of which two agree, and how sure any can make it."""
+
+    alone: frozenset[str]
+    together: frozenset[str] = frozenset()
+    most: Confidence = Confidence.CERTAIN
+
+
+_ALL, _BY_PACKAGES = frozenset(GROUNDS), Weight(frozenset([PACKAGE]), most=Confidence.LIKELY)
+_AGREEING = Weight(_ALL, frozenset([CODE, TYPE, NAMED]))  # the others know types and names, or are drawn from them
+WEIGHTS = {
+    SOURCE: _AGREEING,
+    SENSITIVE: _AGREEING,
+    LEAK: Weight(_ALL),  # a name that says cloud, and code that writes a file, speak of two ways out
+    DERIVATION: Weight(_ALL),  # the name of a package and the library that it stands on say the same thing once
+    **dict.fromkeys((SANITIZER, CONDUIT, MUNDANE, NEVER), _BY_PACKAGES),  # what could hide a leak
+}
 SURENESS = {confidence: place for place, confidence in enumerate(Confidence)}  # the surest first
-_PLACES = {role: place for place, role in enumerate(ROLES)}
-_OF_GROUNDS = {ground: place for place, ground in enumerate(GROUNDS)}
 
 
-def proposals(evidence: Iterable[Evidence], found: Collection[str] = ()) -> tuple[Proposal, ...]:
-    """Join evidence into proposals, one for each label, sorted by element, role and kind.
+def proposals(evidence: Iterable[Evidence], known: Collection[str] = ()) -> tuple[Proposal, ...]:
+    """Join evidence, in any order, into proposals, one for each label, sorted by element, role and kind.
 
     Parameters
     ----------
-    evidence
-        Of all providers, in any order.
-    found
+    known
         Categories of which a finding is known, with all that are broader or narrower.
 
     Examples
@@ -59,57 +84,148 @@ def proposals(evidence: Iterable[Evidence], found: Collection[str] = ()) -> tupl
     >>> said = [Evidence(camera, ground, Confidence.MAY, f"its {ground}", rule) for ground in ("name", "type")]
     >>> [(str(one.confidence), [reason.reason for reason in one.evidence]) for one in proposals(said)]
     [('likely', ['its type', 'its name'])]
-    >>> relay = Label(Element("node", "/relay"), "conduit")
-    >>> str(proposals([Evidence(relay, "data-flow", Confidence.LIKELY, "its types", rule)])[0].confidence)
-    'may'
     """
     of_labels: dict[Label, list[Evidence]] = defaultdict(list)
     for one in evidence:
         of_labels[one.label].append(one)
     groups = ((label, _in_order(of_labels[label])) for label in sorted(of_labels, key=_order))
-    return tuple(Proposal(label, _confidence(label, reasons, found), reasons) for label, reasons in groups)
+    return tuple(Proposal(label, _weighed(label, reasons, known), reasons) for label, reasons in groups)
 
 
 def surer(one: Confidence, other: Confidence) -> bool:
-    """Return whether the first is surer than the second.
-
-    >>> surer(Confidence.LIKELY, Confidence.MAY), surer(Confidence.MAY, Confidence.MAY)
-    (True, False)
-    """
+    """Return whether the first is surer than the second."""
     return SURENESS[one] < SURENESS[other]
 
 
-def closes_finding(label: Label, found: Collection[str]) -> bool:
-    """Return whether a label takes away data of which a finding is known; a conduit takes nothing away.
-
-    >>> from rosprivacy.analysis.model import Element
-    >>> from rosprivacy.analysis.suggesting.evidence import Label
-    >>> topic = Element("topic", "/t")
-    >>> [closes_finding(Label(topic, role, "Video"), {"Video"}) for role in ("never", "sensitive")]
-    [True, False]
-    """
-    return label.role in TAKING_AWAY and bool(found) and (not label.kind or label.kind in found)
+def weaker(one: Confidence, other: Confidence) -> Confidence:
+    """Return the less sure of two."""
+    return other if surer(one, other) else one
 
 
-def _confidence(label: Label, reasons: Sequence[Evidence], found: Collection[str]) -> Confidence:
-    if label.role in HIDING:
-        said = [one.confidence for one in reasons if one.ground == PACKAGE]
-        sure = any(surer(one, Confidence.MAY) for one in said) and not closes_finding(label, found)
-        return Confidence.LIKELY if sure else Confidence.MAY
-    surest = reasons[0].confidence
-    if surest is Confidence.MAY and len(reasons) > 1 and label.role not in (LEAK, DERIVATION):
-        agreeing = {one.ground for one in reasons if not one.alone} & INDEPENDENT
-        return Confidence.LIKELY if len(agreeing) > 1 else surest
-    return surest
+def closes_finding(label: Label, known: Collection[str]) -> bool:
+    """Return whether a label takes away data of which a finding is known; a conduit takes nothing away."""
+    return label.role in TAKING_AWAY and bool(known) and (not label.kind or label.kind in known)
+
+
+def _weighed(label: Label, reasons: Sequence[Evidence], known: Collection[str]) -> Confidence:
+    weight = WEIGHTS[label.role]
+    if closes_finding(label, known):
+        return Confidence.MAY
+    surest = next((one.confidence for one in reasons if one.ground in weight.alone), Confidence.MAY)
+    agreeing = {one.ground for one in reasons if not one.alone} & weight.together
+    return Confidence.LIKELY if surest is Confidence.MAY and len(agreeing) > 1 else weaker(surest, weight.most)
 
 
 def _order(label: Label) -> tuple[object, ...]:
-    return (label.element.sort_key(), _PLACES[label.role], label.kind, label.method or "", label.to)
+    return (label.element.sort_key(), ROLES.index(label.role), label.kind, label.method or "", label.to)
 
 
 def _in_order(reasons: Sequence[Evidence]) -> tuple[Evidence, ...]:
-    return tuple(reasons) if len(reasons) == 1 else tuple(sorted(dict.fromkeys(reasons), key=_evidence_order))
+    return tuple(reasons) if len(reasons) == 1 else tuple(sorted(dict.fromkeys(reasons), key=_place))
 
 
-def _evidence_order(one: Evidence) -> tuple[object, ...]:
-    return (SURENESS[one.confidence], _OF_GROUNDS[one.ground], one.reason, one.place)
+def _place(one: Evidence) -> tuple[object, ...]:
+    return (SURENESS[one.confidence], GROUNDS.index(one.ground), one.reason, one.place)
+
+
+def unsaid(made: Iterable[Proposal], graph: FlowGraph, bound: Bound, hierarchy: Hierarchy) -> tuple[Proposal, ...]:
+    """Return the proposals that ask something: nobody has spoken of it, and no other one answers the same."""
+    said = said_of(graph, bound)
+    by_element: dict[Identity, list[Proposal]] = defaultdict(list)
+    for one in made:
+        identity = one.label.element.identity
+        if identity not in said or not _is_spoken_of(one, said[identity], hierarchy):
+            by_element[identity].append(_although(one, said.get(identity, ())))
+    return tuple(one for together in by_element.values() for one in together if not _outdone(one, together, hierarchy))
+
+
+def said_of(graph: FlowGraph, bound: Bound) -> dict[Identity, list[Statement]]:
+    """Return what users' labels say of each element."""
+    said: dict[Identity, list[Statement]] = defaultdict(list)
+    for vertex, statements in bound.elements.items():
+        said[graph.elements[vertex].identity] += [one for one in statements if not one.shipped and one.rank[0] > 0]
+    return said
+
+
+def spoken_of(label: Label, said: Sequence[Statement], hierarchy: Hierarchy) -> bool:
+    """Return whether a person has spoken of the element for a kind that it may be about; of a source or leak, of all.
+
+    Who says that a node lets one kind out has not said that it lets out no other.
+
+    >>> from rosprivacy.analysis.example import ARCHIVE, factory
+    >>> from rosprivacy.analysis.suggesting.evidence import Label
+    >>> graph, bound, hierarchy = factory()
+    >>> archive = graph.elements[ARCHIVE]
+    >>> said = said_of(graph, bound)[archive.identity]  # leak: [FaceTemplate, Video]
+    >>> [spoken_of(Label(archive, "leak", kind), said, hierarchy) for kind in ("Video", "Biometric")]
+    [True, False]
+    """
+    near = hierarchy.distance if label.role in (SOURCE, LEAK) else hierarchy.overlap
+    return any(
+        not one.categories
+        or not label.kind
+        or one.role == "only"
+        or any(near(label.kind, kind) is not None for kind in one.categories)
+        for one in said
+        if not (label.role == LEAK and _only_passes_on(one))
+    )
+
+
+def _only_passes_on(statement: Statement) -> bool:
+    """Whether a glob, and no name, says that an element only passes data on."""
+    return statement.role == CONDUIT and statement.glob
+
+
+def _although(one: Proposal, said: Iterable[Statement]) -> Proposal:
+    """The proposal that an element lets data out, with the glob that says otherwise as its first reason."""
+    glob = next(filter(_only_passes_on, said), None) if one.label.role == LEAK else None
+    if glob is None:
+        return one
+    reason = f"your glob at {glob.place} calls {one.label.element.name} a conduit"
+    return one._replace(evidence=(Evidence(one.label, GLOBBED, one.confidence, reason, glob.place), *one.evidence))
+
+
+def _is_spoken_of(one: Proposal, said: Sequence[Statement], hierarchy: Hierarchy) -> bool:
+    """Whether a person has spoken of what is proposed, or of all narrower kinds beside which alone it is proposed."""
+    if spoken_of(one.label, said, hierarchy):
+        return True
+    return all(
+        each.beside and spoken_of(one.label._replace(kind=each.beside), said, hierarchy) for each in one.evidence
+    )
+
+
+def _outdone(one: Proposal, together: Sequence[Proposal], hierarchy: Hierarchy) -> bool:
+    """Whether another proposal for the element answers the same question, and hides less."""
+    label = one.label
+    end_or_conduit = label.role == LEAK and or_passes_on(one, together)
+    if (label.role in (SOURCE, LEAK, DERIVATION) and not end_or_conduit) or len(together) == 1:
+        return False
+    others = [each for each in together if each is not one and _related(label, each.label, hierarchy)]
+
+    def of(*roles: str) -> list[Proposal]:
+        return [each for each in others if each.label.role in roles]
+
+    leaks = [each for each in of(LEAK) if not or_passes_on(each, together)]
+    if label.role == CONDUIT or end_or_conduit:
+        same = not end_or_conduit and any(each.label.kind == label.kind for each in of(SOURCE))
+        return same or bool(leaks or of(SANITIZER))
+    if label.role == SANITIZER:
+        return bool(of(SOURCE) or leaks)
+    if label.role in (NEVER, MUNDANE):
+        return any(map(_of_its_own, of(SENSITIVE)))
+    return label.role == SENSITIVE and not _of_its_own(one) and bool(of(NEVER, MUNDANE))
+
+
+def or_passes_on(leak: Proposal, together: Iterable[Proposal]) -> bool:
+    """Return whether a leak is one of two answers: data end there, and nothing of the node itself says which."""
+    by_flows = all(reason.ground == DATA_FLOW for reason in leak.evidence)
+    return by_flows and any(one.label.role == CONDUIT and one.label.kind == leak.label.kind for one in together)
+
+
+def _of_its_own(one: Proposal) -> bool:
+    """Whether anything of the channel itself says it, and not only what is beside it."""
+    return any(reason.ground != NEIGHBOUR for reason in one.evidence)
+
+
+def _related(label: Label, other: Label, hierarchy: Hierarchy) -> bool:
+    return not label.kind or not other.kind or hierarchy.overlap(label.kind, other.kind) is not None

@@ -1,7 +1,8 @@
-"""A file of a package -> ``Package``: what its nodes are called, by what they are known, what they do with data.
+"""One file of a package: what its nodes are called, by which interfaces they are known, and what they do with data.
 
-In: YAML or JSON (``package: 1``), shipped in ``ontology/packages`` or by a vendor. Out: facts, each with its line. All
-problems of a file are raised at once.
+In: a file of the catalogue (``ontology/packages``), of a user or of a vendor. Out: ``Package``, or all problems of the
+file with their lines. A package says ``likely`` of what its node does, and ``may`` of what depends on a setting or on
+what comes in; it cannot be certain of somebody's node.
 """
 
 from __future__ import annotations
@@ -14,10 +15,11 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import InputError, InputErrors, PackageError, shown
-from rosprivacy.analysis.model import OF_KIND, Place, kind_of_type
-from rosprivacy.analysis.suggesting.ros_package import USES, Interface, Package, PackageNode, Source
-from rosprivacy.ingest.packages.claims import ClaimReader
+from rosprivacy.analysis.model import OF_KIND, Confidence, Method, Place, kind_of_type
+from rosprivacy.analysis.suggesting.evidence import CONDUIT, DERIVATION, LEAK, SANITIZER, SOURCE
+from rosprivacy.analysis.suggesting.packages import USES, WHERE, Claim, Interface, Package, PackageNode, Source
 from rosprivacy.ingest.reading import yaml_values
+from rosprivacy.ingest.reading.format_reader import FileReader
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -26,6 +28,11 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.reading.yaml_values import Value
     from rosprivacy.ontology.vocabulary import Vocabulary
 
+ROLES = {"source": SOURCE, "leak": LEAK, "derives": DERIVATION, "sanitizer": SANITIZER, "conduit": CONDUIT}
+CLAIM_KEYS = (*ROLES, "to", "confidence", "why")
+SAID = (Confidence.LIKELY, Confidence.MAY)
+METHODS = tuple(method for method in Method if method is not Method.ABSENT)
+LONGEST = 500  # characters of a text
 KEYS = ("package", "name", "about", "sources", "nodes")
 NODE_KEYS = ("names", "executables", *USES, "says")
 SOURCE_KEYS = ("at", "version", "commit", "files", "read")
@@ -64,8 +71,10 @@ def _package(name: str, top: Value, data: bytes, vocabulary: Vocabulary, bounds:
 
 
 @dataclass(kw_only=True, eq=False, repr=False)
-class _Reader(ClaimReader):
-    """One file of a package."""
+class _Reader(FileReader):
+    """One file of a package; the kinds of the vocabulary, a user's own too."""
+
+    vocabulary: Vocabulary
 
     def document(self, top: Value) -> Package | None:
         if top.kind != "map":
@@ -78,13 +87,13 @@ class _Reader(ClaimReader):
                 self.problem(top.line, f"no {key!r}", f"a file of a package has {', '.join(KEYS)}")
         if said.keys() < set(KEYS):
             return None
-        name, about = self.plain(said["name"], "name", PACKAGE_NAME), self.text(said["about"], "about")
+        name, about = self._plain(said["name"], "name", PACKAGE_NAME), self._text(said["about"], "about")
         sources = tuple(self._sources(said["sources"]))
         nodes = tuple(self._nodes(said["nodes"]))
         return Package(name, about, sources, nodes, Place(self.file, top.line))
 
     def _sources(self, value: Value) -> Iterator[Source]:
-        items = self.filled(value, "sources", "name at least one document or repository that was read")
+        items = self._filled(value, "sources", "name at least one document or repository that was read")
         for item in items:
             said = {key: one for key, _, one in self.entries_of(item, SOURCE_KEYS)}
             if not {"at", "read"} <= said.keys() or not {"version", "commit"} & said.keys():
@@ -94,23 +103,23 @@ class _Reader(ClaimReader):
                     "write {at: …, version: … or commit: …, read: 2026-11-23}",
                 )
                 continue
-            at, version, commit = (self.text(said[key], key) if key in said else "" for key in SOURCE_KEYS[:3])
+            at, version, commit = (self._text(said[key], key) if key in said else "" for key in SOURCE_KEYS[:3])
             files = self.list_of(said["files"], "files") if "files" in said else ()
-            day = self.plain(said["read"], "read", DAY, "write the day as 2026-11-23")
-            yield Source(at, day, version, commit, tuple(self.text(one, "files") for one in files))
+            day = self._plain(said["read"], "read", DAY, "write the day as 2026-11-23")
+            yield Source(at, day, version, commit, tuple(self._text(one, "files") for one in files))
 
     def _nodes(self, value: Value) -> Iterator[PackageNode]:
-        for item in self.filled(value, "nodes", "describe at least one node"):
+        for item in self._filled(value, "nodes", "describe at least one node"):
             said = {key: one for key, _, one in self.entries_of(item, NODE_KEYS)}
             if "names" not in said or "says" not in said:
                 self.problem(item.line, "a node without names or without what it says", "write names: […], says: […]")
                 continue
-            named = self.filled(said["names"], "names", "write its default name")
+            named = self._filled(said["names"], "names", "write its default name")
             named += self.list_of(said["executables"], "executables") if "executables" in said else ()
             hint = "write a plain name without namespace, which may begin or end with *"
-            names = tuple(dict.fromkeys(self.plain(one, "a node's name", NODE_NAME, hint) for one in named))
+            names = tuple(dict.fromkeys(self._plain(one, "a node's name", NODE_NAME, hint) for one in named))
             interfaces = tuple(one for use in USES if use in said for one in self._interfaces(use, said[use]))
-            yield PackageNode(names, interfaces, tuple(self.claims(said["says"])))
+            yield PackageNode(names, interfaces, tuple(self._claims(said["says"])))
 
     def _interfaces(self, use: str, value: Value) -> Iterator[Interface]:
         if value.kind != "map":
@@ -124,3 +133,94 @@ class _Reader(ClaimReader):
                 self.problem(child.line, what, f"write pkg/{OF_KIND[kind]}/Name, or nothing if it takes any")
             else:
                 yield Interface(use, name, child.text if child.kind == "text" else "")
+
+    def _claims(self, value: Value) -> Iterator[Claim]:
+        """What stands under ``says``, one claim for each kind."""
+        for item in self._filled(value, "says", "write what the node does with data, or leave it out"):
+            said = {key: one for key, _, one in self.entries_of(item, CLAIM_KEYS)}
+            roles = [key for key in ROLES if key in said]
+            if len(roles) != 1 or "why" not in said:
+                self.problem(
+                    item.line,
+                    "a statement that is not of one role, with its reason",
+                    f"write one of {', '.join(ROLES)}, and why: …",
+                )
+                continue
+            if ("to" in said) != (roles == ["leak"]):
+                self.problem(item.line, "to belongs to a leak", f"say of each leak where it goes: {', '.join(WHERE)}")
+                continue
+            basis = Claim(
+                ROLES[roles[0]],
+                "",
+                Confidence(self._one_of(said["confidence"], "confidence", SAID)) if "confidence" in said else SAID[0],
+                self._text(said["why"], "why"),
+                Place(self.file, item.line),
+                where=self._one_of(said["to"], "to", WHERE) if "to" in said else "",
+            )
+            yield from self._of_role(basis, said[roles[0]])
+
+    def _of_role(self, basis: Claim, value: Value) -> Iterator[Claim]:
+        if basis.role == DERIVATION:
+            yield from self._derivations(basis, value)
+        elif basis.role == SANITIZER:
+            yield from self._sanitizers(basis, value)
+        elif basis.role == CONDUIT and (value.kind, value.text) == ("text", "all"):
+            yield basis
+        else:
+            for item in self._filled(value, basis.role, "write […]"):
+                yield basis._replace(kind=self._kind(item))
+
+    def _derivations(self, basis: Claim, value: Value) -> Iterator[Claim]:
+        for item in self._filled(value, "derives", "write [{from: Video, to: FaceTemplate}]"):
+            said = {key: one for key, _, one in self.entries_of(item, ("from", "to"))}
+            if len(said) != 2:  # noqa: PLR2004 - from and to
+                self.problem(item.line, "a derivation without from or to", "write {from: Video, to: FaceTemplate}")
+            else:
+                yield basis._replace(kind=self._kind(said["from"]), to=self._kind(said["to"]))
+
+    def _sanitizers(self, basis: Claim, value: Value) -> Iterator[Claim]:
+        if value.kind != "map" or not value.entries:
+            self.problem(value.line, "a sanitizer states its method", "write {Video: anonymise}")
+        for name, line, method in value.entries:
+            kind = self._kind(method._replace(line=line, kind="text", text=name))
+            yield basis._replace(kind=kind, method=Method(self._one_of(method, "a sanitizer's method", METHODS)))
+
+    def _kind(self, value: Value) -> str:
+        category = self.vocabulary.find(value.text) if value.kind == "text" else None
+        if category is None:
+            problem = f"unknown category {shown(value.text or value.kind)!r}"
+            self.problem(value.line, problem, self.vocabulary.hint(value.text))
+            return ""
+        return category.name
+
+    def _filled(self, value: Value, what: str, hint: str) -> tuple[Value, ...]:
+        """The items of a list that is not empty."""
+        items = self.list_of(value, what, hint)
+        if value.kind in ("list", "empty") and not items:
+            self.problem(value.line, f"{what} is empty", hint)
+        return items
+
+    def _text(self, value: Value, what: str) -> str:
+        """A text of bounded length, on one line."""
+        text = value.text.strip()
+        if value.kind not in ("text", "number") or not text or len(text) > LONGEST or not text.isprintable():
+            found = shown(text[:40]) or value.kind
+            self.problem(
+                value.line, f"{what} takes one line of at most {LONGEST} characters, not {found!r}", "correct it"
+            )
+            return ""
+        return text
+
+    def _plain(self, value: Value, what: str, form: re.Pattern[str], hint: str = "write a plain name") -> str:
+        """A text of a form."""
+        text = self._text(value, what)
+        if text and not form.fullmatch(text):
+            self.problem(value.line, f"{what} cannot be {shown(text[:40])!r}", hint)
+        return text
+
+    def _one_of(self, value: Value, what: str, words: tuple[str, ...]) -> str:
+        """One word of a list; the last where another one stands."""
+        if value.kind != "text" or value.text not in words:
+            self.problem(value.line, f"{what} {shown(value.text or value.kind)!r}", f"write {' or '.join(words)}")
+            return words[-1]
+        return value.text

@@ -1,7 +1,8 @@
 """Which files of packages are read: the shipped catalogue, a file or a folder, those of installed packages.
 
 In: what ``--packages`` names. Out: packages, sorted by name; a user's file stands in place of a shipped one of the same
-name, of which only ends that the user's does not state are left (``replaced_package.py``). ``ament`` means
+name. That data come in or go out is never taken away in silence: of the shipped one, a source or a leak that the user's
+does not state is still a question; what else it says is left out. ``ament`` means
 ``share/<package>/rosprivacy/package.yaml`` below every prefix of ``AMENT_PREFIX_PATH``, where the first prefix wins, as
 an overlay does in ROS: the way for a vendor to ship such a file (docs/packages.md).
 """
@@ -16,16 +17,17 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import InputError, InputErrors, PackageError, shown
+from rosprivacy.analysis.model import Diagnostic, Severity
+from rosprivacy.analysis.suggesting.evidence import LEAK, SOURCE
 from rosprivacy.ingest.packages.package_file import read_package, read_shipped
-from rosprivacy.ingest.packages.replaced_package import left_of, replacing
 from rosprivacy.ontology.vocabulary import FOLDER
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.bounds import Bounds
-    from rosprivacy.analysis.model import Diagnostic
-    from rosprivacy.analysis.suggesting.ros_package import Package
+    from rosprivacy.analysis.hierarchy import Hierarchy
+    from rosprivacy.analysis.suggesting.packages import Claim, Package, PackageNode
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 AMENT = "ament"
@@ -33,6 +35,8 @@ PREFIXES = "AMENT_PREFIX_PATH"
 PLACE = ("rosprivacy", "package.yaml")  # below share/<package>
 ENDINGS = (".yaml", ".yml", ".json")
 SHIPPED = "rosprivacy:packages/"  # how messages and reasons call the shipped folder
+ENDS = (SOURCE, LEAK)
+NAMED = 3  # statements in a notice
 
 
 def catalogue(vocabulary: Vocabulary) -> tuple[Package, ...]:
@@ -79,13 +83,13 @@ def read_packages(named: Iterable[str], vocabulary: Vocabulary, bounds: Bounds =
     known = list(own.values())
     for package in catalogue(vocabulary):
         replaced = package.name in own
-        known.append(left_of(package, own[package.name], vocabulary.hierarchy) if replaced else package)
+        known.append(_left_of(package, own[package.name], vocabulary.hierarchy) if replaced else package)
     return tuple(sorted(known, key=lambda package: package.name))  # stable: a user's first
 
 
 def replacements(packages: Iterable[Package]) -> tuple[Diagnostic, ...]:
     """Return a notice for each file of a user that stands in place of a shipped one; packages as they were read."""
-    return tuple(replacing(one, other) for one, other in pairwise(packages) if one.name == other.name)
+    return tuple(_replacing(one, other) for one, other in pairwise(packages) if one.name == other.name)
 
 
 def rests_on(packages: Iterable[Package]) -> tuple[tuple[str, str], ...]:
@@ -134,3 +138,36 @@ def _installed(environment: Mapping[str, str], problems: list[InputError]) -> di
         what = f"no installed package has a file {'/'.join(PLACE)} in its share folder"
         problems.append(PackageError(AMENT, 0, what, "name a file or a folder"))
     return {file: package for package, file in first.items()}
+
+
+def _left_of(shipped: Package, own: Package, hierarchy: Hierarchy) -> Package:
+    """Of a shipped package the sources and leaks that a user's file of its name does not state of such nodes.
+
+    Nodes are the same by name; who states a kind states all narrower ones.
+    """
+    nodes = (left for node in shipped.nodes for left in _left(node, own, hierarchy))
+    return shipped._replace(nodes=tuple(nodes))
+
+
+def _replacing(own: Package, left: Package) -> Diagnostic:
+    """The notice that a user's file stands in place of a shipped one, of which so much is left."""
+    claims = [f"{claim.role} of {claim.kind} at {node.names[0]}" for node in left.nodes for claim in node.claims]
+    message = f"it stands in place of the shipped package {own.name}"
+    if claims:
+        more = f" and {len(claims) - NAMED} more" if len(claims) > NAMED else ""
+        message += f"; what it does not state of that is asked all the same: {', '.join(claims[:NAMED])}{more}"
+    return Diagnostic(own.place, Severity.NOTICE, message)
+
+
+def _left(node: PackageNode, own: Package, hierarchy: Hierarchy) -> Iterator[PackageNode]:
+    """A node by each of its names, with the claims that are left under that name."""
+    for name in node.names:
+        stated = [claim for other in own.nodes if name in other.names for claim in other.claims]
+        ends = (claim for claim in node.claims if claim.role in ENDS)
+        claims = tuple(claim for claim in ends if not any(_covers(one, claim, hierarchy) for one in stated))
+        if claims:
+            yield node._replace(names=(name,), claims=claims)
+
+
+def _covers(one: Claim, other: Claim, hierarchy: Hierarchy) -> bool:
+    return one.role == other.role and hierarchy.distance(other.kind, one.kind) is not None

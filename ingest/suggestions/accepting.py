@@ -7,7 +7,8 @@ What takes data away (a sanitizer, never) is never accepted by its confidence, w
 close may not be known yet. A person names the element, and gets it after what else is as sure; and only where the
 policies are given as well, and no finding of such data is known, with what is accepted beside it. A conduit is accepted
 by its confidence if it is ``likely``, which only the catalogue of packages makes it. Neither is put beside a source or
-a leak of such data.
+a leak of such data. Where several suggestions of one element are alternatives (a camera of pictures, or of depth; a
+leak, or a conduit), none is taken before a person has said which.
 """
 
 from __future__ import annotations
@@ -19,24 +20,27 @@ from ruamel.yaml.comments import CommentedMap, CommentedSeq
 from ruamel.yaml.scalarstring import DoubleQuotedScalarString
 
 from rosprivacy.analysis.errors import InputErrors, LabelError, shown
-from rosprivacy.analysis.text import blanked
-from rosprivacy.analysis.written_names import meant
+from rosprivacy.analysis.model import Confidence
+from rosprivacy.analysis.suggesting.weighing import surer
+from rosprivacy.analysis.text import blanked, counted
+from rosprivacy.analysis.written_names import literal, meant
 from rosprivacy.ingest.labels.entries import SECTIONS
 from rosprivacy.ingest.labels.label_file import parse_labels
 from rosprivacy.ingest.labels.label_writer import NewLine, add_line, facts_of
 from rosprivacy.ingest.policies.names import covered
 from rosprivacy.ingest.reading.kept_yaml import FAILURES, changed, keeps_comments
-from rosprivacy.ingest.suggestions.choosing import BRINGS_OR_LETS_OUT, PASSES_OR_ENDS, chosen, overlap
-from rosprivacy.ingest.suggestions.comments import as_written, hides, taken_apart, with_comments
-from rosprivacy.ingest.suggestions.refusals import without_refusals
+from rosprivacy.ingest.suggestions.comments import as_written, hides, taken_apart, with_comments, without_refusals
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.ingest.labels.entries import Entry
     from rosprivacy.ingest.suggestions.comments import Comment
     from rosprivacy.ontology.vocabulary import Vocabulary
 LIMITING = frozenset(["sanitizer", "never", "mundane", "only"])  # roles that take data away
+BRINGS_OR_LETS_OUT, PASSES_OR_ENDS = ("source", "leak"), ("conduit", "sanitizer")
+ONE_OF_A_KIND = ("derives", "sanitizer")  # of one kind, several of these are often what it could be instead
+ALL = "*"
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +92,7 @@ def accept(
     Parameters
     ----------
     named
-        Confidences, and names of elements; see ``chosen``.
+        Confidences, and names of elements; see ``_chosen``.
     who, day
         For the note.
     vocabulary
@@ -106,7 +110,7 @@ def accept(
         If the file cannot be changed without losing something.
     """
     _, comments = taken_apart(file, text)
-    chosen_ones, remarks = chosen(file, comments, named, vocabulary)
+    chosen_ones, remarks = _chosen(file, comments, named, vocabulary)
     limiting = [one for one in chosen_ones if LIMITING & set(one.said)]
     found = None
     if limiting and known:
@@ -299,3 +303,117 @@ def _check(file: str, old: str, new: str, taken: Iterable[NewLabel], vocabulary:
 
 def _by_hand(file: str, problem: str) -> LabelError:
     return LabelError(file, 0, problem, "write the labels by hand")
+
+
+def _chosen(
+    file: str, comments: Sequence[Comment], named: Sequence[str], vocabulary: Vocabulary
+) -> tuple[list[Comment], list[str]]:
+    """Return the suggestions that are accepted, in the order of the file, and remarks.
+
+    Parameters
+    ----------
+    named
+        Confidences, of which all that are as sure or surer are meant; names of elements, of which the surest are
+        meant; and names with a kind or a role (``/camera=Video``, ``/uplink=leak``), or with ``*`` for all.
+    """
+    least = [Confidence(name) for name in named if name in tuple(Confidence)]
+    taken: dict[int, Comment] = {}
+    problems: list[LabelError] = []
+    for name in dict.fromkeys(name for name in named if name not in tuple(Confidence)):
+        try:
+            taken |= {one.line: one for one in _of_element(file, comments, name, vocabulary)}
+        except LabelError as error:
+            problems.append(error)
+    if problems:
+        raise InputErrors(problems)
+    sure = [one for one in comments if any(not surer(word, one.confidence) for word in least)]
+    by_name = [one for one in sure if _needs_name(one, comments, vocabulary) and one.line not in taken]
+    taken |= {one.line: one for one in sure if not _needs_name(one, comments, vocabulary)}
+    remarks = []
+    if least and not comments:
+        remarks.append(f"{file}: it has no '# suggest:' line; rosprivacy suggest POLICY --into FILE writes them")
+    if by_name:
+        what = f"{counted(len(by_name), 'suggestion')} could hide a leak or what nobody looked at"
+        remarks.append(f"{file}: {what}: accept these one by one, by the name of the element")
+    return [one for one in comments if one.line in taken], remarks
+
+
+def overlap(value: Any, other: Any, vocabulary: Vocabulary) -> bool:
+    """Return whether two values of roles can be about the same data; where a name is not known, they can."""
+    kinds = [[vocabulary.find(str(one)) for one in _kinds(v)] for v in (value, other)]
+    pairs = ((a, b) for a in kinds[0] for b in kinds[1])
+    return any(not a or not b or vocabulary.hierarchy.overlap(a.name, b.name) is not None for a, b in pairs)
+
+
+def _of_element(file: str, comments: Sequence[Comment], named: str, vocabulary: Vocabulary) -> list[Comment]:
+    """The suggestions that are meant by a name, or a name and what it is."""
+    name, _, what = named.rpartition("=") if named.rfind("=") > 0 else (named, "", "")
+    every = [one for one in comments if one.name in (name, literal(name) if name.startswith("/") else name)]
+    if not every:
+        hint = "name an element of a '# suggest:' line, or certain, likely or may"
+        raise LabelError(file, 0, f"nothing is suggested of {shown(name)}", hint)
+    if what == ALL:
+        return every
+    named_so = [one for one in every if what in (*one.said, *_words(one))] if what else _surest(every)
+    if not named_so:
+        raise LabelError(file, 0, f"{shown(what)!r} is not suggested of {shown(name)}", _say_which(name, every))
+    if any(_alternatives(one, other, vocabulary) for one in named_so for other in named_so):
+        told = ", ".join(dict.fromkeys(f"{_role(one)} {'/'.join(_words(one))} (line {one.line})" for one in named_so))
+        raise LabelError(
+            file, 0, f"of {shown(name)} alternatives are suggested: {shown(told)}", _say_which(name, named_so)
+        )
+    return named_so
+
+
+def _surest(there: Sequence[Comment]) -> list[Comment]:
+    """Of what is as sure what takes data away only when it stands alone."""
+    return [one for one in there if not any(_comes_before(other, one) for other in there)]
+
+
+def _say_which(name: str, there: Iterable[Comment]) -> str:
+    first = next(iter(there))
+    what = _role(first) if _role(first) in (*BRINGS_OR_LETS_OUT[1:], *PASSES_OR_ENDS) else next(iter(_words(first)))
+    return f"say which, such as --accept {shown(name)}={shown(what)}, or remove the lines that are wrong"
+
+
+def _alternatives(one: Comment, other: Comment, vocabulary: Vocabulary) -> bool:
+    """Return whether two suggestions of one element are two answers to one question."""
+    if one.line == other.line or one.name != other.name or one.section != other.section:
+        return False
+    ((role, value),), ((second, instead),) = one.said.items(), other.said.items()
+    if role == second:
+        return role == "source" or (role in ONE_OF_A_KIND and overlap(value, instead, vocabulary))
+    sides = [(first in BRINGS_OR_LETS_OUT, first in PASSES_OR_ENDS) for first in (role, second)]
+    against = (sides[0] == (True, False) and sides[1] == (False, True)) or (sides[1] == (True, False) and sides[0][1])
+    against = against or ("sensitive" in (role, second) and (one.takes_away or other.takes_away))
+    return against and overlap(value, instead, vocabulary)
+
+
+def _needs_name(comment: Comment, comments: Iterable[Comment], vocabulary: Vocabulary) -> bool:
+    """Whether no word accepts it: it takes data away, is a conduit that may be, or one of a leak and a conduit."""
+    if comment.takes_away or (comment.hides and comment.confidence is Confidence.MAY):
+        return True
+    here = [other for other in comments if other.name == comment.name and "conduit" in other.said]
+    return "leak" in comment.said and any(_alternatives(comment, other, vocabulary) for other in here)
+
+
+def _comes_before(other: Comment, comment: Comment) -> bool:
+    """Whether of two suggestions for an element the other is accepted first: what takes nothing away, if as sure."""
+    if other.confidence is comment.confidence:
+        return comment.takes_away and not other.takes_away
+    return surer(other.confidence, comment.confidence)
+
+
+def _role(comment: Comment) -> str:
+    return next(iter(comment.said))
+
+
+def _words(comment: Comment) -> list[str]:
+    """What a suggestion names: kinds, and of what is made of them that."""
+    (value,) = comment.said.values()
+    return [str(one["to"]) if isinstance(one, dict) and "to" in one else str(one) for one in value]
+
+
+def _kinds(value: Any) -> Iterator[Any]:
+    for one in [value] if isinstance(value, str) else value:
+        yield one.get("from", "") if isinstance(one, dict) else one

@@ -1,7 +1,9 @@
-"""Suggestions in a label file: comments that say what would be written, and what comes of those that a person accepts.
+"""Comments in a label file: suggestions, that say what would be written, and what a person has said no to.
 
-A comment is one line, ``# suggest: likely {"nodes": {"/camera": {"source": ["Video"]}}} because …``: JSON in ASCII, so
-that no name can end the line. They stand at the end of the file. People may remove lines, and change what they say.
+A suggestion is one line, ``# suggest: likely {"nodes": {"/camera": {"source": ["Video"]}}} because …``; a refusal is
+``# not: {"nodes": {"/camera": {"source": ["DepthImage"]}}} by Ada on 2026-11-23``: JSON in ASCII, so that no name can
+end the line. They stand at the end of the file. People may remove lines, and change what they say. A refusal changes no
+answer: nothing is suggested that it says, and who removes the line is asked again.
 """
 
 from __future__ import annotations
@@ -11,17 +13,16 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.errors import InputErrors, LabelError, shown
 from rosprivacy.analysis.model import Confidence
-from rosprivacy.analysis.suggesting.evidence import CONDUIT, LEAK, SENSITIVE, SOURCE
-from rosprivacy.analysis.suggesting.written import written
+from rosprivacy.analysis.suggesting.evidence import CONDUIT, LEAK, SENSITIVE, SOURCE, written
 from rosprivacy.analysis.text import LONGEST_LINE, blanked, cut, printable
 from rosprivacy.ingest.labels.entries import SECTIONS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from rosprivacy.analysis.suggesting.evidence import Proposal
+    from rosprivacy.analysis.suggesting.evidence import Proposal, WrittenLabel
 
-MARK = "# suggest: "
+MARK, REFUSED = "# suggest: ", "# not: "
 BECAUSE = " because "
 EXAMPLE = f'{MARK}likely {{"nodes": {{"/camera": {{"source": ["Video"]}}}}}}{BECAUSE}…'
 ADDING = frozenset([SOURCE, LEAK, "derives", SENSITIVE])  # no label of these hides anything; people may write others
@@ -29,17 +30,7 @@ _DECODER = json.JSONDecoder()
 
 
 class Comment(NamedTuple):
-    """A suggestion that stands in a label file.
-
-    Attributes
-    ----------
-    line
-        Of the file, as it is there.
-    said
-        The label: a role and what it names.
-    why
-        The reasons.
-    """
+    """A suggestion that stands in a line of a label file: a role and what it names, and the reasons."""
 
     line: int
     confidence: Confidence
@@ -136,3 +127,60 @@ def _comment(number: int, line: str) -> Comment | None:
     if sure not in tuple(Confidence) or section not in SECTIONS or not isinstance(value, list | dict):
         return None
     return Comment(number, Confidence(sure), section, name, said, why)
+
+
+def refusal_key(label: WrittenLabel) -> str:
+    """Return by what a label is known that was refused.
+
+    >>> from rosprivacy.analysis.suggesting.evidence import WrittenLabel
+    >>> refusal_key(WrittenLabel("nodes", "/camera", {"source": ["Video"]}))
+    '{"nodes": {"/camera": {"source": ["Video"]}}}'
+    """
+    return json.dumps({label.section: {label.name: label.said}}, sort_keys=True)
+
+
+def refusal(label: WrittenLabel, who: str, day: str) -> str:
+    """Return the line that remembers a no."""
+    return f"{REFUSED}{refusal_key(label)} by {blanked(cut(printable(who), LONGEST_LINE), '?')} on {day}"
+
+
+def refusals_in(text: str) -> frozenset[str]:
+    r"""Return what was refused in a label file, as ``refusal_key`` has it.
+
+    A line that begins so and says something else is a comment as any other: it is asked again, which harms nobody.
+
+    >>> sorted(refusals_in('# not: {"nodes": {"/a": {"source": ["Video"]}}} by Ada on 2026-11-23\n# not: used'))
+    ['{"nodes": {"/a": {"source": ["Video"]}}}']
+    """
+    return frozenset(said for line in text.split("\n") if (said := _refused(line)))
+
+
+def _refused(line: str) -> str:
+    """What a line refuses; nothing if it is no refusal."""
+    if not line.startswith(REFUSED):
+        return ""
+    try:
+        said, _ = _DECODER.raw_decode(line.removeprefix(REFUSED))
+    except (ValueError, RecursionError):
+        return ""
+    return json.dumps(said, sort_keys=True) if isinstance(said, dict) else ""
+
+
+def without_refusals(text: str) -> tuple[str, list[str]]:
+    """Return a text without its refusals, and these."""
+    kept: list[str] = []
+    refusals: list[str] = []
+    for line in text.split("\n"):
+        if _refused(line):
+            refusals.append(line.rstrip("\r"))
+        else:
+            kept.append(line)
+    return "\n".join(kept), refusals
+
+
+def with_refusals(text: str, more: Iterable[str]) -> str:
+    """Return a text with lines that remember a no at its end, each once."""
+    rest, old = without_refusals(text)
+    lines = list(dict.fromkeys([*old, *more]))
+    end = "\r\n" if "\r\n" in text else "\n"
+    return rest + (end if rest and not rest.endswith("\n") and lines else "") + "".join(f"{one}{end}" for one in lines)

@@ -6,20 +6,20 @@ from string import ascii_uppercase
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.suggesting.question_rows import (
+from rosprivacy.analysis.suggesting.label_questions import (
     BRINGS_IN,
     GOES_ON,
     GOES_THROUGH,
     LETS_OUT,
     LISTED,
     MAKES,
+    TYPED_AS,
 )
-from rosprivacy.analysis.suggesting.written import TYPED_AS
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
 
-    from rosprivacy.analysis.suggesting.question_rows import Question, Reply, Row
+    from rosprivacy.analysis.suggesting.label_questions import Question, Reply, Row
 
 ASKED = {
     BRINGS_IN: ("Does it bring such data in?", "Which of these bring such data in?"),
@@ -161,8 +161,8 @@ def _words(reply: Reply, rows: Sequence[Row]) -> str:
     """What a key says of rows, and of which kinds of data where there are several.
 
     >>> from rosprivacy.analysis.model import Element
-    >>> from rosprivacy.analysis.suggesting.question_rows import Reply, Row
-    >>> from rosprivacy.analysis.suggesting.written import WrittenLabel
+    >>> from rosprivacy.analysis.suggesting.label_questions import Reply, Row
+    >>> from rosprivacy.analysis.suggesting.evidence import WrittenLabel
     >>> one = Reply("1", WrittenLabel("topics", "/t", {"only": ["Video"]}), True)
     >>> all_ = Reply("y", WrittenLabel("topics", "/t", {"sensitive": ["Video", "Voice"]}))
     >>> row = Row(Element("topic", "/t"), ("Video", "Voice"), (one, all_), ())

@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.fleet.likeness import NO_ROBOTS
-from rosprivacy.analysis.suggesting.evidence import HIDING
-from rosprivacy.analysis.suggesting.written import written
+from rosprivacy.analysis.suggesting.evidence import HIDING, written
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable

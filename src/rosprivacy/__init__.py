@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from rosprivacy.api import analyze, analyze_fleet, explore, parse_labels, suggest, suggest_fleet
     from rosprivacy.explorer.session import FleetSession, Session
     from rosprivacy.ingest.labels.label_file import Labels
-    from rosprivacy.labelling.suggested_labels import Suggested
+    from rosprivacy.labelling.suggesting import Suggested
     from rosprivacy.result import Result
 
 __all__ = [

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from typing import Unpack
 
     from rosprivacy.explorer.session import FleetSession, Session
-    from rosprivacy.labelling.suggested_labels import Suggested
+    from rosprivacy.labelling.suggesting import Suggested
     from rosprivacy.result import Result
     from rosprivacy.settings import Path, Paths
 

@@ -1,4 +1,4 @@
-"""``rosprivacy suggest`` and ``labels --accept``: questions, and nothing that nobody accepted (issue 21)."""
+"""``rosprivacy suggest`` and ``labels --accept``: questions, and nothing that nobody accepted."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import pytest
 
 import rosprivacy
 from rosprivacy.analysis.errors import InputErrors
-from rosprivacy.labelling.interview import Asking, Interview
+from rosprivacy.labelling.model_interview import Asking, Interview
 from rosprivacy.labelling.suggested_lines import with_accepted, with_suggestions
 from rosprivacy.labelling.suggesting import suggest_labels
 from rosprivacy.settings import Settings
@@ -315,7 +315,7 @@ def test_of_a_node_that_lets_another_kind_out_a_leak_is_suggested(cli: Cli, robo
 def test_a_leak_is_suggested_although_a_glob_calls_the_node_a_conduit(
     cli: Cli, tmp_path: Path, entry: str, *, asked: bool
 ) -> None:
-    """S11, users.md U1: what only a glob answers for nobody has seen; a full name still silences it."""
+    """S11: what only a glob answers for nobody has seen; a full name still silences it."""
     (tmp_path / "p.xml").write_text(
         policy_of({"camera": (["/image"], []), "cloud_uploader": ([], ["/image"])}), "utf-8"
     )

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, ClassVar
 import pytest
 
 import rosprivacy
-from rosprivacy.analysis.suggesting.question_rows import GOES_THROUGH, Question
+from rosprivacy.analysis.suggesting.label_questions import GOES_THROUGH, Question
 from rosprivacy.labelling.asking import asked_now
 from rosprivacy.labelling.conversation import FOUND_SINCE, Conversation
 from rosprivacy.labelling.suggesting import suggest_labels
@@ -80,7 +80,7 @@ def test_a_limit_on_the_way_of_a_source_that_gets_a_yes_is_told(
 def test_whether_a_node_lets_data_out_is_asked_although_a_glob_calls_it_a_conduit(
     cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """S11, users.md U1: it is asked of the data that get there; a no is kept, and ends it."""
+    """S11: it is asked of the data that get there; a no is kept, and ends it."""
     (robot / "l.yaml").write_text(f'{SOURCE}  "/*": conduit\ntopics:\n  "/*": sensitive\n', "utf-8")
     asked = ask(cli, robot, "n", monkeypatch)
     assert (

@@ -10,9 +10,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import rosprivacy
-from rosprivacy.analysis.suggesting.question_rows import GOES_ON, GOES_THROUGH, LISTED, PASSES, Question
-from rosprivacy.labelling.answer_keys import EACH_KIND, FEWEST, OPEN, QUIT, SKIP, allowed
+from rosprivacy.analysis.suggesting.label_questions import GOES_ON, GOES_THROUGH, LISTED, PASSES, Question
 from rosprivacy.labelling.asking import with_answer
+from rosprivacy.labelling.conversation import EACH_KIND, FEWEST, OPEN, QUIT, SKIP, allowed
 from rosprivacy.report.suggest.question_lines import keys_line, question_lines
 from rosprivacy.settings import Settings
 from tests.helpers.asked_by_keys import ask, conversation_in, robot_of

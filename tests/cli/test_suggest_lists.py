@@ -17,9 +17,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import rosprivacy
-from rosprivacy.analysis.suggesting.question_rows import GOES_THROUGH, LISTED, NOTHING
-from rosprivacy.labelling.answer_keys import QUIT, SKIP, allowed
+from rosprivacy.analysis.suggesting.label_questions import GOES_THROUGH, LISTED, NOTHING
 from rosprivacy.labelling.asking import asked_now
+from rosprivacy.labelling.conversation import QUIT, SKIP, allowed
 from rosprivacy.labelling.suggesting import suggest_labels
 from rosprivacy.settings import Settings
 from tests.helpers.asked_by_keys import ask, conversation, conversation_in, robot_of, wait_for_keys
@@ -32,7 +32,7 @@ from tests.helpers.typist import POLICIES
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from rosprivacy.analysis.suggesting.question_rows import Question
+    from rosprivacy.analysis.suggesting.label_questions import Question
     from tests.helpers.command import Cli
     from tests.helpers.little_robots import Nodes
 

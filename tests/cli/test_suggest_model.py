@@ -1,4 +1,4 @@
-"""``rosprivacy suggest --model``: what is sent, and what is made of the answers of a recorded server (issue 21)."""
+"""``rosprivacy suggest --model``: what is sent, and what is made of the answers of a recorded server."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import jsonschema
 import pytest
 
-from rosprivacy.ingest.language_model.model_questions import SIZE, TOGETHER
-from rosprivacy.ingest.language_model.model_server import HIDDEN, KEY, LARGEST
+from rosprivacy.ingest.language_model import HIDDEN, KEY, LARGEST
+from rosprivacy.labelling.model_interview import SIZE, TOGETHER
 from tests.helpers.certificates import authority, signed
 from tests.helpers.command import LINE, cli
 from tests.helpers.model_server import ModelServer, Reply, answer, completion, elements, said

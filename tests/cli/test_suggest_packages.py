@@ -1,4 +1,4 @@
-"""``rosprivacy suggest`` and packages: the catalogue, a user's file, what installed packages ship (issue 21)."""
+"""``rosprivacy suggest`` and packages: the catalogue, a user's file, what installed packages ship."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``suggest --ask``: a label that no question offers is typed as a line; it takes nothing away (issue 21)."""
+"""``suggest --ask``: a label that no question offers is typed as a line; it takes nothing away."""
 
 from __future__ import annotations
 
@@ -13,8 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import rosprivacy
-from rosprivacy.labelling.asking import with_label
-from rosprivacy.labelling.typed_labels import contradiction, typed_label
+from rosprivacy.labelling.asking import contradiction, typed_label, with_label
 from rosprivacy.settings import Settings
 from tests.helpers.asked_by_keys import ask, read_until, robot_of, wait_for_keys
 from tests.helpers.command import cli

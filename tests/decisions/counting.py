@@ -8,10 +8,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from rosprivacy.analysis.suggesting.question_rows import BRINGS_IN
+from rosprivacy.analysis.suggesting.label_questions import BRINGS_IN
 from rosprivacy.ingest.policies.names import covered
-from rosprivacy.labelling.asking import asked_now, with_answer
-from rosprivacy.labelling.closing_lists import closing
+from rosprivacy.labelling.asking import asked_now, closing, with_answer
 from rosprivacy.labelling.conversation import Conversation
 from rosprivacy.labelling.suggesting import suggest_labels
 from rosprivacy.reading.robot_system import answer_robot
@@ -23,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
     from pathlib import Path
 
-    from rosprivacy.analysis.suggesting.question_rows import Question, Row
+    from rosprivacy.analysis.suggesting.label_questions import Question, Row
     from rosprivacy.result import Result
     from tests.decisions.scripted_person import Identity
     from tests.decisions.truths import Entry, Truth

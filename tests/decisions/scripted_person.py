@@ -7,7 +7,7 @@ from string import ascii_uppercase
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.model import GLOB
-from rosprivacy.analysis.suggesting.question_rows import (
+from rosprivacy.analysis.suggesting.label_questions import (
     BRINGS_IN,
     GOES_THROUGH,
     LETS_OUT,
@@ -16,14 +16,14 @@ from rosprivacy.analysis.suggesting.question_rows import (
     YES,
     Question,
 )
-from rosprivacy.labelling.answer_keys import EACH_KIND, EXACTLY, FEWEST, NO, OPEN, SKIP, allowed
+from rosprivacy.labelling.conversation import EACH_KIND, EXACTLY, FEWEST, NO, OPEN, SKIP, allowed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.model import Statement
-    from rosprivacy.analysis.suggesting.question_rows import Reply, Row
+    from rosprivacy.analysis.suggesting.label_questions import Reply, Row
     from rosprivacy.result import Result
 
     Identity = tuple[str, str, str]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.suggesting.ros_package import USES, WHERE
-from rosprivacy.ingest.packages.claims import METHODS
+from rosprivacy.analysis.suggesting.packages import USES, WHERE
+from rosprivacy.ingest.packages.package_file import METHODS
 from tests.fuzzing.label_texts import written
 from tests.fuzzing.words import KINDS
 

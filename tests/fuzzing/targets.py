@@ -15,13 +15,10 @@ import rosprivacy
 from rosprivacy.analysis import durations
 from rosprivacy.analysis.errors import InputError, InputErrors, QueryError
 from rosprivacy.analysis.model import Confidence, Element, Place, Profile
-from rosprivacy.analysis.suggesting.asked_elements import Asked
-from rosprivacy.analysis.suggesting.by_package import package_evidence
 from rosprivacy.analysis.suggesting.evidence import HIDING
 from rosprivacy.analysis.suggesting.library_rules import CPP, PYTHON, NodeUse
-from rosprivacy.analysis.suggesting.model_answers import judged
 from rosprivacy.analysis.suggesting.name_rules import of_topic
-from rosprivacy.analysis.suggesting.nodes_of_packages import nodes_of_packages
+from rosprivacy.analysis.suggesting.packages import nodes_of_packages, package_evidence
 from rosprivacy.explorer.journal import read_journal
 from rosprivacy.explorer.session import Session
 from rosprivacy.ingest.decisions.decisions_file import read_decisions
@@ -30,8 +27,7 @@ from rosprivacy.ingest.deployed.permissions import policy_of, read_permissions
 from rosprivacy.ingest.deployed.zenoh_grants import read_zenoh
 from rosprivacy.ingest.fleet.fleet_file import read_fleet
 from rosprivacy.ingest.labels.label_file import parse_labels, read_labels
-from rosprivacy.ingest.language_model.answer_text import answers_in
-from rosprivacy.ingest.language_model.exchange_file import read_exchanges
+from rosprivacy.ingest.language_model import answers_in, read_exchanges
 from rosprivacy.ingest.mitigation.limits_file import read_limits
 from rosprivacy.ingest.packages.package_file import read_package
 from rosprivacy.ingest.policies import comparisons, names
@@ -41,9 +37,9 @@ from rosprivacy.ingest.running.bag_folders import read_bags
 from rosprivacy.ingest.running.node_info import TextFiles
 from rosprivacy.ingest.suggestions.accepting import accept
 from rosprivacy.ingest.suggestions.comments import taken_apart
-from rosprivacy.ingest.suggestions.library_file import read_library_rules
-from rosprivacy.ingest.suggestions.name_file import read_name_rules
+from rosprivacy.ingest.suggestions.rule_files import read_library_rules, read_name_rules
 from rosprivacy.labelling.annotating import annotated, differences
+from rosprivacy.labelling.model_interview import Asked, judged
 from rosprivacy.mitigation import run_mitigation
 from rosprivacy.observing import written
 from rosprivacy.ontology.own import with_own

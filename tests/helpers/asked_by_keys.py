@@ -10,8 +10,7 @@ import termios
 import time
 from typing import TYPE_CHECKING
 
-from rosprivacy.labelling.asking import asked_now, with_answer
-from rosprivacy.labelling.closing_lists import closing
+from rosprivacy.labelling.asking import asked_now, closing, with_answer
 from rosprivacy.labelling.conversation import Conversation
 from rosprivacy.labelling.suggesting import suggest_labels
 from rosprivacy.settings import Settings
@@ -22,9 +21,9 @@ if TYPE_CHECKING:
 
     import pytest
 
-    from rosprivacy.analysis.suggesting.question_rows import Question
+    from rosprivacy.analysis.suggesting.label_questions import Question
     from rosprivacy.labelling.conversation import Person
-    from rosprivacy.labelling.suggested_labels import Suggested
+    from rosprivacy.labelling.suggesting import Suggested
     from tests.helpers.command import Cli, Done
     from tests.helpers.little_robots import Nodes
 

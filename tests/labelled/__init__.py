@@ -1,1 +1,1 @@
-"""Nodes of public systems that two readers labelled without knowing the rules: how good suggestions are (issue 21)."""
+"""Nodes of public systems that two readers labelled without knowing the rules: how good suggestions are."""

@@ -1,8 +1,4 @@
-"""How good suggestions are on the labelled set: ``python -m tests.labelled [dev|held-out] [--wrong] [--missed]``.
-
-``python -m tests.labelled collect FOLDER BATCH DATE`` writes the system files of a new batch, and
-``python -m tests.labelled uses FOLDER`` what the code of all nodes uses, both from the sources in a folder.
-"""
+"""How good suggestions are on the labelled set: ``python -m tests.labelled [dev|held-out] [--wrong] [--missed]``."""
 
 from __future__ import annotations
 
@@ -12,10 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosprivacy.ontology.vocabulary import load
-from tests.labelled.collecting import collect
 from tests.labelled.labelled_set import READERS, judged, kappa, labelled, said, systems
 from tests.labelled.measuring import LOOKS, Share, measured
-from tests.labelled.uses import write_uses
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -25,14 +19,6 @@ if TYPE_CHECKING:
 
 def main() -> None:
     """Print agreement, and precision and recall by what is looked at."""
-    if sys.argv[1:2] == ["collect"]:
-        folder, batch, date = sys.argv[2:]
-        print("".join(f"{one}: {told}\n" for one, told in collect(Path(folder), int(batch), date).items()), end="")
-        return
-    if sys.argv[1:2] == ["uses"]:
-        counts = write_uses(Path(sys.argv[2]))
-        print(f"{sum(counts.values())} nodes of {len(counts)} systems have uses")
-        return
     dev, held_out = systems()
     chosen = held_out if "held-out" in sys.argv else dev
     some = labelled(chosen)

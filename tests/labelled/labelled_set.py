@@ -1,17 +1,18 @@
 """The labelled set: systems as facts, what two readers said of their nodes, and the split (protocol.md).
 
-In: the YAML files beside this one. Out: ``System`` and ``Judged`` of each, and how far the readers agree.
+In: ``systems.jsonl``, ``reader_a.jsonl`` and ``reader_b.jsonl``, one system a line. Out: ``System`` and ``Judged`` of
+each, and how far the readers agree.
 """
 
 from __future__ import annotations
 
 import hashlib
+import json
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ruamel.yaml import YAML
-
-from rosprivacy.analysis.suggesting.carried_kinds import ANYTHING
+from rosprivacy.analysis.suggesting.evidence import ANYTHING
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence
@@ -20,7 +21,6 @@ HERE = Path(__file__).parent
 # KINDS: what the protocol lets a reader say.
 READERS = ("reader_a", "reader_b")
 TUNED = (1, 2, 3, 4, 5, 6, 7, 8, 9)  # batches that rules may be tuned on, whole; each was measured once before
-HALVED = (1, 2)  # of these, those that were split by hash before
 SOURCE, DERIVES, LEAK = "source", "derives", "leak"
 KINDS = frozenset([
     "PersonImage", "DepthImage", "PersonPointCloud", "ThermalImage", "Voice", "SpeechTranscript", "VoiceCommand",
@@ -70,24 +70,14 @@ def systems() -> tuple[Sequence[System], Sequence[System]]:
     return [one for one in every if one.batch in TUNED], [one for one in every if one.batch not in TUNED]
 
 
-def first_split() -> tuple[Sequence[System], Sequence[System]]:
-    """Return the halves of the first two batches, tuned on and held out, as they were until 2026-11-23.
-
-    Every other system of a batch, by hash. The figures of that day are about them.
-    """
-    batches = [[one for one in _every() if one.batch == number] for number in HALVED]
-    dev, held_out = ([one for batch in batches for one in batch[first::2]] for first in (0, 1))
-    return dev, held_out
-
-
 def labelled(some: Iterable[System]) -> Sequence[System]:
     """Return those that both readers answered for; a batch that was collected and not read yet has no answers."""
-    return [one for one in some if all((HERE / reader / f"{one.name}.yaml").exists() for reader in READERS)]
+    return [one for one in some if all(one.name in answers(reader) for reader in READERS)]
 
 
 def said(reader: str, some: Iterable[System]) -> frozenset[Pair]:
     """Return what a reader says of some systems."""
-    return frozenset(pair for one in some for pair in _pairs(one, _read(HERE / reader / f"{one.name}.yaml")))
+    return frozenset(pair for one in some for pair in _pairs(one, answers(reader)[one.name]))
 
 
 def judged(some: Iterable[System], overlaps: Mapping[str, Collection[str]]) -> Judged:
@@ -122,14 +112,19 @@ def kappa(some: Iterable[System]) -> float:
 
 
 def _every() -> Sequence[System]:
-    read = [_read(file) for file in (HERE / "systems").glob("*.yaml")]
-    every = [System(one["system"], one["repository"], one["batch"], one["nodes"]) for one in read]
+    every = [System(one["system"], one["repository"], one["batch"], one["nodes"]) for one in _lines("systems")]
     return sorted(every, key=lambda one: (one.batch, hashlib.sha256(one.repository.encode()).hexdigest()))
 
 
-def _pairs(system: System, answers: Mapping[str, Any]) -> Iterable[Pair]:
-    assert set(answers["nodes"]) == set(system.nodes), system.name
-    for node, answer in answers["nodes"].items():
+@cache
+def answers(reader: str) -> Mapping[str, Mapping[str, Any]]:
+    """Return what a reader answered, by system and node."""
+    return {one["system"]: one["nodes"] for one in _lines(reader)}
+
+
+def _pairs(system: System, of_nodes: Mapping[str, Any]) -> Iterable[Pair]:
+    assert set(of_nodes) == set(system.nodes), system.name
+    for node, answer in of_nodes.items():
         for role in (SOURCE, DERIVES):
             assert set(answer[role]) <= KINDS, (system.name, node)
             yield from (Pair(system.name, node, role, kind) for kind in answer[role])
@@ -137,5 +132,5 @@ def _pairs(system: System, answers: Mapping[str, Any]) -> Iterable[Pair]:
             yield Pair(system.name, node, LEAK, "")
 
 
-def _read(file: Path) -> Any:
-    return YAML(typ="safe", pure=True).load(file.read_text("utf-8"))
+def _lines(name: str) -> Sequence[Any]:
+    return [json.loads(line) for line in (HERE / f"{name}.jsonl").read_text("utf-8").splitlines()]

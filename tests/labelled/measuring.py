@@ -9,21 +9,18 @@ from math import sqrt
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.model import Confidence, Place
-from rosprivacy.analysis.suggesting.carried_kinds import Rules
+from rosprivacy.analysis.suggesting.channels import Rules
 from rosprivacy.analysis.suggesting.evidence import DERIVATION
 from rosprivacy.analysis.suggesting.evidence import LEAK as LEAKS
 from rosprivacy.analysis.suggesting.evidence import SOURCE as SOURCES
 from rosprivacy.analysis.suggesting.library_rules import PYTHON, NodeUse
 from rosprivacy.analysis.suggesting.name_rules import NameRules
-from rosprivacy.analysis.suggesting.unsaid import unsaid
-from rosprivacy.analysis.suggesting.weighing import proposals
+from rosprivacy.analysis.suggesting.weighing import proposals, unsaid
 from rosprivacy.ingest.packages.package_folders import read_packages
-from rosprivacy.ingest.suggestions.library_file import read_library_rules
-from rosprivacy.ingest.suggestions.name_file import read_name_rules
+from rosprivacy.ingest.suggestions.rule_files import read_library_rules, read_name_rules
 from rosprivacy.ingest.types import TABLE
 from rosprivacy.ingest.types.type_table import read_table
-from rosprivacy.labelling.gathering import evidence
-from rosprivacy.labelling.knowledge import Known
+from rosprivacy.labelling.knowledge import Known, evidence
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.reading.robot_system import answer_robot
 from rosprivacy.settings import Settings
@@ -37,7 +34,7 @@ if TYPE_CHECKING:
     from tests.labelled.labelled_set import Judged, System
 
 ROLES = {SOURCES: SOURCE, DERIVATION: DERIVES, LEAKS: LEAK}
-NO_NAMES = NameRules({}, {}, {}, {}, frozenset(), frozenset(), {})
+NO_NAMES = NameRules()
 LEGS = {"publishes": "publish", "subscribes": "subscribe"}
 FOLDED = "/_action/"  # parts of actions, which are named themselves (rule S3)
 ENDS = {"serves": ("reply", "execute"), "calls": ("request", "call")}

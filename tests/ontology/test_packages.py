@@ -1,4 +1,4 @@
-"""The shipped catalogue of packages: each entry names its sources, and says no more than they do (issue 21)."""
+"""The shipped catalogue of packages: each entry names its sources, and says no more than they do."""
 
 from __future__ import annotations
 

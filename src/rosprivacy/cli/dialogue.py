@@ -10,19 +10,14 @@ import typer
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.files_read import one_run
-from rosprivacy.analysis.suggesting.question_rows import LISTED
-from rosprivacy.analysis.suggesting.written import TYPED_AS, WrittenLabel
+from rosprivacy.analysis.suggesting.evidence import WrittenLabel
+from rosprivacy.analysis.suggesting.label_questions import LISTED, TYPED_AS
 from rosprivacy.analysis.text import counted
 from rosprivacy.cli.output import emit
 from rosprivacy.clock import today
-from rosprivacy.labelling.answer_keys import allowed
-from rosprivacy.labelling.asking import asked_now, with_answer, with_label
-from rosprivacy.labelling.closing_lists import closing
-from rosprivacy.labelling.conversation import Conversation
-from rosprivacy.labelling.limits_on_the_way import brings, limits_on_the_way
-from rosprivacy.labelling.named_answers import AND, BEGINS, keys_of, lines_of, takes_away
-from rosprivacy.labelling.suggested_lines import who_says
-from rosprivacy.labelling.typed_labels import contradiction, typed_label
+from rosprivacy.labelling.asking import asked_now, closing, contradiction, typed_label, with_answer, with_label
+from rosprivacy.labelling.conversation import AND, BEGINS, Conversation, allowed, keys_of, lines_of, takes_away
+from rosprivacy.labelling.suggested_lines import brings, limits_on_the_way, who_says
 from rosprivacy.report.editing import editing
 from rosprivacy.report.suggest.question_lines import help_lines, keys_line, question_lines
 
@@ -30,9 +25,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
     from pathlib import Path
 
-    from rosprivacy.analysis.suggesting.question_rows import Question
+    from rosprivacy.analysis.suggesting.label_questions import Question
     from rosprivacy.labelling.label_lines import Written
-    from rosprivacy.labelling.suggested_labels import Suggested
+    from rosprivacy.labelling.suggesting import Suggested
     from rosprivacy.settings import Settings
 
 DIGITS, MOST_DIGITS, ENTER = frozenset("0123456789"), 4, ("\r", "\n", "\r\n")

@@ -9,7 +9,7 @@ import os
 import sys
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import typer
 
@@ -18,77 +18,44 @@ from rosprivacy.cli.inputs import refuse
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from rosprivacy.labelling.interview import Asking, Interview
+    from rosprivacy.labelling.model_interview import Asking, Interview
 
 PANEL = "A language model, only if you ask one"
 LONGEST_NAME = 200
 
+
+def _asks(name: str, says: str, metavar: str | None = None, **more: Any) -> Any:
+    """An option that says how a language model is asked."""
+    if metavar and "min" not in more:
+        more["show_default"] = False
+    return typer.Option(name, metavar=metavar, help=says, rich_help_panel=PANEL, **more)
+
+
 Model = Annotated[
     str | None,
-    typer.Option(
-        "--model",
-        metavar="NAME",
-        help="Ask this language model for more suggestions: its name, as its server knows it.",
-        show_default=False,
-        rich_help_panel=PANEL,
-    ),
+    _asks("--model", "Ask this language model for more suggestions: its name, as its server knows it.", "NAME"),
 ]
 ModelUrl = Annotated[
     str | None,
-    typer.Option(
+    _asks(
         "--model-url",
-        metavar="URL",
-        help="Where it is: the address of an OpenAI-compatible server, up to /v1. A key is read from "
-        "ROSPRIVACY_MODEL_KEY.",
-        show_default=False,
-        rich_help_panel=PANEL,
+        "Where it is: the address of an OpenAI-compatible server, up to /v1. A key is read from ROSPRIVACY_MODEL_KEY.",
+        "URL",
     ),
 ]
-DryRun = Annotated[
-    bool,
-    typer.Option("--dry-run", help="Print what would be sent, and where to; send nothing.", rich_help_panel=PANEL),
-]
-MaskNames = Annotated[
-    bool,
-    typer.Option(
-        "--mask", help="Send placeholders for words of names that are not in the shipped rules.", rich_help_panel=PANEL
-    ),
-]
-Record = Annotated[
-    Path | None,
-    typer.Option(
-        "--record",
-        metavar="FILE",
-        help="Write what was sent and answered into a new file.",
-        show_default=False,
-        rich_help_panel=PANEL,
-    ),
-]
+DryRun = Annotated[bool, _asks("--dry-run", "Print what would be sent, and where to; send nothing.")]
+MaskNames = Annotated[bool, _asks("--mask", "Send placeholders for words of names that are not in the shipped rules.")]
+Record = Annotated[Path | None, _asks("--record", "Write what was sent and answered into a new file.", "FILE")]
 Replay = Annotated[
-    str | None,
-    typer.Option(
-        "--replay",
-        metavar="FILE",
-        help="Take the answers from a file that --record wrote; send nothing.",
-        show_default=False,
-        rich_help_panel=PANEL,
-    ),
+    str | None, _asks("--replay", "Take the answers from a file that --record wrote; send nothing.", "FILE")
 ]
-Requests = Annotated[
-    int, typer.Option("--model-requests", metavar="N", min=1, help="Send at most so many.", rich_help_panel=PANEL)
-]
-Timeout = Annotated[
-    int,
-    typer.Option(
-        "--model-timeout", metavar="SECONDS", min=1, help="How long to wait for one answer.", rich_help_panel=PANEL
-    ),
-]
+Requests = Annotated[int, _asks("--model-requests", "Send at most so many.", "N", min=1)]
+Timeout = Annotated[int, _asks("--model-timeout", "How long to wait for one answer.", "SECONDS", min=1)]
 Unencrypted = Annotated[
     bool,
-    typer.Option(
+    _asks(
         "--model-unencrypted",
-        help="Send over plain http to any host, where others on the way can read all of it, the key too.",
-        rich_help_panel=PANEL,
+        "Send over plain http to any host, where others on the way can read all of it, the key too.",
     ),
 ]
 
@@ -132,8 +99,8 @@ class ModelOptions(NamedTuple):
     @property
     def asking(self) -> Asking:
         """What is asked, and where."""
-        from rosprivacy.ingest.language_model.address import address_of
-        from rosprivacy.labelling.interview import Asking
+        from rosprivacy.ingest.language_model import address_of
+        from rosprivacy.labelling.model_interview import Asking
 
         address = address_of(self.url or "", unencrypted=self.unencrypted)
         return Asking(self.model or "", address.url, self.mask, self.requests)
@@ -155,9 +122,8 @@ class ModelOptions(NamedTuple):
             yield from self._live(output)
 
     def _live(self, output: Path | None) -> Iterator[Interview]:
-        from rosprivacy.ingest.language_model.address import address_of
-        from rosprivacy.ingest.language_model.model_server import KEY, Server
-        from rosprivacy.labelling.interview import Interview
+        from rosprivacy.ingest.language_model import KEY, Server, address_of
+        from rosprivacy.labelling.model_interview import Interview
 
         address = address_of(self.url or "", unencrypted=self.unencrypted)
         server = Server(address, os.environ.get(KEY, "").strip(), self.timeout, _told)
@@ -171,12 +137,12 @@ class ModelOptions(NamedTuple):
                 _write(self.record, interview)
 
     def _replayed(self, file: str) -> Interview:
-        from rosprivacy.ingest.language_model.exchange_file import read_exchanges, replayed
-        from rosprivacy.labelling.interview import Asking, Interview
+        from rosprivacy.ingest.language_model import read_exchanges, replayed
+        from rosprivacy.labelling.model_interview import Asking, Interview
 
-        there = read_exchanges(file)
-        asking = Asking(there.model, there.url, there.masked, sys.maxsize, there.date)  # nothing is sent: no bound
-        return Interview(asking, replayed(file, there), _told, ((file, there.sha256),))
+        record = read_exchanges(file)
+        asking = Asking(record.model, record.url, record.masked, sys.maxsize, record.date)  # nothing is sent: no bound
+        return Interview(asking, replayed(file, record), _told, ((file, record.sha256),))
 
 
 def _told(line: str) -> None:
@@ -199,7 +165,7 @@ def _refuse_existing(file: Path, output: Path | None) -> None:
 
 def _write(file: Path, interview: Interview) -> None:
     from rosprivacy.clock import today
-    from rosprivacy.ingest.language_model.exchange_file import Exchanges, as_document
+    from rosprivacy.ingest.language_model import Exchanges, as_document
     from rosprivacy.report.atomic import write_texts
     from rosprivacy.report.json_text import as_text
 

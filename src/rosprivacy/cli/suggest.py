@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from rosprivacy.labelling.knowledge import UserFiles
-    from rosprivacy.labelling.suggested_labels import Suggested
+    from rosprivacy.labelling.suggesting import Suggested
     from rosprivacy.result import Result
 
 
@@ -151,7 +151,7 @@ def _answer(found: Suggested, format_: TextOrJson) -> str:
 
 def _would_be_sent(inputs: Inputs, labels: tuple[str, ...], sources: Sequence[str], options: ModelOptions) -> str:
     """Every request as it would go out, but for the key."""
-    from rosprivacy.labelling.interview import NOTHING_ASKED, asked_of, mask_of
+    from rosprivacy.labelling.model_interview import NOTHING_ASKED, asked_of, mask_of
     from rosprivacy.labelling.suggesting import basis_of
     from rosprivacy.reading.robot_system import answer_robot
 

@@ -1,42 +1,52 @@
-"""Questions about a robot, and what becomes of the answers: labels and refusals in the label file (issue 21).
+"""Questions about a robot, and what becomes of the answers: labels and refusals in the label file.
 
-In: policies and label files. Out: the questions that are asked now; a file with what was said of one.
+In: policies and label files. Out: the questions that are asked now; a file with what was said of one. No list of
+channels that a person can confirm closes a known finding. That is no estimate: the labels are put on, and the analysis
+runs again. What a name or a library says of a node is often another kind of data than the right one: a person can type
+another label, which takes nothing away.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import json
+from collections import defaultdict
+from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.suggesting.next_questions import questions
-from rosprivacy.analysis.suggesting.question_rows import LISTED
-from rosprivacy.analysis.suggesting.traffic import traffic
+from rosprivacy.analysis.errors import InputErrors, shown
+from rosprivacy.analysis.suggesting.channels import traffic
+from rosprivacy.analysis.suggesting.evidence import WrittenLabel
+from rosprivacy.analysis.suggesting.label_questions import LISTED, NOTHING, TYPED_AS, questions
+from rosprivacy.analysis.written_names import did_you_mean, literal, nearest
+from rosprivacy.ingest.labels.label_file import parse_labels
 from rosprivacy.ingest.suggestions.accepting import NewLabel, with_labels
-from rosprivacy.ingest.suggestions.refusals import refusal, with_refusals
-from rosprivacy.labelling.answer_keys import NO
-from rosprivacy.labelling.closing_lists import without_closing
+from rosprivacy.ingest.suggestions.comments import refusal, with_refusals
+from rosprivacy.labelling.conversation import NO, by_likeness
 from rosprivacy.labelling.label_lines import Written
-from rosprivacy.labelling.refused import refused_in
 from rosprivacy.labelling.suggested_lines import check_room, text_of
+from rosprivacy.labelling.suggesting import refused_in
 from rosprivacy.ontology.vocabulary import load
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator, Sequence
 
-    from rosprivacy.analysis.suggesting.question_rows import Question
-    from rosprivacy.analysis.suggesting.written import WrittenLabel
-    from rosprivacy.labelling.suggested_labels import Suggested
+    from rosprivacy.analysis.model import Element
+    from rosprivacy.analysis.suggesting.label_questions import Question, Row
+    from rosprivacy.labelling.suggesting import Suggested
     from rosprivacy.ontology.vocabulary import Vocabulary
+    from rosprivacy.result import Result
     from rosprivacy.settings import Settings
 
+FROM_AND_TO = 2
 
-def asked_now(told: Suggested) -> tuple[Question, ...]:
+
+def asked_now(found: Suggested) -> tuple[Question, ...]:
     """Return what a person is asked under the labels that there are; no list of channels would close a finding."""
-    result = told.result
+    result = found.result
     graph = result.analysis.graph
     hierarchy = result.vocabulary.hierarchy
     read = traffic(graph, result.bound)
-    made = questions(told.proposals, result.analysis, result.bound, read, hierarchy, refused_in(result).says)
-    return tuple(without_closing(one, result) for one in made)
+    made = questions(found.proposals, result.analysis, result.bound, read, hierarchy, refused_in(result).says)
+    return tuple(_without_closing(one, result) for one in made)
 
 
 def with_answer(file: str, question: Question, key: str, who: str, day: str, settings: Settings) -> Written:
@@ -91,3 +101,124 @@ def _labels(question: Question, key: str, note: str) -> Iterator[NewLabel]:
 def _in_list(question: Question) -> str:
     """Who reads the label later sees that it was not looked at by itself."""
     return f" in a list of {len(question.rows)}" if question.about == LISTED else ""
+
+
+def _without_closing(question: Question, result: Result) -> Question:
+    """Return a question whose rows are alike only where all of them together close no finding.
+
+    Fewer labels close no more, so that rows can be taken out. One run of the analysis for each likeness; where it loses
+    a finding, one for each row.
+    """
+    apart: list[Row] = []
+    for rows in by_likeness(question.rows):
+        if rows[0].alike and len(rows) > 1 and _closes([row.saying(NOTHING) for row in rows], result):
+            apart += _by_themselves(rows, result)
+    if not apart:
+        return question
+    return question._replace(
+        rows=tuple(row._replace(alike=frozenset()) if row in apart else row for row in question.rows)
+    )
+
+
+def _by_themselves(rows: Sequence[Row], result: Result) -> Sequence[Row]:
+    """The channels of a list that would close a finding: those that do alone, or all if only several do."""
+    alone = [row for row in rows if _closes([row.saying(NOTHING)], result)]
+    left = [row.saying(NOTHING) for row in rows if row not in alone]
+    return alone if alone and not _closes(left, result) else rows
+
+
+def closing(rows: Sequence[Row], result: Result) -> Sequence[Row]:
+    """Return the channels that a list of a person's cannot have: those that would close a finding with those before.
+
+    More labels close no less, so that what is left closes none.
+
+    Parameters
+    ----------
+    rows
+        With the one reply that is said of each.
+    """
+    if not _closes(rows, result):
+        return ()
+    left: list[Row] = []
+    for row in rows:
+        if not _closes([*left, row], result):
+            left.append(row)
+    return [row for row in rows if row not in left]
+
+
+def _closes(rows: Sequence[Row], result: Result) -> bool:
+    """Whether a finding is lost by what is said of channels; where nobody can tell, it is."""
+    try:
+        after = _with_more(result, (reply.label for row in rows for reply in row.replies), "a list of channels")
+    except InputErrors:  # they go against what a label says
+        return True
+    if after is None:
+        return True
+    return not {one.id for one in result.analysis.findings} <= {one.id for one in after.analysis.findings}
+
+
+def typed_label(line: str, elements: Iterable[Element], vocabulary: Vocabulary) -> WrittenLabel | str:
+    """Return the label that a line says, or in words why it says none.
+
+    Parameters
+    ----------
+    line
+        Name, ``node``, role, kinds: of ``derives`` from which, and to which; of the others one or more.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.model import Element
+    >>> from rosprivacy.ontology.vocabulary import load
+    >>> nodes = [Element("node", "/lidar")]
+    >>> typed_label("/lidar node source Location", nodes, load())
+    WrittenLabel(section='nodes', name='/lidar', said={'source': ['Location']})
+    >>> typed_label("/lidar node source Biometrik", nodes, load())
+    "unknown category 'Biometrik'; did you mean Biometric?"
+    """
+    said: dict[str, Any]
+    match line.split():
+        case [name, "node", "source" | "leak" as role, *kinds] if kinds:
+            said = {role: list(dict.fromkeys(kinds))}
+        case [name, "node", "derives", *kinds] if len(set(kinds)) == len(kinds) == FROM_AND_TO:
+            said = {"derives": [dict(zip(("from", "to"), kinds, strict=True))]}
+        case _:
+            return TYPED_AS
+    return _unknown(name, kinds, elements, vocabulary) or WrittenLabel("nodes", literal(name), said)
+
+
+def contradiction(label: WrittenLabel, result: Result) -> str:
+    """Return what a label goes against, in words; nothing if it can be said beside all that is said."""
+    try:
+        _with_more(result, [label], "this label")
+    except InputErrors as error:
+        return str(error)
+    return ""
+
+
+def _unknown(name: str, kinds: Sequence[str], elements: Iterable[Element], vocabulary: Vocabulary) -> str:
+    nodes = dict.fromkeys(one.name for one in elements if one.is_node)
+    if name not in nodes:
+        near = nearest(name, nodes)
+        return f"no node is called {shown(name)!r}; {did_you_mean(near)}" if near else TYPED_AS
+    other = next((one for one in kinds if one not in vocabulary.hierarchy.ancestors), "")
+    return f"unknown category {shown(other)!r}; {vocabulary.hint(other)}" if other else ""
+
+
+def _with_more(result: Result, labels: Iterable[WrittenLabel], name: str) -> Result | None:
+    """Return the answer with some labels more, as a file of that name; None if nobody can tell.
+
+    Raises
+    ------
+    InputErrors
+        If they contradict each other, or what is said.
+    """
+    if result.again is None:
+        return None
+    sections: dict[str, dict[str, dict[str, list[object]]]] = defaultdict(
+        lambda: defaultdict(lambda: defaultdict(list))
+    )
+    for label in labels:
+        for role, said in label.said.items():
+            sections[label.section][label.name][role] += said
+    text = json.dumps({"labels": 1, **sections})
+    return result.again((*result.labels, parse_labels(text, result.vocabulary, name=name)))

@@ -1,56 +1,64 @@
-"""Questions to a person, one at a time, until nothing is left to ask or the person stops (issue 21).
+"""Questions to a person, one at a time, until nothing is left to ask or the person stops; and which keys answer them.
 
 In: what is asked now, who answers, and what keeps an answer. Out: how it ended. It knows neither a terminal nor a file:
 the command line and the tests put theirs in. Every answer is kept before the next question.
 
-What takes data away is said of one row alone; or of a list of channels, by the number of its rows: of those that are
-alike, or of those that the person has picked one by one before ``0``, or before the digit of a kind. There a letter
-takes a row out, and ``o`` takes out all; what is taken out is asked as other channels are.
+A letter from A on picks a row, or puts it back; all other keys speak of the picked rows, or of all if none is picked.
+``x`` says yes to the picked rows and no to the others; ``k`` asks about each kind of data by itself. What takes data
+away is said of one row alone; or of a list of channels, by the number of its rows: of those that are alike, or of those
+that the person has picked one by one before ``0``, or before the digit of a kind. There a letter takes a row out, and
+``o`` takes out all; what is taken out is asked as other channels are.
+
+A file of keys may have been made for other questions. There a line says what takes data away: it names each element and
+what is written of it, and is an answer to the one question that offers it, word for word.
 """
 
 from __future__ import annotations
 
 from collections import defaultdict, deque
 from dataclasses import dataclass, field
+from string import ascii_uppercase
 from typing import TYPE_CHECKING, Protocol
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.suggesting.question_rows import (
+from rosprivacy.analysis.suggesting.evidence import WrittenLabel
+from rosprivacy.analysis.suggesting.label_questions import (
     BRINGS_IN,
+    GOES_ON,
     GOES_THROUGH,
+    LETS_OUT,
     LISTED,
     MAKES,
     MOST_ROWS,
     NOTHING,
+    PASSES,
     YES,
     Question,
 )
-from rosprivacy.analysis.suggesting.written import WrittenLabel
 from rosprivacy.analysis.text import counted
-from rosprivacy.labelling.answer_keys import (
-    EACH_KIND,
-    EXACTLY,
-    FEWEST,
-    NO,
-    OPEN,
-    QUIT,
-    SKIP,
-    allowed,
-    letter,
-    takes_away_of_each,
-)
-from rosprivacy.labelling.question_order import STAGES, by_likeness, waits
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Sequence
+    from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 
-    from rosprivacy.analysis.suggesting.question_rows import Row
+    from rosprivacy.analysis.suggesting.evidence import Identity
+    from rosprivacy.analysis.suggesting.label_questions import Alike, Reply, Row
 
+    Said = tuple[str, Identity, tuple[str, ...]]  # what a row asks, in this conversation
+
+NO, OPEN, SKIP, QUIT, EXACTLY, EACH_KIND = "n", "o", "s", "q", "x", "k"
+FEWEST = 2  # rows of a list: one row is asked by itself
+BEGINS, AND = "/", "; "  # a name begins so; between the rows of a list
+STAGES = {
+    BRINGS_IN: 0,
+    LETS_OUT: 0,
+    MAKES: 0,
+    GOES_ON: 1,
+    GOES_THROUGH: 2,
+    LISTED: 2,
+}  # a leak is known before the next
 BY_ITSELF = "it could close a known finding, and is asked by itself"
 CHANGED = "this list is not as it was any more: nothing is kept, and it is asked anew"
 FOUND_SINCE = "a finding of such data has become known since: nothing is kept, and it is asked anew"
-Identity = tuple[str, str, str]
-Said = tuple[str, Identity, tuple[str, ...]]  # what a row asks, in this conversation
 
 
 class Person(Protocol):
@@ -105,7 +113,7 @@ class Conversation:
     def _round(self, pending: deque[Question]) -> bool:
         """Ask until there is more to know of what is left; return False if the person stops."""
         answered: set[int] = set()
-        while pending and not waits(pending[0], answered):
+        while pending and not _waits(pending[0], answered):
             question = pending.popleft()
             if question.about == LISTED:
                 return self._listed(question)
@@ -289,3 +297,112 @@ def _of_channel(row: Row) -> Said:
 
 def _said(question: Question, row: Row) -> Said:
     return question.about, row.element.identity, row.kinds
+
+
+def allowed(question: Question, picked: Collection[int] = ()) -> tuple[str, ...]:
+    """Return the keys that answer a question about the rows that are picked, or about all.
+
+    What takes data away of several channels asks about them as a list, if they are picked.
+    """
+    rows = tuple(row for at, row in enumerate(question.rows) if at in picked or not picked)
+    keys = Question(question.about, rows).keys()
+    if question.about == GOES_THROUGH and len(picked) >= FEWEST:
+        keys += tuple(one.key for one in rows[0].replies if takes_away_of_each(rows, one.key))
+    if len(rows) > 1 and not picked and any(row.doubtful for row in rows):
+        keys = tuple(key for key in keys if key != PASSES)  # it may be a leak: look at each
+    refuse = all(row.refused for row in question.rows)
+    exactly = refuse and YES in keys and len(rows) < len(question.rows)
+    by_kind = any(row.each for row in rows)
+    more = ((EXACTLY, exactly), (NO, refuse), (OPEN, len(rows) > 1), (EACH_KIND, by_kind), (SKIP, True))
+    return (*keys, *(key for key, there in more if there))
+
+
+def letter(key: str) -> int:
+    """Return which row a key means; -1 if none. Several signs that come at once are no letter."""
+    return ascii_uppercase.find(key) if len(key) == 1 else -1
+
+
+def takes_away_of_each(rows: Sequence[Row], key: str) -> bool:
+    """Return whether a key takes data away of each of some rows."""
+    replies = [row.reply(key) for row in rows]
+    return all(reply and reply.takes_away for reply in replies)
+
+
+def _waits(question: Question, answered: Collection[int]) -> bool:
+    """Return whether what some stages were answered has to be worked out before a question can be asked."""
+    stage = STAGES[question.about]
+    return any(one < stage for one in answered) or (bool(answered) and _tells_findings(question))
+
+
+def _tells_findings(question: Question) -> bool:
+    """Whether a question has to tell findings that an answer before it may have made known: a leak among nodes is one.
+
+    No answer about a channel makes a finding known.
+    """
+    takes_away = any(reply.takes_away for row in question.rows for reply in row.replies)
+    return takes_away and question.about != GOES_THROUGH
+
+
+def by_likeness(rows: Iterable[Row]) -> tuple[tuple[Row, ...], ...]:
+    """Return the rows that share what they are alike in, and their kinds, together; in their order."""
+    parts: dict[tuple[Alike, tuple[str, ...]], list[Row]] = {}
+    for row in rows:
+        parts.setdefault((row.alike, row.kinds), []).append(row)
+    return tuple(map(tuple, parts.values()))
+
+
+def line_of(row: Row, reply: Reply) -> str:
+    """Return the line that says a reply of a row."""
+    ((role, value),) = reply.label.said.items()
+    kinds = [f"{kind} {method}" for kind, method in value.items()] if isinstance(value, dict) else value
+    return " ".join([row.element.name, row.element.kind, role, *kinds])
+
+
+def takes_away(question: Question, key: str) -> bool:
+    """Return whether a key of some row takes data away."""
+    replies = [row.reply(key) for row in question.rows]
+    return any(reply and reply.takes_away for reply in replies)
+
+
+def lines_of(question: Question, key: str) -> tuple[str, ...]:
+    """Return the lines that say of each row what a key would; of what takes nothing away none.
+
+    Parameters
+    ----------
+    key
+        Of a list any digit.
+    """
+    whole = question.about == LISTED
+    replies = [(row, reply) for row in question.rows for reply in row.replies if whole or reply.key == key]
+    return tuple(line_of(row, reply) for row, reply in replies if reply.takes_away)
+
+
+def keys_of(line: str, question: Question, picked: Collection[int]) -> tuple[str, ...]:
+    """Return the keys that a line comes to; none if the question does not offer what it says.
+
+    Parameters
+    ----------
+    picked
+        Rows that are picked; of a list those that are taken out.
+    """
+    wanted = line.strip().split(AND)
+    offered = [
+        (line_of(row, reply), at, reply.key)
+        for at, row in enumerate(question.rows)
+        for reply in row.replies
+        if reply.takes_away
+    ]
+    found = {at: key for said, at, key in offered if said in wanted}
+    if len(found) != len(wanted) or len(set(wanted)) != len(wanted):
+        return ()
+    if question.about == LISTED:
+        out = set(range(len(question.rows))) - set(found)
+        return (*_letters(out ^ set(picked)), str(len(found))) if len(found) >= FEWEST else ()
+    if len(found) != 1:
+        return ()
+    ((at, key),) = found.items()
+    return (*(_letters({at} ^ set(picked)) if len(question.rows) > 1 else ()), key)
+
+
+def _letters(rows: Collection[int]) -> tuple[str, ...]:
+    return tuple(ascii_uppercase[at] for at in sorted(rows))

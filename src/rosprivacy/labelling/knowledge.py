@@ -1,25 +1,40 @@
-"""What suggestions are made by, whatever the system: rules about names and libraries, types and packages.
+"""What suggestions are made by: rules and packages, whatever the system; what source code says of it; and the evidence.
 
-In: names of files of a user. Out: ``Known``, ours and theirs joined.
+In: names of files of a user, a graph with its labels and types. Out: ``Evidence``; the order does not matter, and none
+of it labels anything.
 """
 
 from __future__ import annotations
 
+from collections import defaultdict
 from typing import TYPE_CHECKING, NamedTuple
 
-from rosprivacy.analysis.suggesting.carried_kinds import Rules
+from rosprivacy.analysis.model import MessageType
+from rosprivacy.analysis.suggesting.by_library import library_evidence
+from rosprivacy.analysis.suggesting.channels import Rules, carried_kinds, traffic
+from rosprivacy.analysis.suggesting.evidence import SOURCE
+from rosprivacy.analysis.suggesting.nodes import broader_sources, of_nodes, of_the_rest, unprompted
+from rosprivacy.analysis.suggesting.open_elements import of_channels, of_open
+from rosprivacy.analysis.suggesting.packages import by_package_types, nodes_of_packages, package_evidence
 from rosprivacy.ingest.packages.package_folders import read_packages, rests_on
-from rosprivacy.ingest.suggestions.library_file import read_library_rules
-from rosprivacy.ingest.suggestions.name_file import read_name_rules
+from rosprivacy.ingest.suggestions.rule_files import read_library_rules, read_name_rules
 from rosprivacy.ingest.types import TABLE
 from rosprivacy.ingest.types.type_table import read_table
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-    from rosprivacy.analysis.suggesting.library_rules import LibraryRules
-    from rosprivacy.analysis.suggesting.ros_package import Package
+    from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.analysis.errors import InputError
+    from rosprivacy.analysis.model import Bound, Element, FlowGraph
+    from rosprivacy.analysis.suggesting.channels import Traffic
+    from rosprivacy.analysis.suggesting.evidence import Evidence, Identity
+    from rosprivacy.analysis.suggesting.library_rules import LibraryRules, NodeUse
+    from rosprivacy.analysis.suggesting.packages import NodeOfPackage, Package
+    from rosprivacy.ingest.code.node_uses import Local
+    from rosprivacy.ingest.code.source_code import Code
     from rosprivacy.ontology.vocabulary import Vocabulary
+    from rosprivacy.result import Result
     from rosprivacy.settings import Settings
 
 
@@ -28,14 +43,12 @@ class UserFiles(NamedTuple):
 
     Attributes
     ----------
-    rules
-        Rules about names.
+    rules, libraries
+        Rules about names, and about libraries.
     packages
         Packages, folders of them, or ``ament``.
     sources
         Source code of nodes: files, folders or globs; its literal names and types are evidence, and what it uses.
-    libraries
-        Rules about libraries.
     """
 
     rules: Sequence[str] = ()
@@ -48,18 +61,57 @@ NO_FILES = UserFiles()
 
 
 class Known(NamedTuple):
-    """What suggestions are made by, whatever the system.
-
-    Attributes
-    ----------
-    files
-        (file, SHA-256) of what was read.
-    """
+    """What suggestions are made by, whatever the system, with (file, SHA-256) of what was read."""
 
     rules: Rules
     packages: tuple[Package, ...]
     libraries: LibraryRules
     files: tuple[tuple[str, str], ...]
+
+
+class CodeSaid(NamedTuple):
+    """What source code says of a system.
+
+    Attributes
+    ----------
+    types, uses
+        By vertex of a channel; by vertex of a node.
+    unplaced
+        Uses of which nobody knows the node, or whose node is none of the system.
+    problems
+        What could not be read.
+    of_others
+        Folders with code of others that were left out.
+    local
+        Uses that no library is asked about, since something in the code has that name.
+    """
+
+    types: Mapping[int, tuple[MessageType, ...]]
+    uses: Mapping[int, tuple[NodeUse, ...]]
+    unplaced: tuple[NodeUse, ...] = ()
+    problems: tuple[InputError, ...] = ()
+    of_others: tuple[str, ...] = ()
+    local: tuple[Local, ...] = ()
+
+
+class Basis(NamedTuple):
+    """What there is to suggest about.
+
+    Attributes
+    ----------
+    bound
+        Labels and types, with those that source code names.
+    places
+        Identities of open elements -> their places in the order of review (rule S11).
+    comments
+        What stands beside elements in source code.
+    """
+
+    result: Result
+    bound: Bound
+    places: Mapping[Identity, int]
+    comments: Mapping[tuple[str, str], tuple[str, ...]]
+    code: CodeSaid
 
 
 def what_is_known(vocabulary: Vocabulary, settings: Settings, files: UserFiles = NO_FILES) -> Known:
@@ -77,3 +129,98 @@ def what_is_known(vocabulary: Vocabulary, settings: Settings, files: UserFiles =
     libraries, of_libraries = read_library_rules(files.libraries, vocabulary, settings.bounds)
     of_table = (table.limits.file, table.limits.sha256)
     return Known(rules, packages, libraries, (of_table, *of_names, *of_libraries, *rests_on(packages)))
+
+
+def evidence(
+    analysis: Analysis, bound: Bound, known: Known, uses: Mapping[int, Sequence[NodeUse]]
+) -> Iterator[Evidence]:
+    """Yield what every provider finds.
+
+    Parameters
+    ----------
+    uses
+        By vertex of a node: what its code uses of libraries.
+    """
+    graph, open_ = analysis.graph, analysis.open
+    ends = traffic(graph, bound)
+    of_packages = nodes_of_packages(graph, bound.types, known.packages)
+    yield from lasting_evidence(graph, bound, ends, of_packages, known, uses)
+    yield from of_open(open_, graph, bound, ends, known.rules)
+    yield from by_package_types(open_, graph, bound, of_packages, known.rules)
+
+
+def lasting_evidence(
+    graph: FlowGraph,
+    bound: Bound,
+    ends: Traffic,
+    of_packages: Sequence[NodeOfPackage],
+    known: Known,
+    uses: Mapping[int, Sequence[NodeUse]],
+) -> Iterator[Evidence]:
+    """Yield what is found whatever a person has said: of what is bound to the graph, only types are looked at."""
+    rules = known.rules
+    clues = carried_kinds(graph, bound, rules)
+    found = [
+        *of_nodes(graph, bound, ends, clues, rules),
+        *unprompted(graph, ends, rules.names),
+        *package_evidence(graph, of_packages),
+        *library_evidence(graph, bound, ends, clues, uses, rules, known.libraries),
+    ]
+    yield from found
+    yield from broader_sources(found, rules)
+    sources = {one.label.element for one in found if one.label.role == SOURCE}
+    yield from of_the_rest(graph, bound, ends, rules, sources)
+    yield from of_channels(graph, clues)
+
+
+def code_said(codes: Sequence[Code], of_others: tuple[str, ...], elements: Sequence[Element]) -> CodeSaid:
+    """Return what source code says of elements.
+
+    A node is the one that the code calls so; where the policies put it into another namespace, the one whose own name
+    is the same.
+
+    Parameters
+    ----------
+    of_others
+        Folders that were left out.
+    elements
+        Of a graph, in the order of its vertices.
+    """
+    from rosprivacy.ingest.code.code_names import code_evidence  # noqa: PLC0415 - light start
+    from rosprivacy.ingest.code.node_uses import node_uses  # noqa: PLC0415
+
+    types: dict[tuple[str, str], list[MessageType]] = defaultdict(list)
+    for one in code_evidence(codes):
+        if one.name and one.type:
+            types[one.kind, one.name].append(MessageType(one.type, one.place))
+    channels = ((at, (e.kind, e.name)) for at, e in enumerate(elements) if e.is_channel)
+    found = node_uses(codes)
+    uses, placed = _placed(found.of_nodes, elements)
+    homeless = {use for name, some in found.of_nodes.items() if name not in placed for use in some}
+    homeless -= {use for some in uses.values() for use in some}
+    return CodeSaid(
+        {at: tuple(types[key]) for at, key in channels if key in types},
+        uses,
+        tuple(sorted({*found.without_node, *homeless}, key=lambda use: (use.place, use.name))),
+        tuple(one for code in codes for one in code.problems if not code.uses and not code.sites),
+        of_others,
+        found.local,
+    )
+
+
+def _placed(
+    of_nodes: Mapping[str, tuple[NodeUse, ...]], elements: Iterable[Element]
+) -> tuple[dict[int, tuple[NodeUse, ...]], set[str]]:
+    """The uses of each node of a system, and the names in code that are of one."""
+    by_own_name: dict[str, list[str]] = defaultdict(list)
+    for name in of_nodes:
+        by_own_name[name.rpartition("/")[2]].append(name)
+    uses, placed = {}, set()
+    for vertex, element in enumerate(elements):
+        if element.is_node:
+            own = element.name.rpartition("/")[2]
+            names = [element.name] if element.name in of_nodes else by_own_name.get(own, [])
+            placed.update(names)
+            if names:
+                uses[vertex] = tuple(use for name in names for use in of_nodes[name])
+    return uses, placed

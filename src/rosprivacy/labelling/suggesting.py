@@ -1,27 +1,31 @@
-"""Policies, label files and observed types -> proposals of labels, in the order in which a person reviews them.
+"""Policies, label files and observed types -> what a person is asked, in the order in which it is reviewed.
 
-In: names of files. Out: ``Suggested``. What no person has said yet is asked, the surest first.
+In: names of files. Out: ``Suggested``. What no person has said yet is asked, the surest first; what a person has said
+no to, in the label files that an answer rests on, is not suggested again.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import partial
 from itertools import chain
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
 
+from rosprivacy.analysis.errors import LabelError
 from rosprivacy.analysis.findings.review_order import Behind
 from rosprivacy.analysis.model import Diagnostic, Severity
-from rosprivacy.analysis.suggesting.evidence import LEAK, SOURCE, TYPE
+from rosprivacy.analysis.suggesting.evidence import LEAK, SOURCE, TYPE, written
+from rosprivacy.analysis.suggesting.label_questions import narrowed, reached_kinds
 from rosprivacy.analysis.suggesting.outdated_reasons import outdated_reasons
-from rosprivacy.analysis.suggesting.reached_kinds import reached_kinds
-from rosprivacy.analysis.suggesting.unsaid import unsaid
-from rosprivacy.analysis.suggesting.weighing import SURENESS, closes_finding, proposals
+from rosprivacy.analysis.suggesting.weighing import SURENESS, closes_finding, proposals, unsaid
+from rosprivacy.analysis.text import counted
+from rosprivacy.ingest.labels.label_file import OURS
 from rosprivacy.ingest.packages.package_folders import replacements
-from rosprivacy.labelling.basis import NO_CODE, Basis
-from rosprivacy.labelling.gathering import evidence
-from rosprivacy.labelling.knowledge import NO_FILES, what_is_known
-from rosprivacy.labelling.refused import refused_in
-from rosprivacy.labelling.suggested_labels import Suggested
+from rosprivacy.ingest.reading.bounded_file import read_utf8
+from rosprivacy.ingest.reading.yaml_values import MAX_BYTES
+from rosprivacy.ingest.suggestions.comments import refusal_key, refusals_in
+from rosprivacy.labelling.knowledge import NO_FILES, Basis, CodeSaid, code_said, evidence, what_is_known
 from rosprivacy.ontology.vocabulary import TOP
 from rosprivacy.reading.robot_system import answer_robot
 
@@ -29,21 +33,73 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.answer import OpenQuestion
+    from rosprivacy.analysis.errors import InputError
     from rosprivacy.analysis.findings.review_order import Shown
+    from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.model import Bound, Category, MessageType, Weight
-    from rosprivacy.analysis.suggesting.evidence import Evidence, Proposal
-    from rosprivacy.analysis.suggesting.library_rules import LibraryRules
+    from rosprivacy.analysis.suggesting.evidence import Evidence, Identity, Label, Proposal
+    from rosprivacy.analysis.suggesting.library_rules import LibraryRules, NodeUse
     from rosprivacy.ingest.code.node_uses import Local
     from rosprivacy.ingest.labels.label_file import Labels
-    from rosprivacy.labelling.interview import Interview
     from rosprivacy.labelling.knowledge import Known, UserFiles
-    from rosprivacy.labelling.refused import Refused
-    from rosprivacy.labelling.suggested_labels import Identity
+    from rosprivacy.labelling.model_interview import Interview
+    from rosprivacy.report.contract.suggested import ModelEntry, SuggestionsDocument
     from rosprivacy.result import Result
     from rosprivacy.settings import Settings
 
 NOTHING_BEHIND = Behind()  # of what is open by a type only
 NOT_OPEN = 2**31  # behind every open element
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Suggested:
+    """What a person is asked about the elements of an answer; under which rules; and what could not be looked at.
+
+    Attributes
+    ----------
+    proposals
+        In review order: open elements, then sources and leaks, then the others.
+    open
+        Identities of the elements that are open.
+    by_hand
+        Labels that would take away data of which a finding is known: they are told, and not written into a label file.
+    unplaced
+        Uses of libraries in source code that a rule speaks about, and that belong to no node that is known here.
+    of_others
+        Folders with code of others that were left out.
+    """
+
+    proposals: tuple[Proposal, ...]
+    open: frozenset[Identity]
+    by_hand: frozenset[Label]
+    result: Result
+    rules: tuple[tuple[str, str], ...]
+    model: ModelEntry | None = None
+    unplaced: tuple[NodeUse, ...] = ()
+    unread: tuple[InputError, ...] = ()
+    of_others: tuple[str, ...] = ()
+    notices: tuple[Diagnostic, ...] = ()
+
+    def __repr__(self) -> str:
+        """Tell how much is asked."""
+        return f"<Suggested: {counted(len(self.proposals), 'question')}>"
+
+    def document(self) -> SuggestionsDocument:
+        """Return the JSON document ``rosprivacy.suggestions/1``."""
+        from rosprivacy.report.suggest.suggestion_document import suggestions_document  # noqa: PLC0415 - light start
+
+        return suggestions_document(
+            self.proposals,
+            self.open,
+            self.by_hand,
+            self.result,
+            self.rules,
+            self.model,
+            self.unplaced,
+            self.unread,
+            self.of_others,
+            self.notices,
+        )
 
 
 def suggest_labels(
@@ -145,10 +201,9 @@ def basis_of(result: Result, sources: Sequence[str] = ()) -> Basis:
     """Return what there is to suggest about: an answer, with what source code says of its channels."""
     places = review_places(result, result.review_order)
     if not sources:
-        return Basis(result, result.bound, places, {}, NO_CODE)
+        return Basis(result, result.bound, places, {}, CodeSaid({}, {}))
     from rosprivacy.ingest.code.code_names import code_comments  # noqa: PLC0415 - light start
     from rosprivacy.ingest.code.source_files import read_sources  # noqa: PLC0415
-    from rosprivacy.labelling.code_said import code_said  # noqa: PLC0415
 
     codes, of_others, _ = read_sources(sources)
     code = code_said(codes, of_others, result.analysis.graph.elements)
@@ -227,3 +282,66 @@ def review_places(result: Result, behind: Mapping[Shown, Behind]) -> dict[Identi
 
     identities = dict.fromkeys(question.element.identity for question in sorted(result.analysis.open, key=place))
     return {identity: number for number, identity in enumerate(identities)}
+
+
+class Refused(NamedTuple):
+    """What was refused.
+
+    Attributes
+    ----------
+    of_robots
+        By robot, as ``refusal_key`` has it; a system that is no fleet is the robot without a name.
+    """
+
+    of_robots: Mapping[str, frozenset[str]]
+    hierarchy: Hierarchy
+
+    def says(self, label: Label) -> bool:
+        """Return whether a label was refused; of a leak, that a broader kind gets out was, too."""
+        keys = self.of_robots.get(label.element.robot, self.of_robots.get("", frozenset()))
+        kinds = self.hierarchy.ancestors[label.kind] if label.role == LEAK and label.kind else (label.kind,)
+        return bool(keys) and any(refusal_key(written(label._replace(kind=kind))) in keys for kind in kinds)
+
+    def silences(self, label: Label, reached: Mapping[Identity, Iterable[str]]) -> bool:
+        """Return whether a label need not be suggested: a leak, if all that gets there now was refused.
+
+        Parameters
+        ----------
+        reached
+            Kinds of data that get to elements.
+        """
+        if self.says(label):
+            return True
+        there = reached.get(label.element.identity, ()) if label.role == LEAK else ()
+        kinds = narrowed(label.kind, there, self.hierarchy)
+        return bool(kinds) and all(self.says(label._replace(kind=kind)) for kind in kinds)
+
+
+def refused_in(result: Result) -> Refused:
+    """Return it; of a file that is gone by now, nothing.
+
+    Of robots that are alike, of which one is asked about, only what was refused of each: a no for one robot is none
+    for another.
+
+    Raises
+    ------
+    LabelError
+        If a file cannot be read any more.
+    """
+    own = [one["file"] for one in result.assumptions.get("labels", ())]
+    if result.fleet is None:
+        return Refused({"": _in_files(own)}, result.vocabulary.hierarchy)
+    likeness = result.fleet.likeness
+    read = {files: _in_files(files) for files in set(result.label_files.values())}
+    of_robots = {
+        robot: frozenset.intersection(*(read[result.label_files[one]] for one in likeness.members.get(robot, [robot])))
+        for robot in result.label_files
+        if robot not in likeness.second
+    }
+    return Refused(of_robots, result.vocabulary.hierarchy)
+
+
+def _in_files(files: Iterable[str]) -> frozenset[str]:
+    own = [file for file in files if not file.startswith(OURS) and Path(file).is_file()]
+    texts = (read_utf8(file, MAX_BYTES, partial(LabelError, file))[0] for file in own)
+    return frozenset().union(*map(refusals_in, texts))

@@ -11,24 +11,22 @@ from collections import defaultdict
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
+from rosprivacy.analysis.suggesting.channels import standard_in, traffic
 from rosprivacy.analysis.suggesting.evidence import GLOBBED, LEAK
-from rosprivacy.analysis.suggesting.nodes_of_packages import nodes_of_packages
 from rosprivacy.analysis.suggesting.open_elements import of_open
-from rosprivacy.analysis.suggesting.traffic import standard_in, traffic
-from rosprivacy.labelling.gathering import lasting_evidence
-from rosprivacy.labelling.refused import refused_in
-from rosprivacy.labelling.suggesting import asked_by, in_review_order, review_places, with_findings
+from rosprivacy.analysis.suggesting.packages import nodes_of_packages
+from rosprivacy.labelling.knowledge import lasting_evidence
+from rosprivacy.labelling.suggesting import asked_by, in_review_order, refused_in, review_places, with_findings
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
 
     from rosprivacy.analysis.findings.review_order import Behind, Shown
     from rosprivacy.analysis.model import FlowGraph, MessageType
-    from rosprivacy.analysis.suggesting.evidence import Evidence, Proposal
-    from rosprivacy.analysis.suggesting.traffic import Traffic
+    from rosprivacy.analysis.suggesting.channels import Traffic
+    from rosprivacy.analysis.suggesting.evidence import Evidence, Identity, Proposal
     from rosprivacy.labelling.knowledge import Known
-    from rosprivacy.labelling.refused import Refused
-    from rosprivacy.labelling.suggested_labels import Identity
+    from rosprivacy.labelling.suggesting import Refused
     from rosprivacy.result import Result
 
 

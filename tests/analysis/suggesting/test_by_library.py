@@ -1,4 +1,4 @@
-"""What libraries say of nodes, by what these write and read: the rules of ``by_library.py`` (issue 21)."""
+"""What libraries say of nodes, by what these write and read: the rules of ``by_library.py``."""
 
 from __future__ import annotations
 
@@ -143,7 +143,7 @@ def of_node(name: str, topic: str, *calls: str, writes: str = "String") -> dict[
 
 
 def test_a_library_that_makes_one_of_two_kinds_says_the_broader_one() -> None:
-    """made_kinds, 3. A recogniser of speech writes a transcript or a command: which, its code does not say."""
+    """3. A recogniser of speech writes a transcript or a command: which, its code does not say."""
     kinds = of_node("speech_recognition", "w", MICROPHONE, "vosk.Model()")
     assert kinds["CommunicationContent"] == "likely"
     assert kinds["SpeechTranscript"] == kinds["VoiceCommand"] == "may"

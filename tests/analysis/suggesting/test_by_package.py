@@ -1,4 +1,4 @@
-"""Nodes of well-known packages in policies: the name and half of the interfaces, or the name alone (issue 21)."""
+"""Nodes of well-known packages in policies: the name and half of the interfaces, or the name alone."""
 
 from __future__ import annotations
 
@@ -9,8 +9,7 @@ import pytest
 
 import rosprivacy
 from rosprivacy.analysis.model import Confidence
-from rosprivacy.analysis.suggesting.by_package import package_evidence
-from rosprivacy.analysis.suggesting.nodes_of_packages import nodes_of_packages
+from rosprivacy.analysis.suggesting.packages import nodes_of_packages, package_evidence
 from rosprivacy.ingest.packages.package_folders import catalogue
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.question import question_of
@@ -196,7 +195,7 @@ def test_in_public_policies_a_planted_leak_stays_one(corpus: Path, file: str, so
 
 
 def test_what_a_node_that_is_called_as_its_package_lets_out_is_likely_where_nothing_else_could_be_looked_at() -> None:
-    """users.md U10: foxglove_bridge as rosbridge_websocket. Of a source a name proves nothing; nor of another name."""
+    """foxglove_bridge as rosbridge_websocket. Of a source a name proves nothing; nor of another name."""
     found = evidence(policy("/foxglove_bridge</image", "/webrtc_ros_server</image"))
     assert told(found, "leak", "PersonalData") == [
         ("/foxglove_bridge", LIKELY, "its name alone"),

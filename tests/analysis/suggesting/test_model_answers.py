@@ -1,4 +1,4 @@
-"""What is left of the answers of a language model: closed lists, and a quote of what was sent (issue 21)."""
+"""What is left of the answers of a language model: closed lists, and a quote of what was sent."""
 
 from __future__ import annotations
 
@@ -9,16 +9,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rosprivacy.analysis.model import Confidence, Element
-from rosprivacy.analysis.suggesting.asked_elements import Asked, AskedChannel
 from rosprivacy.analysis.suggesting.evidence import HIDING, MODEL, NAMED, TYPE, Evidence
-from rosprivacy.analysis.suggesting.masking import Mask
-from rosprivacy.analysis.suggesting.model_answers import KEYS, MOST, judged
 from rosprivacy.analysis.suggesting.weighing import proposals
+from rosprivacy.labelling.model_interview import KEYS, MOST, Asked, Mask, judged
 
 KINDS = ("FaceTemplate", "Video", "Voice")
 TYPES = ("acme_msgs/msg/Badge",)
 ASKED = {
-    "n1": Asked(Element("node", "/wardlog"), "/wardlog", (), (), (AskedChannel("/badges", TYPES),), ("who comes",)),
+    "n1": Asked(Element("node", "/wardlog"), "/wardlog", (), (), (("/badges", TYPES),), ("who comes",)),
     "n2": Asked(Element("topic", "/badges"), "/badges", TYPES, (), (), ()),
 }
 GOOD = {"id": "n1", "role": "leak", "kind": "Video", "to": "", "quote": "wardlog"}

@@ -1,4 +1,4 @@
-"""What several reasons for one label come to (issue 21; docs/suggestions.md)."""
+"""What several reasons for one label come to (docs/suggestions.md)."""
 
 from __future__ import annotations
 
@@ -35,8 +35,8 @@ def said(role: str, *grounds: tuple[str, Confidence], kind: str = "Video") -> li
     return [Evidence(label, ground, sure, f"its {ground}", RULE) for ground, sure in grounds]
 
 
-def weighed(*evidence: Evidence, found: tuple[str, ...] = ()) -> Confidence:
-    (one,) = proposals(evidence, found)
+def weighed(*evidence: Evidence, known: tuple[str, ...] = ()) -> Confidence:
+    (one,) = proposals(evidence, known)
     return one.confidence
 
 
@@ -86,9 +86,9 @@ def test_what_could_hide_a_leak_is_may_unless_the_catalogue_says_so(role: str) -
 @pytest.mark.parametrize("role", sorted(HIDING))
 def test_what_takes_data_of_a_finding_away_is_may_whoever_says_so(role: str) -> None:
     catalogue = said(role, (PACKAGE, LIKELY))
-    assert weighed(*catalogue, found=("Video",)) is (LIKELY if role == CONDUIT else MAY)
-    assert weighed(*catalogue, found=("Voice",)) is LIKELY
-    assert weighed(*said(role, (PACKAGE, LIKELY), kind=""), found=("Voice",)) is (LIKELY if role == CONDUIT else MAY)
+    assert weighed(*catalogue, known=("Video",)) is (LIKELY if role == CONDUIT else MAY)
+    assert weighed(*catalogue, known=("Voice",)) is LIKELY
+    assert weighed(*said(role, (PACKAGE, LIKELY), kind=""), known=("Voice",)) is (LIKELY if role == CONDUIT else MAY)
 
 
 def test_proposals_are_sorted_and_of_each_label_there_is_one() -> None:

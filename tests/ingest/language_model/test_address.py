@@ -1,11 +1,11 @@
-"""Where a language model may be, by its address alone (issue 21; docs/language-model.md)."""
+"""Where a language model may be, by its address alone (docs/language-model.md)."""
 
 from __future__ import annotations
 
 import pytest
 
 from rosprivacy.analysis.errors import InputError
-from rosprivacy.ingest.language_model.address import address_of
+from rosprivacy.ingest.language_model import address_of
 
 NEAR = [
     "127.0.0.1", "127.9.9.9", "10.1.2.3", "192.168.0.2", "172.16.9.9", "169.254.1.2", "localhost",

@@ -1,4 +1,4 @@
-"""Files of packages: what is read, and each problem at its line (issue 21, point 3)."""
+"""Files of packages: what is read, and each problem at its line."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import yaml
 
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.model import Confidence, Method
-from rosprivacy.analysis.suggesting.ros_package import Interface
+from rosprivacy.analysis.suggesting.packages import Interface
 from rosprivacy.ingest.packages.package_file import read_package
 from rosprivacy.ontology.vocabulary import load
 

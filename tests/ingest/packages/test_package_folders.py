@@ -1,4 +1,4 @@
-"""Which files of packages are read: the catalogue, files, folders, and what installed packages ship (issue 21)."""
+"""Which files of packages are read: the catalogue, files, folders, and what installed packages ship."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from rosprivacy.ingest.packages.package_folders import (
 from rosprivacy.ontology.vocabulary import load
 
 if TYPE_CHECKING:
-    from rosprivacy.analysis.suggesting.ros_package import Package
+    from rosprivacy.analysis.suggesting.packages import Package
 
 TEXT = """package: 1
 name: {name}

@@ -1,4 +1,4 @@
-"""Rules about names: each family of the shipped file, the format, and a user's own file (issue 21)."""
+"""Rules about names: each family of the shipped file, the format, and a user's own file."""
 
 from __future__ import annotations
 
@@ -9,11 +9,14 @@ import pytest
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.model import Confidence
 from rosprivacy.analysis.suggesting.name_rules import ends_with, has_word, of_node, of_topic, of_topic_nothing
-from rosprivacy.ingest.suggestions.name_file import read_name_rules
+from rosprivacy.ingest.suggestions.rule_files import read_name_rules
 from rosprivacy.ontology.vocabulary import load
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
     from pathlib import Path
+
+    from rosprivacy.analysis.suggesting.name_rules import Spoken
 
 VOCABULARY = load()
 SHIPPED, FILES = read_name_rules((), VOCABULARY)
@@ -26,187 +29,106 @@ OWN_KIND = """@prefix : <http://example.org/> . @prefix skos: <http://www.w3.org
 """
 
 
-@pytest.mark.parametrize(
-    ("name", "kinds"),
-    [
-        ("/camera/image_raw", "Video"),
-        ("/camera/image_raw/compressed", "Video"),
-        ("/camera1/rgb/image_rect_color", "Video"),
-        ("/front/webcam", "Video"),
-        ("/camera/depth/image_rect_raw", "DepthImage"),
-        ("/aligned_depth_to_color/image_raw", "DepthImage"),
-        ("/thermal/image_raw", "ThermalImage"),
-        ("/humans/faces/tracked", "FaceImage"),
-        ("/face/image", "FaceImage"),
-        ("/camera/depth/points", "PersonPointCloud"),
-        ("/velodyne/pointcloud", "PersonPointCloud"),
-        ("/scan", "LaserScan"),
-        ("/robot1/laserScan", "LaserScan"),
-        ("/scanned_document", "DocumentImage"),
-        ("/audio/raw", "Voice"),
-        ("/mic", "Voice"),
-        ("/humans/voices/speech", "SpeechTranscript"),
-        ("/voice_commands", "VoiceCommand"),
-        ("/dialogue", "ConversationWithModel"),
-        ("/people", "PersonTrack"),
-        ("/detected/persons", "PersonTrack"),
-        ("/humans/bodies/tracked", "BodyPose"),
-        ("/gaze", "EyeGaze"),
-        ("/hand_gesture", "Gesture"),
-        ("/emotion", "EmotionEstimate"),
-        ("/face_id", "PersonIdentifier"),
-        ("/license_plate", "LicencePlate"),
-        ("/heart_rate", "VitalSign"),
-        ("/fall_detection", "FallEvent"),
-        ("/driver_state", "DriverOrOperatorState"),
-        ("/presence", "Presence"),
-        ("/yolo/detections", "PersonDetection HouseholdObject"),
-        ("/gps/fix", "GnssPosition"),
-        ("/map", "HomeMap"),
-        ("/global_costmap/costmap_raw", "HomeMap"),
-        ("/amcl_pose", "RobotPosition"),
-        ("/odom", "RobotPosition"),
-        ("/joy", "OperatorInput"),
-        ("/ble/beacons", "WirelessDeviceId"),
-        ("/rfid", "StaffBadge DeviceIdentifier"),
-        ("/voice_text", "SpeechTranscript"),  # text is no sound
-        ("/asr/text", "SpeechTranscript"),
-        ("/llm_response", "ConversationWithModel"),
-        ("/visitor_name", "PersonName"),
-        ("/pir", "Presence"),
-        ("/position", "RobotPosition"),
-        ("/object_tracker/current_position", "PersonTrack"),  # of what is followed
-        ("/cmd_vel_teleop", "OperatorInput"),
-        ("/gripper_position", ""),
-        ("/cmd_audio", ""),  # it is to play
-        ("/carplate/ocr_text", "LicencePlate"),  # and not what somebody said
-        ("/detect/object_map_coordinates", "HouseholdObject"),  # in the frame of a map, and no map
-        ("/person_positions_map", "PersonTrack"),
-        ("/detected_object", "PersonDetection HouseholdObject"),
-        ("/person_detected", "PersonDetection"),
-        ("/delivery_order", "DeliveryOrder"),
-        ("/camera/camera_info", ""),  # the last words say what it is
-        ("/camera/parameter_events", ""),
-        ("/face_detector/status", ""),
-        ("/cmd_vel", ""),
-        ("/camera/imu", ""),  # the last part says something else
-        ("/video/cmd_vel", ""),
-        ("/surface", ""),  # whole words only
-        ("/mapping_mode", ""),
-        ("/", ""),
-        ("/*", ""),
-        ("/camera/*", "Video"),
-    ],
-)
-def test_what_a_topic_carries_by_its_name(name: str, kinds: str) -> None:
-    spoken = of_topic(name, SHIPPED)
-    assert (" ".join(spoken.rule.kinds) if spoken else "") == kinds
+# What names say -> the names; text is no sound, what is followed is no robot, whole words only, the last one first.
+TOPICS = {
+    "Video": "/camera/image_raw /camera/image_raw/compressed /camera1/rgb/image_rect_color /front/webcam /camera/*",
+    "DepthImage": "/camera/depth/image_rect_raw /aligned_depth_to_color/image_raw",
+    "ThermalImage": "/thermal/image_raw",
+    "FaceImage": "/humans/faces/tracked /face/image",
+    "PersonPointCloud": "/camera/depth/points /velodyne/pointcloud",
+    "LaserScan": "/scan /robot1/laserScan",
+    "DocumentImage": "/scanned_document",
+    "Voice": "/audio/raw /mic",
+    "SpeechTranscript": "/humans/voices/speech /voice_text /asr/text",
+    "VoiceCommand": "/voice_commands",
+    "ConversationWithModel": "/dialogue /llm_response",
+    "PersonTrack": "/people /detected/persons /object_tracker/current_position /person_positions_map",
+    "BodyPose": "/humans/bodies/tracked",
+    "EyeGaze": "/gaze",
+    "Gesture": "/hand_gesture",
+    "EmotionEstimate": "/emotion",
+    "PersonIdentifier": "/face_id",
+    "LicencePlate": "/license_plate /carplate/ocr_text",
+    "VitalSign": "/heart_rate",
+    "FallEvent": "/fall_detection",
+    "DriverOrOperatorState": "/driver_state",
+    "Presence": "/presence /pir",
+    "PersonDetection HouseholdObject": "/yolo/detections /detected_object",
+    "GnssPosition": "/gps/fix",
+    "HomeMap": "/map /global_costmap/costmap_raw",
+    "RobotPosition": "/amcl_pose /odom /position",
+    "OperatorInput": "/joy /cmd_vel_teleop",
+    "WirelessDeviceId": "/ble/beacons",
+    "StaffBadge DeviceIdentifier": "/rfid",
+    "PersonName": "/visitor_name",
+    "": "/gripper_position /cmd_audio /camera/camera_info /camera/parameter_events /face_detector/status "
+    "/cmd_vel /camera/imu /video/cmd_vel /surface /mapping_mode / /*",
+    "HouseholdObject": "/detect/object_map_coordinates",
+    "PersonDetection": "/person_detected",
+    "DeliveryOrder": "/delivery_order",
+}
+NODES = {
+    "Video": "/usb_cam /front/realsense2_camera_node /v4l2_camera",
+    "Voice": "/audio_capture /audio_input_node",
+    "LaserScan": "/rplidarNode /velodyne_driver",
+    "GnssPosition": "/nmea_navsat_driver",
+    "OperatorInput": "/joy_node /keyboard_driver /web_gui /mqtt_transport_node",
+    "ThermalImage": "/thermal_camera",
+    "HomeMap": "/map_server",
+    "SpeechTranscript": "/stt_node /whisper /voice_node",
+    "VoiceCommand": "/voice_command /hotword_detector",
+    "ConversationWithModel": "/chat_gpt_node",
+    "PersonIdentifier": "/face_recognition_node",
+    "PersonDetection": "/person_detector /yolo_node /leg_detector",
+    "PersonTrack": "/people_tracker",
+    "Presence": "/pir_node",
+    "StaffBadge DeviceIdentifier": "/rfid_reader",
+    "HouseholdObject PersonDetection": "/object_detector_node",
+    "": "/get_camera_params /camera/controller /planner_server",
+}
+IN_DOUBT = {
+    "wanted": "/nav/goal_pose /initialpose",
+    "reworked": "/debug_image /image_annotated /scan_filtered /people_predicted",
+    "": "/image_rect_color /pose /debug/image /similar_camera",
+    "simulated": "/gazebo_driver /fake_camera /person_ground_truth",
+    "reworked reworking": "/aruco_marker_detector",
+    "reworking": "/image_converter",
+}
+LEAKS = {
+    "leak": "/rosbridge_websocket /foxglove_bridge /web_video_server /cloud_uploader /rosbag2_recorder "
+    "/rviz2 /tts /email_notifier /fleet_adapter /vlm_controller /asr_server /scada_node /map_saver "
+    "/data_collector /image_capture /text_to_speech /cloud_bridge",
+    "": "/point_cloud_filter /controller_server /bridge/planner",
+}
+FOR_THE_MACHINE = {
+    "nothing": "/cmd_vel /robot_description /face/cmd_vel /joint_states",
+    "": "/battery_face /vel",
+}
 
 
-@pytest.mark.parametrize(("name", "nothing"), [("/cmd_vel", 1), ("/robot_description", 1), ("/face/cmd_vel", 1),
-                                               ("/joint_states", 1), ("/battery_face", 0), ("/vel", 0)])  # fmt: skip
-def test_what_is_made_for_the_machine(name: str, nothing: int) -> None:
-    assert (of_topic_nothing(name, SHIPPED) is not None) == bool(nothing)
+def kinds(spoken: Spoken | None) -> str:
+    return " ".join(spoken.rule.kinds) if spoken else ""
 
 
-@pytest.mark.parametrize(
-    ("name", "kinds"),
-    [
-        ("/usb_cam", "Video"),
-        ("/front/realsense2_camera_node", "Video"),
-        ("/v4l2_camera", "Video"),
-        ("/audio_capture", "Voice"),
-        ("/rplidarNode", "LaserScan"),
-        ("/velodyne_driver", "LaserScan"),
-        ("/nmea_navsat_driver", "GnssPosition"),
-        ("/joy_node", "OperatorInput"),
-        ("/thermal_camera", "ThermalImage"),
-        ("/map_server", "HomeMap"),
-        ("/stt_node", "SpeechTranscript"),
-        ("/whisper", "SpeechTranscript"),
-        ("/voice_command", "VoiceCommand"),
-        ("/chat_gpt_node", "ConversationWithModel"),
-        ("/face_recognition_node", "PersonIdentifier"),
-        ("/person_detector", "PersonDetection"),
-        ("/people_tracker", "PersonTrack"),
-        ("/pir_node", "Presence"),
-        ("/rfid_reader", "StaffBadge DeviceIdentifier"),
-        ("/audio_input_node", "Voice"),
-        ("/keyboard_driver", "OperatorInput"),
-        ("/web_gui", "OperatorInput"),
-        ("/mqtt_transport_node", "OperatorInput"),  # of who sits at the other end
-        ("/yolo_node", "PersonDetection"),
-        ("/leg_detector", "PersonDetection"),
-        ("/object_detector_node", "HouseholdObject PersonDetection"),
-        ("/voice_node", "SpeechTranscript"),
-        ("/hotword_detector", "VoiceCommand"),
-        ("/get_camera_params", None),  # it asks for settings
-        ("/camera/controller", None),
-        ("/planner_server", None),
-    ],
-)
-def test_what_a_node_brings_in_by_its_name(name: str, kinds: str | None) -> None:
-    spoken = of_node(name, SHIPPED.brings_in, SHIPPED.silent)
-    assert (spoken and " ".join(spoken.rule.kinds)) == kinds
+def doubts(name: str) -> str:
+    words = {"reworked": SHIPPED.reworked, "reworking": SHIPPED.reworking, "simulated": SHIPPED.simulated}
+    wanted = ["wanted"] if ends_with(name, SHIPPED.wanted) else []
+    return " ".join([*wanted, *(what for what, some in words.items() if has_word(name, some))])
 
 
 @pytest.mark.parametrize(
-    ("name", "said"),
+    ("table", "says"),
     [
-        ("/nav/goal_pose", "wanted"),
-        ("/initialpose", "wanted"),
-        ("/debug_image", "reworked"),
-        ("/image_annotated", "reworked"),
-        ("/scan_filtered", "reworked"),
-        ("/image_rect_color", ""),  # drivers of cameras rectify, too
-        ("/gazebo_driver", "simulated"),
-        ("/fake_camera", "simulated"),
-        ("/pose", ""),
-        ("/person_ground_truth", "simulated"),
-        ("/people_predicted", "reworked"),
-        ("/aruco_marker_detector", "reworked reworking"),
-        ("/image_converter", "reworking"),
-        ("/debug/image", ""),  # its last part is asked
-        ("/similar_camera", ""),  # whole words only
+        (TOPICS, lambda name: kinds(of_topic(name, SHIPPED))),
+        (NODES, lambda name: kinds(of_node(name, SHIPPED.brings_in, SHIPPED.silent))),
+        (IN_DOUBT, doubts),
+        (LEAKS, lambda name: "leak" if of_node(name, SHIPPED.lets_out) else ""),
+        (FOR_THE_MACHINE, lambda name: "nothing" if of_topic_nothing(name, SHIPPED) else ""),
     ],
 )
-def test_what_puts_a_source_in_doubt(name: str, said: str) -> None:
-    found = {
-        "wanted": ends_with(name, SHIPPED.wanted),
-        "reworked": has_word(name, SHIPPED.reworked),
-        "reworking": has_word(name, SHIPPED.reworking),
-        "simulated": has_word(name, SHIPPED.simulated),
-    }
-    assert [one for one, is_so in found.items() if is_so] == said.split()
-
-
-@pytest.mark.parametrize(
-    ("name", "lets_out"),
-    [
-        ("/rosbridge_websocket", True),
-        ("/foxglove_bridge", True),
-        ("/web_video_server", True),
-        ("/cloud_uploader", True),
-        ("/point_cloud_filter", False),
-        ("/rosbag2_recorder", True),
-        ("/rviz2", True),
-        ("/tts", True),
-        ("/email_notifier", True),
-        ("/fleet_adapter", True),
-        ("/vlm_controller", True),
-        ("/asr_server", True),
-        ("/scada_node", True),
-        ("/map_saver", True),
-        ("/data_collector", True),
-        ("/image_capture", True),
-        ("/text_to_speech", True),
-        ("/cloud_bridge", True),
-        ("/controller_server", False),
-        ("/bridge/planner", False),
-    ],
-)
-def test_what_a_node_lets_out_by_its_name(name: str, lets_out: bool) -> None:  # noqa: FBT001 - a row of the table
-    assert (of_node(name, SHIPPED.lets_out) is not None) == lets_out
+def test_what_names_say(table: Mapping[str, str], says: Callable[[str], str]) -> None:
+    expected = {name: what for what, names in table.items() for name in names.split()}
+    assert {name: says(name) for name in expected} == expected
 
 
 def test_no_rule_about_a_name_is_certain_and_each_has_its_reason() -> None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import Confidence
-from rosprivacy.analysis.suggesting.written import written
+from rosprivacy.analysis.suggesting.evidence import written
 from rosprivacy.explorer.element_ids import element_id
 from rosprivacy.explorer.web import forms
 from rosprivacy.explorer.web.panes import ROBOT, Pane, stands_for, title_of, whose
