@@ -20,14 +20,14 @@ NAMED = 5  # names in a row
 
 def legs(count: ElementCount, words: Words) -> str:
     """Return what is said beside a number of elements; empty where no leg makes a difference."""
-    return words("tty.legs", n=count.legs) if count.legs != count.elements else ""
+    return words("terminal.legs", n=count.legs) if count.legs != count.elements else ""
 
 
 def kind_in(element: Mapping[str, Any], words: Words) -> str:
     """Return what an element is; in English in the program's own words."""
-    parts = [words.known(f"tty.kind.of.{element['kind']}", element["kind"])]
-    parts += [words.known(f"tty.leg.{element['leg']}", element["leg"])] if element.get("leg") else []
-    parts += [words("tty.wildcard")] if element.get("pattern") else []
+    parts = [words.known(f"terminal.kind.of.{element['kind']}", element["kind"])]
+    parts += [words.known(f"terminal.leg.{element['leg']}", element["leg"])] if element.get("leg") else []
+    parts += [words("wildcard")] if element.get("pattern") else []
     return " ".join(parts)
 
 
@@ -39,13 +39,13 @@ def named(names: Iterable[str], words: Words) -> str:
     'a, b, c, d, e and 1 more'
     """
     everything = list(names)
-    more = words("tty.more", n=len(everything) - NAMED) if len(everything) > NAMED else ""
+    more = words("terminal.more", n=len(everything) - NAMED) if len(everything) > NAMED else ""
     return shown(", ".join(everything[:NAMED])) + more
 
 
 def both(parts: Sequence[str], words: Words) -> str:
     """Return parts joined by 'and'."""
-    return words("tty.and").join(parts)
+    return words("terminal.and").join(parts)
 
 
 def opening_text(opening: Mapping[str, Any], ends: str, words: Words) -> str:
@@ -57,6 +57,6 @@ def opening_text(opening: Mapping[str, Any], ends: str, words: Words) -> str:
         Which data, from where to where.
     """
     more = [] if opening["kind"] == "disclosure" else [words(f"finding.{opening['kind']}")]
-    more += [words("u.dismissed")] if opening["dismissed"] else []
-    more += [] if opening["new"] else [words("u.worse")]
+    more += [words("reliance.dismissed")] if opening["dismissed"] else []
+    more += [] if opening["new"] else [words("reliance.worse")]
     return f"{ends} ({words.row(more)})" if more else ends

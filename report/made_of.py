@@ -75,4 +75,4 @@ def data_made(
         What a kind of data, and an element, is called.
     """
     kind, by = made_of(finding)
-    return words("f.made", data=data, of=title(kind), makers=words.row(map(name, by))) if by else data
+    return words("entry.made", data=data, of=title(kind), makers=words.row(map(name, by))) if by else data

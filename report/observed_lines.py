@@ -32,11 +32,14 @@ def observed_lines(report: Mapping[str, Any], words: Words) -> Iterator[str]:
         for number, (message, files) in enumerate(messages.items(), 1):
             if number <= NAMED:
                 yield words(
-                    f"a.{code}", file=_named(files), said=_told(code, message, words), n=message.partition(" ")[0]
+                    f"assumption.{code}",
+                    file=_named(files),
+                    said=_told(code, message, words),
+                    n=message.partition(" ")[0],
                 )
         if len(messages) > NAMED:
             others = [file for files in list(messages.values())[NAMED:] for file in files]
-            yield words(f"a.{code}", file=_named(others), said="…", n="…")
+            yield words(f"assumption.{code}", file=_named(others), said="…", n="…")
 
 
 def _told(code: str, message: str, words: Words) -> str:
@@ -44,13 +47,13 @@ def _told(code: str, message: str, words: Words) -> str:
     if code == OWN_DOMAINS:
         names, _, more = message.rpartition(": ")[2].partition(" and ")
         names += f" {words('more', n=more.removesuffix(' more'))}" if more else ""
-        return words.count(int(message.partition(" ")[0].replace(",", "")), "a.own-domains.said", names=names)
+        return words.count(int(message.partition(" ")[0].replace(",", "")), "assumption.own-domains.said", names=names)
     when = observed_when(message)
     if when is None:
         return message
     start, end, doors = when
     named = words.row(words.known(f"door.{door}", shown(door)) for door in doors)
-    return words("a.observed.when", start=words.moment(start), end=words.moment(end), doors=named)
+    return words("assumption.observed.when", start=words.moment(start), end=words.moment(end), doors=named)
 
 
 def _named(files: list[str]) -> str:

@@ -30,7 +30,7 @@ def verdict_sentence(document: Mapping[str, Any], words: Words = IN_ENGLISH) -> 
     meaning = [_meaning(document, words)]
     accepted = sum(finding["accepted"] for finding in document["findings"])
     if accepted:
-        meaning.append(words("tty.n.accepted", findings=words.count(accepted, "tty.finding")))
+        meaning.append(words("terminal.number.accepted", findings=words.count(accepted, "terminal.finding")))
     meaning += doubt_phrases(document, words)
     return words.pair(document["verdict"], "; ".join(meaning))
 
@@ -53,7 +53,9 @@ def _meaning(document: Mapping[str, Any], words: Words) -> str:
     key = verdict_meaning(document)
     accepted = any(finding["accepted"] for finding in document["findings"])
     return words(
-        f"tty.accepted.{key}" if accepted and key in ("undetermined", "no-leak-found") else f"tty.verdict.{key}"
+        f"terminal.accepted.{key}"
+        if accepted and key in ("undetermined", "no-leak-found")
+        else f"terminal.verdict.{key}"
     )
 
 
@@ -115,19 +117,21 @@ def restriction(document: Mapping[str, Any], words: Words = IN_ENGLISH) -> str:
         parts.append(asked_factors(assumed, words))
     if assumed["article9_only"]:
         parts.append(asked_level(assumed, words))
-    return words("tty.asked", what=both(parts, words)) if parts else ""
+    return words("terminal.asked", what=both(parts, words)) if parts else ""
 
 
 def asked_types(assumed: Mapping[str, Any], words: Words) -> str:
     """Return which data types were asked for."""
-    return words("tty.asked.types", types=words("tty.or").join(map(shown, assumed["data_types_asked"])))
+    return words("terminal.asked.types", types=words("terminal.or").join(map(shown, assumed["data_types_asked"])))
 
 
 def asked_factors(assumed: Mapping[str, Any], words: Words) -> str:
     """Return which identity factors were asked for."""
-    return words("tty.asked.factors", factors=words("tty.or").join(map(shown, assumed["identity_factors_asked"])))
+    return words(
+        "terminal.asked.factors", factors=words("terminal.or").join(map(shown, assumed["identity_factors_asked"]))
+    )
 
 
 def asked_level(assumed: Mapping[str, Any], words: Words) -> str:
     """Return how far Article 9 was asked for."""
-    return words(f"tty.level.{assumed.get('article9_level', MAY_REVEAL)}")
+    return words(f"terminal.level.{assumed.get('article9_level', MAY_REVEAL)}")

@@ -101,8 +101,8 @@ class Known:
         if not duration or not facts or not facts.backups:
             return plain(duration)
         if facts.backups is True:
-            return plain(words("o.kept.backups.unknown", duration=duration))
-        return plain(words("o.kept.backups", duration=duration, more=words.duration(str(facts.backups))))
+            return plain(words("outside.kept.backups.unknown", duration=duration))
+        return plain(words("outside.kept.backups", duration=duration, more=words.duration(str(facts.backups))))
 
     def findings(self) -> list[Finding]:
         """Return what is to be assessed, by kind of data."""

@@ -54,7 +54,7 @@ def _by_kind(rows: Rows, kinds: Iterable[Kind], told: Told, said: Callable[[Proc
 def _stated(row: Processed, texts: Iterable[str], what: str, told: Told, say: Callable[[str], str]) -> Html:
     """What is stated of one end, and whether more is to be completed; empty where nothing is."""
     stated = [escaped(say(one)) for one in texts]
-    more = [told("r.open")] if stated and what in row.missing else []
+    more = [told("record.open")] if stated and what in row.missing else []
     return Html("; ".join([*stated, *more]))
 
 
@@ -63,5 +63,5 @@ def purposes_of(rows: Rows, category: str, told: Told) -> Iterator[Html]:
     here = [row for row in rows if row.category == category]
     texts = dict.fromkeys(one for row in here for one in row.purposes)
     if texts:
-        more = [told("r.open")] if any(PURPOSE in row.missing for row in here) else []
+        more = [told("record.open")] if any(PURPOSE in row.missing for row in here) else []
         yield told.line("cnil.purposes", Html("; ".join([*map(escaped, texts), *more])))

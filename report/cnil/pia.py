@@ -173,7 +173,7 @@ def _measures(known: Known) -> Iterator[tuple[str, Html]]:
         yield told.bare("cnil.title.access"), paragraph(_access(graph, told), Html(" "), told("cnil.governance"))
     if graph.denied:
         pairs = sorted({(graph.elements[f.source].name, graph.elements[f.target].name) for f in graph.denied})
-        ends = [told("f.from.to", source=escaped(source), leak=escaped(target)) for source, target in pairs]
+        ends = [told("entry.from.to", source=escaped(source), leak=escaped(target)) for source, target in pairs]
         yield told.bare("cnil.title.denied"), _rows(ends, told)
     cleaned = [cleaning for kind in known.kinds for cleaning in kind.cleaned]
     for method in METHODS:

@@ -70,9 +70,9 @@ def record(document: Mapping[str, Any], language: str) -> str:
     """Return the record as CSV, lines ending as RFC 4180 says, with a byte order mark."""
     index = Index(document, Words(language))
     columns = [field.name for field in fields(Entry)]
-    head = [index.words(f"r.{column}") for column in columns]
+    head = [index.words(f"record.{column}") for column in columns]
     rows = ([getattr(entry, column) for column in columns] for entry in entries(index))
-    last = {"activity": index.words("r.answer"), "note": verdict_sentence(document, index.words)}
+    last = {"activity": index.words("record.answer"), "note": verdict_sentence(document, index.words)}
     return BOM + as_csv(head, [*rows, [last.get(column, "") for column in columns]], separator=SEPARATORS[language])
 
 
@@ -129,20 +129,20 @@ def _entry(category: str, group: Sequence[Mapping[str, Any]], facts: _Facts) -> 
     kept_for, unlimited = _kept(category, group, index)
     values = {
         "activity": "",
-        "controller": purposes.controllers(rows, index) or words("r.open"),
+        "controller": purposes.controllers(rows, index) or words("record.open"),
         "purpose": purposes.purposes(rows, index),
         "category": index.data(category),
         "article9": words(f"article9.{known['article9']}"),
         "provisions": "; ".join(words.pair(p.name, p.condition) if p.condition else p.name for p in law),
-        "subjects": words.row([*persons, *([words("r.open")] if unnamed else [])]),
-        "exit": words.row(index.names(group)) if group else words("r.norecipient"),
+        "subjects": words.row([*persons, *([words("record.open")] if unnamed else [])]),
+        "exit": words.row(index.names(group)) if group else words("record.norecipient"),
         "recipient": _told(stated, _recipient, index),
         "country": _told(stated, _country, index),
         "form": _form(category, group, index),
         "transfer": _told(stated, partial(_transfer, rows), index),
         "basis": purposes.bases(rows, _bases(findings), index),
-        "retention": "; ".join([*kept_for, *([words("r.open")] if unlimited else [])]),
-        "measures": "; ".join(_measures(category, group, facts)) or words("r.open"),
+        "retention": "; ".join([*kept_for, *([words("record.open")] if unlimited else [])]),
+        "measures": "; ".join(_measures(category, group, facts)) or words("record.open"),
         "findings": words.row(finding["id"] for finding in findings),
         "note": "; ".join(_notes(category, stated, index)),
     }
@@ -151,7 +151,7 @@ def _entry(category: str, group: Sequence[Mapping[str, Any]], facts: _Facts) -> 
         missing.add("d")
     if len(stated) < len(group) or any(_transfer_unknown(row) for row in stated):
         missing.add("e")
-    return Entry(**values, complete=words.row(words("r.letter", letter=letter) for letter in sorted(missing)))
+    return Entry(**values, complete=words.row(words("record.letter", letter=letter) for letter in sorted(missing)))
 
 
 def _not_stated(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
@@ -188,7 +188,7 @@ def _transfer(rows: Sequence[Mapping[str, Any]], row: Mapping[str, Any], index: 
     if not area or area == INSIDE:
         return basis if not area else ""
     if area in ABROAD and not basis:
-        return words(f"r.unbased.{area}", country=fit(row["country"]))
+        return words(f"record.unbased.{area}", country=fit(row["country"]))
     return words.pair(fit(row["country"]), basis or words("transfer.adequacy"))
 
 
@@ -209,7 +209,7 @@ def _form(category: str, group: Sequence[Mapping[str, Any]], index: Index) -> st
     if not group:
         return ""
     hidden = all(index.pseudonymised(element, category) for element in group)
-    return index.words("r.hidden" if hidden else "r.as.is")
+    return index.words("record.hidden" if hidden else "record.as.is")
 
 
 def _kept(category: str, group: Sequence[Mapping[str, Any]], index: Index) -> tuple[list[str], bool]:
@@ -219,7 +219,7 @@ def _kept(category: str, group: Sequence[Mapping[str, Any]], index: Index) -> tu
     for element in group:
         row = index.outside.get(key(element), {})
         if states_retention(row, category, index):
-            lasting[words("r.kept", element=name(element), duration=kept(row, category, index))] = None
+            lasting[words("record.kept", element=name(element), duration=kept(row, category, index))] = None
             unlimited |= row.get("backups") is True
         else:
             unlimited = True
@@ -233,17 +233,17 @@ def _measures(category: str, group: Sequence[Mapping[str, Any]], facts: _Facts) 
     """
     index, words = facts.index, facts.index.words
     if index.document["enclaves"]:
-        yield words("r.measure.enclaves", enclaves=facts.enclaves)
+        yield words("record.measure.enclaves", enclaves=facts.enclaves)
     rows = index.protections(category, group)
     for same in grouped(rows, lambda row: (whole(row["element"])[1:], *(str(row[of]) for of in PROTECTION))):
         row = same[0]
         method = words(f"method.{row['method']}" if row["stated"] else "method.unstated")
         names = words.row(index.names([one["element"] for one in same]))
-        said = words("r.measure.cleans", element=names, data=index.data(row["category"]), method=method)
-        yield said if row["everywhere"] else words("r.measure.past", measure=said)
+        said = words("record.measure.cleans", element=names, data=index.data(row["category"]), method=method)
+        yield said if row["everywhere"] else words("record.measure.past", measure=said)
     for element in group:
         if index.outside.get(key(element), {}).get("encrypted"):
-            yield words("r.measure.encrypted", element=name(element))
+            yield words("record.measure.encrypted", element=name(element))
 
 
 def _notes(category: str, stated: Sequence[Mapping[str, Any]], index: Index) -> Iterator[str]:
@@ -251,7 +251,7 @@ def _notes(category: str, stated: Sequence[Mapping[str, Any]], index: Index) -> 
     words = index.words
     for row in stated:
         if row.get("encrypted") is False:
-            yield words("r.note.unencrypted", element=name(row["element"]))
+            yield words("record.note.unencrypted", element=name(row["element"]))
     unknown = count_rows(q for q in index.document["open"] if category in q["categories"]).elements
     if unknown:
-        yield words("r.note.open", elements=words.count(unknown, "element"))
+        yield words("record.note.open", elements=words.count(unknown, "element"))

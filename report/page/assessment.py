@@ -103,7 +103,7 @@ def assessment(
         return Risk(flow, tuple(fields))
 
     general = tuple(field(f"sign.{what}", f"sign.{what}") for what in GENERAL)
-    criteria = tuple(field(f"criterion.{number}", f"w.{number}") for number in range(1, CRITERIA + 1))
+    criteria = tuple(field(f"criterion.{number}", f"criterion.{number}") for number in range(1, CRITERIA + 1))
     asked = flows if answers.texts else [flow for flow in flows if flow.entries[0].told]
     made = (risk(flow) for flow in asked)
     risks = tuple(one for one in made if one.flow.entries[0].told or any(field.text for field in one.fields))

@@ -44,43 +44,45 @@ class Remark:
 def assumed(index: Index) -> Iterator[str]:
     """Return the assumptions."""
     words, said = index.words, index.document["assumptions"]
-    yield words(f"a.view.{index.document['view']}")
-    yield words("a.unlabelled")
+    yield words(f"assumption.view.{index.document['view']}")
+    yield words("assumption.unlabelled")
     yield from observed_lines(index.document, words)
     yield _standard(index)
     yield from _stopped(index)
     yield from _types(index)
     if said["categories_asked"] != ALL:
-        yield words("a.categories", names=words.row(map(fit, said["categories_asked"])))
+        yield words("assumption.categories", names=words.row(map(fit, said["categories_asked"])))
     if said.get("data_types_asked", ALL) != ALL:
-        yield words("a.types", names=words.row(_type(kind, index) for kind in said["data_types_asked"]))
+        yield words("assumption.types", names=words.row(_type(kind, index) for kind in said["data_types_asked"]))
     if factors := said.get("identity_factors_asked"):
-        yield words("a.factors", names=words.row(words.known(f"factor.{factor}", fit(factor)) for factor in factors))
+        yield words(
+            "assumption.factors", names=words.row(words.known(f"factor.{factor}", fit(factor)) for factor in factors)
+        )
     if said.get("article9_only"):
-        yield words(f"a.article9.{said.get('article9_level', MAY_REVEAL)}")
+        yield words(f"assumption.article9.{said.get('article9_level', MAY_REVEAL)}")
     if taken := said.get("backups_taken_as_none"):
-        yield words("a.backups", names=words.row(map(name, taken)))
+        yield words("assumption.backups", names=words.row(map(name, taken)))
     for category, kinds in said.get("may_be_asked", {}).items():
-        yield words("a.broader", data=index.data(category), kinds=index.all_data(kinds))
+        yield words("assumption.broader", data=index.data(category), kinds=index.all_data(kinds))
     if "database" in said:
-        yield words("a.database", robots=words.count(said["database"]["robots"], "robot"))
+        yield words("assumption.database", robots=words.count(said["database"]["robots"], "robot"))
     if not said["labels"]:
         yield words("file.none")
     yield from _outside(index)
     yield from _unstated(index)
-    yield words("a.law", date=words.date(said["law_as_of"]))
-    yield words("a.labels")
+    yield words("assumption.law", date=words.date(said["law_as_of"]))
+    yield words("assumption.labels")
 
 
 def _standard(index: Index) -> str:
     taken = index.document["assumptions"]["standard_channels"]
     if not taken:
-        return index.words("a.standard.none")
+        return index.words("assumption.standard.none")
     channels = index.words.count(index.document["standard_channels"], "channel")
     said = {"channels": channels, "file": fit(taken["file"]), "sha": taken["sha256"][:12]}
     if proposed := infrastructure_file(index.document["assumptions"]):
-        return index.words("a.standard.proposed", **said, proposed=proposed)
-    return index.words("a.standard", **said)
+        return index.words("assumption.standard.proposed", **said, proposed=proposed)
+    return index.words("assumption.standard", **said)
 
 
 def _stopped(index: Index) -> Iterator[str]:
@@ -88,21 +90,23 @@ def _stopped(index: Index) -> Iterator[str]:
     words, said = index.words, index.document["assumptions"]
     for rows in grouped(said.get("standard_channels_reached", ()), lambda row: tuple(row["categories"])):
         names = words.row(index.names([row["element"] for row in rows]))
-        yield words("a.standard.reached", element=names, data=index.all_data(rows[0]["categories"]))
+        yield words("assumption.standard.reached", element=names, data=index.all_data(rows[0]["categories"]))
     for row in said.get("standard_channels_reached", ()):
         if end := row.get("keeps_from"):
             ends = {"element": name(row["element"]), "end": name(end)}
-            yield words("a.standard.keeps", data=index.all_data(row["categories"]), **ends)
+            yield words("assumption.standard.keeps", data=index.all_data(row["categories"]), **ends)
     if unchanged := said.get("standard_channels_unchanged", ()):
-        yield words("a.standard.unchanged", element=words.row(index.names(unchanged)))
+        yield words("assumption.standard.unchanged", element=words.row(index.names(unchanged)))
     for row in said.get("absent", ()):
-        yield words("a.absent", element=name(row["element"]), why=printable(row["why"]))
+        yield words("assumption.absent", element=name(row["element"]), why=printable(row["why"]))
     if rows := hanging(index.document):
-        yield words("a.hangs", labels=words.row(f"{name(row['element'])} ({fit(place)})" for place, row in rows))
+        yield words(
+            "assumption.hangs", labels=words.row(f"{name(row['element'])} ({fit(place)})" for place, row in rows)
+        )
     yield from _globs(index)
     for row in said.get("overruled", ()):
         yield words(
-            f"a.overruled.{row['role']}",
+            f"assumption.overruled.{row['role']}",
             elements=words.row(map(printable, row["elements"])),
             data=index.all_data(row["categories"]),
             lost=fit(f"{row['file']}:{row['line']}"),
@@ -116,12 +120,12 @@ def _globs(index: Index) -> Iterator[str]:
     for row in index.document["assumptions"].get("globs", ()):
         at = {"place": fit(f"{row['file']}:{row['line']}"), "says": words.row(row["says"])}
         if flows := row.get("flows"):
-            text = words("a.glob.flows", **at, flows=words.count(flows, "flow"), closed=row["flows_closed"])
+            text = words("assumption.glob.flows", **at, flows=words.count(flows, "flow"), closed=row["flows_closed"])
         else:
             elements = words.count(row["elements"], "element")
-            text = words("a.glob", **at, elements=elements, closed=row["closed"], reviewed=row["reviewed"])
+            text = words("assumption.glob", **at, elements=elements, closed=row["closed"], reviewed=row["reviewed"])
         warning = row["warning"]
-        yield f"{text} {words(f'a.glob.{warning}')}" if warning else text
+        yield f"{text} {words(f'assumption.glob.{warning}')}" if warning else text
 
 
 def _types(index: Index) -> Iterator[str]:
@@ -131,7 +135,7 @@ def _types(index: Index) -> Iterator[str]:
         seen = file["observed"]
         if seen["from"]:
             yield words(
-                "a.types.observed",
+                "assumption.types.observed",
                 file=fit(file["file"]),
                 start=words.moment(fit(seen["from"])),
                 end=words.moment(fit(seen["to"])),
@@ -140,13 +144,13 @@ def _types(index: Index) -> Iterator[str]:
         return
     limits = said["type_limits"]
     if limits is None:
-        yield words("a.types.none")
+        yield words("assumption.types.none")
         return
     flows = words.count(limits["flows"], "flow")
-    yield words("a.types.limits", flows=flows, file=fit(limits["file"]), sha=limits["sha256"][:12])
+    yield words("assumption.types.limits", flows=flows, file=fit(limits["file"]), sha=limits["sha256"][:12])
     if closed := said.get("closed_by_types", ()):
         rows = (f"{index.data(row['category'])}: {name(row['source'])} → {name(row['leak'])}" for row in closed)
-        yield words("a.types.closed", findings=words.row(rows))
+        yield words("assumption.types.closed", findings=words.row(rows))
 
 
 def _type(kind: str, index: Index) -> str:
@@ -156,12 +160,12 @@ def _type(kind: str, index: Index) -> str:
 def _outside(index: Index) -> Iterator[str]:
     words, said = index.words, index.document["assumptions"]
     for kind, role in said.get("taken_by_kind", {}).items():
-        yield words("a.kinds", kind=words.kind({"kind": kind}), role=words(f"a.kinds.{role}"))
+        yield words("assumption.kinds", kind=words.kind({"kind": kind}), role=words(f"assumption.kinds.{role}"))
     if "countries_as_of" in said:
-        yield words("a.countries", date=words.date(said["countries_as_of"]))
+        yield words("assumption.countries", date=words.date(said["countries_as_of"]))
     for row in index.outside.values():
         if row.get("without_limit"):
-            yield words("a.limit", element=name(row["element"]), data=index.all_data(row["without_limit"]))
+            yield words("assumption.limit", element=name(row["element"]), data=index.all_data(row["without_limit"]))
 
 
 def _unstated(index: Index) -> Iterator[str]:
@@ -169,7 +173,7 @@ def _unstated(index: Index) -> Iterator[str]:
     for category in dict.fromkeys(row["category"] for row in rows):
         elements = [row["element"] for row in rows if row["category"] == category]
         for element in index.names(elements):
-            yield index.words("a.unstated", element=element, data=index.data(category))
+            yield index.words("assumption.unstated", element=element, data=index.data(category))
 
 
 def files(index: Index) -> tuple[File, ...]:

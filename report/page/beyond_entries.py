@@ -63,9 +63,9 @@ def beyond_said(index: Index) -> tuple[str, ...]:
     elements = [name(element) for element in index.document.get("enforced", {}).get("open", ())]
     names = words.row(words.first(elements, NAMED_OPEN))
     return (
-        words.count(number, "y.number"),
-        *([words.count(left, "y.left")] if left > 0 else []),
-        *([words.count(len(elements), "y.unreviewed", names=names)] if elements else []),
+        words.count(number, "beyond.number"),
+        *([words.count(left, "beyond.left")] if left > 0 else []),
+        *([words.count(len(elements), "beyond.unreviewed", names=names)] if elements else []),
     )
 
 
@@ -90,39 +90,39 @@ def _entry(added: Mapping[str, Any], index: Index) -> Beyond:
 def _why(added: Mapping[str, Any], index: Index) -> Iterator[str]:
     words = index.words
     if added["finding"]["accepted"]:
-        yield words.pair(words("f.filter.state"), words("state.accepted"))
+        yield words.pair(words("entry.filter.state"), words("state.accepted"))
     if added.get("plain"):
-        yield words("y.plain")
+        yield words("beyond.plain")
     if added.get("beyond") == []:
-        yield words("y.types")
+        yield words("beyond.types")
     if added["enclaves"]:
-        yield words("y.shared", enclaves=_row(added["enclaves"], index))
+        yield words("beyond.shared", enclaves=_row(added["enclaves"], index))
     if opened := added.get("opened_by"):
-        yield words("y.opened", lines=words.row(map(line, opened)))
+        yield words("beyond.opened", lines=words.row(map(line, opened)))
     if robots := added.get("robots"):
         named = f" ({_row(robots, index)})" if len(robots) <= NAMED else ""
-        yield words("y.robots", n=len(robots), all=words.count(len(index.robots()), "ofrobots"), names=named)
+        yield words("beyond.robots", n=len(robots), all=words.count(len(index.robots()), "of_robots"), names=named)
 
 
 def _remedies(added: Mapping[str, Any], index: Index) -> Iterator[str]:
     words = index.words
     if added["split"]:
-        yield words("y.split", enclaves=_row(added["split"], index))
+        yield words("beyond.split", enclaves=_row(added["split"], index))
     elif added["enclaves"]:
-        yield words("y.split.none")
+        yield words("beyond.split.none")
     if move := added.get("move"):
-        yield words("y.move", profile=fit(move["profile"]), enclave=fit(move["enclave"]))
+        yield words("beyond.move", profile=fit(move["profile"]), enclave=fit(move["enclave"]))
     if added.get("deny"):
         lines = (
-            words("y.line", role=one["role"], channel=name(one["channel"]), enclave=fit(one["enclave"]),
+            words("beyond.line", role=one["role"], channel=name(one["channel"]), enclave=fit(one["enclave"]),
                   file=fit(one["file"]))
             for one in added["deny"]
         )  # fmt: skip
         lost = (
-            words("y.right", node=name(one["node"]), role=one["role"], channel=name(one["channel"]))
+            words("beyond.right", node=name(one["node"]), role=one["role"], channel=name(one["channel"]))
             for one in added["loses"]
         )
-        yield words("y.deny", lines=words.row(lines), rights=words.row(lost))
+        yield words("beyond.deny", lines=words.row(lines), rights=words.row(lost))
 
 
 def _row(names: Iterable[str], index: Index) -> str:

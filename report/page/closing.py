@@ -71,20 +71,20 @@ def closing(index: Index, entries: Iterable[Entry], proposals: Mapping[str, Any]
     if not index.to_assess:
         return None
     if isinstance(proposals, str):
-        return Closing((words(f"z.none.{proposals}"),))
+        return Closing((words(f"closing.none.{proposals}"),))
     if not proposals["proposals"]:
-        return Closing((words("z.none.graph"),))
+        return Closing((words("closing.none.graph"),))
     last = proposals["proposals"][-1]  # of all kinds together
     stays = {row["finding"] for row in last["keeps"]}
     steps = last["steps"] if last["proven"] else []
     instead = {
-        words(f"z.state.{row['kind']}", element=name(row["element"]), data=index.data(row["category"]))
+        words(f"closing.state.{row['kind']}", element=name(row["element"]), data=index.data(row["category"]))
         for row in last["statements"]
     }
     return Closing(
         said=tuple(proposal_told(last, steps, index)),
         changes=tuple(change_told(step, index) for step in steps[:SHOWN]),
-        more=words("z.more", n=len(steps) - SHOWN) if len(steps) > SHOWN else "",
+        more=words("closing.more", n=len(steps) - SHOWN) if len(steps) > SHOWN else "",
         instead=tuple(sorted(instead)),
         stays=tuple(entry for entry in entries if stays.intersection((entry.id, *entry.others))),
     )
@@ -95,14 +95,14 @@ def proposal_told(last: Mapping[str, Any], steps: list[Any], index: Index) -> It
     words = index.words
     yield from _protect(last, index)
     if not steps:
-        yield from () if last.get("protect") else (words("z.nothing"),)
+        yield from () if last.get("protect") else (words("closing.nothing"),)
         return
     removed = words.count(len(last["removes"]), "way")
-    yield words("z.intro", changes=words.count(len(steps), "z.change"), removed=removed)
-    yield words("z.proven", verdict=words(f"code.{last['verdict_then']}"))
+    yield words("closing.intro", changes=words.count(len(steps), "closing.change"), removed=removed)
+    yield words("closing.proven", verdict=words(f"code.{last['verdict_then']}"))
     less = list(dict.fromkeys(name(row["element"]) for row in last["affected"]))
     if less:
-        yield words("z.less", names=words.row(words.first(less, NAMED)))
+        yield words("closing.less", names=words.row(words.first(less, NAMED)))
 
 
 def _protect(last: Mapping[str, Any], index: Index) -> Iterator[str]:
@@ -111,7 +111,7 @@ def _protect(last: Mapping[str, Any], index: Index) -> Iterator[str]:
         channels = list(dict.fromkeys(map(name, row["channels"])))
         ended = index.words.count(len(row["findings"]), "way")
         named = index.words.row(index.words.first(channels, NAMED))
-        yield index.words(f"z.protect.{row['cause']}", place=line(row), channels=named, removed=ended)
+        yield index.words(f"closing.protect.{row['cause']}", place=line(row), channels=named, removed=ended)
 
 
 def change_told(step: Mapping[str, Any], index: Index) -> Proposed:
@@ -124,16 +124,16 @@ def change_told(step: Mapping[str, Any], index: Index) -> Proposed:
 
 def _filter(step: Mapping[str, Any], index: Index) -> str:
     ends = [index.words.row(dict.fromkeys(name(one[end]) for one in step["between"])) for end in ("from", "to")]
-    return index.words("z.filter", source=ends[0], target=ends[1], data=index.all_data(step["categories"]))
+    return index.words("closing.filter", source=ends[0], target=ends[1], data=index.all_data(step["categories"]))
 
 
 def _review(step: Mapping[str, Any], index: Index) -> str:
-    return index.words("z.review", channel=name(step["channel"]), data=index.all_data(step["categories"]))
+    return index.words("closing.review", channel=name(step["channel"]), data=index.all_data(step["categories"]))
 
 
 def _deny(step: Mapping[str, Any], index: Index) -> str:
     enclaves = dict.fromkeys(fit(grant["enclave"]) for grant in step["policy"])
-    return index.words("z.deny", data=index.all_data(step["categories"]), enclaves=index.words.row(enclaves))
+    return index.words("closing.deny", data=index.all_data(step["categories"]), enclaves=index.words.row(enclaves))
 
 
 _TEXTS = {FILTER: _filter, REVIEW: _review, DENY: _deny}
@@ -141,4 +141,4 @@ _TEXTS = {FILTER: _filter, REVIEW: _review, DENY: _deny}
 
 def _notes(step: Mapping[str, Any], index: Index) -> Iterator[str]:
     if step["spares"]:
-        yield index.words("z.spares", names=index.words.row(dict.fromkeys(map(name, step["spares"]))))
+        yield index.words("closing.spares", names=index.words.row(dict.fromkeys(map(name, step["spares"]))))

@@ -33,7 +33,7 @@ def criteria(index: Index) -> tuple[Criterion, ...]:
     makes = _makes(index)
     new = _innovative(makes, index)
     shows = [makes, "", _observes(index), _special(index), _scale(index), _combines(index), _subjects(index), new, ""]
-    return tuple(Criterion(words(f"w.{number}"), said) for number, said in enumerate(shows, 1))
+    return tuple(Criterion(words(f"criterion.{number}"), said) for number, said in enumerate(shows, 1))
 
 
 def _row(texts: list[str], index: Index) -> str:
@@ -43,11 +43,11 @@ def _row(texts: list[str], index: Index) -> str:
 def _makes(index: Index) -> str:
     rows = [row for row in index.document["derivations"] if row["reached"]]
     texts = [
-        index.words("w.make", element=element, data=index.data(made), of=index.data(of))
+        index.words("criterion.make", element=element, data=index.data(made), of=index.data(of))
         for of, made in dict.fromkeys((row["from"], row["to"]) for row in rows)
         for element in index.names([r["element"] for r in rows if (r["from"], r["to"]) == (of, made)])
     ]
-    return index.words("w.makes", names=_row(texts, index)) if texts else ""
+    return index.words("criterion.makes", names=_row(texts, index)) if texts else ""
 
 
 def _observes(index: Index) -> str:
@@ -56,29 +56,29 @@ def _observes(index: Index) -> str:
         for element, categories in index.of_role.get("source", {}).items()
         if any(not set(index.categories[category]["data_types"]).isdisjoint(SENSED) for category in categories)
     ]
-    return index.words("w.observes", names=_row(list(index.names(sources)), index)) if sources else ""
+    return index.words("criterion.observes", names=_row(list(index.names(sources)), index)) if sources else ""
 
 
 def _special(index: Index) -> str:
     """Special categories, data of Article 10, and what is highly personal all the same, as WP 248 lists them."""
     kinds = index.categories.items()
     groups = {
-        "w.special": [name for name, category in kinds if strength(category) == SPECIAL],
-        "w.reveals": [name for name, category in kinds if strength(category) == REVEALS],
-        "w.personal": [name for name in index.categories if PERSONAL.intersection(index.upwards(name))],
+        "criterion.special": [name for name, category in kinds if strength(category) == SPECIAL],
+        "criterion.reveals": [name for name, category in kinds if strength(category) == REVEALS],
+        "criterion.personal": [name for name in index.categories if PERSONAL.intersection(index.upwards(name))],
     }
     said = [index.words(key, names=index.all_data(names)) for key, names in groups.items() if names]
-    return "; ".join(said) or (index.words("w.none") if index.categories else "")
+    return "; ".join(said) or (index.words("criterion.none") if index.categories else "")
 
 
 def _innovative(makes: str, index: Index) -> str:
     if not index.of_role.get("source"):
         return makes
-    return index.words("w.innovative", makes=f"; {makes}" if makes else "")
+    return index.words("criterion.innovative", makes=f"; {makes}" if makes else "")
 
 
 def _scale(index: Index) -> str:
-    return index.words("w.scale", robots=index.words.count(max(1, len(index.robots())), "robot"))
+    return index.words("criterion.scale", robots=index.words.count(max(1, len(index.robots())), "robot"))
 
 
 def _combines(index: Index) -> str:
@@ -90,9 +90,9 @@ def _combines(index: Index) -> str:
     robots = {(element["kind"], element["name"], element["robot"]) for element in at}
     number = weight((robot for *_, robot in robots), index.alike)
     names = _row(list(index.names(at)), index)
-    return index.words("w.combines", elements=index.words.count(number, "element"), names=names)
+    return index.words("criterion.combines", elements=index.words.count(number, "element"), names=names)
 
 
 def _subjects(index: Index) -> str:
     groups = sorted({group for said in index.subjects.values() for group in said})
-    return index.words("w.subjects", names=_row(groups, index)) if groups else ""
+    return index.words("criterion.subjects", names=_row(groups, index)) if groups else ""

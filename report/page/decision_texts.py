@@ -55,23 +55,23 @@ def orphans(index: Index) -> tuple[Decision, ...]:
 
 def _decision(said: Mapping[str, Any], findings: Iterable[Mapping[str, Any]], index: Index) -> Decision:
     words, what = index.words, said["choice"]
-    rows = [(words(f"d.{key}"), _value(said[key], key, index)) for key in FIELDS if said[key]]
+    rows = [(words(f"decision.{key}"), _value(said[key], key, index)) for key in FIELDS if said[key]]
     flags = (*_changed(said, index), *(_flags(said, findings, index) if what == ACCEPT else ()))
-    return Decision(words.known(f"d.{what}", what), tuple(rows), flags)
+    return Decision(words.known(f"decision.{what}", what), tuple(rows), flags)
 
 
 def _changed(said: Mapping[str, Any], index: Index) -> Iterator[str]:
     """What is not as it was when it was decided."""
     for change in said.get("changed", ()):
         yield index.words(
-            f"d.changed.{change['what']}", before=printable(change["before"]), now=printable(change["now"])
+            f"decision.changed.{change['what']}", before=printable(change["before"]), now=printable(change["now"])
         )
 
 
 def _value(value: Any, key: str, index: Index) -> str:
     words, text = index.words, printable(str(value))
     if key == "state":
-        return words.known(f"d.state.{value}", text)
+        return words.known(f"decision.state.{value}", text)
     if key == "legal_basis":
         return "; ".join(words.basis(printable(str(part))) for part in value)
     return words.date(text) if key in DATES else text
@@ -83,7 +83,7 @@ def _flags(said: Mapping[str, Any], findings: Iterable[Mapping[str, Any]], index
     law = {f["category"]: tuple(_provisions(f["category"], held)) for f in held}
     for gap in gaps(said["legal_basis"], [(f["kind"], f["category"]) for f in held], law):
         provision = index.provision(gap.category, gap.provision)
-        yield index.words(f"d.gap.{gap.lack.name.lower()}", data=index.data(gap.category), provision=provision)
+        yield index.words(f"decision.gap.{gap.lack.name.lower()}", data=index.data(gap.category), provision=provision)
 
 
 def _provisions(category: str, findings: Iterable[Mapping[str, Any]]) -> Iterator[tuple[str, str]]:

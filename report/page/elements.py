@@ -93,7 +93,7 @@ def _item(group: list[Mapping[str, Any]], said: Mapping[Any, Any], open_at: set[
 def _held(at: Key, category: str, index: Index) -> str:
     """A kind of data that gets there; and that it is said to be cleaned there, where it is."""
     data = index.data(category)
-    return index.words("i.cleaned", data=data) if (at, category) in index.cleaned else data
+    return index.words("inventory.cleaned", data=data) if (at, category) in index.cleaned else data
 
 
 def rest(index: Index) -> tuple[tuple[str, tuple[str, ...]], ...]:

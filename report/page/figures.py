@@ -76,7 +76,7 @@ def figures(
     words = report.words
     titles = {kind.name: kind.title for kind in report.kinds}
     say = Phrases.told(words, titles)
-    labels = {entry.id: words("f.picture", way=entry.brief) for entry in entries}
+    labels = {entry.id: words("entry.picture", way=entry.brief) for entry in entries}
     wishes = Wishes(say=say, labels=labels)
     if aliases is not None:
         wishes = replace(wishes, change=lambda picture: renamed(picture, aliases))
@@ -98,7 +98,7 @@ def _beyond(answer: Answer, report: Outline, wishes: Wishes, room: int) -> dict[
     if not answer.enforced or not report.beyond or room < 0:
         return {}
     mark, renamed_as = marking(answer), wishes.change
-    labels = {entry.id: report.words("f.picture", way=entry.brief) for entry in report.beyond}
+    labels = {entry.id: report.words("entry.picture", way=entry.brief) for entry in report.beyond}
     marked = replace(wishes, change=lambda picture: renamed_as(mark(picture)), labels=labels)
     added = [one.finding for one in answer.enforced.added]
     found = {}
@@ -120,13 +120,13 @@ def _overview(analysis: Analysis, report: Outline, wishes: Wishes) -> tuple[Inli
     shown = [finding for row in rows[:count] for finding in row]
     if not shown:
         return None, 0
-    label = plain(report.words("b.picture"))
+    label = plain(report.words("opening.picture"))
     return picture_of_all(analysis, shown, replace(wishes, labels={shown[0].id: label})), count
 
 
 def page_legend(words: Words, *, beyond: bool = False) -> list[tuple[Look, bool, str]]:
     """Return what the pictures of a page mean: a look, whether it is that of a box or of a line, and words."""
-    boxes = [(look, True, words(f"p.look.{name}")) for name, look in ROLE_LOOKS.items()]
-    lines = [(LINE_LOOKS[name], False, words(f"p.look.{name}")) for name in (SHORTEST, WAY, CLEANED)]
-    lines += [(LINE_LOOKS[BEYOND], False, words(f"p.look.{BEYOND}"))] if beyond else []
-    return [*boxes, *lines, (Look("", INK, style="dashed"), False, words("p.look.hidden"))]
+    boxes = [(look, True, words(f"phrase.look.{name}")) for name, look in ROLE_LOOKS.items()]
+    lines = [(LINE_LOOKS[name], False, words(f"phrase.look.{name}")) for name in (SHORTEST, WAY, CLEANED)]
+    lines += [(LINE_LOOKS[BEYOND], False, words(f"phrase.look.{BEYOND}"))] if beyond else []
+    return [*boxes, *lines, (Look("", INK, style="dashed"), False, words("phrase.look.hidden"))]

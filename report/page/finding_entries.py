@@ -207,14 +207,14 @@ def _spread(finding: Mapping[str, Any], robots: tuple[str, ...], index: Index) -
     words, pattern = index.words, index.patterns.get(finding["id"])
     if not pattern:
         if robots:
-            yield words("f.robots", robots=words.count(len(robots), "robot"))
+            yield words("entry.robots", robots=words.count(len(robots), "robot"))
         return
     if not robots:
-        yield words("f.fleet.none")
+        yield words("entry.fleet.none")
         return
-    yield words("f.fleet", n=len(robots), all=words.count(len(index.robots()), "ofrobots"))
+    yield words("entry.fleet", n=len(robots), all=words.count(len(index.robots()), "of_robots"))
     if pattern["across"]:
-        yield words("f.fleet.across", n=pattern["findings"])
+        yield words("entry.fleet.across", n=pattern["findings"])
     for some, form in _forms(pattern, index):
         names = f" ({words.row(map(fit, some))})" if len(some) <= NAMED else ""
         yield words.pair(f"{words.count(len(some), 'robot')}{names}", f"{form}.")
@@ -223,9 +223,9 @@ def _spread(finding: Mapping[str, Any], robots: tuple[str, ...], index: Index) -
 def _forms(pattern: Mapping[str, Any], index: Index) -> list[tuple[Sequence[str], str]]:
     words = index.words
     said = {
-        "dismissed": (words("fl.dismissed"), words("fl.dismissed.not")),
-        "accepted": (words("fl.accepted"), words("fl.accepted.not")),
-        "pseudonymised": (words("fl.hidden"), words("fl.hidden.not")),
+        "dismissed": (words("fleet.dismissed"), words("fleet.dismissed.not")),
+        "accepted": (words("fleet.accepted"), words("fleet.accepted.not")),
+        "pseudonymised": (words("fleet.hidden"), words("fleet.hidden.not")),
     }
     return forms_in_words(pattern.get("forms", ()), said)
 
@@ -234,7 +234,7 @@ def _where(finding: Mapping[str, Any], robots: tuple[str, ...], index: Index) ->
     pattern = index.patterns.get(finding["id"])
     if not pattern:
         if robots:
-            yield index.words("c.robots"), robots
+            yield index.words("column.robots"), robots
         return
     for some, form in _forms(pattern, index) or [(pattern["robots"], "")]:
         said = index.words.count(len(some), "robot")
@@ -262,32 +262,32 @@ def sentence_of(finding: Mapping[str, Any], index: Index) -> str:
     of, makers = made_of(finding)
     if makers:
         made = {"of": index.data(of), "makers": index.words.row(map(name, makers))}
-        said = index.words(f"f.made.{finding['kind']}", data=data, **made, **ends)
+        said = index.words(f"entry.made.{finding['kind']}", data=data, **made, **ends)
     else:
-        said = index.words("f.single" if alone else f"f.{finding['kind']}", data=data, **ends)
+        said = index.words("entry.single" if alone else f"entry.{finding['kind']}", data=data, **ends)
     return said[:1].upper() + said[1:]
 
 
 def _notes(finding: Mapping[str, Any], index: Index) -> Iterator[str]:
     words = index.words
     if reason := finding_reason(finding, words, index.data):
-        yield words("f.because", reason=reason)
+        yield words("entry.because", reason=reason)
     yield from revealed(finding, index)
     if finding["dismissed"]:
-        yield words("f.dismissed", names=words.row(map(name, finding["through"])))
+        yield words("entry.dismissed", names=words.row(map(name, finding["through"])))
     if finding.get("beside_pseudonymised"):
-        yield words("f.beside")
+        yield words("entry.beside")
     if finding["pseudonymised"]:
-        yield words("f.pseudonymised")
+        yield words("entry.pseudonymised")
     if (finding["disjoint_paths"] or 1) > 1:
-        yield words("f.ways", n=finding["disjoint_paths"])
+        yield words("entry.ways", n=finding["disjoint_paths"])
     if finding.get("paths_bounded"):
-        yield words("f.bounded", n=len(finding["paths"]))
+        yield words("entry.bounded", n=len(finding["paths"]))
 
 
 def _special(finding: Mapping[str, Any], index: Index) -> str:
     turned = finding["special_from"]
-    return index.words("f.special", element=name(turned)) if turned else ""
+    return index.words("entry.special", element=name(turned)) if turned else ""
 
 
 def hops_of(finding: Mapping[str, Any], index: Index) -> Iterator[Hop]:

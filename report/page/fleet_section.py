@@ -91,7 +91,7 @@ def fleet_told(index: Index, entries: Iterable[Entry]) -> Fleet | None:
         for group in fleet["alike"]
     )
     return Fleet(
-        words("fl.intro", robots=words.count(fleet["robots"], "robot"), kinds=words.count(len(alike), "robotkind")),
+        words("fleet.intro", robots=words.count(fleet["robots"], "robot"), kinds=words.count(len(alike), "robot_kind")),
         tuple((fit(model) or words("none"), number) for model, number in fleet["models"].items()),
         alike,
         tuple(_deviant(deviant, of_pattern, index) for deviant in fleet["deviants"]),
@@ -107,7 +107,7 @@ def _deviant(
         for share in deviant[key]
     ]
     opened = [
-        Difference(more, None, ("", ""), index.words(f"fl.{key}", names=index.words.row(index.names(deviant[key]))))
+        Difference(more, None, ("", ""), index.words(f"fleet.{key}", names=index.words.row(index.names(deviant[key]))))
         for more, key in ((True, "more_open"), (False, "fewer_open"))
         if deviant[key]
     ]
@@ -124,8 +124,8 @@ def _ends(finding: Mapping[str, Any], index: Index) -> tuple[str, str]:
 def _form(share: Mapping[str, Any], index: Index) -> str:
     """How a robot takes part in a pattern."""
     words = index.words
-    said = [words("fl.ends") if share["ends"] else words("fl.begins")]
-    said += [words("fl.dismissed")] if share["dismissed"] else []
-    said += [words("fl.accepted")] if share["accepted"] else []
-    said += [words("fl.hidden" if share["pseudonymised"] else "fl.plain")]
+    said = [words("fleet.ends") if share["ends"] else words("fleet.begins")]
+    said += [words("fleet.dismissed")] if share["dismissed"] else []
+    said += [words("fleet.accepted")] if share["accepted"] else []
+    said += [words("fleet.hidden" if share["pseudonymised"] else "fleet.plain")]
     return words.row(said)

@@ -152,7 +152,7 @@ class Index:
         """Return what a kind of data is called."""
         known = self.categories.get(category)
         title = (known and text(known, "title", self.words.language)) or fit(category)
-        return self.words("f.data", data=title) if pseudonymised else title
+        return self.words("entry.data", data=title) if pseudonymised else title
 
     def provision(self, category: str, named: str) -> str:
         """Return what a provision that is stated of a kind of data is called; its name where it is not known."""

@@ -85,7 +85,7 @@ def revealed(finding: Mapping[str, Any], index: Index) -> Iterator[str]:
         if row and said["verdict"] == MAY_REVEAL:
             language = index.words.language
             yield index.words(
-                "f.context.may-reveal",
+                "entry.context.may-reveal",
                 context=context_of(said["context"], index),
                 provision=text(row, "provision", language),
                 reason=text(row, "condition", language),

@@ -61,7 +61,7 @@ def _outside(row: Mapping[str, Any], index: Index) -> Outside:
     words, element = index.words, row["element"]
     warnings = [words(f"missing.{what}") for what in row.get("missing", ())]
     if row.get("without_limit"):
-        warnings.append(words("o.unlimited", data=index.all_data(row["without_limit"])))
+        warnings.append(words("outside.unlimited", data=index.all_data(row["without_limit"])))
     return Outside(
         name=name(element),
         kind=words.kind(element),
@@ -90,9 +90,9 @@ def retention(row: Mapping[str, Any], index: Index) -> str:
     """Return how long a storage keeps what."""
     words = index.words
     return "; ".join(
-        words("o.every", duration=words.duration(fit(duration)))
+        words("outside.every", duration=words.duration(fit(duration)))
         if category == EVERY
-        else words("o.of", data=index.data(category), duration=words.duration(fit(duration)))
+        else words("outside.of", data=index.data(category), duration=words.duration(fit(duration)))
         for category, duration in row.get("retention", {}).items()
     )
 
@@ -106,16 +106,16 @@ def kept(row: Mapping[str, Any], category: str, index: Index) -> str:
     """Return how long a storage keeps one kind of data, as stated of it or of the nearest broader one; with backups."""
     words, stated = index.words, row["retention"]
     nearest = next((kind for kind in index.upwards(category) if kind in stated), EVERY)
-    duration = words.duration(fit(stated[nearest])) if nearest in stated else words("o.notstated")
+    duration = words.duration(fit(stated[nearest])) if nearest in stated else words("not.stated")
     backups = row.get("backups")
     if backups is True:
-        return words("o.kept.backups.unknown", duration=duration)
-    return words("o.kept.backups", duration=duration, more=_backups(backups, index)) if backups else duration
+        return words("outside.kept.backups.unknown", duration=duration)
+    return words("outside.kept.backups", duration=duration, more=_backups(backups, index)) if backups else duration
 
 
 def _backups(value: Any, index: Index) -> str:
     if value is None:
         return ""
     if isinstance(value, bool):
-        return index.words("o.backups.unknown" if value else "no")
+        return index.words("outside.backups.unknown" if value else "no")
     return index.words.duration(fit(str(value)))

@@ -104,9 +104,12 @@ def opening(index: Index, flows: Iterable[ToDecide], verdict: str, means: str, d
     waiting = sum(row.waits for row in rows)
     if not rows:
         return Opening(verdict, (means, *doubts, *_first_to_review(index)))
-    headline = words.count(waiting, "b.decide") if waiting else words.count(len(rows), "b.carry")
-    said = [_can(rows, index), *([words.count(len(rows) - waiting, "b.decided")] if 0 < waiting < len(rows) else [])]
-    more = words("b.more", n=len(rows) - MOST) if len(rows) > MOST else ""
+    headline = words.count(waiting, "opening.decide") if waiting else words.count(len(rows), "opening.carry")
+    said = [
+        _can(rows, index),
+        *([words.count(len(rows) - waiting, "opening.decided")] if 0 < waiting < len(rows) else []),
+    ]
+    more = words("opening.more", n=len(rows) - MOST) if len(rows) > MOST else ""
     return Opening(headline, (*said, *_unreviewed(index), *doubts), tuple(rows[:MOST]), len(rows), more)
 
 
@@ -132,9 +135,9 @@ def _can(rows: Sequence[ToDecide], index: Index) -> str:
     for leak, kinds in data.items():
         places.setdefault(words.row(kinds), []).append(leak)
     first = islice(places.items(), PLACES)
-    said = [words("b.can", data=kinds, leak=_some(leaks, index)) for kinds, leaks in first]
+    said = [words("opening.can", data=kinds, leak=_some(leaks, index)) for kinds, leaks in first]
     rest = sum(len(leaks) for leaks in islice(places.values(), PLACES, None))
-    said += [words.count(rest, "b.places")] if rest else []
+    said += [words.count(rest, "opening.places")] if rest else []
     sentence = "; ".join(said)
     return f"{sentence[:1].upper()}{sentence[1:]}."
 
@@ -142,13 +145,13 @@ def _can(rows: Sequence[ToDecide], index: Index) -> str:
 def _unreviewed(index: Index) -> Iterator[str]:
     if index.document["open"]:
         count = count_rows(index.document["open"]).elements
-        yield index.words("b.open", open=index.words.count(count, "element"))
+        yield index.words("opening.open", open=index.words.count(count, "element"))
 
 
 def _first_to_review(index: Index) -> Iterator[str]:
     first = [row["element"] for row in index.document["open"] if row["frontier"]]
     if first:
-        yield index.words("b.review", names=_some(index.names(first), index))
+        yield index.words("opening.review", names=_some(index.names(first), index))
 
 
 def _some(names: Sequence[str], index: Index) -> str:
@@ -206,17 +209,17 @@ def _only(finding: Mapping[str, Any], index: Index) -> str:
 def _facts(findings: Sequence[Mapping[str, Any]], index: Index) -> Iterator[tuple[str, str]]:
     words, first = index.words, findings[0]
     subjects = index.subjects.get(key(first["source"]))
-    yield words("b.whose"), words.row(subjects) if subjects else words("not.stated")
-    yield words("b.law"), "; ".join(dict.fromkeys(_provisions(findings, index)))
-    yield words("b.basis"), words.row(_bases(findings, index)) or words("b.basis.none")
-    yield words("b.recipient"), _recipient(first["leak"], index)
-    yield words("b.owner"), words.row(_owners(findings)) or words("b.owner.none")
-    yield words("d.state"), words.row(dict.fromkeys(_state(finding, index) for finding in findings))
+    yield words("opening.whose"), words.row(subjects) if subjects else words("not.stated")
+    yield words("opening.law"), "; ".join(dict.fromkeys(_provisions(findings, index)))
+    yield words("opening.basis"), words.row(_bases(findings, index)) or words("opening.basis.none")
+    yield words("opening.recipient"), _recipient(first["leak"], index)
+    yield words("opening.owner"), words.row(_owners(findings)) or words("opening.owner.none")
+    yield words("decision.state"), words.row(dict.fromkeys(_state(finding, index) for finding in findings))
 
 
 def _provisions(findings: Iterable[Mapping[str, Any]], index: Index) -> Iterator[str]:
     for finding in findings:
-        yield index.words(f"b.law.{finding['kind']}")
+        yield index.words(f"opening.law.{finding['kind']}")
         for legal in finding["law"]:
             cited = index.provision(finding["category"], legal["provision"])
             yield cited.partition(" (")[0]  # without its title, which stands where the law is told
@@ -230,7 +233,10 @@ def _bases(findings: Sequence[Mapping[str, Any]], index: Index) -> list[str]:
     bases = dict.fromkeys((*decided, *stated))
     leaves = any(finding["kind"] == THIRD_COUNTRY for finding in findings)
     lacks = bases and leaves and not any(basis.startswith(CHAPTER_V) for basis in bases)
-    return [*map(index.words.basis, map(printable, bases)), *([index.words("b.basis.chapter_v")] if lacks else [])]
+    return [
+        *map(index.words.basis, map(printable, bases)),
+        *([index.words("opening.basis.chapter_v")] if lacks else []),
+    ]
 
 
 def _owners(findings: Iterable[Mapping[str, Any]]) -> list[str]:
@@ -247,12 +253,12 @@ def _state(finding: Mapping[str, Any], index: Index) -> str:
     words, said = index.words, finding.get("decision")
     if not said:
         return words("state.open")
-    decided = words.known(f"d.{said['choice']}", printable(said["choice"]))
+    decided = words.known(f"decision.{said['choice']}", printable(said["choice"]))
     if only := _only(finding, index):
-        decided = words("b.only", decided=decided, robot=only)
+        decided = words("opening.only", decided=decided, robot=only)
     if said.get("changed"):
-        decided = words("b.changed", decided=decided)
-    state = words.known(f"d.state.{said['state']}", printable(said["state"]))
+        decided = words("opening.changed", decided=decided)
+    state = words.known(f"decision.state.{said['state']}", printable(said["state"]))
     return decided if said["state"] == VALID else f"{decided}; {state}"
 
 

@@ -221,7 +221,9 @@ def outline(
         version=document["assumptions"]["rosprivacy"],
         law=_law(document["assumptions"], words),
         redacted=redacted,
-        sections=tuple((anchor, begins.headline if anchor == DECIDE else words(f"h.{anchor}")) for anchor in names),
+        sections=tuple(
+            (anchor, begins.headline if anchor == DECIDE else words(f"heading.{anchor}")) for anchor in names
+        ),
         code=document["verdict"],
         verdict=verdict,
         sentence=verdict_sentence(document, words),
@@ -229,7 +231,9 @@ def outline(
         closing=closes,
         means=tuple(_means(index, names, sum(not entry.told for entry in entries))),
         numbers=tuple(_numbers(index)),
-        glossary=tuple((words(f"w.{word}"), words(f"w.{word}.means")) for word in (document["view"], *EXPLAINED)),
+        glossary=tuple(
+            (words(f"glossary.{word}"), words(f"glossary.{word}.means")) for word in (document["view"], *EXPLAINED)
+        ),
         assumptions=tuple(assumed.assumed(index)),
         files=assumed.files(index),
         remarks=assumed.remarks(index),
@@ -261,11 +265,11 @@ def outline(
         rights=rights.rights(index),
         assessment=assessment(words, decided, answers or Answers(), signed(index)),
         size=words(
-            "i.intro",
+            "inventory.intro",
             elements=words.count(document["elements"], "element"),
             flows=words.count(document["flows"], "flow"),
         ),
-        denied=words("i.denied", flows=words.count(document["denied_flows"], "flow"))
+        denied=words("inventory.denied", flows=words.count(document["denied_flows"], "flow"))
         if document["denied_flows"]
         else "",
         items=elements.items(index),
@@ -304,34 +308,34 @@ def _means(index: Index, sections: list[str], left: int) -> Iterator[str]:
     """What else is to be known of the result: what to ask of each path, and which are not to be decided now."""
     words = index.words
     if index.to_assess:
-        yield words("b.each")
+        yield words("opening.each")
     dismissed = sum(state(finding) == "dismissed" for finding in index.findings)
     if dismissed:
-        yield words("b.dismissed", ways=words.count(dismissed, "way"))
+        yield words("opening.dismissed", ways=words.count(dismissed, "way"))
     accepted = sum(bool(finding.get("accepted")) for finding in index.findings)
     if accepted:
         yield words("verdict.accepted", ways=words.count(accepted, "way"), section=sections.index("findings") + 1)
     if left:
-        yield words.count(left, "f.left")
+        yield words.count(left, "entry.left")
     yield words("not.legal")
 
 
 def _numbers(index: Index) -> Iterator[tuple[int, str]]:
     words, to_assess = index.words, index.to_assess
     if index.alike:
-        yield len(index.robots()), words("n.robots")
-    yield len(to_assess), words("n.ways")
+        yield len(index.robots()), words("total.robots")
+    yield len(to_assess), words("total.ways")
     strengths = Counter(map(strength, to_assess))
-    yield strengths[SPECIAL], words("n.special")
-    yield strengths[REVEALS], words("n.reveals")
-    yield len({tuple(finding["leak"].items()) for finding in to_assess}), words("n.recipients")
-    yield count_rows(index.document["open"]).elements, words("n.open")
+    yield strengths[SPECIAL], words("total.special")
+    yield strengths[REVEALS], words("total.reveals")
+    yield len({tuple(finding["leak"].items()) for finding in to_assess}), words("total.recipients")
+    yield count_rows(index.document["open"]).elements, words("total.open")
     if globbed := count_rows(by_globs(index.document)).elements:
-        yield globbed, words("n.glob")
+        yield globbed, words("total.glob")
     for what in ("accepted", "dismissed"):
         number = sum(bool(finding.get(what)) for finding in index.findings)
         if number:
-            yield number, words(f"n.{what}")
+            yield number, words(f"total.{what}")
 
 
 def _changed(differ: Changes, earlier: Earlier, entries: tuple[Entry, ...], index: Index) -> Changed:
@@ -342,17 +346,18 @@ def _changed(differ: Changes, earlier: Earlier, entries: tuple[Entry, ...], inde
     for finding, what in differ.changed.items():
         by_entry.setdefault(of_finding[finding], []).extend(what)
     return Changed(
-        intro=words("ch.intro", file=fit(earlier.file), sha=earlier.sha256[:12]),
+        intro=words("changes.intro", file=fit(earlier.file), sha=earlier.sha256[:12]),
         sentences=tuple(_sentences(differ, index, old)),
         scope=tuple(_scope(differ, words)),
         new=tuple(dict.fromkeys(of_finding[finding] for finding in differ.new)),
         changed=tuple(
-            (entry, words.row(words(f"ch.what.{w}") for w in dict.fromkeys(what))) for entry, what in by_entry.items()
+            (entry, words.row(words(f"changes.what.{w}") for w in dict.fromkeys(what)))
+            for entry, what in by_entry.items()
         ),
         gone=tuple(
             (
                 old.data(f["category"], pseudonymised=f["pseudonymised"]),
-                words("f.from.to", source=name(f["source"]), leak=name(f["leak"])),
+                words("entry.from.to", source=name(f["source"]), leak=name(f["leak"])),
                 f["id"],
             )
             for f in differ.gone
@@ -365,15 +370,17 @@ def _changed(differ: Changes, earlier: Earlier, entries: tuple[Entry, ...], inde
 def _sentences(differ: Changes, index: Index, old: Index) -> Iterator[str]:
     """What changed on the whole: the verdict, the files, the kinds of data."""
     words = index.words
-    same = "ch.verdict.same" if differ.before == differ.now else "ch.verdict"
+    same = "changes.verdict.same" if differ.before == differ.now else "changes.verdict"
     yield words(same, before=differ.before, now=differ.now)
     if differ.nothing:
-        yield words("ch.none")
-    yield words("ch.files", names=words.row(map(fit, differ.files))) if differ.files else words("ch.files.same")
+        yield words("changes.none")
+    yield (
+        words("changes.files", names=words.row(map(fit, differ.files))) if differ.files else words("changes.files.same")
+    )
     if differ.kinds_new:
-        yield words("ch.kinds.new", names=index.all_data(differ.kinds_new))
+        yield words("changes.kinds.new", names=index.all_data(differ.kinds_new))
     if differ.kinds_gone:
-        yield words("ch.kinds.gone", names=old.all_data(differ.kinds_gone))
+        yield words("changes.kinds.gone", names=old.all_data(differ.kinds_gone))
 
 
 def _scope(differ: Changes, words: Words) -> Iterator[str]:
@@ -382,11 +389,11 @@ def _scope(differ: Changes, words: Words) -> Iterator[str]:
         "false": words("no"),
         "null": words("none"),
         "": words("none"),
-        "all": words("f.all"),
+        "all": words("entry.all"),
     }
     for what, before, now in differ.scope:
         assert what in ASKED
-        yield words(f"ch.scope.{what}", before=plain.get(before, before), now=plain.get(now, now))
+        yield words(f"changes.scope.{what}", before=plain.get(before, before), now=plain.get(now, now))
 
 
 @dataclass(frozen=True, slots=True)
@@ -420,13 +427,13 @@ def _closed(rows: list[Mapping[str, Any]], index: Index) -> Closed:
         elements = [row[end] for row in rows if row[end]]
         return words.row(index.names(elements)) if elements else ""
 
-    behind = [words("k.leak", element=of("leak"))] if row["leak"] else []
-    behind += [words("k.open", element=of("open"))] if row["open"] else []
-    said = words(f"k.{row['by']}")
+    behind = [words("closed.leak", element=of("leak"))] if row["leak"] else []
+    behind += [words("closed.open", element=of("open"))] if row["open"] else []
+    said = words(f"closed.{row['by']}")
     return Closed(
         where=" → ".join(end for end in (of("element"), of("to")) if end),
         data=index.all_data(row["categories"]),
-        said=words("k.glob", said=said) if row["glob"] else said,
+        said=words("closed.glob", said=said) if row["glob"] else said,
         lines=tuple(f"{fit(place['file'])}:{place['line']}" for place in row["places"]),
-        behind=words.row(behind) if behind else words("k.perhaps"),
+        behind=words.row(behind) if behind else words("closed.perhaps"),
     )

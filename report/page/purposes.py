@@ -85,7 +85,7 @@ def controllers(rows: Iterable[Mapping[str, Any]], index: Index) -> str:
     """Return who is responsible, and the data-protection officers."""
     who = dict.fromkeys(fit(one) for row in rows for one in row["controllers"])
     officers = dict.fromkeys(fit(one) for row in rows for one in row["officers"])
-    return "; ".join([*who, *(index.words("r.dpo", name=one) for one in officers)])
+    return "; ".join([*who, *(index.words("record.dpo", name=one) for one in officers)])
 
 
 def _told(
@@ -94,4 +94,4 @@ def _told(
 ) -> str:  # fmt: skip
     stated = dict.fromkeys([*(one for row in rows for one in row[key]), *more])
     lacking = not stated or any(what in row["missing"] for row in rows)
-    return "; ".join([*map(told, stated), *([index.words("r.open")] if lacking else [])])
+    return "; ".join([*map(told, stated), *([index.words("record.open")] if lacking else [])])

@@ -69,20 +69,20 @@ def _hanging(row: Mapping[str, Any], index: Index) -> Hanging:
 def _said(row: Mapping[str, Any], index: Index) -> str:
     words = index.words
     role = "absent" if row["method"] == "absent" else row["role"]
-    said = words(f"u.{role}")
+    said = words(f"reliance.{role}")
     if row["role"] == "sanitizer" and role != "absent":
         method = words(f"method.{row['method']}")
         said = f"{said} ({method})"
     said = words.pair(said, index.all_data(row["categories"])) if row["categories"] else said
-    return words("k.glob", said=said) if row["glob"] else said
+    return words("closed.glob", said=said) if row["glob"] else said
 
 
 def _findings(row: Mapping[str, Any], index: Index) -> Iterator[str]:
     words = index.words
     if row["refused"]:
-        yield words("u.refused", why=fit(row["refused"]))
+        yield words("reliance.refused", why=fit(row["refused"]))
     if row["perhaps"]:
-        yield words("k.perhaps")
+        yield words("closed.perhaps")
     for opening in row["findings"]:
         data = index.data(opening["category"], pseudonymised=opening["pseudonymised"])
         ends = [words.row(index.names([opening[end]])) for end in ("source", "leak")]

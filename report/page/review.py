@@ -65,7 +65,7 @@ def review(index: Index) -> tuple[Group, ...]:
     """Return the groups that are not empty."""
     return tuple(
         Group(
-            f"q.{group.key}",
+            f"question.{group.key}",
             _number(group.questions, index),
             tuple(_questions(group.now, index)),
             tuple(
@@ -73,7 +73,7 @@ def review(index: Index) -> tuple[Group, ...]:
                     index.words(said, elements=index.words.count(count_rows(rows).elements, "element")),
                     _names(rows, index),
                 )
-                for said, rows in (("q.waits", group.waiting), ("q.proposed", group.proposed))
+                for said, rows in (("question.waits", group.waiting), ("question.proposed", group.proposed))
                 if rows
             ),
         )
@@ -85,7 +85,7 @@ def review(index: Index) -> tuple[Group, ...]:
 def _number(rows: Iterable[Mapping[str, Any]], index: Index) -> str:
     count = count_rows(rows)
     number = index.words.number(count.elements)
-    return number if count.elements == count.legs else index.words("q.legs", elements=number, legs=count.legs)
+    return number if count.elements == count.legs else index.words("question.legs", elements=number, legs=count.legs)
 
 
 def _names(rows: Iterable[Mapping[str, Any]], index: Index) -> str:
@@ -111,7 +111,7 @@ def _questions(rows: Sequence[Mapping[str, Any]], index: Index) -> list[Question
             through=words.row(index.names([row["through"] for row in group if row.get("through")])),
             closes=words.row(
                 words.count(group[0][what], thing)
-                for what, thing in (("closes", "openelement"), ("leaks", "leak"))
+                for what, thing in (("closes", "open_element"), ("leaks", "leak"))
                 if group[0].get(what)
             ),
             brings=index.all_data(brings.get(key(group[0]["element"]), ())),

@@ -88,15 +88,15 @@ def _place(element: Mapping[str, Any], kinds: Mapping[str, bool], index: Index) 
     durations = {category: kept(row, category, index) if row.get("retention") else "" for category in kinds}
     stated = {duration for duration in durations.values() if duration}
     if not stated:
-        said = words("rt.unknown")
+        said = words("rights.unknown")
     elif len(set(durations.values())) == 1:
         said = stated.pop()
     else:
         said = "; ".join(
-            words("o.of", data=index.data(category), duration=duration or words("rt.unknown"))
+            words("outside.of", data=index.data(category), duration=duration or words("rights.unknown"))
             for category, duration in durations.items()
         )
     who = [fit(row["operator"])] if row.get("operator") else []
     who += [country(row, index)] if row.get("country") else []
     data = words.row(index.data(category, pseudonymised=hidden) for category, hidden in kinds.items())
-    return Place("", words.kind(element), data, said, words.row(who) or words("rt.unknown"))
+    return Place("", words.kind(element), data, said, words.row(who) or words("rights.unknown"))

@@ -128,7 +128,10 @@ def _cleaning(group: list[Mapping[str, Any]], past: _Past, index: Index) -> Clea
         leaves=words.row(leaves),
         beside=(
             *index.names([*(e for r in group for e in r["beside"]), *(e for e in too if key(e) in recognising)]),
-            *(words("s.cleans.too", element=name) for name in index.names(e for e in too if key(e) not in recognising)),
+            *(
+                words("sanitizer.cleans.too", element=name)
+                for name in index.names(e for e in too if key(e) not in recognising)
+            ),
         ),
         recognises=index.all_data(dict.fromkeys(kind for r in group for kind in r.get("recognises", ()))),
         past=tuple(first),

@@ -75,12 +75,12 @@ def _typed(some: list[Mapping[str, Any]], there: tuple[str, str], index: Index) 
 def _origin(one: Mapping[str, Any], index: Index) -> str:
     observed = {entry["file"] for entry in index.document["assumptions"].get("types", ())}
     how = "stated" if one["stated"] else "observed" if one["file"] in observed else "recorded"
-    return index.words(f"ty.{how}", place=f"{fit(one['file'])}:{one['line']}")
+    return index.words(f"channel_type.{how}", place=f"{fit(one['file'])}:{one['line']}")
 
 
 def only_by_types(index: Index) -> tuple[tuple[str, str], ...]:
     """Return (kind of data, from where to where) of what only types close."""
     return tuple(
-        (index.data(row["category"]), index.words("f.from.to", source=name(row["source"]), leak=name(row["leak"])))
+        (index.data(row["category"]), index.words("entry.from.to", source=name(row["source"]), leak=name(row["leak"])))
         for row in index.document["assumptions"].get("closed_by_types", ())
     )

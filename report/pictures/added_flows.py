@@ -62,7 +62,7 @@ def with_added(answer: Answer, say: Phrases, draw: Callable[[Collection[Key]], P
     there = {(line.source, line.target) for line in picture.lines}
     new = {line.sort_key()[:2]: line for each in more for line in _new(each.lines, there, picture.view)}
     lines = sorted_lines([*picture.lines, *(line for line in new.values() if {line.source, line.target} <= set(boxes))])
-    note = plain(picture.words.count(len(enforced.added), "pic.added"))
+    note = plain(picture.words.count(len(enforced.added), "picture.added"))
     core = picture.core | (frozenset(key for one in enforced.added for key in _witness(one)) & set(boxes))
     return replace(picture, boxes=sorted_boxes(boxes.values()), lines=lines, core=core).noted(note)
 

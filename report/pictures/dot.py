@@ -112,7 +112,7 @@ def label_lines(picture: Picture, box: Box, width: int = LONGEST_LINE) -> list[s
         Letters of a line of a name; names of several elements are a little longer.
     """
     robots = len({box.robot for box in picture.boxes if box.robot}) > 1
-    grouped = box.group.startswith((picture.say("pic.robot", robot=""), box.robot))
+    grouped = box.group.startswith((picture.say("picture.robot", robot=""), box.robot))
     lines = [shortened(box.robot, 28)] if robots and box.robot and not grouped else []
     if len(box.names) == 1:
         lines += broken(box.names[0], width)
@@ -126,24 +126,24 @@ def label_lines(picture: Picture, box: Box, width: int = LONGEST_LINE) -> list[s
 def hover(picture: Picture, box: Box) -> str:
     """Return what is said of a box where there is room: its full name, kind, role."""
     names = ", ".join(shortened(name, 200) for name in box.names[:20])
-    said = [picture.say(f"pic.look.{box.kind}") if box.kind != RECORD else box.kind]
-    said += [picture.say("pic.robot", robot=shortened(box.robot, 60))] if box.robot else []
+    said = [picture.say(f"picture.look.{box.kind}") if box.kind != RECORD else box.kind]
+    said += [picture.say("picture.robot", robot=shortened(box.robot, 60))] if box.robot else []
     if picture.view == "privacy":
-        said.append(picture.say(f"pic.look.{box.look}").partition(":")[0].rstrip())
+        said.append(picture.say(f"picture.look.{box.look}").partition(":")[0].rstrip())
     said += [shortened(name, 60) for name in box.types[:4]]
     said += box.words
     if box.open and box.look != "open":
-        said.append(picture.say("pic.partly"))
+        said.append(picture.say("picture.partly"))
     return f"{names} ({'; '.join(said)})"
 
 
 def line_hover(picture: Picture, line: Line) -> str:
     """Return what is said of a line: its ends, the grants behind it, what goes along it."""
-    arrow = picture.words("pic.to").join((shortened(line.source[2], 100), shortened(line.target[2], 100)))
-    said = [line.words or picture.say(f"pic.look.{line.look}"), ", ".join(line.roles)]
+    arrow = picture.words("picture.to").join((shortened(line.source[2], 100), shortened(line.target[2], 100)))
+    said = [line.words or picture.say(f"picture.look.{line.look}"), ", ".join(line.roles)]
     if line.carries:
         carries = ", ".join(line.carries)
-        said.append(picture.say("tty.hidden", kind=carries) if line.pseudonymised else carries)
+        said.append(picture.say("terminal.hidden", kind=carries) if line.pseudonymised else carries)
     said += [shortened(str(place), 100) for place in line.places[:3]]
     if len(line.places) > 3:  # noqa: PLR2004 - as above
         said.append(picture.say("policy.more", n=len(line.places) - 3))

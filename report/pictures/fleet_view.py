@@ -36,7 +36,7 @@ def label(robot: str, likeness: Likeness, words: Words = IN_ENGLISH) -> str:
     drawn = next((first for first, robots in likeness.members.items() if robot in robots), robot)
     drawn = likeness.second.get(drawn, drawn)
     others = likeness.weight(drawn) - 1
-    return plain(words("pic.alike", robot=drawn, n=others)) if others > 0 else drawn
+    return plain(words("picture.alike", robot=drawn, n=others)) if others > 0 else drawn
 
 
 def represented(picture: Picture, likeness: Likeness) -> Picture:
@@ -64,7 +64,7 @@ def represented(picture: Picture, likeness: Likeness) -> Picture:
             lines[slot] = _joined(old_line, now_line) if old_line else now_line
     standing = sum(likeness.weight(robot) > 1 for robot in likeness.members)
     robots = picture.count(sum(map(likeness.weight, likeness.members)), "robot")
-    note = picture.say("pic.fleet", robots=robots, drawn=picture.count(standing, "robot"))
+    note = picture.say("picture.fleet", robots=robots, drawn=picture.count(standing, "robot"))
     made = replace(
         picture,
         boxes=sorted_boxes(boxes.values()),

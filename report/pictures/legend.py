@@ -64,7 +64,7 @@ def signs(scene: Scene) -> tuple[Sign, ...]:
         Sign(
             f"box look-{name}{' open' if name == OPEN else ''}",
             _OVAL + (_DOUBLE if look.double else ""),
-            picture.say(f"pic.look.{name}"),
+            picture.say(f"picture.look.{name}"),
         )
         for name, look in DRAWN_ROLES.items()
         if name in looks
@@ -72,14 +72,14 @@ def signs(scene: Scene) -> tuple[Sign, ...]:
     for kind, form in forms.items():
         if kind in kinds:  # where there are no roles, kinds have colours
             coloured = f" look-{kind}" if kind in looks else ""
-            found.append(Sign(f"box kind-{kind}{coloured}", form, picture.say(f"pic.look.{kind}")))
+            found.append(Sign(f"box kind-{kind}{coloured}", form, picture.say(f"picture.look.{kind}")))
     found += [
-        Sign(f"line look-{name}", _ENDS if look.head == "tee" else _LINE, picture.say(f"pic.look.{name}"))
+        Sign(f"line look-{name}", _ENDS if look.head == "tee" else _LINE, picture.say(f"picture.look.{name}"))
         for name, look in LINE_LOOKS.items()
         if name in lines
     ]
     if any(line.pseudonymised for line in picture.lines):
-        found.append(Sign("line hidden", _LINE, picture.say("pic.dashed")))
+        found.append(Sign("line hidden", _LINE, picture.say("picture.dashed")))
     return tuple(found)
 
 

@@ -40,13 +40,13 @@ def legible(picture: Picture, most: int = LEGIBLE) -> tuple[Picture, tuple[str, 
     drawn = {(box.robot, box.kind, name) for box in small.boxes for name in box.names}
     gone = [box for box in picture.boxes if box.key not in drawn]
     counts = {
-        "pic.source": sum(box.look == SOURCE for box in gone),
-        "pic.exit": sum(box.look == LEAK for box in gone),
-        "pic.open": sum(box.open for box in gone),
+        "picture.source": sum(box.look == SOURCE for box in gone),
+        "exit": sum(box.look == LEAK for box in gone),
+        "picture.open": sum(box.open for box in gone),
     }
     said = [picture.count(number, thing) for thing, number in counts.items() if number]
     if said:
-        small = small.noted(picture.say("pic.gone", what=", ".join(said)))
-    elements, boxes = picture.count(len(picture.boxes), "element"), picture.count(len(small.boxes), "pic.box")
-    small = small.noted(picture.say("pic.smaller", boxes=boxes, elements=elements))
+        small = small.noted(picture.say("picture.gone", what=", ".join(said)))
+    elements, boxes = picture.count(len(picture.boxes), "element"), picture.count(len(small.boxes), "picture.box")
+    small = small.noted(picture.say("picture.smaller", boxes=boxes, elements=elements))
     return small, tuple(note for note in small.notes if note not in picture.notes)

@@ -65,9 +65,9 @@ def texts(scene: Scene, box: Box) -> list[Text]:
     names = label_lines(picture, replace(box, words=()), WIDEST_NAME)
     words = [line for word in box.words for line in wrap(shortened(word, LONGEST_WORDS), WIDEST_WORDS)]
     if box.kind not in TOLD_BY_SHAPE:
-        words.insert(0, picture.say(f"pic.look.{box.kind}"))
+        words.insert(0, picture.say(f"picture.look.{box.kind}"))
     if box.key == scene.focus:
-        words.append(picture.say("pic.explore.decide" if box.open else "pic.explore.chosen"))
+        words.append(picture.say("picture.explore.decide" if box.open else "picture.explore.chosen"))
     return [*(Text(name, is_name=True) for name in names), *(Text(word, is_name=False) for word in words)]
 
 

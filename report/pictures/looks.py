@@ -154,13 +154,13 @@ def legend(picture: Picture) -> list[Entry]:
     if picture.view == PRIVACY:
         used = {box.look for box in picture.boxes} | ({OPEN} if any(box.open for box in picture.boxes) else set())
         roles = {name: look for name, look in DRAWN_ROLES.items() if name in used}
-        entries += [Entry(look, picture.say(f"pic.look.{name}"), SHAPES["node"]) for name, look in roles.items()]
+        entries += [Entry(look, picture.say(f"picture.look.{name}"), SHAPES["node"]) for name, look in roles.items()]
         blank = Look("", PALE)
-        entries += [Entry(blank, picture.say(f"pic.look.{kind}"), SHAPES[kind]) for kind in kinds]
+        entries += [Entry(blank, picture.say(f"picture.look.{kind}"), SHAPES[kind]) for kind in kinds]
     else:
-        entries += [Entry(KIND_LOOKS[kind], picture.say(f"pic.look.{kind}"), SHAPES[kind]) for kind in kinds]
+        entries += [Entry(KIND_LOOKS[kind], picture.say(f"picture.look.{kind}"), SHAPES[kind]) for kind in kinds]
     drawn = {line.look for line in picture.lines}
-    entries += [Entry(look, picture.say(f"pic.look.{name}")) for name, look in LINE_LOOKS.items() if name in drawn]
+    entries += [Entry(look, picture.say(f"picture.look.{name}")) for name, look in LINE_LOOKS.items() if name in drawn]
     if any(line.pseudonymised for line in picture.lines):
-        entries.append(Entry(Look("", INK, style="dashed"), picture.say("pic.dashed")))
+        entries.append(Entry(Look("", INK, style="dashed"), picture.say("picture.dashed")))
     return entries

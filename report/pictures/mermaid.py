@@ -102,7 +102,7 @@ def _legend(picture: Picture, drawn: int) -> Iterator[str]:
     entries = legend(picture)
     if not entries:
         return
-    yield f'subgraph legend["{label(picture.say("pic.legend"))}"]'
+    yield f'subgraph legend["{label(picture.say("picture.legend"))}"]'
     yield "  direction LR"
     boxes = [entry for entry in entries if entry.shape is not None]
     looks = ROLE_LOOKS if picture.view == PRIVACY else KIND_LOOKS
@@ -116,9 +116,9 @@ def _legend(picture: Picture, drawn: int) -> Iterator[str]:
     samples = [
         next(one for one in picture.lines if one.look == look) for look in sorted({a.look for a in picture.lines})
     ]
-    rows = [(replace(sample, pseudonymised=False), picture.say(f"pic.look.{sample.look}")) for sample in samples]
+    rows = [(replace(sample, pseudonymised=False), picture.say(f"picture.look.{sample.look}")) for sample in samples]
     if any(line.pseudonymised for line in picture.lines):
-        rows.append((replace(samples[0], pseudonymised=True), picture.say("pic.dashed")))
+        rows.append((replace(samples[0], pseudonymised=True), picture.say("picture.dashed")))
     for number, (sample, words) in enumerate(rows):
         yield f'  s{number}((" ")) {_arrow(sample, both=False)} t{number}["{label(words)}"]'
     yield "end"

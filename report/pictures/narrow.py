@@ -56,7 +56,7 @@ def of_robot(picture: Picture, robot: str) -> Picture:
         raise DrawingError(f"--robot: there is no robot {shown(robot)!r}; {_nearest(robot, robots)}")
     joined = {line.target for line in picture.lines if line.source in own}
     joined |= {line.source for line in picture.lines if line.target in own}
-    return picture.kept(own | joined, _part(picture, own | joined, picture.say("pic.part.robot", robot=robot)))
+    return picture.kept(own | joined, _part(picture, own | joined, picture.say("picture.part.robot", robot=robot)))
 
 
 def around(picture: Picture, names: Iterable[str], steps: int) -> Picture:
@@ -82,7 +82,7 @@ def around(picture: Picture, names: Iterable[str], steps: int) -> Picture:
         what = "in this picture there is no"
         raise DrawingError("\n".join(f"--around: {what} {shown(n)!r}; {_nearest(n, by_name)}" for n in missing))
     kept = within(picture, {key for name in names for key in by_name[name]}, steps)
-    what = picture.say("pic.part.within", steps=picture.count(steps, "step"), names=", ".join(names))
+    what = picture.say("picture.part.within", steps=picture.count(steps, "step"), names=", ".join(names))
     return picture.kept(kept, _part(picture, kept, what))
 
 
@@ -90,8 +90,8 @@ def carrying(picture: Picture, analysis: Analysis) -> Picture:
     """Return what data of the analysis gets to."""
     carried = {one.element.identity for one in analysis.carried}
     kept = {box.key for box in picture.boxes if box.key in carried}
-    kinds = ", ".join(analysis.emitted) or picture.say("pic.empty")
-    return picture.kept(kept, _part(picture, kept, picture.say("pic.part.carries", kinds=kinds)))
+    kinds = ", ".join(analysis.emitted) or picture.say("picture.empty")
+    return picture.kept(kept, _part(picture, kept, picture.say("picture.part.carries", kinds=kinds)))
 
 
 def within(picture: Picture, starts: Collection[Key], steps: int) -> set[Key]:
@@ -111,7 +111,7 @@ def within(picture: Picture, starts: Collection[Key], steps: int) -> set[Key]:
 
 
 def _part(picture: Picture, kept: Collection[Key], what: str) -> str:
-    return picture.say("pic.part", what=what, n=len(kept), elements=picture.count(len(picture.boxes), "element"))
+    return picture.say("picture.part", what=what, n=len(kept), elements=picture.count(len(picture.boxes), "element"))
 
 
 def _nearest(name: str, names: Iterable[str]) -> str:
@@ -138,7 +138,7 @@ def folded(picture: Picture, apart: Collection[Key] = ()) -> Picture:
     """
     lines_kept = tuple(line for line in picture.lines if line.look != MATCHES)
     if len(lines_kept) < len(picture.lines):
-        picture = replace(picture, lines=lines_kept).noted(picture.say("pic.matches"))
+        picture = replace(picture, lines=lines_kept).noted(picture.say("picture.matches"))
     joins: dict[Key, set[tuple[object, ...]]] = defaultdict(set)
     for line in picture.lines:
         joins[line.source].add(("to", line.target, line.look, line.pseudonymised, line.length, line.roles))
@@ -180,7 +180,7 @@ def without_loose_ends(picture: Picture) -> Picture:
     names = sum(len(box.names) for box in picture.boxes if box.key in loose)
     return picture.kept(
         {box.key for box in picture.boxes} - loose,
-        picture.count(names, "pic.loose"),
+        picture.count(names, "picture.loose"),
     )
 
 
@@ -221,14 +221,14 @@ def _namers(
 
     def robot(box: Box) -> str:
         named = box.robot and (not own or box.robot in own)
-        return picture.say("pic.robot", robot=box.robot) if named else box.robot
+        return picture.say("picture.robot", robot=box.robot) if named else box.robot
 
     def enclave(box: Box) -> str:
         at = box.robot if own else ""
         found = sorted(enclaves.get((at, box.key[2]), ())) if box.kind == "node" else []
         if not found:
             return ""
-        names = picture.say("pic.enclave", names=picture.words("tty.and").join(found))
+        names = picture.say("enclave.named", names=picture.words("terminal.and").join(found))
         return ", ".join([*([robot(box)] if box.robot else []), names])
 
     def namespace(box: Box) -> str:

@@ -91,13 +91,13 @@ class Drawing:
         if not scene.picture.boxes:
             return without_places(scene, "")
         if self._graphviz is None:
-            return without_places(scene, scene.picture.say("pic.explore.none"))
+            return without_places(scene, scene.picture.say("picture.explore.none"))
         try:
             return live_svg(self._laid_out(scene, room, self._graphviz), scene, links)
         except TooLongError:
-            return without_places(scene, scene.picture.say("pic.explore.late", seconds=f"{self._seconds:g}"))
+            return without_places(scene, scene.picture.say("picture.explore.late", seconds=f"{self._seconds:g}"))
         except DrawingError:
-            return without_places(scene, scene.picture.say("pic.explore.failed"))
+            return without_places(scene, scene.picture.say("picture.explore.failed"))
 
     def _laid_out(self, scene: Scene, room: tuple[float, float], graphviz: Graphviz) -> bytes:
         """Across if that fits, else the way that more of fits; what has no order has one way."""

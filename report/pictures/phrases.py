@@ -48,7 +48,7 @@ class Phrases:
     @classmethod
     def told(cls, words: Words, titles: Mapping[str, str]) -> Phrases:
         """Return the words of a report, in its language."""
-        return cls({name: plain(words.places(f"p.{name}")) for name in TEXTS}, titles, words)
+        return cls({name: plain(words.places(f"phrase.{name}")) for name in TEXTS}, titles, words)
 
     def of(self, key: str, categories: Iterable[str], most: int, **more: str) -> str:
         """Return what is said of some categories."""

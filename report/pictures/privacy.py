@@ -176,9 +176,9 @@ class Reached:
         notes = []
         if ended:
             names = listed(ended, longest=40, words=words)
-            notes.append(words.count(len(ended), "pic.ended", names=names))
+            notes.append(words.count(len(ended), "picture.ended", names=names))
         if apart:
-            notes.append(words.count(apart, "pic.apart"))
+            notes.append(words.count(apart, "picture.apart"))
         return tuple(map(plain, notes))
 
     def _box(self, key: Key, vertices: Sequence[int]) -> Box:

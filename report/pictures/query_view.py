@@ -175,7 +175,7 @@ def _carrying(
     said = {"source": begins, "leak": leaks, "pseudonymises": hidden, "cleans": ended, "unreviewed": unknown}
     words = [say.of(text, categories, MOST) for text, categories in said.items() if categories]
     if made and not begins:
-        words.append(say.words("pic.makes", names=say.listed((label[: -len("Source")] for label in made), MOST)))
+        words.append(say.words("picture.makes", names=say.listed((label[: -len("Source")] for label in made), MOST)))
     look = next(role for role, holds in roles.items() if holds)
     return Box(key, (key[2],), look, tuple(words), bool(unknown), pattern=element["pattern"])
 

@@ -45,10 +45,10 @@ if TYPE_CHECKING:
     from rosprivacy.report.pictures.picture import Key, Line
 
 TOLD = {
-    UNTOUCHED: "pic.explore.element",
-    LEAK: "pic.exit",
-    SOURCE: "pic.source",
-    OPEN: "pic.explore.open",
+    UNTOUCHED: "picture.explore.element",
+    LEAK: "exit",
+    SOURCE: "picture.source",
+    OPEN: "picture.explore.open",
 }  # role -> how its number is told; all are in the first
 Place = tuple[str, ...]  # names of levels, the widest first
 
@@ -258,7 +258,7 @@ class Scenes:
         boxes = {box.key: box for box in reached.every_box(sorted({*choice.core, *choice.near}))}
         picture = Picture(
             PRIVACY,
-            self._title(choice, wanted) if boxes else plain(self._say.words("pic.nothing")),
+            self._title(choice, wanted) if boxes else plain(self._say.words("picture.nothing")),
             sorted_boxes(boxes.values()),
             self._lines(reached, boxes, choice),
             ways=self._ways(choice),
@@ -294,13 +294,13 @@ class Scenes:
             bits = sum(map(self.analysis.spread.both, wanted))
             folded = folded_by_place(self._joined, choice.core, bits, max(1, most - len(choice.core)), words)
             alone, groups, between = choice.core | folded.single, folded.boxes, folded.lines
-            notes.append(words.count(folded.channels, "pic.explore.lines"))
+            notes.append(words.count(folded.channels, "picture.explore.lines"))
         boxes = {box.key: box for box in (*groups, *reached.every_box(sorted(alone)))}
         lines = self._lines(reached, boxes.keys() & alone, choice)
         there = {(line.source, line.target) for line in lines}
         lines = sorted_lines([*lines, *(one for one in between if (one.source, one.target) not in there)])
-        notes += [words.count(len(standard), "pic.standard")] if standard else []
-        title = words("pic.explore.whole", what=self._listed(wanted))
+        notes += [words.count(len(standard), "picture.standard")] if standard else []
+        title = words("picture.explore.whole", what=self._listed(wanted))
         picture = Picture(
             PRIVACY, plain(title), sorted_boxes(boxes.values()), lines, tuple(map(plain, notes)), words=words
         )
@@ -308,7 +308,7 @@ class Scenes:
 
     def _listed(self, kinds: Iterable[str]) -> str:
         words = self._say.words
-        return listed(map(self._say.title, kinds), most=4, words=words) or words("pic.empty")
+        return listed(map(self._say.title, kinds), most=4, words=words) or words("picture.empty")
 
     def _ways(self, choice: Choice) -> tuple[str, ...]:
         return tuple(in_words(finding, self._say) for finding in choice.findings)
@@ -341,7 +341,7 @@ class Scenes:
             begins = bool(choice.paths) and not choice.paths[0].steps
             key = "begins" if begins else "asked" if choice.paths else "untouched"
         name = shortened(choice.focus[2], 60) if choice.focus else ""
-        return plain(self._say.words(f"pic.explore.{key}", what=what, name=name))
+        return plain(self._say.words(f"picture.explore.{key}", what=what, name=name))
 
     def _bounded(self, picture: Picture, choice: Choice, most: int) -> Picture:
         """The picture with no more boxes than asked for, and with what is not drawn of the system."""
@@ -354,12 +354,12 @@ class Scenes:
         drawn = {(box.robot, box.kind, name) for box in small.boxes for name in box.names}
         undrawn, standard = (len(some - drawn) for some in self._joined.elements())
         joined = sum(len(box.names) for box in near[room:])
-        rest = picture.count(undrawn, "pic.explore.rest") if undrawn else ""
+        rest = picture.count(undrawn, "picture.explore.rest") if undrawn else ""
         if joined and choice.focus:
             name = shortened(choice.focus[2], 60)
-            rest = picture.say("pic.explore.near", elements=picture.count(undrawn, "element"), n=joined, name=name)
-        left = picture.count(choice.left, "pic.explore.paths") if choice.left else ""
-        quiet = picture.count(standard, "pic.standard") if standard else ""
+            rest = picture.say("picture.explore.near", elements=picture.count(undrawn, "element"), n=joined, name=name)
+        left = picture.count(choice.left, "picture.explore.paths") if choice.left else ""
+        quiet = picture.count(standard, "picture.standard") if standard else ""
         return replace(small, notes=tuple(note for note in (left, rest, quiet) if note))
 
 

@@ -29,10 +29,10 @@ def finished(data: bytes, picture: Picture) -> bytes:
 
 def alt_text(picture: Picture) -> str:
     """Return what a picture shows, for people who do not see it."""
-    ways = [picture.say("pic.alt.way", way=way) for way in picture.ways[:MOST_WAYS]]
+    ways = [picture.say("picture.alt.way", way=way) for way in picture.ways[:MOST_WAYS]]
     if len(picture.ways) > MOST_WAYS:
-        ways.append(picture.say("pic.alt.more", n=len(picture.ways) - MOST_WAYS))
-    return printable(sentences([*picture.notes, *ways])) or picture.say("pic.alt.nothing")
+        ways.append(picture.say("picture.alt.more", n=len(picture.ways) - MOST_WAYS))
+    return printable(sentences([*picture.notes, *ways])) or picture.say("picture.alt.nothing")
 
 
 def _described(data: bytes, picture: Picture) -> etree._Element:

@@ -83,9 +83,9 @@ def ros_view(
     undrawn = sum(not _deny(lines, grant, graph, hidden) and grant not in effective for grant in denying)
     for key in boxes.keys() & covered.keys():
         if boxes[key].pattern:
-            boxes[key] = replace(boxes[key], words=(words.count(len(covered[key] - {key}), "pic.covers"),))
+            boxes[key] = replace(boxes[key], words=(words.count(len(covered[key] - {key}), "picture.covers"),))
     kinds = _inventory([key for key in boxes if key[0] not in beside], words)
-    title = plain(words("pic.ros", view=str(graph.view), kinds=kinds))
+    title = plain(words("picture.ros", view=str(graph.view), kinds=kinds))
     hidden = {key for key in hidden if key[0] not in beside}
     notes = _left_out(hidden, undrawn, words, robots=len({element.robot for element in graph.elements}))
     return Picture(ROS, title, sorted_boxes(boxes.values()), lines.made(), notes, words=words)
@@ -109,14 +109,14 @@ def _inventory(keys: Iterable[Key], words: Words) -> str:
     kinds: dict[str, int] = defaultdict(int)
     for key in sorted(keys, key=order):
         kinds[key[1]] += 1
-    counts = ", ".join(words.count(number, f"pic.kind.{kind}") for kind, number in kinds.items())
-    return counts or words("pic.empty")
+    counts = ", ".join(words.count(number, f"picture.kind.{kind}") for kind, number in kinds.items())
+    return counts or words("picture.empty")
 
 
 def _left_out(hidden: Collection[Key], undrawn: int, words: Words, *, robots: int) -> tuple[str, ...]:
-    notes = [words.count(len(hidden), "pic.standard")] if hidden else []
+    notes = [words.count(len(hidden), "picture.standard")] if hidden else []
     if undrawn:
-        notes.append(words.count(undrawn, "pic.denies.idle" if robots > 1 else "pic.denies"))
+        notes.append(words.count(undrawn, "picture.denies.idle" if robots > 1 else "picture.denies"))
     return tuple(map(plain, notes))
 
 
@@ -141,7 +141,7 @@ def privacy_view(
     say = say or Phrases()
     words, reached = say.words, Reached(analysis, say=say)
     if not reached.sources():
-        return Picture(PRIVACY, plain(words("pic.nothing")), (), (), words=words)
+        return Picture(PRIVACY, plain(words("picture.nothing")), (), (), words=words)
     boxes = {box.key: box for box in reached.boxes()}
     net = Net.of(analysis.spread)
     open_findings = [finding for finding in analysis.findings if not finding.dismissed]
@@ -152,9 +152,9 @@ def privacy_view(
     lines = data_lines(reached, boxes, range(len(one_by_one(analysis.graph.flows))), lengths, pairs(open_findings))
     what = listed(map(say.title, analysis.emitted), most=6, words=words)
     unreviewed = count_elements(q.element for q in analysis.open if q.element.robot not in beside).elements
-    findings, elements = words.count(len(open_findings), "tty.finding"), words.count(unreviewed, "element")
-    title = words("pic.privacy", what=what, view=str(analysis.graph.view), verdict=_verdict(analysis, words))
-    notes = (words("pic.count", findings=findings, elements=elements), *reached.left_out(words, beside, also))
+    findings, elements = words.count(len(open_findings), "terminal.finding"), words.count(unreviewed, "element")
+    title = words("picture.privacy", what=what, view=str(analysis.graph.view), verdict=_verdict(analysis, words))
+    notes = (words("picture.count", findings=findings, elements=elements), *reached.left_out(words, beside, also))
     shown = tuple(in_words(finding, say) for finding in open_findings)
     boxes_drawn, told = sorted_boxes(boxes.values()), tuple(map(plain, notes))
     return Picture(PRIVACY, plain(title), boxes_drawn, lines.made(), told, shown, core(open_findings), words)
@@ -162,7 +162,7 @@ def privacy_view(
 
 def _verdict(analysis: Analysis, words: Words) -> str:
     lacks = analysis.verdict is Verdict.UNDETERMINED and not analysis.open and analysis.lacking in LACKING
-    return words(f"pic.lacking.{analysis.lacking}" if lacks else f"pic.verdict.{analysis.verdict}")
+    return words(f"picture.lacking.{analysis.lacking}" if lacks else f"picture.verdict.{analysis.verdict}")
 
 
 def _ways_to_all(analysis: Analysis, net: Net, findings: Iterable[Finding]) -> Iterator[dict[int, int]]:
@@ -228,14 +228,14 @@ class FindingViews:
         lines = data_lines(reached, boxes, lengths, lengths, pairs([finding]))
         words = self._say.words
         title = self._title(finding)
-        notes = [words("pic.finding", id=finding.id)]
+        notes = [words("picture.finding", id=finding.id)]
         if finding.dismissed:
             through = listed((element.name for element in finding.through), longest=60, words=words)
-            notes.append(words("pic.through", names=through))
+            notes.append(words("picture.through", names=through))
         if (n := finding.number_of_paths or 1) > 1:
-            notes.append(words("pic.disjoint", n=n))
+            notes.append(words("picture.disjoint", n=n))
         if not found.complete:
-            notes.append(words("pic.longer", steps=words.count(max(lengths.values()), "step")))
+            notes.append(words("picture.longer", steps=words.count(max(lengths.values()), "step")))
         ways = (in_words(finding, self._say),)
         told = tuple(map(plain, notes))
         ordered = sorted_boxes(boxes.values())
@@ -246,7 +246,7 @@ class FindingViews:
         of, by = making(finding)
         made = {"of": self._say.title(of), "makers": listed((e.name for e in by), longest=60, words=self._say.words)}
         return self._say.words(
-            "pic.finding.made" if by else "pic.finding.of",
+            "picture.finding.made" if by else "picture.finding.of",
             data=_data(finding, self._say),
             source=shortened(finding.source.name, 60),
             leak=shortened(finding.leak.name, 60),
@@ -257,7 +257,7 @@ class FindingViews:
 
 def is_cut(note: str, words: Words) -> bool:
     """Return whether a note says that longer paths are not drawn."""
-    return note.startswith(plain(words.places("pic.longer")).partition("{")[0])
+    return note.startswith(plain(words.places("picture.longer")).partition("{")[0])
 
 
 def finding_view(analysis: Analysis, finding: Finding, about: int | None = None, say: Phrases | None = None) -> Picture:
@@ -273,20 +273,20 @@ def bounded(picture: Picture, most: int) -> Picture:
     if len(picture.boxes) <= most:
         return picture
     lines = [line for line in picture.lines if line.look == SHORTEST]
-    what = picture.say("pic.shortest")
+    what = picture.say("picture.shortest")
     for length in sorted({line.length for line in picture.lines if line.length}):
         longer = [line for line in picture.lines if 0 < line.length <= length or line.look == SHORTEST]
         if len(_joined(longer) | picture.core) > most:
             break
-        lines, what = longer, picture.say("pic.up.to", steps=picture.count(length, "step"))
+        lines, what = longer, picture.say("picture.up.to", steps=picture.count(length, "step"))
     kept = _joined(lines) | picture.core
     left = len(picture.boxes) - len(kept)
     if not left and len(lines) == len(picture.lines):
         return picture
     notes = tuple(note for note in picture.notes if not is_cut(note, picture.words))
     known = left and len(notes) == len(picture.notes)
-    undrawn = picture.count(left, "element") if known else picture.say("pic.what.is")
-    note = picture.say("pic.beside", what=undrawn, paths=what)
+    undrawn = picture.count(left, "element") if known else picture.say("picture.what.is")
+    note = picture.say("picture.beside", what=undrawn, paths=what)
     return replace(picture, notes=notes, lines=tuple(lines)).kept(kept, note)
 
 
@@ -307,10 +307,10 @@ def core(findings: Iterable[Finding]) -> frozenset[Key]:
 def in_words(finding: Finding, say: Phrases | None = None) -> str:
     """Return a finding's shortest path as a sentence."""
     say = say or Phrases()
-    names = say.words("pic.to").join(shortened(element.name, 60) for element in finding.witness)
-    return plain(say.words("pic.way", data=_data(finding, say), names=names))
+    names = say.words("picture.to").join(shortened(element.name, 60) for element in finding.witness)
+    return plain(say.words("picture.way", data=_data(finding, say), names=names))
 
 
 def _data(finding: Finding, say: Phrases) -> str:
     title = say.title(finding.category)
-    return say.words("tty.hidden", kind=title) if finding.pseudonymised else title
+    return say.words("terminal.hidden", kind=title) if finding.pseudonymised else title

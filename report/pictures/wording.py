@@ -51,7 +51,7 @@ def listed(names: Iterable[str], most: int = 3, longest: int = 60, words: Words 
     'a, b, c and 2 more'
     """
     every = [shortened(name, longest) for name in names]
-    more = words("tty.more", n=len(every) - most) if len(every) > most else ""
+    more = words("terminal.more", n=len(every) - most) if len(every) > most else ""
     return ", ".join(every[:most]) + more
 
 

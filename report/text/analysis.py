@@ -115,11 +115,11 @@ def _summary(report: Mapping[str, Any], words: Words) -> str:
     accepted = sum(finding["accepted"] for finding in findings)
     elements, flows = words.count(report["elements"], "element"), words.count(report["flows"], "flow")
     parts = [
-        words.count(len(findings), "tty.finding"),
-        *([words("tty.of.them.accepted", n=accepted)] if accepted else []),
-        *([words("tty.dismissed.more", n=dismissed)] if dismissed else []),
+        words.count(len(findings), "terminal.finding"),
+        *([words("terminal.of.them.accepted", n=accepted)] if accepted else []),
+        *([words("terminal.dismissed.more", n=dismissed)] if dismissed else []),
         _to_review(report, words),
-        words("tty.in.all", elements=elements, flows=flows),
+        words("terminal.in.all", elements=elements, flows=flows),
     ]
     return ", ".join(parts)
 
@@ -127,7 +127,7 @@ def _summary(report: Mapping[str, Any], words: Words) -> str:
 def _to_review(report: Mapping[str, Any], words: Words) -> str:
     """How many elements are open, and how many where the legs of services and actions are counted by themselves."""
     count = count_rows(report["open"])
-    return words("tty.to.review", elements=words.count(count.elements, "element"), more=legs(count, words))
+    return words("terminal.to.review", elements=words.count(count.elements, "element"), more=legs(count, words))
 
 
 def _findings(report: Mapping[str, Any], words: Words, *, verbose: bool) -> Iterator[Line]:
@@ -137,16 +137,16 @@ def _findings(report: Mapping[str, Any], words: Words, *, verbose: bool) -> Iter
         yield from details(report, report["findings"], words)
     elif report["findings"]:
         yield "", ""
-        yield words("tty.details"), "dim"
+        yield words("terminal.details"), "dim"
     yield from law_lines(report, report["findings"], words)
 
 
 def _assumed(report: Mapping[str, Any], words: Words, most: int | None) -> Iterator[Line]:
     assumptions = report["assumptions"]
     yield "", ""
-    yield words("tty.assumed"), "bold"
+    yield words("terminal.assumed"), "bold"
     view = report["view"]
-    yield f"   {words(f'tty.view.{view}')}", ""
+    yield f"   {words(f'terminal.view.{view}')}", ""
     yield from ((f"   {line}", "yellow") for line in observed_lines(report, words))
     yield from standard_lines(report, most, words)
     yield from type_lines(report, most, words)
@@ -155,57 +155,63 @@ def _assumed(report: Mapping[str, Any], words: Words, most: int | None) -> Itera
     yield from glob_warnings(report, words)
     if "database" in assumptions:
         robots = words.count(assumptions["database"]["robots"], "robot")
-        yield f"   {words('tty.database', robots=robots)}", ""
+        yield f"   {words('terminal.database', robots=robots)}", ""
     yield from _files(assumptions.get("fleet", ()), "fleet", words)
     yield from _files(assumptions["labels"], "labels", words)
     if not assumptions["labels"]:
-        yield f"   {words('tty.no.labels')}", ""
+        yield f"   {words('terminal.no.labels')}", ""
     if "decisions" in assumptions:
         taken = assumptions["decisions"]
         date = words.date(taken["today"])
-        yield f"   {words('tty.file.decisions', file=shown(taken['file']), sha=taken['sha256'][:12], date=date)}", ""
+        yield (
+            f"   {words('terminal.file.decisions', file=shown(taken['file']), sha=taken['sha256'][:12], date=date)}",
+            "",
+        )
     yield from _asked(report, words)
     yield from _files(assumptions["ontologies"], "ontologies", words)
-    yield f"   {words('tty.law', date=words.date(assumptions['law_as_of']))}", ""
+    yield f"   {words('terminal.law', date=words.date(assumptions['law_as_of']))}", ""
     yield from _assumed_outside(report, words)
     for taken in assumptions["sanitizers_without_method"]:
-        yield f"   {words('tty.no.method', element=shown_name(taken['element']), kind=taken['category'])}", "yellow"
+        yield (
+            f"   {words('terminal.no.method', element=shown_name(taken['element']), kind=taken['category'])}",
+            "yellow",
+        )
     yield from absent_lines(report, words)
     yield from overruled_lines(report, words)
-    yield f"   {words('tty.word')}", "dim"
+    yield f"   {words('terminal.word')}", "dim"
 
 
 def _asked(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
     """What the answer is restricted to (rule S11)."""
     assumed = report["assumptions"]
     if assumed["categories_asked"] != ALL:
-        yield f"   {words('tty.only.categories', kinds=', '.join(map(shown, assumed['categories_asked'])))}", ""
+        yield f"   {words('terminal.only.categories', kinds=', '.join(map(shown, assumed['categories_asked'])))}", ""
     if assumed["data_types_asked"] != ALL:
-        yield f"   {words('tty.only', what=asked_types(assumed, words))}", ""
+        yield f"   {words('terminal.only', what=asked_types(assumed, words))}", ""
     if "identity_factors_asked" in assumed:
-        yield f"   {words('tty.only.stated', what=asked_factors(assumed, words))}", ""
+        yield f"   {words('terminal.only.stated', what=asked_factors(assumed, words))}", ""
     if assumed["article9_only"]:
-        yield f"   {words('tty.only.known', what=asked_level(assumed, words))}", ""
+        yield f"   {words('terminal.only.known', what=asked_level(assumed, words))}", ""
     for category, kinds in assumed.get("may_be_asked", {}).items():
-        yield f"   {words('tty.also', kind=category, kinds=named(kinds, words))}", ""
+        yield f"   {words('terminal.also', kind=category, kinds=named(kinds, words))}", ""
 
 
 def _files(files: Iterable[Mapping[str, Any]], role: str, words: Words) -> Iterator[Line]:
     for file in files:
-        yield f"   {words(f'tty.file.{role}', file=shown(file['file']), sha=file['sha256'][:12])}", ""
+        yield f"   {words(f'terminal.file.{role}', file=shown(file['file']), sha=file['sha256'][:12])}", ""
 
 
 def _assumed_outside(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
     """What was taken of elements outside ROS (rule S9)."""
     assumptions = report["assumptions"]
     for kind, role in assumptions["taken_by_kind"].items():
-        yield f"   {words(f'tty.taken.{role}', kind=words.known(f'tty.kind.of.{kind}', kind))}", ""
+        yield f"   {words(f'terminal.taken.{role}', kind=words.known(f'terminal.kind.of.{kind}', kind))}", ""
     if "countries_as_of" in assumptions:
-        yield f"   {words('tty.countries', date=words.date(assumptions['countries_as_of']))}", ""
+        yield f"   {words('terminal.countries', date=words.date(assumptions['countries_as_of']))}", ""
     for row in report["outside"]:
         if "without_limit" in row:
             kinds = ", ".join(row["without_limit"])
-            yield f"   {words('tty.limit', element=shown_name(row['element']), kinds=kinds)}", "yellow"
+            yield f"   {words('terminal.limit', element=shown_name(row['element']), kinds=kinds)}", "yellow"
 
 
 def _diagnostics(report: Mapping[str, Any], words: Words, *, verbose: bool) -> Iterator[Line]:
@@ -215,8 +221,8 @@ def _diagnostics(report: Mapping[str, Any], words: Words, *, verbose: bool) -> I
     notices = [d for d in messages if d["severity"] == "notice" and d.get("code") != MERGED]
     for diagnostic in messages:
         if verbose or diagnostic not in notices:
-            severity = words(f"tty.severity.{diagnostic['severity']}")
+            severity = words(f"severity.{diagnostic['severity']}")
             at = place(diagnostic) if diagnostic["line"] else shown(diagnostic["file"])
             yield f"{severity}: {at}: {diagnostic['message']}", "yellow"
     if notices and not verbose:
-        yield words.count(len(notices), "tty.notice"), "dim"
+        yield words.count(len(notices), "terminal.notice"), "dim"

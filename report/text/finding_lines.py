@@ -44,7 +44,7 @@ VERBS = {  # (role, whether data goes into a channel) -> what is between the two
 
 def verb(role: str, *, into_channel: bool, words: Words) -> str:
     """Return what is between two elements, as a flow's role says it; the role itself if it has no word."""
-    return words.known(f"tty.verb.{VERBS.get((role, into_channel), role)}", role)
+    return words.known(f"terminal.verb.{VERBS.get((role, into_channel), role)}", role)
 
 
 def overview(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
@@ -53,7 +53,7 @@ def overview(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
         return
     unreviewed = {element for element, _ in _unreviewed(report, report["findings"])}
     yield "", ""
-    yield words("tty.findings", n=str(len(report["findings"]))), "bold"
+    yield words("terminal.findings", n=str(len(report["findings"]))), "bold"
     ordered = in_order(report["findings"], report)
     numbers = {finding["id"]: number for number, finding in enumerate(ordered, 1)}
     for finding, *others in _by_line(ordered):
@@ -63,8 +63,8 @@ def overview(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
             continue
         met = {key(e) for e in finding["witness"]} & unreviewed
         parts = [
-            words.count(len(finding["steps"]), "tty.hop"),
-            *([words("tty.n.unreviewed", n=len(met))] if met else []),
+            words.count(len(finding["steps"]), "terminal.hop"),
+            *([words("terminal.number.unreviewed", n=len(met))] if met else []),
             *on_robots(report, finding, words),
             *_states(finding, words),
         ]
@@ -88,7 +88,7 @@ def details(
     roles = {(key(said["element"]), said["category"]): said["roles"] for said in report["roles"]}
     unreviewed, folder = _unreviewed(report, findings), _policies_in(report)
     if folder and any(finding["steps"] for finding in findings):
-        yield words("tty.folder", folder=shown(folder)), "dim"
+        yield words("terminal.folder", folder=shown(folder)), "dim"
     for number, finding in enumerate(in_order(findings, report), 1):
         yield "", ""
         yield f"{number}. {_title(report, finding, words)}   [{finding['id']}]", _style(finding)
@@ -97,13 +97,13 @@ def details(
             yield f"   {_reason(finding, words)}", ""
         if finding["dismissed"]:
             through = ", ".join(shown_name(element) for element in finding["through"])
-            past = words("tty.past") if finding.get("beside_pseudonymised") else ""
-            yield f"   {words('tty.through', names=through, past=past)}", "dim"
+            past = words("terminal.past") if finding.get("beside_pseudonymised") else ""
+            yield f"   {words('terminal.through', names=through, past=past)}", "dim"
         yield from _decision(finding, words)
         yield from _Way(roles, unreviewed, folder, words).lines(finding)
         yield from _paths(finding, words)
         if finding["special_from"]:
-            yield f"   {words('tty.special', element=shown_name(finding['special_from']))}", ""
+            yield f"   {words('terminal.special', element=shown_name(finding['special_from']))}", ""
         yield from more(finding)
 
 
@@ -118,9 +118,9 @@ def enforced_lines(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
         return
     added = report["enforced"]["added"]
     yield "", ""
-    yield words("tty.enforced", findings=words.count(len(added), "tty.finding")), "bold"
+    yield words("terminal.enforced", findings=words.count(len(added), "terminal.finding")), "bold"
     if elements := [shown_name(element) for element in report["enforced"].get("open", ())]:
-        yield words.count(len(elements), "tty.enforced.unreviewed", names=named(elements, words)), ""
+        yield words.count(len(elements), "terminal.enforced.unreviewed", names=named(elements, words)), ""
     by_id = {entry["finding"]["id"]: entry for entry in added}
 
     def more(finding: Mapping[str, Any]) -> Iterator[Line]:
@@ -132,31 +132,31 @@ def enforced_lines(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
 def _added(report: Mapping[str, Any], entry: Mapping[str, Any], words: Words) -> Iterator[str]:
     """Where it is, what makes it possible, what takes it away: splitting first."""
     if entry.get("plain"):
-        yield words("tty.enforced.plain")
+        yield words("terminal.enforced.plain")
     if entry.get("beyond") == []:
-        yield words("tty.enforced.types")
+        yield words("terminal.enforced.types")
     if robots := entry.get("robots"):
-        everybody = words.count(report["fleet"]["robots"], "ofrobots")
-        yield words("tty.enforced.on", n=str(len(robots)), robots=everybody, names=named(robots, words))
+        everybody = words.count(report["fleet"]["robots"], "of_robots")
+        yield words("terminal.enforced.on", n=str(len(robots)), robots=everybody, names=named(robots, words))
     if opened := entry.get("opened_by"):
-        yield words("tty.enforced.opened", lines=", ".join(map(place, opened)))
+        yield words("terminal.enforced.opened", lines=", ".join(map(place, opened)))
     if not entry["enclaves"]:
         return
-    yield words("tty.enforced.by", enclaves=_listed(entry["enclaves"]))
-    key = "tty.enforced.split" if entry["split"] else "tty.enforced.no.split"
+    yield words("terminal.enforced.by", enclaves=_listed(entry["enclaves"]))
+    key = "terminal.enforced.split" if entry["split"] else "terminal.enforced.no.split"
     yield words(key, enclaves=_listed(entry["split"]))
     if move := entry.get("move"):
-        yield words("tty.enforced.move", profile=shown(move["profile"]), enclave=shown(move["enclave"]))
+        yield words("terminal.enforced.move", profile=shown(move["profile"]), enclave=shown(move["enclave"]))
     if entry.get("deny"):
-        yield words("tty.enforced.deny", lines="; ".join(_deny(line, words) for line in entry["deny"]))
+        yield words("terminal.enforced.deny", lines="; ".join(_deny(line, words) for line in entry["deny"]))
         lost = [f"{shown_name(of['node'])} {of['role']} {shown_name(of['channel'])}" for of in entry["loses"]]
         if lost:
-            yield words("tty.enforced.loses", rights="; ".join(lost))
+            yield words("terminal.enforced.loses", rights="; ".join(lost))
 
 
 def _deny(line: Mapping[str, Any], words: Words) -> str:
     values = {what: shown(line[what]) for what in ("role", "enclave", "file")}
-    return words("tty.enforced.line", channel=shown_name(line["channel"]), **values)
+    return words("terminal.enforced.line", channel=shown_name(line["channel"]), **values)
 
 
 def _listed(enclaves: list[str]) -> str:
@@ -174,17 +174,17 @@ def law_lines(
         return
     kinds = {category["name"]: category for category in report["categories"]}
     yield "", ""
-    yield words("tty.law.title"), "bold"
+    yield words("terminal.law.title"), "bold"
     for category, finding in by_kind.items():
         for legal in _law(finding, kinds, words):
-            yield f"   {words('tty.law.line', kind=category, **legal)}", "magenta"
+            yield f"   {words('terminal.law.line', kind=category, **legal)}", "magenta"
         yield from _in_contexts(kinds.get(category, {}), findings_of[category], words)
         yield from _pointers(report, category, words)
         if finding["article9"] == "unknown":
-            yield f"   {words('tty.law.unknown', kind=category)}", "yellow"
+            yield f"   {words('terminal.law.unknown', kind=category)}", "yellow"
         if finding["article9"] == "no":
             reason = _text(kinds[category], "reason", words) if category in kinds else ""
-            yield f"   {words('tty.law.no', kind=category, reason=reason)}", "dim"
+            yield f"   {words('terminal.law.no', kind=category, reason=reason)}", "dim"
     yield from _of_contexts(report, words)
 
 
@@ -199,8 +199,8 @@ def _law(finding: Mapping[str, Any], kinds: Mapping[str, Mapping[str, Any]], wor
         condition = _text(texts, "condition", words).removeprefix(NARROWER)
         yield {
             "provision": _text(texts, "provision", words),
-            "may": words(f"tty.may.{legal['verdict']}"),
-            "condition": words("tty.law.condition", condition=condition) if condition else "",
+            "may": words(f"terminal.may.{legal['verdict']}"),
+            "condition": words("terminal.law.condition", condition=condition) if condition else "",
         }
 
 
@@ -223,16 +223,16 @@ def _title(report: Mapping[str, Any], finding: Mapping[str, Any], words: Words) 
     data = _data(finding["category"], words, pseudonymised=finding["pseudonymised"])
     asked = _may_be_asked(report, finding["category"], words)
     made = data_made(finding, f"{data}{asked}", words, str, shown_name)
-    what = words(f"tty.kind.{finding['kind']}", data=made)
+    what = words(f"terminal.kind.{finding['kind']}", data=made)
     return words.pair(what, f"{shown_name(finding['source'])} -> {shown_name(finding['leak'])}")
 
 
 def _data(category: str, words: Words, *, pseudonymised: bool) -> str:
-    return words("tty.hidden", kind=category) if pseudonymised else category
+    return words("terminal.hidden", kind=category) if pseudonymised else category
 
 
 def _states(finding: Mapping[str, Any], words: Words) -> list[str]:
-    return [words(f"tty.state.{state}") for state in ("accepted", "dismissed") if finding[state]]
+    return [words(f"terminal.state.{state}") for state in ("accepted", "dismissed") if finding[state]]
 
 
 def _style(finding: Mapping[str, Any]) -> str:
@@ -276,10 +276,10 @@ class _Way(NamedTuple):
             here = dict.fromkeys([*data[max(hop - 1, 0) : hop or 1], *last])
             roles_of = [(name, role) for name in here for role in self.roles.get((key(element), name), ())]
             notes = [
-                f"{words(f'tty.role.{role}', kind=name)}{self._of_another(finding, hop, role, name)}"
+                f"{words(f'terminal.role.{role}', kind=name)}{self._of_another(finding, hop, role, name)}"
                 for name, role in roles_of
             ]
-            notes += [words("tty.unreviewed") for name in here if (key(element), name) in self.unreviewed]
+            notes += [words("unreviewed") for name in here if (key(element), name) in self.unreviewed]
             style = "red" if any(role == "leak" for _, role in roles_of) else ""
             yield f"   {shown_name(element)}  ({', '.join([kind_in(element, words), *notes])})", style
             if hop < len(steps):
@@ -289,18 +289,18 @@ class _Way(NamedTuple):
     def _of_another(self, finding: Mapping[str, Any], hop: int, role: str, name: str) -> str:
         """Why a leak on the path does not dismiss a finding: it lets out what this one is not about (rule S10)."""
         between = role == "leak" and hop < len(finding["steps"]) and name != finding["category"]
-        return self.words("tty.another") if between else ""
+        return self.words("terminal.another") if between else ""
 
     def _step(self, step: Mapping[str, Any], before: Mapping[str, Any], to: Mapping[str, Any]) -> str:
         """One hop: what the policy allows, where, and what the data has become."""
         words = self.words
         places = [f"{shown(_within(self.folder, grant['file']))}:{grant['line']}" for grant in step["policy"]]
-        more = words("tty.more", n=len(places) - 1) if len(places) > 1 else ""
+        more = words("terminal.more", n=len(places) - 1) if len(places) > 1 else ""
         text = verb(step["role"], into_channel=to["kind"] in CHANNELS, words=words)
         what = f"{text}  {places[0]}{more}" if places else text
         if (step["category"], step["pseudonymised"]) == (before["category"], before["pseudonymised"]):
             return what
-        return what + words("tty.now", data=_data(step["category"], words, pseudonymised=step["pseudonymised"]))
+        return what + words("terminal.now", data=_data(step["category"], words, pseudonymised=step["pseudonymised"]))
 
 
 def _within(folder: str, file: str) -> str:
@@ -311,17 +311,17 @@ def _within(folder: str, file: str) -> str:
 
 def _paths(finding: Mapping[str, Any], words: Words) -> Iterator[Line]:
     if (finding["disjoint_paths"] or 1) > 1:
-        yield f"   {words('tty.disjoint', n=finding['disjoint_paths'])}", ""
+        yield f"   {words('terminal.disjoint', n=finding['disjoint_paths'])}", ""
     for path in finding.get("paths", ()):
-        yield f"   {words('tty.path', path=' -> '.join(shown_name(element) for element in path))}", ""
+        yield f"   {words('terminal.path', path=' -> '.join(shown_name(element) for element in path))}", ""
     if finding.get("paths_bounded"):
-        yield f"   {words('tty.bounded', n=len(finding['paths']))}", "yellow"
+        yield f"   {words('terminal.bounded', n=len(finding['paths']))}", "yellow"
 
 
 def _may_be_asked(report: Mapping[str, Any], category: str, words: Words) -> str:
     """Which of the kinds asked for data of another may be, with a space before; empty for what is asked for."""
     kinds = report["assumptions"].get("may_be_asked", {}).get(category)
-    return words("tty.may.be", kinds=named(kinds, words)) if kinds else ""
+    return words("terminal.may.be", kinds=named(kinds, words)) if kinds else ""
 
 
 def _by_line(findings: Iterable[Mapping[str, Any]]) -> list[list[Mapping[str, Any]]]:
@@ -337,8 +337,8 @@ def _group_line(group: Sequence[Mapping[str, Any]], reason: str, words: Words) -
     """What findings have in common that one line stands behind, for one reason."""
     kinds = words.row(words.first(list(dict.fromkeys(finding["category"] for finding in group)), NAMED))
     channels = {key(finding["leak"]) for finding in group}
-    counts = [words.count(len(group), "tty.finding"), words.count(len(channels), "tty.channel")]
-    return f"{words(f'tty.kind.{UNPROTECTED}', data=kinds)}, {', '.join(counts)}; {reason}"
+    counts = [words.count(len(group), "terminal.finding"), words.count(len(channels), "terminal.channel")]
+    return f"{words(f'terminal.kind.{UNPROTECTED}', data=kinds)}, {', '.join(counts)}; {reason}"
 
 
 def _decision(finding: Mapping[str, Any], words: Words) -> Iterator[Line]:
@@ -348,22 +348,22 @@ def _decision(finding: Mapping[str, Any], words: Words) -> Iterator[Line]:
         return
     from rosprivacy.analysis.decisions import Choice, State  # noqa: PLC0415 - light start
 
-    choice, at = words(f"tty.done.{decision['choice']}"), place(decision)
+    choice, at = words(f"terminal.done.{decision['choice']}"), place(decision)
     expires = words.date(decision["expires"]) if decision["expires"] else ""
     if decision["state"] == State.EXPIRED:
-        yield f"   {words('tty.undecided', choice=choice, date=expires, place=at)}", "yellow"
+        yield f"   {words('terminal.undecided', choice=choice, date=expires, place=at)}", "yellow"
         return
-    owner = words("tty.owner", owner=shown(decision["owner"])) if decision["owner"] else ""
-    until = words("tty.until", date=expires) if expires else ""
+    owner = words("terminal.owner", owner=shown(decision["owner"])) if decision["owner"] else ""
+    until = words("terminal.until", date=expires) if expires else ""
     basis = f", {', '.join(map(words.basis, decision['legal_basis']))}" if decision["legal_basis"] else ""
     style = "green" if decision["choice"] == Choice.ACCEPT else "yellow"
     yield f"   {choice}{owner}{until}{basis}  ({at})", style
     if decision["reason"]:
         yield f"      {shown(decision['reason'])}", style
     for change in decision.get("changed", ()):
-        what = words.known(f"tty.changed.{change['what']}", change["what"].replace("_", " "))
+        what = words.known(f"terminal.changed.{change['what']}", change["what"].replace("_", " "))
         before, now = shown(change["before"]), shown(change["now"])
-        yield f"      {words('tty.changed', what=what, before=before, now=now)}", "yellow"
+        yield f"      {words('terminal.changed', what=what, before=before, now=now)}", "yellow"
 
 
 def _in_contexts(kind: Mapping[str, Any], findings: Iterable[Mapping[str, Any]], words: Words) -> Iterator[Line]:
@@ -378,7 +378,7 @@ def _in_contexts(kind: Mapping[str, Any], findings: Iterable[Mapping[str, Any]],
         if sources:
             texts = {what: _text(row, what, words, shown) for what in ("provision", "condition")}
             who = {"kind": kind["name"], "sources": ", ".join(sources), "context": row["context"]}
-            sentence = f"tty.law.context.{row['verdict']}"
+            sentence = f"terminal.law.context.{row['verdict']}"
             yield f"   {words(sentence, **who, **texts)}", "magenta"
 
 
@@ -386,7 +386,7 @@ def _pointers(report: Mapping[str, Any], category: str, words: Words) -> Iterato
     """The provisions that a kind of data points at, in one line."""
     rows = [row for row in looked_at(report) if category in row["categories"]]
     if rows:
-        yield f"   {words('tty.law.look', kind=category, names=_names(rows, words))}", "dim"
+        yield f"   {words('terminal.law.look', kind=category, names=_names(rows, words))}", "dim"
 
 
 def _of_contexts(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
@@ -394,7 +394,7 @@ def _of_contexts(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
     for context in report.get("contexts", ()):
         rows = [row for row in looked_at(report) if context["name"] in row["contexts"]]
         if rows:
-            yield f"   {words('tty.law.look.context', context=context['name'], names=_names(rows, words))}", "dim"
+            yield f"   {words('terminal.law.look.context', context=context['name'], names=_names(rows, words))}", "dim"
 
 
 def _names(rows: Iterable[Mapping[str, Any]], words: Words) -> str:

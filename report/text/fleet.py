@@ -27,20 +27,20 @@ def fleet_lines(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
         return
     models = ", ".join(f"{count} {model}" for model, count in fleet["models"].items() if model)
     robots = words.count(fleet["robots"], "robot")
-    yield words("tty.each", robots=robots, models=f" ({models})" if models else ""), ""
+    yield words("terminal.each", robots=robots, models=f" ({models})" if models else ""), ""
     titles = {f["id"]: f"{f['category']}: {f['source']['name']} -> {f['leak']['name']}" for f in report["findings"]}
     titles = {p["id"]: titles[p["finding"]] for p in fleet["patterns"]}
     for deviant in fleet["deviants"]:
         yield "", ""
-        yield words("tty.deviant", robots=named(deviant["robots"], words), model=deviant["model"]), "bold yellow"
+        yield words("terminal.deviant", robots=named(deviant["robots"], words), model=deviant["model"]), "bold yellow"
         for key in ("more", "fewer"):
             for share in deviant[key]:
                 what = f"{_form(share, words)}{shown(titles[share['pattern']])}"
-                yield f"   {words(f'tty.fleet.{key}', what=what)}", ""
+                yield f"   {words(f'terminal.fleet.{key}', what=what)}", ""
         for key in ("more_open", "fewer_open"):
             if deviant[key]:
                 names = named([element["name"] for element in deviant[key]], words)
-                yield f"   {words(f'tty.fleet.{key}', what=names)}", ""
+                yield f"   {words(f'terminal.fleet.{key}', what=names)}", ""
 
 
 def on_robots(report: Mapping[str, Any], finding: Mapping[str, Any], words: Words) -> Iterator[str]:
@@ -49,7 +49,9 @@ def on_robots(report: Mapping[str, Any], finding: Mapping[str, Any], words: Word
         if pattern["finding"] == finding["id"] and pattern["robots"]:
             parts = [f"{words.count(len(robots), 'robot')} {form}" for robots, form in _forms(pattern, words)]
             yield (
-                both(parts, words) if parts else words("tty.on", robots=words.count(len(pattern["robots"]), "ofrobots"))
+                both(parts, words)
+                if parts
+                else words("terminal.on", robots=words.count(len(pattern["robots"]), "of_robots"))
             )
 
 
@@ -61,10 +63,10 @@ def robots_of(report: Mapping[str, Any], finding: Mapping[str, Any], words: Word
         return
     forms = _forms(pattern, words)
     on = words(
-        "tty.on.of",
+        "terminal.on.of",
         n=str(len(pattern["robots"])),
-        robots=words.count(fleet["robots"], "ofrobots"),
-        across=words("tty.across", n=pattern["findings"]) if pattern["across"] else "",
+        robots=words.count(fleet["robots"], "of_robots"),
+        across=words("terminal.across", n=pattern["findings"]) if pattern["across"] else "",
         names="" if forms else f": {named(pattern['robots'], words)}",
         id=pattern["id"],
     )
@@ -75,11 +77,11 @@ def robots_of(report: Mapping[str, Any], finding: Mapping[str, Any], words: Word
 
 
 def _forms(pattern: Mapping[str, Any], words: Words) -> list[tuple[Sequence[str], str]]:
-    forms = {form: (words(f"tty.form.{form}.yes"), words(f"tty.form.{form}.no")) for form in FORMS}
+    forms = {form: (words(f"terminal.form.{form}.yes"), words(f"terminal.form.{form}.no")) for form in FORMS}
     return forms_in_words(pattern.get("forms", ()), forms)
 
 
 def _form(share: Mapping[str, Any], words: Words) -> str:
-    where = words("tty.ends.here") if share["ends"] else ""
-    forms = [words(f"tty.form.{form}.yes") for form in FORMS if share[form]]
+    where = words("terminal.ends.here") if share["ends"] else ""
+    forms = [words(f"terminal.form.{form}.yes") for form in FORMS if share[form]]
     return where + (", ".join(forms) + " " if forms else "")

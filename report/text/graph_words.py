@@ -80,4 +80,4 @@ class GraphWords:
         role, denied = flow_said(relationship)
         into_channel = end is not None and end["kind"] in CHANNELS
         text = verb(role, into_channel=into_channel, words=self.words)
-        return f"{text} ({self.words('pic.look.denied')})" if denied else text
+        return f"{text} ({self.words('picture.look.denied')})" if denied else text

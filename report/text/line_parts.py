@@ -60,4 +60,4 @@ def place(row: Mapping[str, Any]) -> str:
 def listed(texts: Sequence[str], most: int | None, words: Words, separator: str = ", ") -> str:
     """Return the first of some texts, and how many more ``-v`` shows; all if ``most`` is None."""
     left_out = len(texts) - most if most is not None else 0
-    return separator.join(texts[:most]) + (words("tty.more.verbose", n=left_out) if left_out > 0 else "")
+    return separator.join(texts[:most]) + (words("terminal.more.verbose", n=left_out) if left_out > 0 else "")

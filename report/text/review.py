@@ -42,10 +42,10 @@ def review_lines(report: Mapping[str, Any], words: Words, *, verbose: bool) -> I
             continue
         yield "", ""
         count = count_rows(group.questions)
-        title = words(f"tty.review.{group.key}")
+        title = words(f"terminal.review.{group.key}")
         yield words.pair(title, f"{count.elements}{legs(count, words)}"), "bold"
         for question in group.questions if verbose else group.now[:SHOWN]:
-            steps = words("tty.from.source", steps=words.count(question["distance"], "step"))
+            steps = words("terminal.from.source", steps=words.count(question["distance"], "step"))
             what = "; ".join((kind_in(question["element"], words), steps, review_text(question, brings, words)))
             yield f"   {label_name(question)}  ({what})", ""
         if not verbose:
@@ -57,22 +57,22 @@ def review_text(question: Mapping[str, Any], brings: Mapping[Any, Sequence[str]]
     kinds = ", ".join(question["categories"])
     own = brings.get(key(question["element"]), ())
     through = question.get("through")
-    parts = [words("tty.comes.through", kinds=kinds, element=shown_name(through)) if through else kinds]
-    parts += [words(f"tty.missing.{what}") for what in question.get("missing", ())]
-    parts += [words("tty.brings", own=", ".join(own), kinds=kinds)] if own else []
-    behind = [words.count(question["closes"], "tty.otheropen")] if question.get("closes") else []
-    behind += [words.count(question["leaks"], "tty.exit")] if question.get("leaks") else []
-    return "; ".join([*parts, *([words("tty.only.past", behind=both(behind, words))] if behind else [])])
+    parts = [words("terminal.comes.through", kinds=kinds, element=shown_name(through)) if through else kinds]
+    parts += [words(f"terminal.missing.{what}") for what in question.get("missing", ())]
+    parts += [words("terminal.brings", own=", ".join(own), kinds=kinds)] if own else []
+    behind = [words.count(question["closes"], "open_element")] if question.get("closes") else []
+    behind += [words.count(question["leaks"], "exit")] if question.get("leaks") else []
+    return "; ".join([*parts, *([words("terminal.only.past", behind=both(behind, words))] if behind else [])])
 
 
 def _more(group: ReviewGroup, words: Words) -> Iterator[Line]:
     left = len(group.now) - SHOWN
     if left > 0:
-        yield f"   {words('tty.rest', n=left)}", "dim"
+        yield f"   {words('terminal.rest', n=left)}", "dim"
     if waiting := count_rows(group.waiting).elements:
-        yield f"   {words('tty.wait', n=waiting)}", "dim"
+        yield f"   {words('terminal.wait', n=waiting)}", "dim"
     if proposed := count_rows(group.proposed).elements:
-        yield f"   {words('tty.infrastructure', n=proposed)}", "dim"
+        yield f"   {words('terminal.infrastructure', n=proposed)}", "dim"
 
 
 def doubt_lines(report: Mapping[str, Any], most: int | None, words: Words) -> Iterator[Line]:
@@ -89,7 +89,7 @@ def doubt_lines(report: Mapping[str, Any], most: int | None, words: Words) -> It
         yield f"   {words(f'doubt.{name}.title')} ({rank}). {remedy}", ""
         yield from ((f"      {_doubt(doubt, words)}", "yellow") for doubt in sort[:most])
         if most is not None and len(sort) > most:
-            yield f"      {words('tty.rest', n=len(sort) - most)}", "dim"
+            yield f"      {words('terminal.rest', n=len(sort) - most)}", "dim"
 
 
 def _doubt(doubt: Mapping[str, Any], words: Words) -> str:
@@ -111,7 +111,7 @@ def next_lines(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
     """Return the next step; none where nothing was found and nothing is open."""
     step = _step(report, words)
     if step:
-        yield words("tty.next", step=step), "bold"
+        yield words("terminal.next", step=step), "bold"
 
 
 def lacking_step(code: str, words: Words = IN_ENGLISH) -> str:
@@ -120,27 +120,27 @@ def lacking_step(code: str, words: Words = IN_ENGLISH) -> str:
     >>> lacking_step(GOES_NOWHERE)
     'check which node brings the data in (those named send none on): nodes: {/camera: {source: [Video]}}'
     """
-    return words(f"tty.next.{code}", example=EXAMPLE) if code in (GOES_NOWHERE, NO_LEAK_NAMED) else ""
+    return words(f"terminal.next.{code}", example=EXAMPLE) if code in (GOES_NOWHERE, NO_LEAK_NAMED) else ""
 
 
 def _step(report: Mapping[str, Any], words: Words) -> str:
     if report["verdict"] == "leak":
-        return words("tty.next.leak")
+        return words("terminal.next.leak")
     if report["verdict"] != "undetermined":
         return ""
-    source = words("tty.next.source", example=EXAMPLE)
+    source = words("terminal.next.source", example=EXAMPLE)
     followed = bool(report["carries"])  # a label names a source of what was asked for
     if not followed and (asked := restriction(report, words)):
-        return words("tty.next.all", source=source, restriction=asked)
+        return words("terminal.next.all", source=source, restriction=asked)
     if not followed:
         likely = candidates(report)
-        names = words("tty.next.candidates", names=named(likely, words)) if likely else ""
-        return words("tty.next.init", source=source, candidates=names)
+        names = words("terminal.next.candidates", names=named(likely, words)) if likely else ""
+        return words("terminal.next.init", source=source, candidates=names)
     if report["open"]:
         first = next_round(report)[0]["element"]
         others = count_rows(report["open"]).elements - 1
-        more = words("tty.more", n=others) if others else ""
-        return words("tty.next.review", element=shown_name(first), more=more)
+        more = words("terminal.more", n=others) if others else ""
+        return words("terminal.next.review", element=shown_name(first), more=more)
     return lacking_step(lacking(report), words) or _doubt_step(report, words)
 
 

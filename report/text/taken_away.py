@@ -29,20 +29,20 @@ def denied_lines(report: Mapping[str, Any], words: Words, *, most: int | None) -
     """Return the denied flows; ``most`` of them, all if None."""
     flows = report["denied"]
     if flows:
-        yield from titled(words("tty.denied", n=len(flows)), (_denied(flow, words) for flow in flows[:most]))
+        yield from titled(words("terminal.denied", n=len(flows)), (_denied(flow, words) for flow in flows[:most]))
     if most is not None and len(flows) > most:
-        yield f"   {words('tty.rest', n=len(flows) - most)}", "dim"
+        yield f"   {words('terminal.rest', n=len(flows) - most)}", "dim"
 
 
 def _denied(flow: Mapping[str, Any], words: Words) -> Line:
     allowed, denied = (_places(flow[side], words) for side in ("allowed_by", "denied_by"))
-    line = words("tty.denied.line", ends=_ends(flow), role=flow["role"], allowed=allowed, denied=denied)
+    line = words("terminal.denied.line", ends=_ends(flow), role=flow["role"], allowed=allowed, denied=denied)
     return f"   {line}", ""
 
 
 def _places(rows: Iterable[Mapping[str, Any]], words: Words) -> str:
     places = list(dict.fromkeys(map(place, rows)))
-    return places[0] + words("tty.more", n=len(places) - 1) if len(places) > 1 else places[0]
+    return places[0] + words("terminal.more", n=len(places) - 1) if len(places) > 1 else places[0]
 
 
 def _ends(row: Mapping[str, Any], start: str = "source", end: str = "target") -> str:
@@ -54,12 +54,12 @@ def standard_lines(report: Mapping[str, Any], most: int | None, words: Words) ->
     assumptions = report["assumptions"]
     taken = assumptions["standard_channels"]
     if not taken:
-        yield f"   {words('tty.standard.none')}", ""
+        yield f"   {words('terminal.standard.none')}", ""
         return
     proposed = infrastructure_file(assumptions)
-    more = words("tty.standard.proposed", file=proposed) if proposed else ""
-    channels = words.count(report["standard_channels"], "tty.standard")
-    by = "tty.standard.shipped" if taken["file"] == SHIPPED else "tty.standard.by"
+    more = words("terminal.standard.proposed", file=proposed) if proposed else ""
+    channels = words.count(report["standard_channels"], "terminal.standard")
+    by = "terminal.standard.shipped" if taken["file"] == SHIPPED else "terminal.standard.by"
     text = words(by, channels=channels, more=more, file=shown(taken["file"]), sha=taken["sha256"][:12])
     yield f"   {text}", ""
     rows = assumptions.get("standard_channels_reached", ())  # documents of earlier versions do not say
@@ -68,7 +68,7 @@ def standard_lines(report: Mapping[str, Any], most: int | None, words: Words) ->
     unchanged = [shown_name(element) for element in assumptions.get("standard_channels_unchanged", ())]
     for what, names in (("reached", reached), ("keeps", keeping), ("unchanged", unchanged)):
         if names:
-            text = words(f"tty.standard.{what}", n=len(names), names=listed(names, most, words))
+            text = words(f"terminal.standard.{what}", n=len(names), names=listed(names, most, words))
             yield f"   {text}", "yellow" if what == "unchanged" else ""
 
 
@@ -77,68 +77,68 @@ def type_lines(report: Mapping[str, Any], most: int | None, words: Words) -> Ite
     assumptions = report["assumptions"]
     for file in assumptions.get("types", ()):
         start, end = (words.moment(shown(file["observed"][at])) for at in ("from", "to"))
-        times = words("tty.types.times", start=start, end=end) if start else ""
-        yield f"   {words('tty.types.file', file=shown(file['file']), sha=file['sha256'][:12], times=times)}", ""
+        times = words("terminal.types.times", start=start, end=end) if start else ""
+        yield f"   {words('terminal.types.file', file=shown(file['file']), sha=file['sha256'][:12], times=times)}", ""
     if "type_limits" not in assumptions:
         return
     limits = assumptions["type_limits"]
     if limits is None:
-        yield f"   {words('tty.types.none')}", ""
+        yield f"   {words('terminal.types.none')}", ""
         return
-    flows = words.count(limits["flows"], "tty.types.flows")
-    yield f"   {words('tty.types.limits', flows=flows, file=shown(limits['file']), sha=limits['sha256'][:12])}", ""
+    flows = words.count(limits["flows"], "terminal.types.flows")
+    yield f"   {words('terminal.types.limits', flows=flows, file=shown(limits['file']), sha=limits['sha256'][:12])}", ""
     closed = [f"{row['category']}: {_ends(row, end='leak')}" for row in assumptions.get("closed_by_types", ())]
     if closed:
         names = listed(closed, most, words, "; ")
-        yield f"   {words.count(len(closed), 'tty.types.closed')} {names}", "yellow"
+        yield f"   {words.count(len(closed), 'terminal.types.closed')} {names}", "yellow"
 
 
 def absent_lines(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
     """Return the nodes of which labels say that they are not on the robot."""
     for row in report["assumptions"].get("absent", ()):
-        yield f"   {words('tty.absent', element=shown_name(row['element']), why=shown(row['why']))}", ""
+        yield f"   {words('terminal.absent', element=shown_name(row['element']), why=shown(row['why']))}", ""
 
 
 def overruled_lines(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
     """Return how many sources and leaks labels say that other labels take away."""
     rows = report["assumptions"].get("overruled", ())
     if rows:
-        yield f"   {words.count(len(rows), 'tty.overruled')}", "yellow"
+        yield f"   {words.count(len(rows), 'terminal.overruled')}", "yellow"
 
 
 def glob_warnings(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
     """Return what ``Assumed`` says of globs that decide more than a person may see."""
     for row in report["assumptions"].get("globs", ()):
         if row["warning"]:
-            why = words(f"tty.glob.{row['warning']}")
-            yield f"   {words('tty.glob.warning', row=_glob(row, words), why=why)}", "bold yellow"
+            why = words(f"terminal.glob.{row['warning']}")
+            yield f"   {words('terminal.glob.warning', row=_glob(row, words), why=why)}", "bold yellow"
 
 
 def glob_lines(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
     """Return a line for each glob of the label files: what it decides and closes."""
     rows = report["assumptions"].get("globs", ())
     if rows:
-        yield from titled(words("tty.globs", n=len(rows)), ((f"   {_glob(row, words)}", "") for row in rows))
+        yield from titled(words("terminal.globs", n=len(rows)), ((f"   {_glob(row, words)}", "") for row in rows))
 
 
 def _glob(row: Mapping[str, Any], words: Words) -> str:
     flows = row.get("flows", 0)
     decided = [words.count(row["elements"], "element")] if row["elements"] or not flows else []
     decided += [words.count(flows, "flow")] if flows else []
-    parts = [words("tty.glob.decides", what=both(decided, words))]
-    parts += [words("tty.glob.closed", n=row["closed"])] if row["closed"] else []
+    parts = [words("terminal.glob.decides", what=both(decided, words))]
+    parts += [words("terminal.glob.closed", n=row["closed"])] if row["closed"] else []
     if row.get("flows_closed"):
-        parts.append(words("tty.glob.along", flows=words.count(row["flows_closed"], "flow")))
-    parts += [words("tty.glob.reviewed", n=row["reviewed"])] if row["reviewed"] else []
+        parts.append(words("terminal.glob.along", flows=words.count(row["flows_closed"], "flow")))
+    parts += [words("terminal.glob.reviewed", n=row["reviewed"])] if row["reviewed"] else []
     behind = _leak_and_open(row, words)
-    lies = words("tty.glob.behind", places=both(behind, words)) if behind else ""
-    return words("tty.glob", place=place(row), says=", ".join(row["says"]), parts=", ".join(parts), behind=lies)
+    lies = words("terminal.glob.behind", places=both(behind, words)) if behind else ""
+    return words("terminal.glob", place=place(row), says=", ".join(row["says"]), parts=", ".join(parts), behind=lies)
 
 
 def _leak_and_open(row: Mapping[str, Any], words: Words) -> list[str]:
     """What lies behind: a leak, and an element that nobody has reviewed."""
-    places = [words("tty.the.leak", leak=shown_name(row["leak"]))] if row["leak"] else []
-    return places + ([words("tty.the.open", element=shown_name(row["open"]))] if row["open"] else [])
+    places = [words("terminal.the.leak", leak=shown_name(row["leak"]))] if row["leak"] else []
+    return places + ([words("terminal.the.open", element=shown_name(row["open"]))] if row["open"] else [])
 
 
 def taken_away_lines(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
@@ -146,11 +146,11 @@ def taken_away_lines(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
     taken = report["assumptions"]["taken_away_by"]
     if not taken:
         return
-    parts = [words.count(number, f"tty.by.{by}") for by, number in taken.items()]
-    yield f"   {words('tty.taken', what=', '.join(parts))}", ""
+    parts = [words.count(number, f"terminal.by.{by}") for by, number in taken.items()]
+    yield f"   {words('terminal.taken', what=', '.join(parts))}", ""
     closing = sum(map(_closes, report["taken_away"]))
     if closing:
-        yield f"   {words('tty.closing', n=closing)}", "yellow"
+        yield f"   {words('terminal.closing', n=closing)}", "yellow"
 
 
 def hanging_lines(report: Mapping[str, Any], most: int | None, words: Words) -> Iterator[Line]:
@@ -160,23 +160,25 @@ def hanging_lines(report: Mapping[str, Any], most: int | None, words: Words) -> 
         for at, row in hanging(report)
     ]
     if labels:
-        text = words.count(len(labels), "tty.hanging", labels=listed(labels, most, words))
+        text = words.count(len(labels), "terminal.hanging", labels=listed(labels, most, words))
         yield f"   {text}", "bold yellow"
 
 
 def _row_says(row: Mapping[str, Any], words: Words) -> str:
-    return words(f"tty.says.{row['by']}")
+    return words(f"terminal.says.{row['by']}")
 
 
 def _leak_behind(row: Mapping[str, Any], words: Words) -> str:
-    return words("tty.leak.behind", leak=shown_name(row["leak"])) if row["leak"] else ""
+    return words("terminal.leak.behind", leak=shown_name(row["leak"])) if row["leak"] else ""
 
 
 def ledger_lines(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
     """Return a line for each row that closed a path: what, where, on whose word, and what lies behind."""
     rows = [row for row in report["taken_away"] if _closes(row)]
     if rows:
-        yield from titled(words("tty.ledger", n=len(rows)), ((f"   {_ledger_row(row, words)}", "") for row in rows))
+        yield from titled(
+            words("terminal.ledger", n=len(rows)), ((f"   {_ledger_row(row, words)}", "") for row in rows)
+        )
 
 
 def _closes(row: Mapping[str, Any]) -> bool:
@@ -187,13 +189,13 @@ def _ledger_row(row: Mapping[str, Any], words: Words) -> str:
     ends = " -> ".join(shown_name(row[end]) for end in ("element", "to") if row[end])
     lines = ", ".join(map(place, row["places"]))
     kinds = ", ".join(row["categories"])
-    says = _row_says(row, words) + (words("tty.by.glob") if row["glob"] else "")
+    says = _row_says(row, words) + (words("terminal.by.glob") if row["glob"] else "")
     says += f" ({shown(row['note'])})" if row["by"] == "outdone" else ""
     return words(
-        "tty.ledger.line",
-        where=words("tty.ledger.at", kinds=kinds, ends=ends) if ends else kinds,
+        "terminal.ledger.line",
+        where=words("terminal.ledger.at", kinds=kinds, ends=ends) if ends else kinds,
         said=says,
-        lines=words("tty.ledger.lines", lines=lines) if lines else "",
+        lines=words("terminal.ledger.lines", lines=lines) if lines else "",
         behind=_behind(row, words),
     )
 
@@ -201,11 +203,11 @@ def _ledger_row(row: Mapping[str, Any], words: Words) -> str:
 def _behind(row: Mapping[str, Any], words: Words) -> str:
     """What data would get to."""
     if row["by"] == "decision":
-        return words("tty.reaches.finding", leak=shown_name(row["leak"]), id=shown(row["note"]))
+        return words("terminal.reaches.finding", leak=shown_name(row["leak"]), id=shown(row["note"]))
     if row["by"] == "restriction":
-        return words("tty.reaches", leak=shown_name(row["leak"]))
+        return words("terminal.reaches", leak=shown_name(row["leak"]))
     places = _leak_and_open(row, words)
-    return words("tty.without", places=both(places, words)) if places else words("tty.not.worked.out")
+    return words("terminal.without", places=both(places, words)) if places else words("terminal.not.worked.out")
 
 
 def reliance_lines(report: Mapping[str, Any], words: Words, *, verbose: bool) -> Iterator[Line]:
@@ -213,29 +215,29 @@ def reliance_lines(report: Mapping[str, Any], words: Words, *, verbose: bool) ->
     rows = report.get("hangs_on", ())
     for row in report.get("not_asked", ()):
         yield "", ""
-        yield words("tty.hangs.not.asked", option=row["option"]), ""
+        yield words("terminal.hangs.not.asked", option=row["option"]), ""
     if not rows:
         return
     own = sum(not row["shipped"] for row in rows)
-    counts = [(own, "tty.hangs.own"), (len(rows) - own, "tty.hangs.shipped")]
+    counts = [(own, "terminal.hangs.own"), (len(rows) - own, "terminal.hangs.shipped")]
     worst = [row for row in rows if not row["shipped"] and (row["findings"] or row["perhaps"])]
     listed_rows, most = (rows, None) if verbose else (worst[:WORST], FEW)
     yield from titled(
-        words("tty.hangs", what=both([words.count(n, key) for n, key in counts if n], words)),
+        words("terminal.hangs", what=both([words.count(n, key) for n, key in counts if n], words)),
         ((f"   {_statement(row, most, words)}", "yellow" if row["findings"] else "") for row in listed_rows),
     )
     if len(listed_rows) < len(rows):
-        yield f"   {words('tty.hangs.wrong')}", "dim"
+        yield f"   {words('terminal.hangs.wrong')}", "dim"
 
 
 def _statement(row: Mapping[str, Any], most: int | None, words: Words) -> str:
     ends = (_distinct(map(shown_name, row[end]), FEW, words) for end in ("elements", "to") if row[end])
     return words(
-        "tty.hangs.line",
+        "terminal.hangs.line",
         place=place(row),
         ends=" -> ".join(ends),
-        said=_as_written(row) + (words("tty.by.glob") if row["glob"] else ""),
-        by=words("tty.hangs.by", author=shown(row["author"])) if row["author"] else "",
+        said=_as_written(row) + (words("terminal.by.glob") if row["glob"] else ""),
+        by=words("terminal.hangs.by", author=shown(row["author"])) if row["author"] else "",
         why=f" ({shown(row['why'])})" if row["why"] else "",
         opened=_opened(row, most, words),
     )
@@ -252,18 +254,18 @@ def _as_written(row: Mapping[str, Any]) -> str:
 
 def _opened(row: Mapping[str, Any], most: int | None, words: Words) -> str:
     if row["refused"]:
-        return words("u.refused", why=shown(row["refused"]))
+        return words("reliance.refused", why=shown(row["refused"]))
     if row["perhaps"]:
-        return words("tty.not.worked.out")
+        return words("terminal.not.worked.out")
     questions = (f"{shown_name(of['element'])} ({', '.join(of['categories'])})" for of in row["questions"])
     parts = [_distinct((_opening(opening, words) for opening in row["findings"]), most, words)]
-    parts += [words("tty.hangs.asked", elements=_distinct(questions, most, words))] if row["questions"] else []
+    parts += [words("terminal.hangs.asked", elements=_distinct(questions, most, words))] if row["questions"] else []
     return "; ".join(filter(None, parts))
 
 
 def _opening(opening: Mapping[str, Any], words: Words) -> str:
     category = opening["category"]
-    data = words("tty.hidden", kind=category) if opening["pseudonymised"] else category
+    data = words("terminal.hidden", kind=category) if opening["pseudonymised"] else category
     return opening_text(opening, words.pair(data, _ends(opening, end="leak")), words)
 
 
@@ -271,4 +273,4 @@ def _distinct(texts: Iterable[str], most: int | None, words: Words) -> str:
     """Return the first of some texts, each once: the legs of a service have one name."""
     distinct = list(dict.fromkeys(texts))
     left_out = len(distinct) - most if most is not None else 0
-    return words.row(distinct[:most]) + (words("tty.more", n=left_out) if left_out > 0 else "")
+    return words.row(distinct[:most]) + (words("terminal.more", n=left_out) if left_out > 0 else "")

@@ -34,7 +34,7 @@ VOCABULARY = load()
 KINDS = ("PersonalData", "Biometric", "FaceTemplate", "Video", "Voice")
 TITLES = {VOCABULARY.categories[name].title: name for name in KINDS}
 WORDS = Words("en")
-OPEN = WORDS("r.open")
+OPEN = WORDS("record.open")
 REST: dict[str, Any] = {"rosprivacy": "1", "policies": [], "labels": [], "standard_channels": None}
 DROPPED = re.compile(r"(/?n\d+) \(([^)]+)\): ")
 
@@ -107,7 +107,7 @@ def check(case: Case) -> None:
     brute = case.system.brute()
     bound = replace(case.system.bound(), subjects=case.persons)
     answer = answer_of(analysis, VOCABULARY, REST, bound=bound)
-    columns = {WORDS(f"r.{name}"): name for name in article30.Entry.__dataclass_fields__}
+    columns = {WORDS(f"record.{name}"): name for name in article30.Entry.__dataclass_fields__}
     text = article30.record(document(answer), "en").removeprefix("\ufeff")
     vertices = {element.name: vertex for vertex, element in enumerate(case.system.graph().elements)}
     for cells in csv.DictReader(io.StringIO(text)):

@@ -34,7 +34,7 @@ POLICY = policy("cam>/v<", "mic>/a<", "up><v,a", "log><v,a")
 SOURCES = {"/cam": "Video", "/mic": "Voice"}
 TITLES = {"Video": "video of persons", "Voice": "voice"}
 WORDS = Words("en")
-OPEN = WORDS("r.open")
+OPEN = WORDS("record.open")
 BASES = ("6(1)(a)", "6(1)(e)", "9(2)(a)", "9(2)(h)", "9(3)", "10")
 DURATIONS = {"P3D": "3 days", "P30D": "30 days", "P1Y": "1 year"}
 TRANSFERS = {"standard-clauses": "standard contractual clauses", "derogation": "derogation"}
@@ -106,7 +106,7 @@ def outputs(said: Said) -> tuple[list[dict[str, str]], dict[int, str]]:
         Path("l.yaml").write_text(said.labels(), "utf-8")
         result = rosprivacy.analyze("p.xml", "l.yaml")
         record, file = result.to("article30"), json.loads(result.to("cnil-pia"))
-    columns = {WORDS(f"r.{name}"): name for name in article30.Entry.__dataclass_fields__}
+    columns = {WORDS(f"record.{name}"): name for name in article30.Entry.__dataclass_fields__}
     *rows, _ = csv.DictReader(io.StringIO(record.removeprefix("\ufeff")))  # the last is the answer it rests on
     answers = {one["reference_to"]: one["data"]["text"] or "\n".join(one["data"]["list"]) for one in file["answers"]}
     answers[0] = "\n".join(measure["content"] for measure in file["measures"])

@@ -73,7 +73,7 @@ def seen(result: Result, name: str, language: str = "en") -> str:
 
 def rows(result: Result) -> dict[tuple[str, str], dict[str, str]]:
     text = seen(result, "article30").removeprefix("\ufeff")
-    columns = {Words("en")(f"r.{name}"): name for name in article30.Entry.__dataclass_fields__}
+    columns = {Words("en")(f"record.{name}"): name for name in article30.Entry.__dataclass_fields__}
     found = [{columns[key]: cell for key, cell in row.items()} for row in csv.DictReader(io.StringIO(text))]
     return {(row["category"], row["exit"]): row for row in found}
 
@@ -116,10 +116,14 @@ def test_who_recognises_or_judges_persons_is_no_measure(tmp_path: Path) -> None:
     for language in LANGUAGES:
         words = Words(language)
         page = seen(result, "works-council", language)
-        protections = page.partition(plain(words("wc.measures")))[2].partition(plain(words("wc.open")))[0]
+        protections = page.partition(plain(words("works_council.measures")))[2].partition(
+            plain(words("works_council.open"))
+        )[0]
         line = next(line for line in protections.split("\n") if "/blur" in line)
-        assert plain(words("s.cleans.too", element="/emotion")) not in line
-        recognised = page.partition(plain(words("wc.recognised")))[2].partition(plain(words("wc.measures")))[0]
+        assert plain(words("sanitizer.cleans.too", element="/emotion")) not in line
+        recognised = page.partition(plain(words("works_council.recognised")))[2].partition(
+            plain(words("works_council.measures"))
+        )[0]
         assert all(name in recognised for name in ("/emotion", "/guard"))
         assert not any(protections.lstrip().startswith(name) for name in ("/emotion", "/guard"))
 

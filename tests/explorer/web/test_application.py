@@ -196,7 +196,7 @@ def test_files_that_are_not_what_was_read_are_told_as_long_as_they_are_not(
     client = explore(policy, labels, language=language, review=review).client()
     assert 'id="inputs"' not in client.get("/").text
     policy.write_text(policy.read_text("utf-8") + "<!-- more -->", "utf-8")
-    told = Words(language)("x.inputs", files=str(policy))
+    told = Words(language)("explorer.inputs", files=str(policy))
     assert client.get("/now").json() == {"version": 0, "disk": False, "inputs": told}
     for _ in range(2):  # it stands there, whoever looks again
         (said,) = html.fromstring(client.get("/").text).xpath("//*[@role='alert']/*[@id='inputs']")

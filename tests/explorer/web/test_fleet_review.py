@@ -69,9 +69,9 @@ def test_a_review_goes_from_the_first_question_to_the_fleets_report(
         for wrong in ("carrier_02:", "carrier_23:", "guide_02:"):  # they are alike to the first of them
             assert wrong not in text
     last = html.fromstring(seen[-1])
-    assert heading(last) == words("rv.h.summary")
-    assert words("rv.title.fleet") in last.xpath("string(//title)")
-    assert words("rv.end.none") in seen[-1].replace("&#39;", "'")
+    assert heading(last) == words("review.heading.summary")
+    assert words("review.title.fleet") in last.xpath("string(//title)")
+    assert words("review.end.none") in seen[-1].replace("&#39;", "'")
     assert client.post("/save", data={"version": last.xpath("string(//body/@data-version)")}).status_code == 303
     assert NAME in (hospital.parent / "carrier.labels.yaml").read_text("utf-8")
     fresh = answer_fleet(str(hospital), Settings())
@@ -158,10 +158,10 @@ def test_what_no_file_can_answer_is_told_as_open_and_never_asked(
     open_now = {one.element.full_name for one in asked(explorer.site.standing)}
     assert "bare:/recorder" in open_now
     summary = page(client, "/?step=summary")
-    assert words("rv.beyond") in summary.text_content()
-    assert words.count(len(open_now), "rv.end.open") in summary.text_content()
+    assert words("review.beyond") in summary.text_content()
+    assert words.count(len(open_now), "review.end.open") in summary.text_content()
     whole = page(client, f"/?at={on('bare', '/recorder')}")
-    assert words("rv.beyond") in whole.text_content()
+    assert words("review.beyond") in whole.text_content()
     assert not whole.xpath("//form[starts-with(@action, '/label')]")
     sent = {"version": str(explorer.session.version), "element": on("bare", "/recorder"), "role": "conduit", "by": "x"}
     assert client.post("/label", data={**sent, "about": "Video"}).status_code == 422

@@ -60,7 +60,7 @@ def test_what_closes_none_keeps_its_key_and_says_that_it_takes_data_away(explore
     client = explorer.client()
     offer = next(form for form in battery(client).forms if form.get("class") == "offer")
     assert offer.cssselect("button[data-key=a]")
-    assert Words("en")("x.offer.takes") in offer.text_content()
+    assert Words("en")("explorer.offer.takes") in offer.text_content()
     assert client.post("/label", data=dict(offer.form_values())).status_code == 303
     assert explorer.session.version == 1
 
@@ -69,17 +69,17 @@ def test_what_adds_data_says_nothing_of_that(explore: Explore, robot: Path) -> N
     (robot / "labels.yaml").write_text("labels: 1\n", "utf-8")
     page = html.fromstring(opened(explore, robot).client().get(f"/?at={node('/camera')}").text)
     assert page.cssselect("form.offer button[data-key=a]")
-    assert Words("en")("x.offer.takes") not in page.text_content()
+    assert Words("en")("explorer.offer.takes") not in page.text_content()
 
 
 def test_a_review_names_the_findings_beside_the_guess(explore: Explore, robot: Path) -> None:
     page = battery(opened(explore, robot, review=True).client())
-    assert Words("en")("rv.guess.closes") in page.text_content()
+    assert Words("en")("review.guess.closes") in page.text_content()
     assert FINDING.format("", "") in page.text_content()
     (robot / "labels.yaml").write_text(WITHOUT_LEAK, "utf-8")
     page = battery(opened(explore, robot, review=True).client())
-    assert Words("en")("rv.guess.closes") not in page.text_content()
-    assert Words("en")("x.offer.takes") in page.text_content()
+    assert Words("en")("review.guess.closes") not in page.text_content()
+    assert Words("en")("explorer.offer.takes") in page.text_content()
 
 
 def test_of_a_fleet_it_is_the_same(explore: Explore, robot: Path) -> None:
@@ -102,7 +102,7 @@ def test_an_answer_about_every_kind_leaves_what_is_made_of_data(explore: Explore
     assert label(client, node("/box"), "conduit", about="*").status_code == 303
     box = next(one for one in explorer.session.result.analysis.graph.elements if one.name == "/box")
     assert explorer.session.entry_for(box)["derives"] == [{"from": "Video", "to": "FaceTemplate"}]
-    gone = Words("en")("x.derives.gone", data="face template")
+    gone = Words("en")("explorer.derives.gone", data="face template")
     assert gone not in client.get("/").text
     assert label(client, node("/box"), "absent", reason="only in tests").status_code == 303
     assert "derives" not in explorer.session.entry_for(box)

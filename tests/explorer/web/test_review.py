@@ -40,8 +40,8 @@ def test_a_review_goes_from_the_first_question_to_the_report(explore: Explore, t
     seen = to_the_end(client)
     assert len(seen) > 10
     last = html.fromstring(seen[-1])
-    assert heading(last) == words("rv.h.summary")
-    assert words("rv.end.none") in seen[-1].replace("&#39;", "'")
+    assert heading(last) == words("review.heading.summary")
+    assert words("review.end.none") in seen[-1].replace("&#39;", "'")
     assert NAME in seen[-1]
     assert (
         client.post("/save?step=summary", data={"version": last.xpath("string(//body/@data-version)")}).status_code
@@ -96,20 +96,20 @@ def test_where_nothing_is_suggested_a_person_is_asked_what_brings_data_in(
     explorer = without_suggestions(explore, tmp_path, language=language)
     client, words = explorer.client(), Words(language)
     first, summary = page(client), page(client, "/?step=summary").text_content()
-    assert heading(first) == words("rv.h.source")
-    assert words("rv.source.nothing") in first.text_content()
-    for told in ("rv.end.nothing", "rv.saved.nothing", "rv.out.nothing", "rv.progress.none"):
+    assert heading(first) == words("review.heading.source")
+    assert words("review.source.nothing") in first.text_content()
+    for told in ("review.end.nothing", "review.saved.nothing", "review.out.nothing", "review.progress.none"):
         assert words(told) in summary
-    for wrong in ("rv.end.none", "rv.saved", "rv.out.none"):
+    for wrong in ("review.end.none", "review.saved", "review.out.none"):
         assert words(wrong) not in summary
     assert "/a1" in first.xpath("string(//main//ul)")
-    assert words("rv.source.none") in page(client, "/?step=source&find=nowhere").text_content()
+    assert words("review.source.none") in page(client, "/?step=source&find=nowhere").text_content()
     found = page(client, "/?step=source&find=A1").xpath("//main//li/a")
-    assert [one.text_content() for one in found] == [words("rv.named", name="/a1", kind=words("rv.kind.node"))]
+    assert [one.text_content() for one in found] == [words("review.named", name="/a1", kind=words("review.kind.node"))]
     assert answer(client, "source", found[0].get("href"), brings="Video").status_code == 303
     assert "/b2" in heading(page(client))
     assert explorer.session.result.analysis.emitted
-    assert words("rv.end.nothing") not in page(client, "/?step=summary").text_content()
+    assert words("review.end.nothing") not in page(client, "/?step=summary").text_content()
 
 
 def test_who_says_of_everything_that_it_brings_nothing_in_is_told_that_nothing_was_followed(
@@ -119,9 +119,9 @@ def test_who_says_of_everything_that_it_brings_nothing_in_is_told_that_nothing_w
     for name in ("/a1", "/b2"):
         assert answer(client, "none", f"/?at={node(name)}", note="seen").status_code == 303
     summary = page(client, "/?step=summary").text_content()
-    assert words("rv.end.nothing") in summary
-    assert words("rv.end.none") not in summary
-    assert heading(page(client)) == words("rv.h.source")
+    assert words("review.end.nothing") in summary
+    assert words("review.end.none") not in summary
+    assert heading(page(client)) == words("review.heading.source")
 
 
 @pytest.mark.parametrize("language", ["de"])
@@ -135,7 +135,7 @@ def test_what_the_reader_of_labels_refuses_is_told_in_plain_words_first(
     refused = answer(client, "mundane", f"/?at={channel}", note="seen", about="Video")
     assert refused.status_code == 422
     message = html.fromstring(refused.text).xpath("//*[@role='alert']/p")
-    assert [(one.text_content(), one.get("lang")) for one in message[:1]] == [(words("rv.refused"), None)]
+    assert [(one.text_content(), one.get("lang")) for one in message[:1]] == [(words("review.refused"), None)]
     assert message[1:]
     assert {one.get("lang") for one in message[1:]} == {"en"}
 
@@ -149,7 +149,7 @@ def test_answers_of_before_under_other_rules_are_told(explore: Explore, tmp_path
     first.session.close()
     policy.write_text(PLAIN.replace("b2", "b3"), "utf-8")
     client = explore(policy, labels, journal=tmp_path / "journal", language=language, review=True).client()
-    assert Words(language)("rv.before.changed") in page(client).text_content()
+    assert Words(language)("review.before.changed") in page(client).text_content()
 
 
 @pytest.mark.parametrize("language", ["de"])
@@ -162,9 +162,9 @@ def test_what_is_left_to_the_engineer_stays_open_and_is_told(explore: Explore, t
     assert len(explorer.session.questions()) == before
     assert heading(page(client)) != first
     summary = page(client, "/?step=summary")
-    told = words("rv.left.told", why=f"{NAME} – does it keep them?")
+    told = words("review.left.told", why=f"{NAME} – does it keep them?")
     assert told in summary.text_content()
-    assert words.count(len(summary.xpath("//section[1]//li")), "rv.end.open") in summary.text_content()
+    assert words.count(len(summary.xpath("//section[1]//li")), "review.end.open") in summary.text_content()
     address = summary.xpath("//section[1]//li[contains(., 'keep them')]/a/@href")[0]
     assert told in page(client, address).text_content()
     assert answer(client, "conduit", address).status_code == 303
@@ -187,10 +187,10 @@ def test_what_is_missing_is_told_and_what_was_written_stays(explore: Explore, tm
     explorer = explore(CARE, tmp_path / "new.labels.yaml", language=language, review=True)
     client, words = explorer.client(), Words(language)
     for role, fields, missing in [
-        ("", {"note": "w"}, "rv.need.role"),
-        ("absent", {}, "rv.need.note"),
-        ("none", {"note": " "}, "rv.need.note"),
-        ("source", {"by": "", "note": "w"}, "rv.need.by"),
+        ("", {"note": "w"}, "review.need.role"),
+        ("absent", {}, "review.need.note"),
+        ("none", {"note": " "}, "review.need.note"),
+        ("source", {"by": "", "note": "w"}, "review.need.by"),
     ]:
         refused = answer(client, role, **fields)
         assert refused.status_code == 422

@@ -89,7 +89,7 @@ def test_the_page_says_how_many_it_leaves_out_and_where_they_are(
     words = Words(language)
     left = VIDEO + VOICE - MOST
     for text in texts_of(report if language == "en" else told(many, language)):
-        assert text.count(plain(words.count(left, "f.left"))) == 2  # at the beginning, and at their kind
+        assert text.count(plain(words.count(left, "entry.left"))) == 2  # at the beginning, and at their kind
         assert plain(words.count(left, "risk.left")) in text
 
 

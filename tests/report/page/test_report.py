@@ -120,8 +120,8 @@ def test_open_elements_are_told_in_the_order_of_review() -> None:
     document = run(2)
     names = [row["element"]["name"] for row in document["open"]]
     assert [(group.key, [question.name for question in group.questions]) for group in told(document).questions] == [
-        ("q.first", ["/robot_arm_control"]),
-        ("q.channels", [name for name in names if name != "/robot_arm_control"]),
+        ("question.first", ["/robot_arm_control"]),
+        ("question.channels", [name for name in names if name != "/robot_arm_control"]),
     ]
 
 

@@ -72,7 +72,12 @@ def test_every_report_has_it_in_every_language(language: str, form: str, tmp_pat
             + [cell.text for table in document.tables for row in table.rows for cell in row.cells]
         )
     words = Words(language)
-    for text in (words("h.types"), words("c.cannot"), words("t.only_types"), words("ty.stated", place="l.yaml:3")):
+    for text in (
+        words("heading.types"),
+        words("column.cannot"),
+        words("table.only_types"),
+        words("channel_type.stated", place="l.yaml:3"),
+    ):
         assert text.replace("\u00a0", " ") in html.unescape(made).replace("\u00a0", " ")
     assert "sensor_msgs/msg/Image" in made
 

@@ -173,7 +173,7 @@ def test_a_denial_that_is_not_drawn_is_counted() -> None:
 def test_where_no_source_is_named_the_picture_says_that_it_says_nothing() -> None:
     system = System(2, 1, [(0, 2), (2, 1)], {1: [statement("leak", "Face")]}, {})
     picture = views.privacy_view(system.analyse())
-    assert picture.title == IN_ENGLISH("pic.nothing")
+    assert picture.title == IN_ENGLISH("picture.nothing")
     assert not picture.boxes
 
 

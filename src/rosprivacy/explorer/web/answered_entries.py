@@ -196,7 +196,7 @@ def leaving(entry: Any, by: str, why: str, words: Words) -> dict[str, Any]:
     {'leak': ['Voice'], 'note': 'seen [To ask the engineer: A. Lee – video?]'}
     """
     whom = f"{by} – {why}" if why else by
-    note = f"{note_before(entry)} [{words('rv.left')}: {whom}]".strip()
+    note = f"{note_before(entry)} [{words('review.left')}: {whom}]".strip()
     if says_of_data(entry):  # who said that stays its author
         return {**_roles(entry), "note": note}
     return {"note": note, "by": by}
@@ -210,7 +210,7 @@ def bringing_nothing(entry: Any, by: str, why: str, words: Words) -> dict[str, A
     >>> bringing_nothing({"leak": ["Voice"], "author": "B. Roy"}, "A. Lee", "a lamp", Words("en"))
     {'leak': ['Voice'], 'note': 'brings in no data of persons: a lamp (A. Lee)'}
     """
-    note = words("rv.note.none", why=why)
+    note = words("review.note.none", why=why)
     if says_of_data(entry):  # who said that stays its author
         return {**_roles(entry), "note": f"{note} ({by})"}
     return {"note": note, "by": by}
@@ -223,7 +223,7 @@ def brings_nothing(entry: Any) -> bool:
     (True, False)
     """
     note = note_before(entry)
-    return any(note.startswith(Words(language)("rv.note.none", why="").strip()) for language in LANGUAGES)
+    return any(note.startswith(Words(language)("review.note.none", why="").strip()) for language in LANGUAGES)
 
 
 def says_of_data(entry: Any) -> bool:
@@ -244,7 +244,7 @@ def _roles(entry: Any) -> Mapping[str, Any]:
 def _parted(entry: Any) -> tuple[str, str]:
     note = str(entry.get("note") or "") if isinstance(entry, dict) else ""
     for language in LANGUAGES:
-        before, mark, left = note.rpartition(f"[{Words(language)('rv.left')}: ")
+        before, mark, left = note.rpartition(f"[{Words(language)('review.left')}: ")
         if mark and left.endswith("]"):
             return before.strip(), left[:-1]
     return note, ""

@@ -205,7 +205,7 @@ class Site:
             try:
                 standing = self._trials.standing(trial)
             except RosPrivacyError as error:
-                what = self._words("x.trial.gone", name=trial)
+                what = self._words("explorer.trial.gone", name=trial)
                 problem = Message(PROBLEM, what, detail=tuple(str(error).splitlines()))
                 trial = ""
         view = view_of(query, standing.elements, standing.vocabulary.categories, standing.findings, trial)
@@ -215,7 +215,7 @@ class Site:
         """What somebody else did to the label file, and that it can be taken in."""
         with suppress(RosPrivacyError):  # it cannot be read now: saving will say why
             changed = self.session.changed_on_disk()
-            return Message(PROBLEM, self._words("x.disk"), diff=changed.diff) if changed else None
+            return Message(PROBLEM, self._words("explorer.disk"), diff=changed.diff) if changed else None
         return None
 
     def _changed_inputs(self) -> str:
@@ -223,7 +223,7 @@ class Site:
         changed = [shown(file) for file in self.session.changed_inputs]
         if not changed:
             return ""
-        return self._words("x.inputs", files=self._words.row(self._words.first(changed, MOST_NAMED)))
+        return self._words("explorer.inputs", files=self._words.row(self._words.first(changed, MOST_NAMED)))
 
     def _changed(self, work: Callable[[Form], Outcome], body: bytes, query: str) -> Response:
         """Do what a form says; a page that is loaded again does it no second time."""
@@ -231,7 +231,7 @@ class Site:
             try:
                 form = forms.Form(body)
                 stale = form.number("version") != self.session.version
-                outcome = Outcome(409, Message(PROBLEM, self._words("x.stale"))) if stale else work(form)
+                outcome = Outcome(409, Message(PROBLEM, self._words("explorer.stale"))) if stale else work(form)
             except (forms.FormError, RosPrivacyError) as error:
                 outcome = Outcome(422, self._refused(error))
             if outcome.status != 200:  # noqa: PLR2004 - of HTTP
@@ -244,7 +244,7 @@ class Site:
 
     def _refused(self, error: Exception) -> Message:
         """Why nothing was done; what readers of files and forms say is in English."""
-        return Message(PROBLEM, self._words("x.refused"), detail=tuple(str(error).splitlines()))
+        return Message(PROBLEM, self._words("explorer.refused"), detail=tuple(str(error).splitlines()))
 
     def _address(self, query: str) -> str:
         """Where a window goes on after a change."""
@@ -261,14 +261,14 @@ class Site:
             label = cast("Label", label_of(answer, now))
         self.session.answer_for(answer.element, label, only_this_robot=alone)
         self._by = answer.by or self._by
-        return Outcome(200, self._answered(answer, now, self._words(f"x.answer.{answer.role}")))
+        return Outcome(200, self._answered(answer, now, self._words(f"explorer.answer.{answer.role}")))
 
     def _answered(self, answer: Answer, before: Any, what: str) -> Message:
         """Tell what was answered, and what was said that it takes away: a limit, or derivations."""
-        text = self._words("x.changed", what=f"{shown(answer.element.full_name)} – {what}")
+        text = self._words("explorer.changed", what=f"{shown(answer.element.full_name)} – {what}")
         limit = limit_of(before) if answer.role == forms.SENSITIVE and not answer.kinds else ()
         made = made_by(before) if answer.role == forms.ABSENT else ()
-        gone = (("x.limit.gone", limit), ("x.derives.gone", made))
+        gone = (("explorer.limit.gone", limit), ("explorer.derives.gone", made))
         return Message(DONE, text, tuple(self._words(key, data=self._titles(kinds)) for key, kinds in gone if kinds))
 
     def _titles(self, kinds: Iterable[str]) -> str:
@@ -277,35 +277,37 @@ class Site:
         return self._words.row(title_of(kind.name, vocabulary, self._words) for kind in known)
 
     def _undo(self, _: Form) -> Outcome:
-        return Outcome(200, Message(DONE, self._words("x.undone")) if self.session.undo() else None)
+        return Outcome(200, Message(DONE, self._words("explorer.undone")) if self.session.undo() else None)
 
     def _redo(self, _: Form) -> Outcome:
-        return Outcome(200, Message(DONE, self._words("x.redone")) if self.session.redo() else None)
+        return Outcome(200, Message(DONE, self._words("explorer.redone")) if self.session.redo() else None)
 
     def _save(self, _: Form) -> Outcome:
         done = self.session.save()
         if isinstance(done, Conflict):
-            text = self._words("x.conflict", file=shown(done.file))
+            text = self._words("explorer.conflict", file=shown(done.file))
             return Outcome(409, Message(PROBLEM, text, diff=done.diff))
-        text = self._words("x.saved_one" if done.lines == 1 else "x.saved_other", file=shown(done.file), n=done.lines)
+        text = self._words(
+            "explorer.saved_one" if done.lines == 1 else "explorer.saved_other", file=shown(done.file), n=done.lines
+        )
         return Outcome(200, Message(DONE, text, detail=done.remarks))
 
     def _merge(self, _: Form) -> Outcome:
         both = self.session.merge()
         if both:
             names = tuple(f"{edit.section}: {shown(edit.name)}" for edit in both)
-            return Outcome(200, Message(PROBLEM, self._words("x.merged.both"), names))
-        return Outcome(200, Message(DONE, self._words("x.merged")))
+            return Outcome(200, Message(PROBLEM, self._words("explorer.merged.both"), names))
+        return Outcome(200, Message(DONE, self._words("explorer.merged")))
 
     def _resume(self, _: Form) -> Outcome:
         left = self.session.history.unsaved_from_before
         refused = self.session.history.resume()
-        text = self._words("x.resumed", n=len(left.edits) if left else 0)
+        text = self._words("explorer.resumed", n=len(left.edits) if left else 0)
         return Outcome(200, Message(PROBLEM if refused else DONE, text, detail=tuple(map(shown, refused))))
 
     def _forget(self, _: Form) -> Outcome:
         self.session.history.forget()
-        return Outcome(200, Message(DONE, self._words("x.forgotten")))
+        return Outcome(200, Message(DONE, self._words("explorer.forgotten")))
 
     def _try(self, form: Form) -> Outcome:
         """Try something; nothing that is kept anywhere changes."""
@@ -316,13 +318,13 @@ class Site:
         return Outcome(200, trial=name)
 
     def _new_name(self) -> str:
-        numbers = (self._words("x.trial.name", n=number) for number in count(1))
+        numbers = (self._words("explorer.trial.name", n=number) for number in count(1))
         return next(name for name in numbers if name not in self._trials.names)
 
     def _drop(self, form: Form) -> Outcome:
         name = form.choice("name", self._trials.names)
         self._trials.drop(name)
-        return Outcome(200, Message(DONE, self._words("x.trial.dropped", name=name)))
+        return Outcome(200, Message(DONE, self._words("explorer.trial.dropped", name=name)))
 
     def _decide(self, form: Form) -> Outcome:
         """Write a decision about a finding into the file that the command named."""
@@ -332,8 +334,8 @@ class Site:
         robots, to_robots = scope.robots or None, scope.to_robots or None
         self.session.decide(scope.finding.id, choice, robots=robots, to_robots=to_robots, **how)
         self._by = how["owner"] or self._by
-        what = self._words.row(filter(None, (self._words(f"d.{choice}"), whose)))
-        text = self._words("x.decided.to", file=shown(str(self.session.decisions_file)), what=what)
+        what = self._words.row(filter(None, (self._words(f"decision.{choice}"), whose)))
+        text = self._words("explorer.decided.to", file=shown(str(self.session.decisions_file)), what=what)
         return Outcome(200, Message(DONE, text))
 
 

@@ -195,7 +195,9 @@ def table_of(rows: Rows, query: Query | None, words: Words) -> Table:
 
 def _cut(text: str, words: Words) -> str:
     more = len(text) - LONGEST_CELL
-    return printable(text) if more <= 0 else f"{printable(text[:LONGEST_CELL])}… ({words.count(more, 'cy.letters')})"
+    return (
+        printable(text) if more <= 0 else f"{printable(text[:LONGEST_CELL])}… ({words.count(more, 'cypher.letters')})"
+    )
 
 
 def picture_of(rows: Rows, title: str, say: Phrases) -> Picture | None:
@@ -218,7 +220,7 @@ def picture_of(rows: Rows, title: str, say: Phrases) -> Picture | None:
     if not values:
         return None
     every = drawn == len(rows.rows) and not rows.more
-    note = say.words("cy.drawn.all") if every else say.words("cy.drawn.some", n=drawn)
+    note = say.words("cypher.drawn.all") if every else say.words("cypher.drawn.some", n=drawn)
     return query_view(values, STORED_NAMES, title, (note,), say)
 
 
@@ -292,16 +294,18 @@ class StoredSite(Site):
             if do == EDIT:
                 return self._page_of(asked.to_edit(), standing)
             if not self._room.acquire(blocking=False):
-                return self._page_of(asked, standing, Message(PROBLEM, self._words("cy.busy", n=AT_ONCE)), status=429)
+                return self._page_of(
+                    asked, standing, Message(PROBLEM, self._words("cypher.busy", n=AT_ONCE)), status=429
+                )
             try:
                 answer = self._answer(asked, standing)
             finally:
                 self._room.release()
         except (FormError, RosPrivacyError) as error:
             status = 503 if isinstance(error, DatabaseError) else 422
-            message = Message(PROBLEM, self._words("cy.refused"), detail=tuple(str(error).splitlines()))
+            message = Message(PROBLEM, self._words("cypher.refused"), detail=tuple(str(error).splitlines()))
             return self._page_of(asked, standing, message, status=status)
-        warning = Message(DONE, self._words("cy.warning"), detail=(answer.warning,)) if answer.warning else None
+        warning = Message(DONE, self._words("cypher.warning"), detail=(answer.warning,)) if answer.warning else None
         return self._page_of(asked, standing, warning, answer)
 
     def _answer(self, asked: Asked, standing: Standing) -> Answer:

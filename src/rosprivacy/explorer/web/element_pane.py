@@ -78,7 +78,7 @@ def _roles(standing: Standing, at: str, words: Words) -> Iterable[str]:
         title = title_of(kind, standing.vocabulary, words)
         for role in roles:
             if role in forms.OF_CHANNELS:  # in the words of a review
-                yield words.pair(words(f"rv.said.{'never' if role == forms.MUNDANE else role}"), title)
+                yield words.pair(words(f"review.said.{'never' if role == forms.MUNDANE else role}"), title)
             else:
                 yield words(f"role.{role}", data=title)
 
@@ -125,7 +125,7 @@ def _offer(offer: Proposal, standing: Standing, words: Words) -> Pane:
     entry = written(label).said
     closes = could_close(entry, _findings(standing, words), standing.vocabulary)
     return Pane(
-        told=words(f"x.offer.{role}", data=title_of(label.kind, standing.vocabulary, words), to=to),
+        told=words(f"explorer.offer.{role}", data=title_of(label.kind, standing.vocabulary, words), to=to),
         reasons=words.first([shown(reason.reason) for reason in offer.evidence], REASONS),
         fields=tuple(fields),
         takes=not LIMITING.isdisjoint(entry),  # data away
@@ -187,4 +187,4 @@ def _line(grant: Grant) -> tuple[str, str]:
 
 def _data(step: Step, standing: Standing, words: Words) -> str:
     title = title_of(step.category, standing.vocabulary, words)
-    return words("f.data", data=title) if step.pseudonymised else title
+    return words("entry.data", data=title) if step.pseudonymised else title

@@ -66,7 +66,7 @@ def finding_pane(standing: Standing, finding: Finding, view: View, words: Words)
 def _law(row: Mapping[str, Any], index: Index) -> Iterable[str]:
     """What Articles 9 and 10 have to do with such data: a remark, no verdict."""
     words = index.words
-    yield words.pair(words("c.article9"), words(f"article9.{row['article9']}"))
+    yield words.pair(words("column.article9"), words(f"article9.{row['article9']}"))
     for law in row["law"]:
         if law["provision"] == ARTICLE_10:
             provision = index.provision(row["category"], law["provision"])
@@ -97,9 +97,9 @@ def _closes(standing: Standing, finding: Finding, index: Index) -> Pane:
     """The proposals of ``mitigate`` that remove it, each proven by a new analysis; or why there are none."""
     words, mitigation = index.words, standing.mitigation
     if not finding.stands:
-        return Pane(why=words("x.closes.stands"), offered=(), instead=())
+        return Pane(why=words("explorer.closes.stands"), offered=(), instead=())
     if mitigation is None:
-        return Pane(why=words("z.none.many"), offered=(), instead=())
+        return Pane(why=words("closing.none.many"), offered=(), instead=())
     rows = mitigation.document()["proposals"]
     offered: dict[tuple[ProposedStep, ...], Pane] = {}
     for number, (proposal, row) in enumerate(zip(mitigation.proposals, rows, strict=True)):
@@ -108,7 +108,7 @@ def _closes(standing: Standing, finding: Finding, index: Index) -> Pane:
             changes = tuple(change_told(step, index) for step in row["steps"])
             sentences = tuple(proposal_told(row, row["steps"], index))
             offered.setdefault(proposal.steps, Pane(number=number, said=sentences, changes=changes))
-    why = "" if offered else words("x.closes.none")
+    why = "" if offered else words("explorer.closes.none")
     return Pane(why=why, offered=tuple(offered.values()), instead=tuple(dict.fromkeys(_instead(rows, finding, index))))
 
 
@@ -118,7 +118,7 @@ def _instead(rows: list[Any], finding: Finding, index: Index) -> Iterator[str]:
         element = row["element"]
         at_leak = (element["robot"], element["kind"], element["name"]) == finding.leak.identity
         if at_leak and (row["kind"], row["category"]) == (finding.kind, finding.category):
-            yield index.words(f"z.state.{row['kind']}", element=name(element), data=index.data(row["category"]))
+            yield index.words(f"closing.state.{row['kind']}", element=name(element), data=index.data(row["category"]))
 
 
 # --- about which robots of a fleet it can be decided --------------------------------------------------------------
@@ -149,7 +149,7 @@ def scope_in_words(session: Session, scope: Scope, words: Words) -> str:
     """Return in words about which robots something is decided; empty for none."""
     if scope.to_robots:
         begins, ends = (_end(session, robots, words) for robots in (scope.robots, scope.to_robots))
-        return words("x.decide.across", source=begins, leak=ends)
+        return words("explorer.decide.across", source=begins, leak=ends)
     return robots_in_words(session, scope.robots, words) if scope.robots else ""
 
 
@@ -157,7 +157,7 @@ def _end(session: Session, robots: Sequence[str], words: Words) -> str:
     if len(robots) == 1:
         return shown(robots[0])
     model = session.model_of(robots[0])
-    return words("x.whose.robots", n=len(robots)) + (f" ({shown(model)})" if model else "")
+    return words("explorer.whose.robots", n=len(robots)) + (f" ({shown(model)})" if model else "")
 
 
 def _values(session: Session, finding: Finding) -> Mapping[str, Scope]:
@@ -174,7 +174,7 @@ def _values(session: Session, finding: Finding) -> Mapping[str, Scope]:
 def _decided(session: Session, scope: Scope, words: Words) -> str:
     decided = session.uncounted.decided
     valid = decided.valid(scope.finding) if decided else None
-    return words(f"d.{valid.choice}") if valid else ""
+    return words(f"decision.{valid.choice}") if valid else ""
 
 
 def _further(session: Session, finding: Finding, scope: Scope, words: Words) -> Iterator[str]:
@@ -183,10 +183,10 @@ def _further(session: Session, finding: Finding, scope: Scope, words: Words) -> 
         yield decided
     other = scope.finding
     if other.pseudonymised != finding.pseudonymised:
-        yield words(f"x.finding.form.{'reduced' if other.pseudonymised else 'plain'}")
+        yield words(f"explorer.finding.form.{'reduced' if other.pseudonymised else 'plain'}")
     path = [element.name for element in other.witness]
     if path != [element.name for element in finding.witness]:
-        yield words("x.decide.other", path=" → ".join(map(shown, path)))
+        yield words("explorer.decide.other", path=" → ".join(map(shown, path)))
 
 
 def _names(robots: Sequence[str], words: Words) -> str:

@@ -112,7 +112,7 @@ def trial_pane(now: Standing, trials: Trials, view: View, words: Words) -> Pane:
         name=name,
         says=trials.says(name),
         verdicts=(f"code.{difference.before}", f"code.{difference.verdict}"),  # now and then: keys of words
-        counts=[words.count(number, f"x.trial.{what}") for number, what, always in counts if number or always],
+        counts=[words.count(number, f"explorer.trial.{what}") for number, what, always in counts if number or always],
         closed=tuple(_findings(difference, CLOSED, now, out, words)),  # to be found only where they stand
         opened=opened,
         more=(len(difference.closed[SENTENCES:]), len(difference.opened[SENTENCES:])),
@@ -143,9 +143,9 @@ def _findings(difference: Difference, what: str, standing: Standing, view: View,
     ids = {OPENED: difference.opened, CLOSED: difference.closed, PLAINER: difference.plainer}[what]
     for finding in ids[:SENTENCES]:
         robots = difference.robots.get((what, finding), ())
-        notes = [words("x.trial.plainly")] if what == PLAINER else []
+        notes = [words("explorer.trial.plainly")] if what == PLAINER else []
         if robots:
             names = words.row(words.first(list(map(shown, robots)), NAMED))
-            notes.append(words("x.trial.robots", robots=words.count(len(robots), "robot"), names=names))
+            notes.append(words("explorer.trial.robots", robots=words.count(len(robots), "robot"), names=names))
         address = view._replace(finding=finding).address
         yield Pane(sentence=sentence_of(index.by_id[finding], index), address=address, robots=" ".join(notes))

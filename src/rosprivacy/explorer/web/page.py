@@ -189,7 +189,7 @@ def _asked(key: str, standing: Standing, view: View, words: Words) -> Pane:
     rows = []
     for question in asked[:FIRST_ROWS]:
         titles = [title_of(kind, standing.vocabulary, words) for kind in question.kinds if kind not in hidden]
-        text = words("x.steps", steps=words.count(question.steps, "step"), kinds=words.row(titles))
+        text = words("explorer.steps", steps=words.count(question.steps, "step"), kinds=words.row(titles))
         rows.append(_row(question.element, text, standing, view, words))
     return _group(key, rows, len(asked[FIRST_ROWS:]))
 
@@ -206,7 +206,7 @@ def _suggested(standing: Standing, view: View, words: Words) -> Pane:
     rows: dict[tuple[str, str, str], Pane] = {}
     for offer in surest:
         title = title_of(offer.label.kind, standing.vocabulary, words)
-        text = words(f"x.perhaps.{offer.label.role}", data=title)
+        text = words(f"explorer.perhaps.{offer.label.role}", data=title)
         rows.setdefault(offer.label.element.identity, _row(offer.label.element, text, standing, view, words))
     return _group(SUGGESTED, tuple(rows.values()), sure=any(map(is_likely_source, surest)))
 
@@ -231,7 +231,7 @@ def _exits(standing: Standing, view: View, words: Words) -> tuple[Pane, ...]:
             row = rows.get(leak.identity) or _row(leak, "", standing, view, words)
             rows[leak.identity] = row
             source = shown(finding.source.full_name)
-            text = words("x.exit", data=title_of(finding.category, standing.vocabulary, words), source=source)
+            text = words("explorer.exit", data=title_of(finding.category, standing.vocabulary, words), source=source)
             if finding.kind != DISCLOSURE:  # the same data can get to one place in several ways
                 text = f"{text} · {words(f'finding.{finding.kind}')}"
             address = view.to(row.id)._replace(finding=finding.id).address

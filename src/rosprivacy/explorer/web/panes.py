@@ -31,7 +31,7 @@ class Pane(SimpleNamespace):
 def title_of(kind: str, vocabulary: Vocabulary, words: Words) -> str:
     """Return what a kind of data is called; empty for every kind."""
     if not kind:
-        return words("x.every")
+        return words("explorer.every")
     category = vocabulary.categories[kind]
     return category.translations.get(words.language, {}).get("title") or category.title
 
@@ -81,8 +81,8 @@ def robots_in_words(session: Session, robots: Sequence[str], words: Words) -> st
 
 def _robots(robots: Sequence[str], models: str, words: Words) -> str:
     n = len(robots)
-    counted = words("x.whose.robot", robot=shown(robots[0])) if n == 1 else words("x.whose.robots", n=n)
-    return words("x.whose.model", models=models, robots=counted) if models else counted
+    counted = words("explorer.whose.robot", robot=shown(robots[0])) if n == 1 else words("explorer.whose.robots", n=n)
+    return words("explorer.whose.model", models=models, robots=counted) if models else counted
 
 
 def stands_for(standing: Standing, element: Element, words: Words) -> str:
@@ -90,7 +90,7 @@ def stands_for(standing: Standing, element: Element, words: Words) -> str:
     parts = []
     fleet = standing.result.fleet
     if element.robot in standing.session.outliers:
-        parts.append(words("x.outlier"))
+        parts.append(words("explorer.outlier"))
     if fleet and (n := len(fleet.likeness.placed(element.robot))) > 1:
-        parts.append(words("x.stands", n=n))
+        parts.append(words("explorer.stands", n=n))
     return words.row(parts)

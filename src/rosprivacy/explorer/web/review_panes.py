@@ -110,8 +110,8 @@ def question_pane(standing: Standing, element: Element, words: Words) -> Pane:
 def _text(element: Element, pane: Pane, words: Words, *, reached: bool) -> str:
     name = named(element, words)
     if not reached:
-        return words("rv.ask.untouched.channel" if element.is_channel else "rv.ask.untouched", name=name)
-    return words("rv.ask.channel" if element.is_channel else "rv.ask", name=name, data=pane.asked)
+        return words("review.ask.untouched.channel" if element.is_channel else "review.ask.untouched", name=name)
+    return words("review.ask.channel" if element.is_channel else "review.ask", name=name, data=pane.asked)
 
 
 def _sentences(hops: Sequence[Pane], words: Words) -> Iterator[Pane]:
@@ -119,8 +119,8 @@ def _sentences(hops: Sequence[Pane], words: Words) -> Iterator[Pane]:
     for hop, after in pairwise(hops):
         role = hop.role if hop.role in ROS_STEPS else "flow"
         ends = {"one": _named(hop.name, hop.of, words), "other": _named(after.name, after.of, words)}
-        now = words("rv.now", data=hop.data) if hop.data and hop is not hops[0] else ""
-        text = " ".join(filter(None, [words(f"rv.step.{role}", **ends), now]))
+        now = words("review.now", data=hop.data) if hop.data and hop is not hops[0] else ""
+        text = " ".join(filter(None, [words(f"review.step.{role}", **ends), now]))
         yield Pane(told=text, lines=hop.lines, more=hop.more)
 
 
@@ -136,7 +136,7 @@ def named(element: Element, words: Words) -> str:
 
 
 def _named(name: str, kind: str, words: Words) -> str:
-    return words("rv.named", name=name, kind=words.known(f"rv.kind.{kind}", words.known(f"kind.{kind}", kind)))
+    return words("review.named", name=name, kind=words.known(f"review.kind.{kind}", words.known(f"kind.{kind}", kind)))
 
 
 def _named_with_robots(element: Element, standing: Standing, words: Words) -> str:
@@ -163,7 +163,7 @@ def answer_in_review(form: forms.Form, standing: Standing, words: Words) -> form
 
     def need(what: str, *, is_there: object) -> None:
         if not is_there:
-            raise NotYet(words(f"rv.need.{what}"))
+            raise NotYet(words(f"review.need.{what}"))
 
     at = form.one("element")
     need("element", is_there=at in standing.elements)
@@ -217,7 +217,7 @@ def summary_pane(standing: Standing, questions: Sequence[Asked], words: Words) -
     verdict = verdict_of(standing)
     decided, followed = tuple(_decided(standing, words)), bool(standing.analysis.emitted)
     return Pane(
-        verdict=words.known(f"rv.verdict.{verdict}", words.known(f"verdict.{verdict}", verdict)),
+        verdict=words.known(f"review.verdict.{verdict}", words.known(f"verdict.{verdict}", verdict)),
         end=(*_end(questions, words, decided=bool(decided), followed=followed), *in_doubt(index)),
         decided=decided,
         open=tuple(_open(question, standing, words) for question in questions),
@@ -230,11 +230,11 @@ def summary_pane(standing: Standing, questions: Sequence[Asked], words: Words) -
 def _end(questions: Sequence[Asked], words: Words, *, decided: bool, followed: bool) -> Iterator[str]:
     """What has to be known of the answers, in sentences; that nothing was followed comes first."""
     if not followed:
-        yield words("rv.end.nothing")
+        yield words("review.end.nothing")
     if questions:
-        yield words.count(len(questions), "rv.end.open")
+        yield words.count(len(questions), "review.end.open")
     elif followed:
-        yield words("rv.end.none" if decided else "rv.end.unasked")
+        yield words("review.end.none" if decided else "review.end.unasked")
 
 
 def _open(question: Asked, standing: Standing, words: Words) -> Pane:
@@ -259,11 +259,11 @@ def _decided(standing: Standing, words: Words) -> Iterator[Pane]:
 def _roles(entry: Any, titles: Mapping[str, str], words: Words) -> Iterator[str]:
     """What an entry of a label file says, in plain words."""
     if isinstance(entry, str):
-        yield words.known(f"rv.said.{entry}", shown(entry))
+        yield words.known(f"review.said.{entry}", shown(entry))
     for role in ROLES if isinstance(entry, dict) else ():
         if role in entry:
             what = _what(entry[role], titles, words)
-            text = words(f"rv.said.{role}")
+            text = words(f"review.said.{role}")
             yield words.pair(text, what) if what else text
 
 
@@ -275,7 +275,7 @@ def _what(value: Any, titles: Mapping[str, str], words: Words) -> str:
         names = [name for name in value if name not in ("from", "to")]
         if not names:  # a derivation
             ends = {"data": value.get("from"), "to": value.get("to")}
-            return words("rv.made", **{key: _what(end, titles, words) for key, end in ends.items()})
+            return words("review.made", **{key: _what(end, titles, words) for key, end in ends.items()})
         return words.row(titles.get(kind, shown(str(kind))) for kind in names)
     if isinstance(value, list | tuple):
         return words.row(_what(each, titles, words) for each in value)

@@ -64,7 +64,7 @@ class ReviewSite(Site):
                 "progress": progress(standing, questions), "unsaved": history.unsaved, "can_undo": history.can_undo,
                 "read_only": self.door.read_only, "before": history.unsaved_from_before, "remarks": history.remarks,
                 "inputs": self._changed_inputs(),
-                "title": words("rv.title.fleet" if standing.result.fleet else "rv.title"),
+                "title": words("review.title.fleet" if standing.result.fleet else "review.title"),
             }  # fmt: skip
             if element is not None:
                 question = question_pane(standing, element, words)
@@ -93,7 +93,7 @@ class ReviewSite(Site):
         now = self.session.entry_for(answer.element, only_this_robot=alone)
         self.session.answer_for(answer.element, cast("Label", self._said(answer, now)), only_this_robot=alone)
         self._entered, self._by = None, answer.by
-        return Outcome(200, self._answered(answer, now, self._words(f"rv.answer.{answer.role}")))
+        return Outcome(200, self._answered(answer, now, self._words(f"review.answer.{answer.role}")))
 
     def _said(self, answer: Answer, now: Any) -> dict[str, Any]:
         """What the label file then says; ``now`` is what it says now."""
@@ -120,14 +120,14 @@ class ReviewSite(Site):
         try:
             return super()._save(form)
         except RosPrivacyError as error:
-            text = self._words("rv.refused.save")
+            text = self._words("review.refused.save")
             return Outcome(422, Message(PROBLEM, text, detail=tuple(str(error).splitlines())))
 
     def _refused(self, error: Exception) -> Message:
         """What is missing, in the reader's language; else a plain sentence, with what the reader of labels says."""
         if isinstance(error, NotYet):
-            return Message(PROBLEM, self._words("x.refused"), (str(error),))
-        return super()._refused(error)._replace(text=self._words("rv.refused"))
+            return Message(PROBLEM, self._words("explorer.refused"), (str(error),))
+        return super()._refused(error)._replace(text=self._words("review.refused"))
 
 
 def _value(query: str, name: str) -> str:

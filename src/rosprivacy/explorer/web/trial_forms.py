@@ -180,7 +180,7 @@ def _filter(form: Form, standing: Standing, words: Words) -> Tried:
     source, target = (shown(end.full_name) for end in ends[0])
     step = ProposedStep(FILTER, 0, kinds or _all(standing), between=ends)
     what = WhatIf(steps=(step,), robots=_robots(form, standing, *ends[0]))
-    return Tried(what, (words("z.filter", source=source, target=target, data=data),))
+    return Tried(what, (words("closing.filter", source=source, target=target, data=data),))
 
 
 def _cut(form: Form, standing: Standing, words: Words) -> Tried:
@@ -189,18 +189,18 @@ def _cut(form: Form, standing: Standing, words: Words) -> Tried:
     element = standing.elements.get(form.one("element"))
     robots = _robots(form, standing, element) if element else ()
     what = WhatIf(cut=((place.file, place.line),), robots=robots)
-    return Tried(what, (words("x.try.says.cut", line=shown(str(place))),))
+    return Tried(what, (words("explorer.try.says.cut", line=shown(str(place))),))
 
 
 def _storage(form: Form, standing: Standing, words: Words) -> Tried:
     element = element_in(form, standing.elements)
-    called = words("x.try.storage.name")
+    called = words("explorer.try.storage.name")
     facts = {"kind": "storage", **_facts(form)}
     robots = _robots(form, standing, element)
     what = WhatIf(elements={called: facts}, flows=((_end(element), called),), robots=robots)
-    says = [words("x.try.says.storage", element=shown(element.full_name))]
-    says += [words.pair(words("c.retention"), words.duration(facts["retention"]))] if "retention" in facts else []
-    says += [words.pair(words("c.place"), facts["country"])] if "country" in facts else []
+    says = [words("explorer.try.says.storage", element=shown(element.full_name))]
+    says += [words.pair(words("column.retention"), words.duration(facts["retention"]))] if "retention" in facts else []
+    says += [words.pair(words("column.place"), facts["country"])] if "country" in facts else []
     return Tried(what, tuple(says))
 
 
@@ -228,7 +228,7 @@ def _doubt(form: Form, standing: Standing, words: Words) -> Tried:
     kinds, data = _kinds(form, standing, words)
     robots = _robots(form, standing, element)
     what = WhatIf(doubted=((element.kind, element.name, kinds),), robots=robots)
-    return Tried(what, (words("x.try.says.doubt", element=shown(element.full_name), data=data),))
+    return Tried(what, (words("explorer.try.says.doubt", element=shown(element.full_name), data=data),))
 
 
 def _proposal(form: Form, standing: Standing, words: Words) -> Tried:
@@ -253,7 +253,7 @@ def _change(step: Mapping[str, Any], index: Index) -> str:
     """A change with its policy lines, in one sentence; of a review, what it is taken to find."""
     if step["kind"] == REVIEW:
         data = index.all_data(step["categories"])
-        return index.words("x.try.says.review", channel=name(step["channel"]), data=data)
+        return index.words("explorer.try.says.review", channel=name(step["channel"]), data=data)
     change = change_told(step, index)
     return f"{change.text} ({', '.join(change.lines)})" if change.lines else change.text
 
