@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from measure import Measured
 
     Robot = tuple[tuple[str], tuple[str]]  # its policies and its label files
-BOUND = 1.0  # suggesting costs less than analysing (issue 21)
+BOUND = 1.0  # suggesting costs less than analysing
 CALLS = 1.25  # another Python makes other calls of one comprehension
 ELEMENTS = 10_000
 PARTS = (  # of a chain: the node, what it publishes, its type; each reads what the one before it publishes

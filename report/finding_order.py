@@ -1,4 +1,4 @@
-"""In which order a person decides about findings, in every report (users.md, B2).
+"""In which order a person decides about findings, in every report.
 
 In: findings of a JSON document, and the document. Out: the same, the worst first: what is neither dismissed nor
 accepted; what Article 9 or 10 names, then what may reveal it; data as it is; what robots do that most of their model do

@@ -1,7 +1,7 @@
 """Where the data of a finding is made of other data on the way: of which, and by whom.
 
 In: the witness of a finding and the kinds of data along it. Out: elements of the witness. That a source can bring in
-what it never has would be false: so each sentence of a finding says where its data is made (users.md, A8.7).
+what it never has would be false: so each sentence of a finding says where its data is made.
 """
 
 from __future__ import annotations

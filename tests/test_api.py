@@ -111,7 +111,7 @@ def test_one_name_alone_counts_as_a_list_of_one() -> None:
 
 
 def test_a_mode_that_is_none_is_an_error_with_the_nearest() -> None:
-    """B5: 'Declared' ran the enforced view, and called it declared."""
+    """'Declared' ran the enforced view, and called it declared."""
     with pytest.raises(rosprivacy.RosPrivacyError, match="declared"):
         rosprivacy.analyze(POLICY, LABELS, view="Declared")  # type: ignore[arg-type]
     enforced = rosprivacy.analyze(POLICY, LABELS, view=rosprivacy.View.enforced)

@@ -1,4 +1,4 @@
-"""What commit b86d901 wrote is read today: decisions, saved analyses, saved graphs (DESIGN.md, Contracts).
+"""Whin an earlier version wrote is read today: decisions, saved analyses, saved graphs (DESIGN.md, Contracts).
 
 The files are in ``cases/earlier/``, whose README says how they were made; they lack the keys that came later. What a
 database of that version is answered with is in ``ingest/database/test_other_schemas.py``.
@@ -120,7 +120,7 @@ class TestDecisions:
         assert list(patterns) == [p["id"] for p in earlier["fleet"]["patterns"]]
         counts = {one: (len(p["robots"]), p["findings"], p.get("accepted", 0)) for one, p in patterns.items()}
         assert counts == {
-            "f2d835e951b0cc4c": (40, 468, 0),  # from one robot to another; b86d901 took all 468 as accepted
+            "f2d835e951b0cc4c": (40, 468, 0),  # from one robot to another; an earlier version took all 468 as accepted
             "489237e56570a173": (40, 40, 40),
             "c58e57ea17af860d": (40, 40, 40),
             "391ce95541a5314a": (12, 12, 12),

@@ -1,4 +1,4 @@
-"""No regular expression of the program takes a time that is not in proportion to its text (defect 6).
+"""No regular expression of the program takes a time that is not in proportion to its text.
 
 A linter says so of each: recheck, which also finds what lookaheads hide. It is written for JavaScript, so that node has
 to be there: ``npm ci --ignore-scripts --prefix tests/patterns``.
@@ -42,7 +42,7 @@ SECONDS = 5.0  # of one core; the worst takes a tenth of it
 @pytest.mark.parametrize(
     ("source", "why"),
     [
-        (r"(?:_(?:(?=[a-f]*[0-9])[0-9a-f]{8,}|[0-9]{3,}))+(?=/|$)", "that of diff at b86d901: exponential"),
+        (r"(?:_(?:(?=[a-f]*[0-9])[0-9a-f]{8,}|[0-9]{3,}))+(?=/|$)", "that of diff in an earlier version: exponential"),
         (r"(?:_[0-9]*|_[0-9]*)+$", "alternatives that are the same"),
         (r"(a+)+$", "a star in a star"),
     ],

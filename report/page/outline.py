@@ -105,7 +105,7 @@ class Outline:
     numbers
         (number, what it counts).
     glossary
-        (word, what it means), of words that come before the section on the method (users.md, B7).
+        (word, what it means), of words that come before the section on the method.
     """
 
     words: Words

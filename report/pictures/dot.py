@@ -43,7 +43,7 @@ STRAIGHT = 8  # how much a step of a shortest path wants to be short and straigh
 WIDEST_WORDS = 34  # letters of a line on a box
 LONGEST_WORD = 60  # on a line
 ON_A_LINE = "shape=plaintext, margin=0, height=0, width=0"
-LONGEST_WORDS = 300  # of all lines of a phrase: what some kinds of data are called goes in whole (users.md, B6)
+LONGEST_WORDS = 300  # of all lines of a phrase: what some kinds of data are called goes in whole
 
 
 def dot(picture: Picture, *, direction: str = "LR", legend: bool = True) -> str:

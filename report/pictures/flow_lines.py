@@ -131,7 +131,7 @@ def data_lines(
     lengths: Mapping[int, int],
     shortest: Collection[tuple[Key, Key]],
 ) -> Lines:
-    """Return what goes along some flows, and between the boxes what ends where it gets, as a label says (users.md, A2).
+    """Return what goes along some flows, and between the boxes what ends where it gets, as a label says.
 
     See ``flow_lines``; beside it O(flows), once for each ``reached``.
     """

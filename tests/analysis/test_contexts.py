@@ -1,4 +1,4 @@
-"""Contexts make what data may reveal more exact, and never weaker (issue 17, point 2; Article 9(1), C-184/20)."""
+"""Contexts make what data may reveal more exact, and never weaker (Article 9(1), C-184/20)."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def test_what_is_special_anyway_is_not_said_again() -> None:
 
 
 def test_pointers_hold_of_narrower_kinds_and_not_of_broader_ones() -> None:
-    """Law that is pointed at (law.md, 2.3)."""
+    """Law that is pointed at."""
     categories = load().categories
     assert "AI Act Art. 5(1)(f)" in categories["EmotionEstimate"].look_at
     assert "AI Act Annex III point 1" in categories["FaceTemplate"].look_at  # of Biometric

@@ -107,7 +107,7 @@ def test_the_order_of_kinds_follows_from_the_law_and_from_what_a_sensor_sees_or_
 
 
 def test_suggestions_stand_by_confidence_and_then_by_weight(cli: Cli, robot: Path) -> None:
-    """users.md U3: the camera's video before body pose, and before the point cloud of a node that is called earlier."""
+    """The camera's video before body pose, and before the point cloud of a node that is called earlier."""
     document = json.loads(cli("suggest", "p.xml", "-l", "l.yaml", "-f", "json", cwd=robot).stdout)
     sources = [one for one in document["suggestions"] if one["role"] == SOURCE]
     assert [(one["name"], one["kind"]) for one in sources[: len(FIRST)]] == FIRST

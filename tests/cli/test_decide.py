@@ -295,9 +295,6 @@ def test_an_empty_file_is_no_decisions_file() -> None:
         with_decision("d", "", {"id": ID, "decision": "avoid"}, "", VOCABULARY)
 
 
-# ---------------------------------------------------------------- users.md, B8
-
-
 def test_what_was_decided_before_stays_in_the_file(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1790000000")
     decide(cli, tmp_path, "accept", ID, *SIGNED)

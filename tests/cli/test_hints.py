@@ -1,4 +1,4 @@
-"""What is wrong is told with what to write instead, and no place is made up (users.md, B8)."""
+"""What is wrong is told with what to write instead, and no place is made up."""
 
 from __future__ import annotations
 

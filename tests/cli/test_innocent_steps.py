@@ -1,4 +1,4 @@
-"""Fewer than three innocent steps never end in 'nothing found' where there is a leak (issue 15; rules S11, S12).
+"""Fewer than three innocent steps never end in 'nothing found' where there is a leak (rules S11, S12).
 
 A leak is planted in a real policy: two nodes that the rules, word for word, join. A person begins with nothing or with
 what is true, and accepts one or two of the lines that the program offers. Exit 0 is a wrong answer then, but where the

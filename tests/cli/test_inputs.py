@@ -1,4 +1,4 @@
-"""What commands read: the same options everywhere, and one refusal where one makes no sense (issue 14, point 3; B4)."""
+"""What commands read: the same options everywhere, and one refusal where one makes no sense."""
 
 from __future__ import annotations
 

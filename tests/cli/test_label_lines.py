@@ -157,7 +157,6 @@ def test_what_data_comes_through_carries_that_data(cli: Cli, tmp_path: Path, exa
 
 
 def test_a_source_is_asked_about_the_kinds_that_it_does_not_bring(cli: Cli, tmp_path: Path, examples: Path) -> None:
-    """review/users.md, B3.4."""
     policy, file = str(examples / "factory" / "before.policy.xml"), tmp_path / "l.yaml"
     file.write_text("labels: 1\nnodes:\n  /robot_camera: {source: [Video]}\n  /navigator: {source: [RobotPosition]}\n")
     asked = "a source of RobotPosition: if it passes on the rest, add conduit: [Video]"
@@ -216,7 +215,7 @@ def left(document: dict[str, Any]) -> tuple[int, int]:
 
 @pytest.mark.corpus
 def test_turtlebot3_after_the_papers_step_5(corpus: Path, tmp_path: Path) -> None:
-    """review/users.md, B3: with /root dropped 144 elements stayed open, all of them listed as if they were alike."""
+    """With /root dropped 144 elements stayed open, all of them listed as if they were alike."""
     (tmp_path / "l.yaml").write_text("labels: 1\nnodes:\n  /root: {absent: an administrator's shell}\n")
     files = [str(corpus / STEP_5), str(tmp_path / "l.yaml")]
     policy = str(corpus / TURTLEBOT3)
@@ -227,7 +226,7 @@ def test_turtlebot3_after_the_papers_step_5(corpus: Path, tmp_path: Path) -> Non
 
 @pytest.mark.corpus
 def test_rmf_office_is_labelled_from_nothing_in_four_rounds(corpus: Path, tmp_path: Path) -> None:
-    """review/users.md, B3: 37 lines typed in five rounds. Now three lines are typed, the others are one word each."""
+    """37 lines typed in five rounds. Now three lines are typed, the others are one word each."""
     policy, file = str(corpus / OFFICE), tmp_path / "l.yaml"
     said: dict[str, Any] = {
         "nodes": {

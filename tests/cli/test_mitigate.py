@@ -342,7 +342,7 @@ def test_where_no_patch_can_be_made_it_says_so(cli: Cli, tmp_path: Path) -> None
 
 
 def test_a_saved_graph_opens_no_file_that_it_names(cli: Cli, tmp_path: Path) -> None:
-    """At b86d901 what a stranger's graph calls its policy is opened, and lines of it stand in the patch (defect 11)."""
+    """In an earlier version what a stranger's graph calls its policy is opened, and lines of it stand in the patch."""
     arguments = ("-l", RUN3, "--by", "deny", "-f", "json")
     done = cli("analyze", BEFORE, "--save-graph", "g.json", "-q", "--fail-on", "never", cwd=tmp_path)
     assert done.returncode == 0

@@ -1,4 +1,4 @@
-"""Several policies: that they make one graph is said, and each can be analysed alone (rules S5, S11; users.md, A7)."""
+"""Several policies: that they make one graph is said, and each can be analysed alone (rules S5, S11)."""
 
 from __future__ import annotations
 

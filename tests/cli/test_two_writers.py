@@ -49,7 +49,7 @@ def decided(file: Path) -> set[int]:
 
 @pytest.mark.parametrize("each", [3, pytest.param(50, marks=pytest.mark.slow)])
 def test_no_decision_of_two_that_decide_at_once_is_lost(tmp_path: Path, each: int) -> None:
-    """Defect 5 of the review: in 12 of 20 rounds one was lost."""
+    """In 12 of 20 rounds one was lost."""
     file = tmp_path / "decisions.yaml"
     processes = [deciding(file, range(first, first + each)) for first in (1, 1 + each)]
     assert [process.communicate(timeout=240) and process.returncode for process in processes] == [0, 0]

@@ -1,4 +1,4 @@
-"""Leaks planted in real policies, and the lines that the program itself offers to a hurried person (issue 15).
+"""Leaks planted in real policies, and the lines that the program itself offers to a hurried person.
 
 Who is told the truth about a planted leak is ``tests/helpers/brute.py``, not the program.
 """

@@ -1,4 +1,4 @@
-"""What rdflib only logs is refused in our words, and nothing of rdflib's is on standard error (defect 13)."""
+"""What rdflib only logs is refused in our words, and nothing of rdflib's is on standard error."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def _no_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     ],
 )  # fmt: skip
 def test_an_odd_term_is_refused_with_its_line(cli: Cli, tmp_path: Path, old: str, new: str, line: str) -> None:
-    """At b86d901 these are read, with 'does not look like a valid URI' or a traceback of rdflib on standard error."""
+    """In an earlier version these are read, with 'does not look like a valid URI' or a traceback of rdflib on standard error."""
     (tmp_path / "own.ttl").write_text(HEAD + BADGE.replace(old, new), "utf-8")
     (said,) = refused(cli("categories", "--ontology", "own.ttl", cwd=tmp_path))
     assert said.startswith("own.ttl:")

@@ -260,7 +260,7 @@ class TestCache:
         assert anew(tmp_path / "file" / "below").categories
 
     def test_a_full_disk_leaves_nothing_behind(self, tmp_path: Path) -> None:
-        """Defect 13 of the review: a temporary file stayed for each run."""
+        """A temporary file stayed for each run."""
         code = (
             "import resource, signal, sys\n"
             "from pathlib import Path\n"

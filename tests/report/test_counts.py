@@ -1,4 +1,4 @@
-"""Every output counts elements, flows and what is not reviewed alike, and says so where it counts legs (B4.7)."""
+"""Every output counts elements, flows and what is not reviewed alike, and says so where it counts legs."""
 
 from __future__ import annotations
 

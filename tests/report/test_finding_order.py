@@ -1,4 +1,4 @@
-"""What a person decides first, in every report (users.md, B2)."""
+"""What a person decides first, in every report."""
 
 from __future__ import annotations
 

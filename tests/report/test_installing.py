@@ -1,4 +1,4 @@
-"""No hint names a package that is not on the index, and each fits how the program was installed (users.md, A9)."""
+"""No hint names a package that is not on the index, and each fits how the program was installed."""
 
 from __future__ import annotations
 

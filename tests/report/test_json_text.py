@@ -1,4 +1,4 @@
-"""JSON for users is written in one place, and nothing in it can play with a terminal (defect 13)."""
+"""JSON for users is written in one place, and nothing in it can play with a terminal."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def test_a_large_document_is_not_in_memory_as_text() -> None:
     ],
 )  # fmt: skip
 def test_no_command_writes_a_sign_that_cannot_be_printed(cli: Cli, tmp_path: Path, arguments: list[str]) -> None:
-    """At b86d901 ``analyze -f json`` and ``-f sarif`` have them raw (U+009B and U+202E)."""
+    """In an earlier version ``analyze -f json`` and ``-f sarif`` have them raw (U+009B and U+202E)."""
     (tmp_path / "p.policy.xml").write_text(POLICY.format(name="audio" + "".join(ODD[1:])), "utf-8")
     (tmp_path / "l.yaml").write_text(LABELS, "utf-8")
     command, *options = arguments

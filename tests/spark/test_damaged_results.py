@@ -1,4 +1,4 @@
-"""Parquet that came to harm is refused in one line, exit code 2, before anything is written (review: defect 8).
+"""Parquet that came to harm is refused in one line, exit code 2, before anything is written.
 
 The tables are written here as Spark writes them; that it does so is held by ``test_spark.py``. A run that accepts them
 asks for a database that is not there: exit code 3.

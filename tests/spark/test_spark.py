@@ -129,7 +129,7 @@ groups: [{robots: 2, model: m}, {robots: 3, model: n}]
 
 @pytest.mark.usefixtures("session")
 def test_where_robots_work_that_are_not_shown_counts_too(fleet_file: str) -> None:
-    """A pattern stands for robots in care and in a factory; the filter for Article 9 knows of both (issue 17)."""
+    """A pattern stands for robots in care and in a factory; the filter for Article 9 knows of both."""
     write(fleet_file, WORK)
     write("l.yaml", "labels: 1\nnodes: {/keys: {source: [OperatorInput]}, /uplink: {leak: [OperatorInput]}}\n")
     write("p.xml", policy("/keys>/keys", "/uplink</keys"))

@@ -1,4 +1,4 @@
-"""What an earlier version wrote into a database is answered with 'load it again' (DESIGN.md, Contracts)."""
+"""Whin an earlier version wrote into a database is answered with 'load it again' (DESIGN.md, Contracts)."""
 
 from __future__ import annotations
 

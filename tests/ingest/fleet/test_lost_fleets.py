@@ -1,4 +1,4 @@
-"""Leaks that a fleet lost in silence at b86d901, each by the command: what a reader sees, and the exit code.
+"""Leaks that a fleet lost in silence in an earlier version, each by the command: what a reader sees, and the exit code.
 
 The reproductions are those of a review; ``POLICY`` and ``LABELS`` are the system that it begins with.
 """

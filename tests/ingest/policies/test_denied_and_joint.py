@@ -133,7 +133,7 @@ def test_a_saved_graph_knows_where_a_deny_counts(here: Path, cli: Cli, where: st
     assert cli("analyze", *files, "-l", "l.yaml", "--save-graph", "g.json").returncode == 1
     done = cli("analyze", "--add", "g.json", "-l", "l.yaml")
     assert (done.returncode, done.stdout.splitlines()[0]) == (1, LEAK)
-    earlier = json.loads((here / "g.json").read_text())  # as b86d901 wrote it
+    earlier = json.loads((here / "g.json").read_text())  # as an earlier version wrote it
     for saved in earlier["policies"]:
         for grant in saved["grants"]:
             grant.pop("dead", None)

@@ -262,7 +262,6 @@ def test_threats_are_paths_to_assess(care_home: Tool) -> None:
 
 
 def test_a_threat_does_not_say_that_a_source_has_what_is_made_of_its_data(care_home: Tool) -> None:
-    """users.md, A8.7."""
     assert care_home.answers[322]["list"][0].startswith(
         "FaceTemplate, made of Video of /camera at /face_recognizer, can get to /uplink (path to assess "
     )
@@ -482,7 +481,7 @@ SYSTEMS: dict[str, Callable[[], Result]] = {
 @pytest.mark.parametrize("language", OTHERS)
 @pytest.mark.parametrize("system", SYSTEMS)
 def test_the_file_is_whole_in_every_language(language: str, system: str) -> None:
-    """law.md, 3.5: the users of the tool are French controllers; keys, questions and measures are those in English."""
+    """The users of the tool are French controllers; keys, questions and measures are those in English."""
     result = SYSTEMS[system]()
     english, data = cnil_pia(result, CREATED), cnil_pia(result, CREATED, language)
     tool = imported(data)

@@ -62,7 +62,7 @@ class TestNames:
         assert normalised(name) == plain
 
     def test_many_words_that_may_be_made_up_take_no_time(self) -> None:
-        """Defect 6 of the review: 30 such words were not done in a minute."""
+        """30 such words were not done in a minute."""
         name = "/a" + "_00000000" * 30 + "x"
         policies = [policy(f"{name}>/{end}", f"/screen</{end}") for end in ("old", "new")]
         for state, text in zip(("old", "new"), policies, strict=True):

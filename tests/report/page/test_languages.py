@@ -183,6 +183,6 @@ def test_an_unknown_language_is_refused() -> None:
     ],
 )
 def test_a_pseudonymised_path_claims_no_pseudonymisation_of_article_4_5(language: str, said: str) -> None:
-    """law.md, 3.1: a blurred picture has no additional information that is kept separately."""
+    """A blurred picture has no additional information that is kept separately."""
     entries = [entry for kind in told(care_home().document(), language=language).kinds for entry in kind.entries]
     assert {entry.leak for entry in entries if any(said in plain(note) for note in entry.notes)} == {"/recorder"}

@@ -1,4 +1,4 @@
-"""What a report begins with: what there is to decide, the worst first, each flow once (users.md, B1, B2)."""
+"""What a report begins with: what there is to decide, the worst first, each flow once."""
 
 from __future__ import annotations
 
@@ -145,7 +145,7 @@ def test_many_are_counted_and_those_below_told() -> None:
     assert "face template can get to r0:/to0, r1:/to1, r2:/to2, and 17 more;" in opening.said[0]
 
 
-def test_a_transfer_that_rests_on_article_6_alone_says_what_it_lacks() -> None:  # law.md, 0.5
+def test_a_transfer_that_rests_on_article_6_alone_says_what_it_lacks() -> None:
     document = dict(hospital().document())
     row = next(row for row in told(document).opening.rows if row.leak == "hospital:fleet cloud")
     assert dict(row.facts)["Legal basis"] == "6(1)(e), 9(2)(h), 9(3), none of chapter V"
@@ -157,7 +157,7 @@ def test_a_transfer_that_rests_on_article_6_alone_says_what_it_lacks() -> None: 
 
 
 def test_what_is_made_on_the_way_is_said_to_be_made_there_and_not_to_come_from_the_source() -> None:
-    """users.md, A8.7: the camera has no face templates."""
+    """The camera has no face templates."""
     report = told(care())
     assert report.opening.rows[0].what == "face template, made of video of persons at /face_recognizer"
     assert report.opening.rows[1].what == "voice"
@@ -176,7 +176,7 @@ def test_what_is_made_on_the_way_is_said_to_be_made_there_and_not_to_come_from_t
 
 
 def test_words_are_explained_before_they_first_come() -> None:
-    """users.md, B7: declared, profile, enclave, label, wildcard, request; the method stands far below."""
+    """Declared, profile, enclave, label, wildcard, request; the method stands far below."""
     document = care()
     for language, words in {
         "en": ["declared", "profile", "enclave", "label", "wildcard", "request, response"],
@@ -199,7 +199,7 @@ def test_words_are_explained_before_they_first_come() -> None:
 
 
 def test_not_reviewed_is_exact_and_what_only_globs_review_is_counted_beside_it() -> None:
-    """users.md, A8.8: '0 elements not reviewed' is not that a person looked at each."""
+    """'0 elements not reviewed' is not that a person looked at each."""
     numbers = {what: number for number, what in told(care()).numbers}
     assert numbers["elements not reviewed: data gets there, and no label or glob answers for it"] == 0
     assert numbers["elements that count as reviewed only by a glob, for some data at least"] == 3

@@ -118,7 +118,7 @@ def test_nothing_is_wider_than_the_screen(
 def test_the_first_decision_lies_within_the_first_screen(
     browser: WebDriver, pages: dict[str, Path], name: str, width: int, height: int
 ) -> None:
-    """What is to be decided, about what and whose data, can be read without moving the page (users.md, B1)."""
+    """What is to be decided, about what and whose data, can be read without moving the page."""
     chrome.open_page(browser, pages[name].as_uri(), width=width)
     first = browser.execute_script("return document.querySelector('ol.decide > li').getBoundingClientRect().toJSON()")
     assert 0 < first["top"] < first["bottom"] <= height

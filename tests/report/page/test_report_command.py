@@ -137,7 +137,7 @@ def test_a_redacted_copy_is_one_option(cli: Cli) -> None:
     assert "Names of elements, files, enclaves, robots and persons were replaced" in done.stdout
 
 
-def test_it_is_called_as_the_policies_that_were_named_not_what_they_include(cli: Cli) -> None:  # users.md, B7
+def test_it_is_called_as_the_policies_that_were_named_not_what_they_include(cli: Cli) -> None:
     text = cli("report", *SYSTEM, "-f", "markdown", cwd=ROOT).stdout
     assert "\nSystem: care-home.policy.xml\n" in text
     assert "node.xml" in text  # among the files that were read

@@ -1,4 +1,4 @@
-"""What is not reviewed, in the page and in Markdown: the same facts as in the terminal (rule S11; users.md, B3)."""
+"""What is not reviewed, in the page and in Markdown: the same facts as in the terminal (rule S11)."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def test_the_page_says_the_same_in_both_languages(cli: Cli, folder: Path) -> Non
 
 
 def test_a_picture_of_the_page_cuts_no_words(cli: Cli, folder: Path) -> None:
-    """B6: 'laser scan with…tion of a robot with a person'."""
+    """'laser scan with…tion of a robot with a person'."""
     makes = "/planner: {derives: [{from: LaserScan, to: RobotPosition}]}"
     ends = "/camera: {source: [LaserScan]}, /cloud: {leak: [RobotPosition]}"
     (folder / "l.yaml").write_text(f"labels: 1\nnodes: {{{ends}, {makes}}}\n")

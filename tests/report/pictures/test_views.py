@@ -125,7 +125,7 @@ def test_what_pseudonymises_stays_and_what_it_sends_is_dashed() -> None:
 
 
 def test_what_gets_to_where_it_is_said_to_be_cleaned_is_drawn_and_ends_in_a_bar() -> None:
-    """users.md, A2: raw video enters the node that talks to the cloud, and one label says that it stays there."""
+    """Raw video enters the node that talks to the cloud, and one label says that it stays there."""
     care = care_home().analysis
     shown = [views.privacy_view(care), views.finding_view(care, care.findings[0]), overview(care, care.findings)]
     for picture in shown:
@@ -142,7 +142,7 @@ def test_what_gets_to_where_it_is_said_to_be_cleaned_is_drawn_and_ends_in_a_bar(
 
 
 def test_the_picture_of_a_finding_says_where_its_data_is_made() -> None:
-    """users.md, A8.7: the camera has no face templates."""
+    """The camera has no face templates."""
     care = care_home().analysis
     titles = [views.finding_view(care, finding).title for finding in care.findings]
     assert titles[0] == (
