@@ -46,7 +46,7 @@ def _no_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     ],
 )  # fmt: skip
 def test_an_odd_term_is_refused_with_its_line(cli: Cli, tmp_path: Path, old: str, new: str, line: str) -> None:
-    """In an earlier version these are read, with 'does not look like a valid URI' or a traceback of rdflib on standard error."""
+    """Once read with 'does not look like a valid URI' or a traceback of rdflib on standard error."""
     (tmp_path / "own.ttl").write_text(HEAD + BADGE.replace(old, new), "utf-8")
     (said,) = refused(cli("categories", "--ontology", "own.ttl", cwd=tmp_path))
     assert said.startswith("own.ttl:")
