@@ -68,7 +68,13 @@ def traffic(graph: FlowGraph, bound: Bound) -> Traffic:
 
 
 def standard_in(bound: Bound) -> set[int]:
-    """Return the vertices of which a shipped file says that they are standard: nothing else decides the traffic."""
+    """Return the vertices of which a shipped file says that they are standard: nothing else decides the traffic.
+
+    >>> from rosprivacy.analysis.example import factory
+    >>> graph, bound, _ = factory()
+    >>> [graph.elements[vertex].name for vertex in standard_in(bound)]
+    ['/rosout']
+    """
     return {
         vertex for vertex, said in bound.elements.items() if any(one.shipped and one.role != CANNOT for one in said)
     }

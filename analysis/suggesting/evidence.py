@@ -93,7 +93,12 @@ class WrittenLabel(NamedTuple):
 
 
 def whole(element: Element) -> Element:
-    """Return the element that a label speaks of: legs and sides are parts of one (rule S1)."""
+    """Return the element that a label speaks of: legs and sides are parts of one (rule S1).
+
+    >>> from rosprivacy.analysis.model import Element
+    >>> whole(Element("service", "/map", leg="request"))
+    Element(kind='service', name='/map', robot='', leg='', side='', without=())
+    """
     if not element.leg and not element.side:
         return element
     return type(element)(element.kind, element.name, element.robot)

@@ -177,7 +177,13 @@ def questions(
 
 
 def one_line(finding: Finding) -> str:
-    """Return what is told of a finding beside a question."""
+    """Return what is told of a finding beside a question.
+
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.findings.findings import analyse
+    >>> one_line(analyse(*factory()).findings[0]).partition(" [")[0]
+    'FaceTemplate: /camera -> /archive'
+    """
     return f"{finding.category}: {finding.source.name} -> {finding.leak.name} [{finding.id}]"
 
 
@@ -186,6 +192,17 @@ def alike(kinds: Iterable[str], about: Sequence[Proposal]) -> Alike:
 
     A name is no such rule, and neither are the neighbours: behind a channel of which nobody knows the type, or whose
     type can carry anything, a leak could hide.
+
+    >>> from rosprivacy.analysis.model import Confidence, Element, Place
+    >>> from rosprivacy.analysis.suggesting.evidence import Evidence, Label
+    >>> from rosprivacy.analysis.suggesting.weighing import proposals
+    >>> never = Label(Element("topic", "/spin"), "never", "Video")
+    >>> reason = Evidence(never, "type", Confidence.MAY, "a reason", Place("types.yaml", 7), "types.yaml:7")
+    >>> by_name = Evidence(never, "name", Confidence.MAY, "a word", Place("names.yaml", 2))
+    >>> [sorted(alike(kinds, proposals([reason]))) for kinds in (["Video"], ["Video", "Voice"])]
+    [['types.yaml:7'], []]
+    >>> alike(["Video"], proposals([by_name]))
+    frozenset()
     """
     families: set[str] = set()
     for kind in kinds if all(one.label.role == NEVER for one in about) else ():
@@ -197,7 +214,13 @@ def alike(kinds: Iterable[str], about: Sequence[Proposal]) -> Alike:
 
 
 def reached_kinds(analysis: Analysis) -> dict[Identity, tuple[str, ...]]:
-    """Return by element the kinds of data that get there, pseudonymised ones too."""
+    """Return by element the kinds of data that get there, pseudonymised ones too.
+
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.findings.findings import analyse
+    >>> [kinds for (_, _, name), kinds in reached_kinds(analyse(*factory())).items() if name == "/faces"]
+    [('FaceTemplate',)]
+    """
     joined = cache(lambda *some: tuple(sorted({kind for kinds in some for kind in kinds})))
     found: dict[Identity, tuple[str, ...]] = {}
     for one in analysis.carried:

@@ -93,7 +93,11 @@ def proposals(evidence: Iterable[Evidence], known: Collection[str] = ()) -> tupl
 
 
 def surer(one: Confidence, other: Confidence) -> bool:
-    """Return whether the first is surer than the second."""
+    """Return whether the first is surer than the second.
+
+    >>> surer(Confidence.LIKELY, Confidence.MAY), surer(Confidence.MAY, Confidence.MAY)
+    (True, False)
+    """
     return SURENESS[one] < SURENESS[other]
 
 
@@ -103,7 +107,14 @@ def weaker(one: Confidence, other: Confidence) -> Confidence:
 
 
 def closes_finding(label: Label, known: Collection[str]) -> bool:
-    """Return whether a label takes away data of which a finding is known; a conduit takes nothing away."""
+    """Return whether a label takes away data of which a finding is known; a conduit takes nothing away.
+
+    >>> from rosprivacy.analysis.model import Element
+    >>> from rosprivacy.analysis.suggesting.evidence import Label
+    >>> topic = Element("topic", "/t")
+    >>> [closes_finding(Label(topic, role, "Video"), {"Video"}) for role in ("never", "sensitive")]
+    [True, False]
+    """
     return label.role in TAKING_AWAY and bool(known) and (not label.kind or label.kind in known)
 
 
@@ -129,7 +140,20 @@ def _place(one: Evidence) -> tuple[object, ...]:
 
 
 def unsaid(made: Iterable[Proposal], graph: FlowGraph, bound: Bound, hierarchy: Hierarchy) -> tuple[Proposal, ...]:
-    """Return the proposals that ask something: nobody has spoken of it, and no other one answers the same."""
+    """Return the proposals that ask something: nobody has spoken of it, and no other one answers the same.
+
+    >>> from rosprivacy.analysis.example import ARCHIVE, FILTERED, VIDEO, factory
+    >>> from rosprivacy.analysis.model import Confidence, Place
+    >>> from rosprivacy.analysis.suggesting.evidence import Evidence, Label
+    >>> from rosprivacy.analysis.suggesting.weighing import proposals
+    >>> graph, bound, hierarchy = factory()
+    >>> labels = [Label(graph.elements[ARCHIVE], "leak", "Video")]
+    >>> both = ("sensitive", "never")
+    >>> labels += [Label(graph.elements[at], role, "Video") for at in (FILTERED, VIDEO) for role in both]
+    >>> said = [Evidence(label, "name", Confidence.MAY, "a word", Place("names.yaml", 1)) for label in labels]
+    >>> [(one.label.element.name, one.label.role) for one in unsaid(proposals(said), graph, bound, hierarchy)]
+    [('/filtered', 'sensitive'), ('/video', 'sensitive')]
+    """
     said = said_of(graph, bound)
     by_element: dict[Identity, list[Proposal]] = defaultdict(list)
     for one in made:
@@ -140,7 +164,14 @@ def unsaid(made: Iterable[Proposal], graph: FlowGraph, bound: Bound, hierarchy: 
 
 
 def said_of(graph: FlowGraph, bound: Bound) -> dict[Identity, list[Statement]]:
-    """Return what users' labels say of each element."""
+    """Return what users' labels say of each element.
+
+    >>> from rosprivacy.analysis.example import CAMERA, ROSOUT, factory
+    >>> graph, bound, _ = factory()
+    >>> said = said_of(graph, bound)
+    >>> [[str(one.place) for one in said[graph.elements[vertex].identity]] for vertex in (CAMERA, ROSOUT)]
+    [['labels.yaml:2'], []]
+    """
     said: dict[Identity, list[Statement]] = defaultdict(list)
     for vertex, statements in bound.elements.items():
         said[graph.elements[vertex].identity] += [one for one in statements if not one.shipped and one.rank[0] > 0]
@@ -217,7 +248,20 @@ def _outdone(one: Proposal, together: Sequence[Proposal], hierarchy: Hierarchy) 
 
 
 def or_passes_on(leak: Proposal, together: Iterable[Proposal]) -> bool:
-    """Return whether a leak is one of two answers: data end there, and nothing of the node itself says which."""
+    """Return whether a leak is one of two answers: data end there, and nothing of the node itself says which.
+
+    >>> from rosprivacy.analysis.example import ARCHIVE, factory
+    >>> from rosprivacy.analysis.model import Confidence, Place
+    >>> from rosprivacy.analysis.suggesting.evidence import Evidence, Label
+    >>> from rosprivacy.analysis.suggesting.weighing import proposals
+    >>> archive = factory()[0].elements[ARCHIVE]
+    >>> def asked(ground):
+    ...     labels = (Label(archive, role, "Video") for role in ("leak", "conduit"))
+    ...     why = (ground, Confidence.MAY, "a reason", Place("a.yaml", 1))
+    ...     return {one.label.role: one for one in proposals([Evidence(label, *why) for label in labels])}
+    >>> [or_passes_on(said["leak"], said.values()) for said in (asked("data-flow"), asked("name"))]
+    [True, False]
+    """
     by_flows = all(reason.ground == DATA_FLOW for reason in leak.evidence)
     return by_flows and any(one.label.role == CONDUIT and one.label.kind == leak.label.kind for one in together)
 

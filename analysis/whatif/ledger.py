@@ -141,11 +141,11 @@ def ledger(
 
 
 def _leaks(spread: Spread, bound: Bound, hierarchy: Hierarchy) -> dict[int, int]:
-    """Vertex -> the bits of which there would be a finding, of any kind."""
-    leaks: dict[int, int] = defaultdict(int)
+    """Vertex -> the bits of which there would be a finding, of any kind; of what a label calls absent too."""
+    leaks: dict[int, int] = defaultdict(int, spread.leaks)
     for concern in concerns(spread, bound, hierarchy):
-        for vertex, bits in concern.bits.items():
-            leaks[vertex] |= bits
+        for vertex, category in concern.reasons:
+            leaks[vertex] |= spread.both(category)
     return leaks
 
 
@@ -163,8 +163,9 @@ def _closed(spread: Spread, leaks: Mapping[int, int], unlabelled: Mapping[int, i
     for number, closure in enumerate(closed):
         leak, question = to_leak.get(number), to_open.get(number)
         perhaps = PERHAPS in (leak, question)
-        if closure.to < 0 and elements[closure.vertex].is_channel and leaks.get(closure.vertex, 0) & closure.bits:
-            leak = closure.vertex  # others could read it there (rule S10)
+        would_be_found = elements[closure.vertex].is_channel or closure.by == ABSENT  # read there, or kept (rule S10)
+        if closure.to < 0 and would_be_found and leaks.get(closure.vertex, 0) & closure.bits:
+            leak = closure.vertex
         lines = closure.lines
         yield TakenAway(
             closure.by,

@@ -119,7 +119,8 @@ class NameReader(FileReader):
             hint = "state the storage in a label file of the robot that it was recorded on"
             self.problem(value.line, "a bag in a fleet file", hint)
             return ()
-        name = value.text if value.kind == "text" and value.text.isprintable() else ""
+        is_name = value.kind == "text" and value.text.isprintable()
+        name = value.text if is_name else ""
         path = str(Path(self.file).parent / name)
         top = os.path.realpath(self.root or Path(self.file).parent)
         if not name or (why := unusable(path)):

@@ -14,8 +14,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rosprivacy.analysis.errors import InputErrors
+from rosprivacy.analysis.example import DISK, factory
 from rosprivacy.analysis.findings.findings import analyse
-from rosprivacy.analysis.model import Place
+from rosprivacy.analysis.model import STANDARD, Method, Place, Statement
 from rosprivacy.analysis.whatif.ledger import ledger
 from tests.helpers.lined_systems import ADDS, stated
 from tests.helpers.random_fleets import Case, fleets, found_in
@@ -69,6 +70,16 @@ def test_what_is_taken_away_stands_in_the_ledger(system: Stated) -> None:
         own = list(rows_of(rows, line))
         assert not found or any(row.leak or row.perhaps for row in own), (line, own)
         assert not asked or any(row.open or row.itself or row.perhaps for row in own), (line, own)
+
+
+def test_an_absent_storage_of_which_there_would_be_a_finding_has_it_behind() -> None:
+    """S10: without the line of ``absent``, data of which no retention is stated would be kept there."""
+    graph, bound, hierarchy = factory()
+    absent = Statement("sanitizer", (), (STANDARD + 1, 1), Place("labels.yaml", 6), method=Method.ABSENT)
+    bound = replace(bound, elements={**bound.elements, DISK: (*bound.elements[DISK], absent)})
+    rows = ledger(analyse(graph, bound, hierarchy), bound, hierarchy)
+    (row,) = (row for row in rows if row.places == (Place("labels.yaml", 6),))
+    assert row.leak == graph.elements[DISK]
 
 
 @st.composite
