@@ -9,7 +9,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NamedTuple
 
-import click
 import typer
 
 from rosprivacy.analysis.modes import Article9Level, Paths
@@ -25,6 +24,13 @@ if TYPE_CHECKING:
 
 COMPUTED = "Where it is computed"  # panels of help
 WRITTEN = "How the answer is written"
+
+
+def format_name(text: str) -> str:
+    """Return a name of ``FORMATS``; ``BadParameter`` for any other."""
+    if text not in FORMATS:
+        raise typer.BadParameter(f"'{text}' is not one of {', '.join(map(repr, FORMATS))}.")
+    return text
 
 
 class Asked(NamedTuple):
@@ -121,7 +127,9 @@ class Written(NamedTuple):
         typer.Option(
             "--format",
             "-f",
-            click_type=click.Choice([*FORMATS]),
+            parser=format_name,
+            autocompletion=lambda incomplete: [name for name in FORMATS if name.startswith(incomplete)],
+            metavar=f"<{'|'.join(FORMATS)}>",
             show_default="as the output's name ends, else html; of analyze text",
             help="For a terminal, for programs, for code scanning; linked data; the CNIL's tool; a page, a text, a "
             "Word document; rows for the record of processing (Article 30 GDPR); one page for works councils.",
@@ -188,10 +196,10 @@ class Written(NamedTuple):
         bool, typer.Option("--verbose", "-v", help="Of text: every open element and notice.", rich_help_panel=WRITTEN)
     ] = False
 
-    def style(self, format_name: str) -> Style:
+    def style(self, name: str) -> Style:
         """Return how the answer is shown; an option that means nothing to the format is refused."""
         for option, field in STYLES.items():
-            if getattr(self, option) not in (None, False) and field not in FORMATS[format_name].styles:
+            if getattr(self, option) not in (None, False) and field not in FORMATS[name].styles:
                 heeding = ", ".join(name for name, known in FORMATS.items() if field in known.styles)
                 raise typer.BadParameter(f"--{option} is for --format {heeding}")
         return Style(
@@ -231,7 +239,7 @@ def answer(
     asked: Asked,
     computed: Computed,
     written: Written,
-    format_name: str,
+    form: str,
     fail_on: tuple[FailOn, ...],
     *,
     per_policy: bool,
@@ -244,14 +252,14 @@ def answer(
     inputs = inputs.viewed(asked.view)
     settings = asked.settings(inputs.settings)
     _check(inputs, computed, save_graph=bool(save_graph), per_policy=per_policy)
-    style, known = written.style(format_name), FORMATS[format_name]
+    style, known = written.style(form), FORMATS[form]
     if both and (per_policy or computed.engine is Engine.spark or not known.both_views):
         able = ", ".join(name for name, each in FORMATS.items() if each.both_views)
         raise typer.BadParameter(f"--view both writes {able}, and takes neither --per-policy nor --engine spark")
     if known.page:
         not_for_a_terminal(known.page, written.output)
     if per_policy:
-        raise typer.Exit(_each_alone(inputs, settings, format_name, style, written.output, fail_on))
+        raise typer.Exit(_each_alone(inputs, settings, form, style, written.output, fail_on))
     if computed.results and written.output:
         from rosprivacy.report.atomic import check_outputs
 
@@ -263,8 +271,8 @@ def answer(
     else:
         result = inputs.result(settings, both=both)
     graphs = {save_graph: _saved_graph(result)} if save_graph else {}
-    text = in_pieces(result, format_name, style)
-    if isinstance(text, str) and format_name != "text":
+    text = in_pieces(result, form, style)
+    if isinstance(text, str) and form != "text":
         text = text.encode()  # a file says of itself that it is UTF-8, whatever the terminal understands
     emit(text, written.output, graphs)
     raise typer.Exit(exit_code(result, fail_on))
