@@ -143,6 +143,8 @@ class InputErrors(RosPrivacyError):  # noqa: N818 - it is several
 def noting(problems: list[InputError]) -> Iterator[None]:
     """Note what is wrong with a part of the input, and go on with the next part.
 
+    Examples
+    --------
     >>> problems: list[InputError] = []
     >>> with noting(problems):
     ...     raise PolicyError("a.xml", 1, "not XML", "correct it")

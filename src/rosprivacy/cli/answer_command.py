@@ -33,6 +33,11 @@ def format_name(text: str) -> str:
     return text
 
 
+def complete_format(incomplete: str) -> list[str]:
+    """Return the formats that begin so, for shell completion."""
+    return [name for name in FORMATS if name.startswith(incomplete)]
+
+
 class Asked(NamedTuple):
     """What is asked of a system."""
 
@@ -128,7 +133,7 @@ class Written(NamedTuple):
             "--format",
             "-f",
             parser=format_name,
-            autocompletion=lambda incomplete: [name for name in FORMATS if name.startswith(incomplete)],
+            autocompletion=complete_format,
             metavar=f"<{'|'.join(FORMATS)}>",
             show_default="as the output's name ends, else html; of analyze text",
             help="For a terminal, for programs, for code scanning; linked data; the CNIL's tool; a page, a text, a "
