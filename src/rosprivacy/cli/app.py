@@ -6,6 +6,7 @@ completion are quick.
 
 from __future__ import annotations
 
+import os
 import sys
 import tempfile
 import traceback
@@ -104,8 +105,11 @@ def main() -> None:
 
 def _end(said: str, code: int) -> NoReturn:
     """End with some lines on standard error; that nobody reads them makes no other code."""
-    with suppress(OSError):
+    try:
         print(said, file=sys.stderr, flush=True)
+    except OSError:  # else Python tries once more at its end, and ends with a code of its own
+        with suppress(OSError):
+            os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
     sys.exit(code)
 
 
