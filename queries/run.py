@@ -89,7 +89,8 @@ def run(
     """
     refuse_too_much(text)
     answer = partial(_answer, driver, text, dict(values or {}), limit, timeout, known)
-    return answer() if timeout is None else _in_time(answer, timeout + GRACE)
+    with _refusals(driver, timeout):
+        return answer() if timeout is None else _in_time(answer, timeout + GRACE)
 
 
 def _in_time(answer: Callable[[], Rows], seconds: float) -> Rows:
@@ -119,7 +120,6 @@ def _answer(
     import neo4j  # noqa: PLC0415 - light start
 
     with (
-        _refusals(driver, timeout),
         driver.session(
             default_access_mode=neo4j.READ_ACCESS,
             fetch_size=FETCHED,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 import time
 from typing import TYPE_CHECKING
 
@@ -108,6 +109,25 @@ def test_a_server_that_plans_on_and_on_is_not_waited_for(driver: Driver, monkeyp
         run(driver, "RETURN " + "NOT " * 5000 + "true", timeout=2)
     assert time.monotonic() - begun < 30
     assert run(driver, "RETURN 1").rows == ((1,),)
+
+
+def test_an_answer_that_nobody_waits_for_asks_the_server_nothing_more(
+    neo4j_server: Connection, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A connection that is opened while the driver is closed would stay open."""
+    monkeypatch.setattr(running, "refuse_too_much", lambda _: None)
+    monkeypatch.setattr(running, "GRACE", 1.0)
+    others, asked = {*threading.enumerate()}, []
+    with connection.open_driver(neo4j_server) as closed:
+        monkeypatch.setattr(closed, "verify_connectivity", lambda: asked.append(threading.current_thread().name))
+        with pytest.raises(QueryError, match="has not answered within 2 s"):
+            run(closed, "RETURN " + "NOT " * 5000 + "true", timeout=1)
+        left = {*threading.enumerate()} - others
+    assert left
+    for thread in left:
+        thread.join(timeout=60)
+        assert not thread.is_alive()
+    assert not asked
 
 
 def test_nodes_relationships_and_paths(driver: Driver) -> None:
