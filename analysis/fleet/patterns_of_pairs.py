@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     Flags = NDArray[np.bool_]
 
 Wanted = dict[int, set[tuple[str, int, int, bool]]]  # source -> as ``Chosen`` of the findings
-FIXED = -1
 
 
 class _Table:

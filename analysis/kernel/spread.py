@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from rosprivacy.analysis.kernel.bits import CategoryBits, bits_of
-from rosprivacy.analysis.kernel.course import Course
 from rosprivacy.analysis.many_flows import find
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.kernel.overruled import Overruled
@@ -19,6 +18,33 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import FlowGraph, Statement
 
     Said = TypeVar("Said")
+
+Found = TypeVar("Found")
+
+
+class Course:
+    """What was found of one way that data goes; made with each ``Spread``, and shared by those that are alike.
+
+    Whoever asks names in ``under`` all that it rests on beside what ``Spread.otherwise`` compares. That is compared by
+    value, so what is kept cannot grow old.
+
+    Examples
+    --------
+    >>> course = Course()
+    >>> [course.kept("length", words, lambda: len(words)) for words in (("a", "b"), ("a", "b"), ("c",))]
+    [2, 2, 1]
+    """
+
+    def __init__(self) -> None:
+        self._kept: dict[str, tuple[object, Any]] = {}
+
+    def kept(self, what: str, under: object, find: Callable[[], Found]) -> Found:
+        """Return what is found, or was found before under the same; of each thing the last is kept."""
+        known = self._kept.get(what)
+        if known is None or known[0] != under:
+            known = self._kept[what] = under, find()
+        found: Found = known[1]
+        return found
 
 
 @lru_cache(maxsize=1)  # what is said of single elements is asked for again and again

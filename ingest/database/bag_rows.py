@@ -16,12 +16,12 @@ from rosprivacy.analysis.errors import QueryError, shown
 from rosprivacy.analysis.model import Element
 from rosprivacy.ingest.database import cypher
 from rosprivacy.ingest.database.ids import element_id, topic_id
-from rosprivacy.ingest.database.loading import BATCH, refusals, write, write_vocabulary
+from rosprivacy.ingest.database.loading import in_batches, refusals, write, write_vocabulary
 from rosprivacy.ingest.database.schema import constraints
 from rosprivacy.ingest.policies.names import recorded_channels
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     from neo4j import Driver, ManagedTransaction
 
@@ -116,7 +116,7 @@ def load_bags(driver: Driver, bags: Sequence[BagRows], robot: str, vocabulary: V
         for statement in constraints():
             session.run(statement).consume()
         session.execute_write(write_vocabulary, vocabulary)
-        for batch in _in_batches(bags):
+        for batch in in_batches(bags, lambda rows: len(rows.topics) + 1, lambda rows: str(rows.bag["id"])):
             session.execute_write(_write, batch)
         return session.execute_read(_linked, [rows.bag["id"] for rows in bags])
 
@@ -149,17 +149,3 @@ def _linked(transaction: ManagedTransaction, ids: list[str]) -> int:
 
 def _remove(transaction: ManagedTransaction, path: str) -> list[str]:
     return [record["id"] for record in transaction.run(cypher.DELETE_BAGS, path=path)]
-
-
-def _in_batches(bags: Iterable[BagRows]) -> Iterator[list[BagRows]]:
-    """Bags together, up to ``BATCH`` topics; a bag with more stands by itself."""
-    batch: list[BagRows] = []
-    size = 0
-    for rows in bags:
-        if batch and size + len(rows.topics) > BATCH:
-            yield batch
-            batch, size = [], 0
-        batch.append(rows)
-        size += len(rows.topics) + 1
-    if batch:
-        yield batch

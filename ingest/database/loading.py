@@ -10,7 +10,7 @@ from __future__ import annotations
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from rosprivacy.analysis.errors import DatabaseError, InputError, shown
 from rosprivacy.ingest.database import cypher
@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.database.rows import RobotRows, Row
     from rosprivacy.ontology.vocabulary import Vocabulary
 
+Part = TypeVar("Part")
 BATCH = 10_000  # rows per statement and, for robots smaller than that, about so many per transaction
 LONGEST_NAME = 200
 PARTS = {  # of ``RobotRows``: what writes them once elements are there, in this order
@@ -111,7 +112,7 @@ def load(
         for statement in constraints():
             session.run(statement).consume()
         session.execute_write(write_vocabulary, vocabulary)
-        for batch in _batches(robots):
+        for batch in in_batches(robots, attrgetter("size"), attrgetter("robot")):
             there = session.execute_read(_read_there, [rows.robot for rows in batch])
             changed = _changed(there, batch)
             replaced |= _of_other_policies(there, changed)
@@ -169,18 +170,18 @@ def refusals() -> Iterator[None]:
         raise DatabaseError(f"the server refuses to write: {what}; check its log and your user's rights") from error
 
 
-def _batches(robots: Iterable[RobotRows]) -> Iterator[list[RobotRows]]:
-    """Robots, several small ones together."""
-    batch: list[RobotRows] = []
-    size = 0
-    for rows in robots:
-        if batch and (size + rows.size > BATCH or rows.robot in {other.robot for other in batch}):
-            yield batch
-            batch, size = [], 0
-        batch.append(rows)
-        size += rows.size
+def in_batches(every: Iterable[Part], size: Callable[[Part], int], name: Callable[[Part], str]) -> Iterator[list[Part]]:
+    """Yield what is written as a whole, several small parts together: up to ``BATCH`` rows, no name twice."""
+    batch: dict[str, Part] = {}
+    rows = 0
+    for part in every:
+        if batch and (rows + size(part) > BATCH or name(part) in batch):
+            yield [*batch.values()]
+            batch, rows = {}, 0
+        batch[name(part)] = part
+        rows += size(part)
     if batch:
-        yield batch
+        yield [*batch.values()]
 
 
 def _read_there(transaction: ManagedTransaction, names: list[str]) -> dict[str, _There]:

@@ -19,14 +19,12 @@ from rosprivacy.report.contract.notation import (
 from rosprivacy.report.contract.records import ElementEntry, PlaceEntry, Reached
 
 
-@closed
-class ProvisionEntry(TypedDict):
-    """A provision that data of a category can fall under."""
+class _Provision(TypedDict):
+    """A provision, and of what it is said."""
 
     provision: str
     iri: str
     meaning: Annotated[str, "In our own words."]
-    verdict: LawVerdict
     condition: Annotated[str, "When, where it is not always."]
     stated_of: Annotated[str, "The category, or the broader or narrower ones, that the ontology says it of."]
     sources: list[str]
@@ -39,23 +37,18 @@ class ProvisionEntry(TypedDict):
 
 
 @closed
-class ContextProvision(TypedDict):
+class ProvisionEntry(_Provision):
+    """A provision that data of a category can fall under."""
+
+    verdict: LawVerdict
+
+
+@closed
+class ContextProvision(_Provision):
     """What data of a category may reveal in a context."""
 
     context: Context
-    provision: str
-    iri: str
-    meaning: Annotated[str, "In our own words."]
     verdict: ContextVerdict
-    condition: Annotated[str, "When, where it is not always."]
-    stated_of: Annotated[str, "The category, or the broader or narrower ones, that the ontology says it of."]
-    sources: list[str]
-    as_of: Annotated[str, "Date of the law."]
-    translations: Annotated[
-        Texts,
-        texts("provision", "meaning", "condition", "sources"),
-        "Language, and texts in it; sources stand in a row.",
-    ]
 
 
 @closed

@@ -10,6 +10,7 @@ import json
 import subprocess
 import sys
 import threading
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Self
@@ -59,7 +60,23 @@ class Job:
     attributes: Mapping[str, str] | None = None
 
 
-class Graphviz:
+class Closing(ABC):
+    """What is closed at the end of a ``with`` statement."""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    @abstractmethod
+    def close(self) -> None:
+        """End what runs."""
+
+
+class Graphviz(Closing):
     """A running Graphviz; use it in a ``with`` statement.
 
     Raises
@@ -72,14 +89,6 @@ class Graphviz:
         if not available():
             raise DrawingError(f"{MISSING} {command_for('views')}")
         self._process: subprocess.Popen[bytes] | None = None
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
 
     def draw(self, job: Job, seconds: float) -> bytes:
         """Draw one picture.

@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections import OrderedDict
 from dataclasses import replace
 from threading import Lock
-from typing import TYPE_CHECKING, NamedTuple, Self
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import DrawingError
-from rosprivacy.report.pictures.graphviz import Graphviz, Job, TooLongError, available
+from rosprivacy.report.pictures.graphviz import Closing, Graphviz, Job, TooLongError, available
 from rosprivacy.report.pictures.layout import DIRECTIONS, ORDERED, way_of
 from rosprivacy.report.pictures.layout import WAYS as ON_PAPER
 from rosprivacy.report.pictures.legend import legend, style_sheet
@@ -23,7 +23,6 @@ from rosprivacy.report.pictures.scenes import Scene, Scenes
 
 if TYPE_CHECKING:
     from collections.abc import Collection
-    from types import TracebackType
 
     from markupsafe import Markup
 
@@ -40,7 +39,7 @@ ACROSS, DOWN = DIRECTIONS
 REMEMBERED = 64  # layouts; one takes some 20 kB
 
 
-class Drawing:
+class Drawing(Closing):
     """What draws scenes; several threads may use one, in turn.
 
     Use it in a ``with`` statement, or ``close`` it: the process of Graphviz lives as long as it does.
@@ -65,14 +64,6 @@ class Drawing:
         self._seconds, self._lock = seconds, Lock()
         self._graphviz = Graphviz() if available() else None
         self._layouts: OrderedDict[tuple[str, str], bytes] = OrderedDict()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
 
     def close(self) -> None:
         """End the process of Graphviz; the next picture starts another."""
@@ -143,7 +134,7 @@ class Shown(NamedTuple):
     ways: tuple[str, ...]
 
 
-class Pictures:
+class Pictures(Closing):
     """What draws the pictures of one explorer; threads may share it.
 
     Use it in a ``with`` statement, or ``close`` it: the process of Graphviz lives as long as it does.
@@ -168,14 +159,6 @@ class Pictures:
     def __init__(self, say: Phrases | None = None, seconds: float = SECONDS) -> None:
         self._say, self._drawing, self._lock = say or Phrases(), Drawing(seconds), Lock()
         self._seen: Scenes | None = None
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
 
     def close(self) -> None:
         """End the process of Graphviz; the next picture starts another."""

@@ -42,6 +42,9 @@ class Asked(NamedTuple):
     """What is asked of a system."""
 
     view: ViewOrBothChosen = ViewOrBoth.declared
+    per_policy: Annotated[
+        bool, typer.Option("--per-policy", help="Analyse each policy alone; by default several make one graph.")
+    ] = False
     article9: Annotated[
         bool,
         typer.Option(
@@ -125,7 +128,7 @@ class Computed(NamedTuple):
 
 
 class Written(NamedTuple):
-    """How the answer is written, and where to."""
+    """How the answer is written, where to, and on what the command fails."""
 
     format: Annotated[
         str | None,
@@ -201,6 +204,20 @@ class Written(NamedTuple):
         bool, typer.Option("--verbose", "-v", help="Of text: every open element and notice.", rich_help_panel=WRITTEN)
     ] = False
 
+    save_graph: Annotated[
+        Path | None, typer.Option(metavar="GRAPH.json", help="Save what the policies grant.", show_default=False)
+    ] = None
+    fail_on: Annotated[
+        list[FailOn] | None,
+        typer.Option(
+            "--fail-on",
+            show_default="undetermined; of report never",
+            help="Exit with 1 on a finding that is not accepted, and with 4 if undetermined. doubt: with 4 on a doubt "
+            "that is not accepted, too; leak: not with 4, unless no data was followed; undecided: with 1 only where "
+            "nobody has decided; never: with 0. May be repeated: the strictest counts.",
+        ),
+    ] = None
+
     def style(self, name: str) -> Style:
         """Return how the answer is shown; an option that means nothing to the format is refused."""
         for option, field in STYLES.items():
@@ -221,22 +238,6 @@ class Written(NamedTuple):
 
 
 STYLES = {"lang": "language"} | {name: name for name in ("title", "since", "assessment", "base", "redact")}
-PerPolicy = Annotated[
-    bool, typer.Option("--per-policy", help="Analyse each policy alone; by default several make one graph.")
-]
-SaveGraph = Annotated[
-    Path | None, typer.Option(metavar="GRAPH.json", help="Save what the policies grant.", show_default=False)
-]
-FailsOn = Annotated[
-    list[FailOn] | None,
-    typer.Option(
-        "--fail-on",
-        show_default="undetermined; of report never",
-        help="Exit with 1 on a finding that is not accepted, and with 4 if undetermined. doubt: with 4 on a doubt "
-        "that is not accepted, too; leak: not with 4, unless no data was followed; undecided: with 1 only where "
-        "nobody has decided; never: with 0. May be repeated: the strictest counts.",
-    ),
-]
 
 
 def answer(
@@ -245,12 +246,18 @@ def answer(
     computed: Computed,
     written: Written,
     form: str,
-    fail_on: tuple[FailOn, ...],
-    *,
-    per_policy: bool,
-    save_graph: Path | None,
+    default: FailOn,
 ) -> None:
-    """Read the system, answer, write the answer in a format, and end with the exit code."""
+    """Read the system, answer, write the answer in a format, and end with the exit code.
+
+    Parameters
+    ----------
+    form
+        A name of ``FORMATS``.
+    default
+        What the command fails on, where nothing is named.
+    """
+    fail_on, per_policy, save_graph = tuple(written.fail_on or (default,)), asked.per_policy, written.save_graph
     if FailOn.never in fail_on and len(set(fail_on)) > 1:
         raise typer.BadParameter("--fail-on never stands alone")
     both = asked.view is ViewOrBoth.both

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.cli.answer_command import Asked, Computed, FailsOn, PerPolicy, SaveGraph, Written, answer
+from rosprivacy.cli.answer_command import Asked, Computed, Written, answer
 from rosprivacy.cli.exit_code import FailOn
 from rosprivacy.cli.inputs import Inputs, reads_system
 from rosprivacy.formats import FORMATS
@@ -17,22 +17,12 @@ if TYPE_CHECKING:
 
 
 @reads_system()
-def report(
-    inputs: Inputs,
-    asked: Asked,
-    computed: Computed,
-    written: Written,
-    per_policy: PerPolicy = False,
-    save_graph: SaveGraph = None,
-    fail_on: FailsOn = None,
-) -> None:
+def report(inputs: Inputs, asked: Asked, computed: Computed, written: Written) -> None:
     """Write a report for people: a page that needs no network, a text, a Word document, or rows for the record.
 
     It ends with 0 when the report is written, whatever that says, unless --fail-on is given.
     """
-    fails = tuple(fail_on or (FailOn.never,))
-    form = written.format or _by_ending(written.output)
-    answer(inputs, asked, computed, written, form, fails, per_policy=per_policy, save_graph=save_graph)
+    answer(inputs, asked, computed, written, written.format or _by_ending(written.output), FailOn.never)
 
 
 def _by_ending(output: Path | None) -> str:
