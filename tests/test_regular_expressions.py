@@ -27,7 +27,7 @@ pytestmark = [
 ARGUMENT, MESSAGE, OURS = 131_072, 20_000, 5_000
 # Where the steps grow with the square of a text: how long it can be, and whose it is.
 SQUARE = {
-    "cli/help.py:LISTED": (ARGUMENT, "an argument of the user's own"),
+    "cli/wrong_values.py:LISTED": (ARGUMENT, "an argument of the user's own"),
     "ingest/policies/joint_policies.py:_WILDCARD": (BOUNDS.name, "a name in a policy"),
     "ingest/reading/json5_values.py:_TOKEN": (MAX_BYTES, "a file that json5 has read before"),
     "queries/library.py:TEXT": (OURS, "a question that comes with the program"),

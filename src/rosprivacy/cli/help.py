@@ -5,19 +5,15 @@ What is wrong in a command's words is told with what to write instead.
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING, Any
 
 import typer
 from typer.core import TyperGroup
 
-from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.written_names import did_you_mean, nearest
-from rosprivacy.cli.exit_code import GONE, SIGPIPE
+from rosprivacy.cli.exit_code import SIGPIPE
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
-
 
 OBSERVE = "Observe"
 LABEL = "Label"
@@ -50,6 +46,8 @@ class Group(TyperGroup):
         try:
             return super().invoke(ctx)
         except typer.BadParameter as error:
+            from rosprivacy.cli.wrong_values import with_nearest
+
             raise with_nearest(error) from None
         except BrokenPipeError:
             raise typer.Exit(128 + SIGPIPE) from None
@@ -64,18 +62,3 @@ def _untyped(parameters: Iterable[Any]) -> list[Any]:
         if getattr(parameter, "is_flag", False):
             parameter.metavar = ""
     return parameters
-
-
-LISTED = re.compile(r"(?:Value error, )?'(?P<given>.*?)' is not one of (?P<values>'.*')\.?")
-
-
-def with_nearest(error: typer.BadParameter) -> typer.BadParameter:
-    """Name the nearest value, or what stands for a word of an earlier version."""
-    if told := LISTED.fullmatch(error.message):
-        values, given = re.findall("'([^']*)'", told["values"]), told["given"]
-        hint = did_you_mean(nearest(given.casefold(), values), f"one of {', '.join(values)}")
-        option = error.param.name if error.param else ""
-        if option == "fail_on" and "undetermined" in values and given in GONE:
-            hint = GONE[given]
-        error.message = f"{shown(given)!r} is not one of its values; {hint}"
-    return error

@@ -13,6 +13,7 @@ from rosprivacy.terminal_width import terminal_width
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
     from pathlib import Path
+    from typing import TextIO
 
     from rich.console import Console
 
@@ -45,12 +46,17 @@ def _print(text: Text) -> None:
         sys.stdout.buffer.writelines(_encoded(text))
         sys.stdout.flush()
     except BrokenPipeError:  # `| head`: end as a program does that knows nothing of pipes, not with a verdict
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        silence(sys.stdout)
         sys.exit(128 + SIGPIPE)
     except OSError as error:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        silence(sys.stdout)
         hint = "free space, or write elsewhere"
         raise InputError("standard output", 0, f"cannot be written: {error.strerror}", hint) from None
+
+
+def silence(stream: TextIO) -> None:
+    """Let what a stream still holds go nowhere: else Python writes it at its end, and ends with a code of its own."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 def _encoded(text: Text) -> Iterator[bytes]:

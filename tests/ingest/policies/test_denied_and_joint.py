@@ -13,7 +13,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from rosprivacy.ingest.policies.comparisons import some_name
+from rosprivacy.ingest.policies.common_names import some_name
 from rosprivacy.ingest.policies.joint_policies import why_refused
 from rosprivacy.ingest.policies.names import matcher
 

@@ -1,0 +1,30 @@
+"""A value that an option does not take -> one line that says what to write instead.
+
+In: typer's error. Out: the same with a message of ours; typer's own lists the values, and names none as the nearest.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.written_names import did_you_mean, nearest
+from rosprivacy.cli.exit_code import GONE
+
+if TYPE_CHECKING:
+    import typer
+
+LISTED = re.compile(r"(?:Value error, )?'(?P<given>.*?)' is not one of (?P<values>'.*')\.?")
+
+
+def with_nearest(error: typer.BadParameter) -> typer.BadParameter:
+    """Name the nearest value, or what stands for a word of an earlier version."""
+    if told := LISTED.fullmatch(error.message):
+        values, given = re.findall("'([^']*)'", told["values"]), told["given"]
+        hint = did_you_mean(nearest(given.casefold(), values), f"one of {', '.join(values)}")
+        option = error.param.name if error.param else ""
+        if option == "fail_on" and "undetermined" in values and given in GONE:
+            hint = GONE[given]
+        error.message = f"{shown(given)!r} is not one of its values; {hint}"
+    return error
