@@ -103,6 +103,22 @@ def library_evidence(
         What types and names suggest of channels.
     uses
         By vertex of a node.
+
+    >>> from rosprivacy.analysis.example import CAMERA, factory
+    >>> from rosprivacy.analysis.model import Confidence, Place
+    >>> from rosprivacy.analysis.suggesting.channels import Rules, carried_kinds
+    >>> from rosprivacy.analysis.suggesting.example_names import NAMES
+    >>> from rosprivacy.analysis.suggesting.library_rules import LibraryRule, LibraryRules, Names, NodeUse
+    >>> from rosprivacy.analysis.suggesting.channels import traffic
+    >>> graph, bound, hierarchy = factory()
+    >>> rules = Rules({}, {}, NAMES, hierarchy)
+    >>> films = LibraryRule(("Video",), Confidence.LIKELY, "it opens a camera", Place("libraries.yaml", 3))
+    >>> libraries = LibraryRules({"python": Names({"cv2.VideoCapture": films}, {})}, {}, {}, {})
+    >>> uses = {CAMERA: [NodeUse("cv2.VideoCapture", "python", Place("camera.py", 7))]}
+    >>> clues = carried_kinds(graph, bound, rules)
+    >>> for one in library_evidence(graph, bound, traffic(graph, bound), clues, uses, rules, libraries):
+    ...     print(one.label.element.name, one.label.role, one.label.kind, one.confidence, one.reason)
+    /camera source Video may uses cv2.VideoCapture (camera.py:7): it opens a camera
     """
     orders = _orders(graph.elements, rules.names) if uses else ()
     for vertex, own in sorted(uses.items()):

@@ -144,7 +144,16 @@ class Clue(NamedTuple):
 
 
 def carried_kinds(graph: FlowGraph, bound: Bound, rules: Rules) -> dict[int, tuple[Clue, ...]]:
-    """Return what is suggested of each channel of a graph, by vertex; what suggests nothing is left out."""
+    """Return what is suggested of each channel of a graph, by vertex; what suggests nothing is left out.
+
+    >>> from dataclasses import replace
+    >>> from rosprivacy.analysis.example import VIDEO, factory
+    >>> from rosprivacy.analysis.suggesting.example_names import NAMES
+    >>> graph, bound, hierarchy = factory()
+    >>> clues = carried_kinds(graph, bound, Rules({}, {}, NAMES, hierarchy))
+    >>> [(graph.elements[vertex].name, one.kind, one.reason) for vertex, said in clues.items() for one in said]
+    [('/faces', 'FaceTemplate', "'faces' in the name /faces"), ('/video', 'Video', "'video' in the name /video")]
+    """
     channels = ((vertex, element) for vertex, element in enumerate(graph.elements) if element.is_channel)
     clues = (
         (vertex, _clues(element, {one.name: one.place for one in reversed(bound.types.get(vertex, ()))}, rules))

@@ -95,7 +95,13 @@ def words(name: str) -> Phrase:
 
 
 def of_topic(name: str, rules: NameRules) -> Spoken | None:
-    """Return the rule that says what a topic of this name carries, if there is one."""
+    """Return the rule that says what a topic of this name carries, if there is one.
+
+    >>> from rosprivacy.analysis.suggesting.example_names import NAMES
+    >>> names = ("/head/camera/image_raw", "/camera/depth/image_raw", "/camera/info")
+    >>> [said and (said.rule.kinds, said.words) for said in (of_topic(name, NAMES) for name in names)]
+    [(('Video',), ('image',)), (('DepthImage',), ('depth',)), None]
+    """
     parts = name.split("/")[::-1]
     part = _speaking(parts, rules)
     spoken = _last(part, rules.carries, rules.silent)
@@ -105,7 +111,12 @@ def of_topic(name: str, rules: NameRules) -> Spoken | None:
 
 
 def is_silent(name: str, rules: NameRules) -> bool:
-    """Return whether a topic is called like a command or a state of the machine."""
+    """Return whether a topic is called like a command or a state of the machine.
+
+    >>> from rosprivacy.analysis.suggesting.example_names import NAMES
+    >>> [is_silent(name, NAMES) for name in ("/camera/info", "/robot/cmd_vel", "/camera/image_raw", "/other")]
+    [True, True, False, False]
+    """
     part = _speaking(name.split("/")[::-1], rules)
     if not part or of_topic_nothing(name, rules):
         return bool(part)
@@ -113,7 +124,12 @@ def is_silent(name: str, rules: NameRules) -> bool:
 
 
 def of_topic_nothing(name: str, rules: NameRules) -> Spoken | None:
-    """Return the rule that says that a topic of this whole name is not made for personal data, if there is one."""
+    """Return the rule that says that a topic of this whole name is not made for personal data, if there is one.
+
+    >>> from rosprivacy.analysis.suggesting.example_names import NAMES
+    >>> of_topic_nothing("/robot/cmd_vel", NAMES).words, of_topic_nothing("/robot/cmd_vel/face", NAMES)
+    (('cmd', 'vel'), None)
+    """
     part = _own(name)
     return Spoken(rules.nothing[part], part) if part in rules.nothing else None
 
@@ -144,6 +160,10 @@ def of_node(name: str, rules: Mapping[Phrase, NameRule], silent: frozenset[Phras
     ----------
     silent
         Phrases that suggest nothing as the last words: ``get_camera_params`` is no camera.
+
+    >>> from rosprivacy.analysis.suggesting.example_names import NAMES
+    >>> of_node("/front/camera_driver", NAMES.brings_in).words, of_node("/camera/pose", NAMES.brings_in)
+    (('camera',), None)
     """
     return _last(_own(name), rules, silent)
 

@@ -64,6 +64,20 @@ def of_nodes(graph: FlowGraph, bound: Bound, known: Traffic, clues: Clues, rules
     ----------
     clues
         What types and names suggest of channels.
+
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.suggesting.channels import Rules, carried_kinds
+    >>> from rosprivacy.analysis.suggesting.example_names import NAMES
+    >>> from rosprivacy.analysis.suggesting.channels import traffic
+    >>> graph, bound, hierarchy = factory()
+    >>> rules = Rules({}, {}, NAMES, hierarchy)
+    >>> said = of_nodes(graph, bound, traffic(graph, bound), carried_kinds(graph, bound, rules), rules)
+    >>> for one in said:
+    ...     print(one.label.element.name, one.label.role, one.label.kind, one.label.to or one.reason)
+    /archive leak PersonalData 'archive' in the name of the node: it keeps what it gets
+    /camera source Video 'video' in the name /video
+    /camera source Video 'camera' in the name of the node: pictures
+    /face_id derivation Video FaceTemplate
     """
     names, types = rules.names, {at: [said.name for said in some] for at, some in bound.types.items()}
     heard = {at: _for_reader(some, names) for at, some in clues.items()}
@@ -88,7 +102,17 @@ def of_nodes(graph: FlowGraph, bound: Bound, known: Traffic, clues: Clues, rules
 
 
 def unprompted(graph: FlowGraph, known: Traffic, names: NameRules) -> Iterator[Evidence]:
-    """Yield what nodes bring in that write a topic of the section ``unprompted``, read none, and serve nothing."""
+    """Yield what nodes bring in that write a topic of the section ``unprompted``, read none, and serve nothing.
+
+    >>> from dataclasses import replace
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.suggesting.example_names import NAMES
+    >>> from rosprivacy.analysis.suggesting.channels import traffic
+    >>> graph, bound, _ = factory()
+    >>> names = replace(NAMES, unprompted={("video",): NAMES.carries["video",]})
+    >>> [(one.label.element.name, one.reason) for one in unprompted(graph, traffic(graph, bound), names)]
+    [('/camera', "writes 'video' (/video), and reads no topic: pictures")]
+    """
     for vertex, written in known.writes.items() if names.unprompted else ():
         topics = (graph.elements[one] for one in written if graph.elements[one].kind == "topic")
         said = ((topic, spoken) for topic in topics if (spoken := of_node(topic.name, names.unprompted)))
@@ -108,6 +132,24 @@ def of_the_rest(
     ----------
     sources
         Nodes that are suggested as sources.
+
+    >>> from dataclasses import replace
+    >>> from rosprivacy.analysis.example import CAMERA, VIDEO, factory
+    >>> from rosprivacy.analysis.model import Confidence, MessageType, Place, Suggestion
+    >>> from rosprivacy.analysis.suggesting.channels import ANYTHING, Rules
+    >>> from rosprivacy.analysis.suggesting.example_names import NAMES
+    >>> from rosprivacy.analysis.suggesting.channels import traffic
+    >>> graph, bound, hierarchy = factory()
+    >>> names = replace(NAMES, unprompted={(): NAMES.carries["video",]})
+    >>> at = Place("types.yaml", 1)
+    >>> free = {("a/msg/Text", ""): (Suggestion("a/msg/Text", (ANYTHING,), Confidence.MAY, "", "", at),)}
+    >>> rules = Rules(free, {}, names, hierarchy)
+    >>> typed = replace(bound, types={VIDEO: (MessageType("a/msg/Text", at),)})
+    >>> told = traffic(graph, typed)
+    >>> [one.reason for one in of_the_rest(graph, typed, told, rules, ())]
+    ['writes /video, and reads no topic: pictures']
+    >>> list(of_the_rest(graph, typed, told, rules, [graph.elements[CAMERA]]))
+    []
     """
     rule, elements = rules.names.unprompted.get(()), graph.elements
     for vertex, written in known.writes.items() if rule else ():
@@ -125,6 +167,19 @@ def broader_sources(evidence: Iterable[Evidence], rules: Rules) -> Iterator[Evid
 
     What is known names one narrower kind, and persons often another one: a node that is called after a transcript often
     writes a command. So the broader kind is asked about, as long as nobody has named the narrower one.
+
+    >>> from dataclasses import replace
+    >>> from rosprivacy.analysis.example import CAMERA, factory
+    >>> from rosprivacy.analysis.model import Confidence, Place
+    >>> from rosprivacy.analysis.suggesting.channels import Rules
+    >>> from rosprivacy.analysis.suggesting.evidence import Evidence, Label
+    >>> from rosprivacy.analysis.suggesting.example_names import NAMES
+    >>> graph, _, hierarchy = factory()
+    >>> rules = Rules({}, {}, replace(NAMES, broadened=frozenset(["Biometric"])), hierarchy)
+    >>> label = Label(graph.elements[CAMERA], "source", "FaceTemplate")
+    >>> said = [Evidence(label, "name", Confidence.MAY, "a word", Place("names.yaml", 1))]
+    >>> [one.label.kind for one in broader_sources(said, rules)]
+    ['Biometric']
     """
     sources = [one for one in evidence if one.label.role == SOURCE]
     labels = {one.label for one in sources}

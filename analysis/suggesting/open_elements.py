@@ -40,7 +40,16 @@ SHOWN = 3  # names in a reason
 
 
 def of_channels(graph: FlowGraph, clues: Mapping[int, tuple[Clue, ...]]) -> Iterator[Evidence]:
-    """Yield of each channel that it may carry what its types and its name suggest."""
+    """Yield of each channel that it may carry what its types and its name suggest.
+
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.suggesting.channels import Rules, carried_kinds
+    >>> from rosprivacy.analysis.suggesting.example_names import NAMES
+    >>> graph, bound, hierarchy = factory()
+    >>> said = of_channels(graph, carried_kinds(graph, bound, Rules({}, {}, NAMES, hierarchy)))
+    >>> [(one.label.element.name, one.label.role, one.label.kind) for one in said]
+    [('/faces', 'sensitive', 'FaceTemplate'), ('/video', 'sensitive', 'Video')]
+    """
     for vertex, some in clues.items():
         for clue in some:
             label = Label(whole(graph.elements[vertex]), SENSITIVE, clue.kind)
@@ -53,6 +62,17 @@ def of_open(
     """Yield what could be said of open elements, for each kind that reaches them.
 
     What is said of one leg is a label of the whole: ``never`` is proposed only if no leg is made for the kind.
+
+    >>> from rosprivacy.analysis.answer import OpenQuestion
+    >>> from rosprivacy.analysis.example import FILTERED, factory
+    >>> from rosprivacy.analysis.suggesting.channels import Rules
+    >>> from rosprivacy.analysis.suggesting.example_names import NAMES
+    >>> from rosprivacy.analysis.suggesting.channels import traffic
+    >>> graph, bound, hierarchy = factory()
+    >>> asked = [OpenQuestion(graph.elements[FILTERED], ("Video",), 3, False)]
+    >>> (said,) = of_open(asked, graph, bound, traffic(graph, bound), Rules({}, {}, NAMES, hierarchy))
+    >>> said.label.role, said.reason
+    ('sensitive', 'neighbour of /filter, which Video reaches')
     """
     at: dict[tuple[str, str, str, str], list[int]] = {}
     legs: dict[Identity, set[str]] = {}

@@ -242,7 +242,20 @@ def _parts(name: str, base: str) -> tuple[str, ...]:
 
 
 def package_evidence(graph: FlowGraph, of_packages: Iterable[NodeOfPackage]) -> Iterator[Evidence]:
-    """Yield what packages say of the nodes of a graph."""
+    """Yield what packages say of the nodes of a graph.
+
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.model import Place
+    >>> from rosprivacy.analysis.suggesting.packages import nodes_of_packages
+    >>> from rosprivacy.analysis.suggesting.packages import Claim, Interface, Package, PackageNode, Source
+    >>> graph, bound, _ = factory()
+    >>> film = Claim("source", "Video", Confidence.LIKELY, "it films", Place("camera.yaml", 9))
+    >>> node = PackageNode(("camera",), (Interface("publishes", "video"),), (film,))
+    >>> camera = Package("camera", "", (Source("a page", "2026-11-23", "1.0"),), (node,), Place("camera.yaml", 1))
+    >>> said = package_evidence(graph, nodes_of_packages(graph, {}, [camera]))
+    >>> [(str(one.confidence), one.reason) for one in said]
+    [('likely', 'package camera 1.0: it films (its name, 1 of 1 of its interfaces)')]
+    """
     for one in of_packages:
         element, interfaces, package = whole(graph.elements[one.vertex]), len(one.node.interfaces), one.package
         by = f"its name, {one.confirmed} of {interfaces} of its interfaces" if one.confirmed else "its name alone"
@@ -272,6 +285,24 @@ def by_package_types(
     All who write a topic, or who serve a service or an action, have to be recognised nodes of packages, and these have
     to name one type. Nothing is said where a type is known otherwise, where somebody can write by a wildcard, or where
     a person states that something else goes into the channel.
+
+    >>> from rosprivacy.analysis.answer import OpenQuestion
+    >>> from rosprivacy.analysis.example import CAMERA, VIDEO, factory
+    >>> from rosprivacy.analysis.model import Place
+    >>> from rosprivacy.analysis.suggesting.channels import Rules
+    >>> from rosprivacy.analysis.suggesting.example_names import NAMES
+    >>> from rosprivacy.analysis.suggesting.packages import nodes_of_packages
+    >>> from rosprivacy.analysis.suggesting.packages import Interface, Package, PackageNode, Source
+    >>> graph, bound, hierarchy = factory()
+    >>> node = PackageNode(("camera",), (Interface("publishes", "video", "a/msg/Beep"),), ())
+    >>> beeper = Package("beeper", "", (Source("a page", "2026-11-23", "1.0"),), (node,), Place("beeper.yaml", 1))
+    >>> of_packages = nodes_of_packages(graph, {}, [beeper])
+    >>> asked = [OpenQuestion(graph.elements[VIDEO], ("Voice",), 1, False)]
+    >>> for table in ({("a/msg/Beep", ""): ()}, {}):
+    ...     rules = Rules(table, {}, NAMES, hierarchy)
+    ...     print([one.reason for one in by_package_types(asked, graph, bound, of_packages, rules)])
+    ['package beeper 1.0: a/msg/Beep, which is not made for Voice']
+    []
     """
     asked: dict[Identity, OpenQuestion] = {}
     for one in questions:

@@ -102,7 +102,11 @@ def surer(one: Confidence, other: Confidence) -> bool:
 
 
 def weaker(one: Confidence, other: Confidence) -> Confidence:
-    """Return the less sure of two."""
+    """Return the less sure of two.
+
+    >>> str(weaker(Confidence.LIKELY, Confidence.MAY))
+    'may'
+    """
     return other if surer(one, other) else one
 
 

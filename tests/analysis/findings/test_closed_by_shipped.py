@@ -63,9 +63,12 @@ def test_outside_its_standard_place_it_breaks_the_verdict_in_its_place_it_is_cou
     """Which place is standard, ``in_its_place`` says; here the verdict, by the shipped file or one's own."""
     for kind, channel, others, outside in (
         ("topic", "/x/clock", (), True),
+        ("topic", "/my/rosout", (), True),
+        ("topic", "/a/parameter_events", (), True),
         ("service", "/cloud/get_parameters", (), True),
         ("service", "/cloud/describe_parameters", ("cloudy",), True),
         ("topic", "/clock", (), False),
+        ("topic", "/rosout", (), False),
         ("topic", "/parameter_events", (), False),
         ("service", "/camera/get_parameters", (), False),
         ("service", "/cloud/get_parameters", ("cloud",), False),
@@ -74,8 +77,14 @@ def test_outside_its_standard_place_it_breaks_the_verdict_in_its_place_it_is_cou
         kept = [(channel, "/uplink")]
         breaks = (4, "undetermined", [("standard-closes", "breaks", channel)], kept)
         assert told(cli) == (breaks if outside else (0, "no-leak-found", [], kept)), channel
-        Path("s.yaml").write_text(f'labels: 1\nchannels: {{"{channel}": mundane}}\n', "utf-8")
-        assert not outside or told(cli, "--standard-channels", "s.yaml") == breaks
+        text = cli("analyze", "p.xml", "-l", "l.yaml", *(["-q"] if outside else [])).stdout
+        assert (
+            channel if outside else f"at 1 of them nothing else keeps data from a leak: {channel} -> /uplink"
+        ) in text
+        if outside:
+            Path("s.yaml").write_text(f'labels: 1\nchannels: {{"{channel}": mundane}}\n', "utf-8")
+            assert told(cli, "--standard-channels", "s.yaml") == breaks
+            assert channel in cli("analyze", "p.xml", "-l", "l.yaml", "--standard-channels", "s.yaml", "-q").stdout
 
 
 def test_where_the_file_of_infrastructure_closes_it_it_rides(cli: Cli) -> None:

@@ -75,6 +75,18 @@ def open_on(file: Path, hospital: Path, finding: Finding) -> set[str]:
     return {robot for form, robots in found.forms if not form.accepted for robot in robots}
 
 
+def test_it_is_told_about_how_many_robots_and_which(begun: Explorer) -> None:
+    client = begun.client()
+    finding = on_every_robot(begun)
+    assert list(radios(client, finding))[:2] == ["of model carrier: 23 robots", "carrier_01 only"]
+    assert "of model guide: 12 robots" in radios(client, finding)
+    assert "carrier_lent only" in radios(client, finding)
+    form = html.fromstring(client.get(f"/?finding={finding.id}").text).get_element_by_id("decide")
+    assert "carrier_22, carrier_23" in form.cssselect("details p")[0].text_content()
+    assert "a robot that joins later" in form.text_content()
+    assert form.cssselect(".whose input[checked]")[0].get("value") == finding.id
+
+
 def test_of_what_gets_from_robot_to_robot_both_ends_are_told(begun: Explorer) -> None:
     there = radios(begun.client(), from_robot_to_robot(begun))
     assert list(there)[:2] == ["from 23 robots (carrier) to 12 robots (guide)", "from carrier_01 to guide_01"]
@@ -202,6 +214,15 @@ def test_a_decision_on_a_full_disk_decides_nothing(begun: Explorer, file: Path) 
     assert begun.session.result.to("json") == before
     assert not file.exists()
     assert decide(client, finding, **SIGNED, whose=finding.id).status_code == 303
+
+
+def test_without_the_option_the_page_says_how_to_start(explore: Explore, hospital: Path) -> None:
+    explorer = explore(hospital, hospital, fleet=True)
+    client, finding = explorer.client(), on_every_robot(explorer)
+    page = html.fromstring(client.get(f"/?finding={finding.id}").text)
+    assert not page.xpath("//form[@id='decide']")
+    assert "--decisions decisions.yaml" in page.text_content()
+    assert decide(client, finding, **SIGNED, whose=finding.id).status_code == 422
 
 
 def test_robots_that_the_page_does_not_offer_are_counted(begun: Explorer, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -163,6 +163,7 @@ REFUSED = [
     (2, "elements: {ring: {kind: shared-memory, between: [/recorder]}}", "between names at least two nodes"),
     (2, "elements: {badge: {kind: device}}", "device 'badge' does nothing; say what comes from it"),
     (2, "elements: {/bucket: {kind: storage}}", "'/bucket' cannot name an element outside ROS"),
+    (2, 'elements: {"=disk": {kind: storage}}', "cannot name an element outside ROS"),
     (2, "elements: {'a:b': {kind: storage}}", "'a:b' cannot name an element outside ROS"),
     (2, "elements: {bucket: {kind: storage, source: [Vide]}}", "unknown category 'Vide'"),
     (2, "limits: {Vide: P1D}", "unknown category 'Vide'"),

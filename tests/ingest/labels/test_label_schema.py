@@ -108,6 +108,17 @@ def test_the_reader_and_the_schema_agree_on_a_wrong_type_anywhere(tmp_path: Path
             assert not validator().is_valid(document), f"valid, but not read: {shown}"
 
 
+def test_it_refuses_what_the_reader_does_of_absent_and_of_names() -> None:
+    for entry, valid in (
+        ({"nodes": {"/a": {"absent": "sold", "note": "in May"}}}, True),
+        ({"nodes": {"/a": {"absent": ""}}}, False),
+        ({"nodes": {"/a": {"sanitizer": {"Video": "absent"}}}}, False),
+        ({"topics": {"=/*": "sensitive"}, "nodes": {"=/a": "conduit"}}, True),
+        ({"elements": {"=disk": {"kind": "storage"}}}, False),
+    ):
+        assert validator().is_valid({"labels": 1, **entry}) == valid, entry
+
+
 @pytest.mark.parametrize(
     "key", ["labels", "nodes", "channels", "topics", "services", "actions", "limits", "flows", "pins"]
 )
