@@ -58,9 +58,11 @@ def answer(browser: WebDriver, role: str) -> None:
     """Choose an answer with the arrows, write the reason, and the name where it is asked for; Enter."""
     from selenium.webdriver.common.by import By
     from selenium.webdriver.common.keys import Keys
+    from selenium.webdriver.support.ui import WebDriverWait
 
     before = browser.find_element(By.TAG_NAME, "html")
-    assert browser.execute_script(AT) == "H1"  # what a screen reader begins with
+    # What a screen reader begins with; the browser moves the focus there when it draws the page.
+    WebDriverWait(browser, SECONDS, 0.02).until(lambda b: b.execute_script(AT) == "H1")
     tab_to(browser, "role")
     press(browser, Keys.SPACE)
     for _ in range(12):
