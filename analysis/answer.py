@@ -34,7 +34,7 @@ class Finding:
     ----------
     id
         16 hexadecimal digits made from category, source and leak, of other kinds than disclosure from the kind, and
-        from ``beside`` where it holds; stable as long as these are.
+        from ``plain_also`` where it holds; stable as long as these are.
     kind
         ``DISCLOSURE``: it reaches a leak. ``STORAGE_LIMITATION``: a storage that keeps it without a stated end or
         longer than allowed. ``THIRD_COUNTRY``: an element outside the EEA without a stated basis.
@@ -43,7 +43,7 @@ class Finding:
         The leak, the storage, the element abroad or the channel.
     pseudonymised
         Whether the data arrives in pseudonymised form only; data that arrives as it is through another leak only is
-        then a finding of its own, ``beside`` this one.
+        then a finding of its own, ``plain_also`` this one.
     witness
         One shortest path, source first.
     steps
@@ -57,7 +57,7 @@ class Finding:
         Whether every path goes through another leak of the category, which has a finding of its own, not accepted.
     accepted
         Whether a person has decided that this may be; it then hides nothing behind it.
-    beside
+    plain_also
         Whether a finding of the same ends stands beside it that is pseudonymised; this one is then dismissed.
     paths
         Further paths if asked for, each source first.
@@ -82,7 +82,7 @@ class Finding:
     bounded: bool = False
     why: Reason | None = None
     accepted: bool = False
-    beside: bool = False
+    plain_also: bool = False
 
     @property
     def disjoint_paths(self) -> int:
@@ -146,15 +146,15 @@ class Verdict(StrEnum):
     NO_LEAK_FOUND = "no-leak-found"
 
     @classmethod
-    def of(cls, *, leak: bool, is_open: bool, known: bool) -> Verdict:
-        """Decide: ``leak`` if a finding stands, ``known`` if it lacks no grounds and all grants were read (S11, S12).
+    def of(cls, *, leak: bool, is_open: bool, grounded: bool) -> Verdict:
+        """Decide: ``leak`` if a finding stands; ``grounded`` if it lacks no ground and all was read (S11, S12).
 
-        >>> str(Verdict.of(leak=False, is_open=False, known=False))
+        >>> str(Verdict.of(leak=False, is_open=False, grounded=False))
         'undetermined'
         """
         if leak:
             return cls.LEAK
-        return cls.NO_LEAK_FOUND if known and not is_open else cls.UNDETERMINED
+        return cls.NO_LEAK_FOUND if grounded and not is_open else cls.UNDETERMINED
 
 
 class ClosedByTypes(NamedTuple):
@@ -290,7 +290,7 @@ class Analysis:
     types: Mapping[Element, tuple[str, ...]] = field(default_factory=dict)
 
 
-def writers_and_readers(graph: FlowGraph, some: Iterable[Element]) -> Iterator[tuple[Element, Element]]:
+def writers_and_readers(graph: FlowGraph, elements: Iterable[Element]) -> Iterator[tuple[Element, Element]]:
     """Yield the channels among some elements, each with who writes or reads it. O(flows); no flow without a channel.
 
     Examples
@@ -300,7 +300,7 @@ def writers_and_readers(graph: FlowGraph, some: Iterable[Element]) -> Iterator[t
     >>> [other.name for _, other in writers_and_readers(graph, (graph.elements[FILTERED], graph.elements[CAMERA]))]
     ['/filter', '/archive']
     """
-    channels = {element.shown_as for element in some if element.is_channel}
+    channels = {element.shown_as for element in elements if element.is_channel}
     those = {vertex for vertex, element in enumerate(graph.elements) if channels and element.shown_as in channels}
     for flow in graph.flows if those else ():
         for channel, other in ((flow.source, flow.target), (flow.target, flow.source)):
@@ -348,5 +348,5 @@ def robot_verdicts(
     broken = {robot_of(e) for row in analysis.closed_by_shipped if row.rank is Rank.BREAKS for e in row.at}
     known = {robot_of(carried.element) for carried in carrying} - {*not_read, *broken}
     return {
-        robot: Verdict.of(leak=robot in leaking, is_open=robot in open_at, known=robot in known) for robot in robots
+        robot: Verdict.of(leak=robot in leaking, is_open=robot in open_at, grounded=robot in known) for robot in robots
     }

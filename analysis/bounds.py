@@ -100,12 +100,12 @@ class Bounds:
             raise InputErrors(problems)
         return replace(cls(), **values)
 
-    def refusal(self, name: str, found: int | None = None) -> tuple[str, str]:
+    def refusal(self, name: str, amount: int | None = None) -> tuple[str, str]:
         """Return what is wrong, and what to do, where there is more of something than a bound.
 
         Parameters
         ----------
-        found
+        amount
             How much there is; None where nobody counted on.
 
         Examples
@@ -115,7 +115,7 @@ class Bounds:
         """
         bound = getattr(self, name)
         more = f"more than the bound of {bound:,}"
-        told = f"{more} {WHAT[name]}" if found is None else f"{found:,} {WHAT[name]}, {more}"
+        told = f"{more} {WHAT[name]}" if amount is None else f"{amount:,} {WHAT[name]}, {more}"
         return told, f"raise it with {OPTION} {name}=N"
 
 
@@ -144,7 +144,7 @@ class Tally:
         bound: int = getattr(self.bounds, self.name)
         return self.count >= bound
 
-    def add(self, more: int, place: Place) -> None:
+    def add(self, amount: int, place: Place) -> None:
         """Count on.
 
         Raises
@@ -152,6 +152,6 @@ class Tally:
         InputErrors
             Above the bound, with the place at which it was met.
         """
-        self.count += more
+        self.count += amount
         if self.count > getattr(self.bounds, self.name):
             raise InputErrors([self.error(place.file, place.line, *self.bounds.refusal(self.name))])

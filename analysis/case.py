@@ -18,7 +18,7 @@ class Case(NamedTuple):
         Of the finding; empty where it stands for more than itself.
     pattern
         On a fleet, the id of the pattern that it belongs to.
-    beside
+    plain_also
         As of ``Finding``.
     robots
         On a fleet, the robots that data begins on and gets to; an end that is on no robot is empty.
@@ -31,7 +31,7 @@ class Case(NamedTuple):
     leak: Element
     pseudonymised: bool
     pattern: str = ""
-    beside: bool = False
+    plain_also: bool = False
     robots: tuple[str, str] = ("", "")
 
     @property
@@ -44,4 +44,5 @@ class Case(NamedTuple):
     def of(cls, finding: Finding) -> Case:
         """Return the case that a finding is."""
         ends = finding.source, finding.leak
-        return cls(finding.id, finding.kind, finding.category, *ends, finding.pseudonymised, beside=finding.beside)
+        plain_also = finding.plain_also
+        return cls(finding.id, finding.kind, finding.category, *ends, finding.pseudonymised, plain_also=plain_also)

@@ -17,8 +17,8 @@ from rosprivacy.analysis.errors import DecisionError
 from rosprivacy.analysis.expressions import regex
 from rosprivacy.analysis.legal_bases import gaps
 from rosprivacy.analysis.model import Diagnostic, Place, Severity
-from rosprivacy.analysis.remembered import changes, told
-from rosprivacy.analysis.written_names import is_glob, meant
+from rosprivacy.analysis.remembered import change_text, changes
+from rosprivacy.analysis.written_names import bare_name, is_glob
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
@@ -151,7 +151,7 @@ def _covers(written: str, name: str) -> bool:
     """Nothing written covers every name."""
     if is_glob(written):
         return regex(written).match(name) is not None
-    return not written or meant(written) == name
+    return not written or bare_name(written) == name
 
 
 def _is_about(entry: Acceptance, doubt: Doubt) -> bool:
@@ -384,7 +384,7 @@ def _diagnostics(
         elif state is State.ORPHANED:
             yield Diagnostic(entry.place, Severity.WARNING, f"{what} is about no finding: it is orphaned; remove it")
         if changed := joined.changed.get(entry):
-            message = f"changed since {what} was made: {told(changed)}; decide anew"
+            message = f"changed since {what} was made: {change_text(changed)}; decide anew"
             yield Diagnostic(entry.place, Severity.WARNING, message)
         if joined.decisions.state(entry) is State.EXPIRED:
             message = f"{what} expired on {entry.expires} and no longer counts; decide anew"

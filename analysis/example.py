@@ -77,12 +77,12 @@ def factory(robot: str = "") -> tuple[FlowGraph, Bound, Hierarchy]:
     )
     bound = Bound(
         {
-            ARCHIVE: (_said("leak", 1, "FaceTemplate", "Video"),),
-            CAMERA: (_said("source", 2, "Video"),),
-            FACE_ID: (_said("derivation", 3, "Video")._replace(to="FaceTemplate"),),
-            FILTER: (_said("sanitizer", 4, "Video")._replace(method=Method.PSEUDONYMISE),),
+            ARCHIVE: (_label("leak", 1, "FaceTemplate", "Video"),),
+            CAMERA: (_label("source", 2, "Video"),),
+            FACE_ID: (_label("derivation", 3, "Video")._replace(to="FaceTemplate"),),
+            FILTER: (_label("sanitizer", 4, "Video")._replace(method=Method.PSEUDONYMISE),),
             DISK: by_kind(elements[DISK]),
-            FACES: (_said("only", 5, "FaceTemplate")._replace(naming=SEGMENT, rank=(STANDARD + 1, 0)),),
+            FACES: (_label("only", 5, "FaceTemplate")._replace(naming=SEGMENT, rank=(STANDARD + 1, 0)),),
             ROSOUT: (Statement("mundane", (), (STANDARD, 0), Place("standard", 1), naming=GLOB, shipped=True),),
         },
         outside={DISK: NonRosFacts(country="DE", area="eea")},
@@ -97,6 +97,6 @@ def _granted(elements: tuple[Element, ...], source: int, target: int, line: int)
     return Flow(source, target, role, (Grant(True, role, "topic", *names, Place("policy.xml", line)),))
 
 
-def _said(role: str, line: int, *categories: str) -> Statement:
+def _label(role: str, line: int, *categories: str) -> Statement:
     """What one line of the labels says, by a full name."""
     return Statement(role, categories, (STANDARD + 1, 1), Place("labels.yaml", line))

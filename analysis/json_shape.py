@@ -18,9 +18,9 @@ if TYPE_CHECKING:
     from jsonschema.exceptions import ValidationError
     from jsonschema.protocols import Validator
 
-MOST = 20  # problems of one value
+BOUND = 20  # problems of one value
 KINDS = {dict: "an object", list: "a list", str: "text", bool: "true or false", type(None): "null"}
-WANTED = {
+TYPE_NAMES = {
     "object": "an object", "array": "a list", "string": "text", "boolean": "true or false", "null": "null",
     "integer": "a whole number", "number": "a number",
 }  # fmt: skip
@@ -51,7 +51,7 @@ def misfits(check: Validator, value: Any) -> list[str]:
     >>> misfits(validator({"required": ["id"], "properties": {"n": {"type": "integer"}}}), {"n": 1.0})
     ['n is a number, not a whole number', 'the document lacks id']
     """
-    found = (f"{_place(error)} {_wrong(error)}" for error in islice(check.iter_errors(value), MOST))
+    found = (f"{_place(error)} {_wrong(error)}" for error in islice(check.iter_errors(value), BOUND))
     return sorted(set(found))
 
 
@@ -66,7 +66,7 @@ def _wrong(error: ValidationError) -> str:
         return f"lacks {', '.join(key for key in wanted if key not in found)}"
     if error.validator == "type":
         kinds = wanted if isinstance(wanted, list) else [wanted]
-        return f"is {KINDS.get(type(found), 'a number')}, not {' or '.join(WANTED[kind] for kind in kinds)}"
+        return f"is {KINDS.get(type(found), 'a number')}, not {' or '.join(TYPE_NAMES[kind] for kind in kinds)}"
     if error.validator in ("enum", "const"):
         values = wanted if isinstance(wanted, list) else [wanted]
         return f"is not {' or '.join(json.dumps(value) for value in values)}"

@@ -25,14 +25,14 @@ class _RefusedError(ValueError):
     """What the standard library lets pass."""
 
 
-def parsed(data: bytes, fail: Callable[[int, str, str], RosPrivacyError], again: str) -> Any:
+def parsed(data: bytes, fail: Callable[[int, str, str], RosPrivacyError], remedy: str) -> Any:
     """Return the value that stands in a JSON file.
 
     Parameters
     ----------
     fail
         Makes the error of the caller's kind from line, problem and hint.
-    again
+    remedy
         How to get such a file: the hint.
 
     Raises
@@ -48,20 +48,20 @@ def parsed(data: bytes, fail: Callable[[int, str, str], RosPrivacyError], again:
         ...
     rosprivacy.analysis.errors.InputError: f.json: a[1] is too large a number; write it again
     """
-    text = _text(data, fail, again)
+    text = _text(data, fail, remedy)
     try:
         value = json.loads(text, object_pairs_hook=_each_key_once, parse_constant=_no_number)
     except json.JSONDecodeError as error:
-        raise fail(error.lineno, f"not JSON, or not to its end: {error.msg}", again) from None
+        raise fail(error.lineno, f"not JSON, or not to its end: {error.msg}", remedy) from None
     except _RefusedError as error:
-        raise fail(0, str(error), again) from None
+        raise fail(0, str(error), remedy) from None
     except ValueError:
-        raise fail(0, "a number of thousands of digits", again) from None
+        raise fail(0, "a number of thousands of digits", remedy) from None
     except RecursionError:
-        raise fail(0, "nested too deeply", again) from None
+        raise fail(0, "nested too deeply", remedy) from None
     wrong = _unfit(value, 0)
     if wrong:
-        raise fail(0, f"{place(wrong[0])} {wrong[1]}", again)
+        raise fail(0, f"{place(wrong[0])} {wrong[1]}", remedy)
     return value
 
 
@@ -74,15 +74,15 @@ def place(way: str) -> str:
     return shown(way.removeprefix(".")) or "the document"
 
 
-def _text(data: bytes, fail: Callable[[int, str, str], RosPrivacyError], again: str) -> str:
+def _text(data: bytes, fail: Callable[[int, str, str], RosPrivacyError], remedy: str) -> str:
     if not data.strip():
-        raise fail(0, "the file is empty", again)
+        raise fail(0, "the file is empty", remedy)
     if data.startswith(GZIP):
         raise fail(0, "the file is compressed", "unpack it with gunzip")
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        hint = "let rosprivacy write the file with -o" if data.startswith(UTF_16) else again
+        hint = "let rosprivacy write the file with -o" if data.startswith(UTF_16) else remedy
         raise fail(data.count(b"\n", 0, error.start) + 1, "not UTF-8", hint) from None
 
 

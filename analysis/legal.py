@@ -44,23 +44,25 @@ def close(categories: Mapping[str, Category], hierarchy: Hierarchy) -> dict[str,
     return {name: _with_narrower(category, narrower[name]) for name, category in stated.items()}
 
 
-def _own(category: Category) -> tuple[Legal, ...]:
+def _direct_provisions(category: Category) -> tuple[Legal, ...]:
     return tuple(legal for legal in category.law if legal.stated_of in ("", category.name))
 
 
 def _says_something(category: Category) -> bool:
-    return category.stated_of in ((), (category.name,)) and bool(_own(category) or category.reason)
+    return category.stated_of in ((), (category.name,)) and bool(_direct_provisions(category) or category.reason)
 
 
 def _inherited(category: Category, categories: Mapping[str, Category], hierarchy: Hierarchy) -> Category:
     """The category with its own statements, or with those of the nearest broader ones that have some."""
     if _says_something(category):
-        own = tuple(legal._replace(stated_of=category.name) for legal in _own(category))
+        own = tuple(legal._replace(stated_of=category.name) for legal in _direct_provisions(category))
         return category._replace(law=own, stated_of=(category.name,))
     above = [categories[name] for name in hierarchy.broader(category.name) if _says_something(categories[name])]
     nearest = [up for up in above if not any(up.name in hierarchy.broader(other.name) for other in above)]
     law = {
-        (legal.iri, legal.verdict, up.name): legal._replace(stated_of=up.name) for up in nearest for legal in _own(up)
+        (legal.iri, legal.verdict, up.name): legal._replace(stated_of=up.name)
+        for up in nearest
+        for legal in _direct_provisions(up)
     }
     reasons = sorted({up.reason for up in nearest if up.reason})
     translations = category.translations
@@ -127,7 +129,7 @@ def strongest_first(law: Iterable[Legal]) -> tuple[Legal, ...]:
     return tuple(sorted(distinct, key=lambda legal: (_STRENGTH.get(legal.verdict, len(_STRENGTH)), legal.name)))
 
 
-def recognises(made: Category) -> bool:
+def recognises(category: Category) -> bool:
     """Return whether who makes such data recognises persons or judges them: that protects nobody, whatever it drops.
 
     It is so of special categories, of data of Article 10, and of what Article 5 of the AI Act speaks of.
@@ -136,7 +138,9 @@ def recognises(made: Category) -> bool:
     >>> recognises(CATEGORIES["FaceTemplate"]), recognises(CATEGORIES["Video"])
     (True, False)
     """
-    return any(legal.verdict in SPECIAL for legal in made.law) or any(at.startswith(PROHIBITED) for at in made.look_at)
+    return any(legal.verdict in SPECIAL for legal in category.law) or any(
+        at.startswith(PROHIBITED) for at in category.look_at
+    )
 
 
 def turned_special(finding: Finding, categories: Mapping[str, Category]) -> Element | None:

@@ -85,9 +85,9 @@ def gaps(stated: Sequence[str], accepted: Iterable[tuple[str, str]], law: Mappin
     """
     held = list(accepted)
     kinds = sorted({category for _, category in held})
-    if not _any(stated, "6(1)"):
+    if not _matches(stated, "6(1)"):
         yield Gap(Lack.ARTICLE_6)
-    if not _any(stated, "9(2)"):
+    if not _matches(stated, "9(2)"):
         for category in kinds:
             yield from _article9(category, law.get(category, ()))
     if "9(2)(h)" in stated and "9(3)" not in stated:
@@ -95,9 +95,9 @@ def gaps(stated: Sequence[str], accepted: Iterable[tuple[str, str]], law: Mappin
     if "10" not in stated:
         yield from (Gap(Lack.ARTICLE_10, category) for category in kinds if _article10(law.get(category, ())))
     if any(kind == THIRD_COUNTRY for kind, _ in held):
-        if not _any(stated, *CHAPTER_V):
+        if not _matches(stated, *CHAPTER_V):
             yield Gap(Lack.CHAPTER_V)
-        elif not _any(stated, *(article for article in CHAPTER_V if article != "49")):
+        elif not _matches(stated, *(article for article in CHAPTER_V if article != "49")):
             yield Gap(Lack.OCCASIONAL)
 
 
@@ -116,10 +116,10 @@ def group_of(basis: str) -> tuple[str, ...]:
     >>> group_of("9(3)"), group_of("46(2)(c)") == CHAPTER_V
     (('9',), True)
     """
-    return next((group for group in GROUPS if _any([basis], *group)), ())
+    return next((group for group in GROUPS if _matches([basis], *group)), ())
 
 
-def _any(stated: Sequence[str], *articles: str) -> bool:
+def _matches(stated: Sequence[str], *articles: str) -> bool:
     return any(basis == article or basis.startswith(f"{article}(") for basis in stated for article in articles)
 
 

@@ -67,8 +67,8 @@ class Flows(Sequence[Flow]):
         number = range(len(self))[at]
         if "_all" in self.__dict__:  # somebody has asked for all
             return self._all[number]
-        if number in self._told:
-            return self._told[number]
+        if number in self._stored:
+            return self._stored[number]
         source = self._sources[bisect_right(self._before, number) - 1]
         low, high = 0, self._highest
         while low < high:  # the first target up to which there are more flows than before the one asked for
@@ -127,7 +127,7 @@ class Flows(Sequence[Flow]):
         parts = [meeting.parted(ends) for meeting in self.meetings]
         self.check(sum(told.size for _, told in parts))
         more = [(self.number(flow.source, flow.target), flow) for _, told in parts for flow in told.flows()]
-        self._told.update(more)
+        self._stored.update(more)
         return sorted([*self._rows, *more], key=_first), tuple(left for left, _ in parts if left.size)
 
     def leaving(self) -> dict[int, range]:
@@ -163,7 +163,7 @@ class Flows(Sequence[Flow]):
         return rows
 
     @cached_property
-    def _told(self) -> dict[int, Flow]:
+    def _stored(self) -> dict[int, Flow]:
         """Flows by their number: those that are stored, and those that were told by themselves."""
         return dict(self._rows)
 

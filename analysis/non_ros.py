@@ -35,7 +35,7 @@ TRANSFERS = (  # bases of a transfer: GDPR Article 45, 46(2)(a) to (f), 46(3), 4
 )
 RECIPIENTS = ("controller", "joint-controller", "processor", "third-party")
 BY_KIND = (-1, 0)  # the rank of what is taken by kind: below every label
-TAKEN = {  # what each kind does with every category unless a label says otherwise
+DEFAULT_ROLES = {  # what each kind does with every category unless a label says otherwise
     "storage": "conduit",
     "shared-memory": "conduit",
     "side-channel": "conduit",
@@ -54,7 +54,7 @@ def by_kind(element: Element) -> tuple[Statement, ...]:
     >>> [statement.role for statement in by_kind(Element("display", "screen"))]
     ['leak']
     """
-    role = TAKEN.get(element.kind)
+    role = DEFAULT_ROLES.get(element.kind)
     return (Statement(role, (), BY_KIND, NOWHERE),) if role else ()
 
 
@@ -121,7 +121,7 @@ def kept_too_long(facts: NonRosFacts, category: str, hierarchy: Hierarchy) -> Re
     return past[0] if past else None
 
 
-def kept_past(facts: NonRosFacts, kept: Duration) -> list[Reason]:
+def kept_past(facts: NonRosFacts, retention: Duration) -> list[Reason]:
     """Return that a recording is older than it is kept; nothing where it is not, or where its age is not known.
 
     >>> from rosprivacy.analysis.durations import parse
@@ -134,10 +134,10 @@ def kept_past(facts: NonRosFacts, kept: Duration) -> list[Reason]:
     if oldest is None or not facts.day:
         return []
     since = datetime.fromtimestamp(oldest // 10**9, UTC)
-    ended = kept.ends(since).date().isoformat()
+    ended = retention.ends(since).date().isoformat()
     if facts.day <= ended:
         return []
-    return [Reason.of(why.KEPT_PAST, since=since.date().isoformat(), kept=kept, ended=ended)]
+    return [Reason.of(why.KEPT_PAST, since=since.date().isoformat(), kept=retention, ended=ended)]
 
 
 def limited(facts: NonRosFacts, category: str, hierarchy: Hierarchy) -> bool:

@@ -29,7 +29,7 @@ def in_a_file(place: Place) -> bool:
     return place.line > 0 and bool(place.file) and not place.file.startswith(OURS)
 
 
-def first_lines(graph: FlowGraph, wanted: Collection[Shown]) -> dict[Shown, Place]:
+def first_lines(graph: FlowGraph, elements: Collection[Shown]) -> dict[Shown, Place]:
     """Return the first line, by file and number, that grants something at each of some elements (``shown_as``).
 
     Complexity: O(flows and rights of meetings), nothing where no element is wanted.
@@ -40,9 +40,9 @@ def first_lines(graph: FlowGraph, wanted: Collection[Shown]) -> dict[Shown, Plac
     {'/video': 'policy.xml:2'}
     """
     found: dict[Shown, tuple[str, int]] = {}
-    for vertex, grants in _grants_at(graph.flows) if wanted else ():
+    for vertex, grants in _grants_at(graph.flows) if elements else ():
         end = graph.elements[vertex].shown_as
-        if end in wanted:
+        if end in elements:
             lines = [(grant.place.file, grant.place.line) for grant in grants if in_a_file(grant.place)]
             known = [found[end]] if end in found else []
             if lines or known:

@@ -80,13 +80,13 @@ def _counted(robots: frozenset[str], joined: frozenset[str]) -> str:
     return ", ".join([str(len(robots)), *named[:MOST_NAMED], *more])
 
 
-def told(found: Iterable[Change]) -> str:
+def change_text(changes: Iterable[Change]) -> str:
     """Return changes as one text.
 
-    >>> told([Change("disjoint_paths", "1", "2"), Change("robots", "2", "3, +amr-3")])
+    >>> change_text([Change("disjoint_paths", "1", "2"), Change("robots", "2", "3, +amr-3")])
     'disjoint paths: 1 then, 2 now; robots: 2 then, 3, +amr-3 now'
     """
-    return "; ".join(f"{change.what.replace('_', ' ')}: {change.before} then, {change.now} now" for change in found)
+    return "; ".join(f"{change.what.replace('_', ' ')}: {change.before} then, {change.now} now" for change in changes)
 
 
 def as_written(about: About) -> Mapping[str, object]:

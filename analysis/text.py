@@ -81,10 +81,10 @@ def counted(number: int, noun: str, plural: str = "") -> str:
     return f"{number:,} {noun if number == 1 else plural or noun + 's'}"
 
 
-def cut(line: str, most: int) -> str:
+def cut(line: str, width: int) -> str:
     """Return so many signs of a line; its end is left out where it is too long.
 
     >>> cut("abcdef", 3), cut("abc", 3)
     ('abc…', 'abc')
     """
-    return line if len(line) <= most else f"{line[:most]}…"
+    return line if len(line) <= width else f"{line[:width]}…"

@@ -31,10 +31,10 @@ def is_glob(written: str) -> bool:
     return not written.startswith(LITERAL) and not GLOB_SIGNS.isdisjoint(written)
 
 
-def meant(written: str) -> str:
+def bare_name(written: str) -> str:
     """Return the name, or the glob, that is meant: without the sign before it.
 
-    >>> meant("=/cam*"), meant("/camera")
+    >>> bare_name("=/cam*"), bare_name("/camera")
     ('/cam*', '/camera')
     """
     return written.removeprefix(LITERAL)
@@ -59,12 +59,12 @@ def listed(names: Sequence[str]) -> str:
     return ", ".join(map(shown, names[:LISTED])) + more
 
 
-def nearest(name: str, known: Iterable[str], most: int = 1, like: float = ALIKE) -> list[str]:
+def nearest(name: str, candidates: Iterable[str], bound: int = 1, like: float = ALIKE) -> list[str]:
     """Return the names that look most like one, the likest first.
 
     Parameters
     ----------
-    most
+    bound
         How many of them at most.
     like
         How much they look like it at least.
@@ -74,7 +74,7 @@ def nearest(name: str, known: Iterable[str], most: int = 1, like: float = ALIKE)
     >>> nearest("/camra", ["/microphone", "/camera", "/cameras"], 2), nearest("/x", ["/microphone"])
     (['/camera', '/cameras'], [])
     """
-    return get_close_matches(name[:LONGEST], [one for one in known if len(one) <= LONGEST], most, like)
+    return get_close_matches(name[:LONGEST], [one for one in candidates if len(one) <= LONGEST], bound, like)
 
 
 def did_you_mean(names: Collection[str], otherwise: str = "") -> str:

@@ -70,7 +70,7 @@ def _profile(node: str, writes: list[str], reads: list[str]) -> str:
 
 def made(result: Result) -> str:
     """Make the page of an analysis, as ``rosprivacy report`` does, with all its pictures."""
-    told = outline(result.document(), "en", made="2026-01-01")
+    told = outline(result.document(), "en", date="2026-01-01")
     return html(told, figures(result, told))
 
 

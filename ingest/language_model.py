@@ -51,7 +51,7 @@ REFUSED, NO_JSON, CUT = "the model refused", "an answer is no JSON of the form a
 BASE = "is --model-url the address that /chat/completions comes after?"
 FORMAT = "rosprivacy.model-exchanges/1"
 LARGEST_RECORD = 256 * 2**20
-AGAIN = "write it again with --record"
+REMEDY = "write it again with --record"
 
 
 class Address(NamedTuple):
@@ -118,12 +118,12 @@ class Server:
         Is told of each wait.
     """
 
-    def __init__(self, address: Address, key: str, seconds: float, told: Callable[[str], None]) -> None:
+    def __init__(self, address: Address, key: str, seconds: float, progress: Callable[[str], None]) -> None:
         if not key.isascii() or not key.isprintable() or " " in key:
             hint = "give it as the server's owner wrote it, on one line"
             raise InputError(KEY, 0, "has signs that no key has", hint)
         self.where = shown(urlsplit(address.url).netloc)
-        self._address, self._key, self._seconds, self._told = address, key, seconds, told
+        self._address, self._key, self._seconds, self._progress = address, key, seconds, progress
 
     def __call__(self, body: bytes) -> bytes:
         """Send a question; return what came back, without the key.
@@ -140,7 +140,7 @@ class Server:
             wait = _wait(headers) if status in BUSY and left else None
             if wait is None:
                 raise ModelError(f"{self.where}: {self._refused(status, headers, data)}")
-            self._told(f"{self.where}: asks to wait for {counted(wait, 'second')}")
+            self._progress(f"{self.where}: asks to wait for {counted(wait, 'second')}")
             time.sleep(wait)
         raise AssertionError
 
@@ -324,14 +324,14 @@ class Exchanges(NamedTuple):
     sha256: str = ""
 
 
-def as_document(said: Exchanges) -> dict[str, Any]:
+def as_document(exchanges: Exchanges) -> dict[str, Any]:
     """Return what is written as JSON."""
     return {
         "format": FORMAT,
-        "model": said.model,
-        "url": said.url,
-        "masked": said.masked,
-        "date": said.date,
+        "model": exchanges.model,
+        "url": exchanges.url,
+        "masked": exchanges.masked,
+        "date": exchanges.date,
         "exchanges": [
             {
                 "question": one.question.decode("ascii"),
@@ -339,7 +339,7 @@ def as_document(said: Exchanges) -> dict[str, Any]:
                 "answer": None if one.answer is None else one.answer.decode(),
                 "answer_sha256": None if one.answer is None else _digest(one.answer),
             }
-            for one in said.exchanges
+            for one in exchanges.exchanges
         ],
     }
 
@@ -353,14 +353,14 @@ def read_exchanges(file: str) -> Exchanges:
         If it is none, or a text in it is not the one of its SHA-256.
     """
     data = read_regular(file, LARGEST_RECORD, partial(InputError, file))
-    top = parsed(data, partial(InputError, file), AGAIN)
+    top = parsed(data, partial(InputError, file), REMEDY)
     if not isinstance(top, dict) or top.get("format") != FORMAT:
         raise InputError(file, 0, f"is no {FORMAT}", "name a file that --record wrote")
     try:
         exchanges = tuple(map(_exchange_in, _of(top, "exchanges", list)))
         texts = (_of(top, "model", str), _of(top, "url", str), _of(top, "masked", bool), _of(top, "date", str))
     except ValueError as odd:
-        raise InputError(file, 0, str(odd), AGAIN) from None
+        raise InputError(file, 0, str(odd), REMEDY) from None
     return Exchanges(*texts, exchanges, hashlib.sha256(data).hexdigest())
 
 
@@ -370,10 +370,12 @@ def _of(value: Any, key: str, type_: type) -> Any:
     return value[key]
 
 
-def _exchange_in(one: Any) -> Exchange:
-    question = _of(one, "question", str).encode()
-    answer = None if one.get("answer") is None else _of(one, "answer", str).encode()
-    if one.get("question_sha256") != _digest(question) or (answer and one.get("answer_sha256") != _digest(answer)):
+def _exchange_in(exchange: Any) -> Exchange:
+    question = _of(exchange, "question", str).encode()
+    answer = None if exchange.get("answer") is None else _of(exchange, "answer", str).encode()
+    if exchange.get("question_sha256") != _digest(question) or (
+        answer and exchange.get("answer_sha256") != _digest(answer)
+    ):
         raise ValueError("a question or an answer was changed: its SHA-256 is another one")
     return Exchange(question, answer)
 

@@ -77,10 +77,10 @@ _RULES = (
 OF_LABELS = ("mixed-enclave",)
 """Those that are about sources and leaks."""
 RULES = {rule.name: rule for rule in _RULES}
-CALLED = {DIALECT: "refused-policy", FALLBACK_TAKEN: "missing-include", UNREAD_FILE: "unused-file"}
+CHECK_NAMES = {DIALECT: "refused-policy", FALLBACK_TAKEN: "missing-include", UNREAD_FILE: "unused-file"}
 """Codes of what a reader says that are not called as the rule is."""
 EVERYTHING = ("*", "/*", "rt/*", "rq/*", "rr/*")
-NAMED = 3  # of the names that a line stands for
+SHOWN_AT_MOST = 3  # of the names that a line stands for
 RELATIVE, WRITE_OUT = "relative-standard-name", "write out the names that are meant"
 OTHER_END = {
     "publish": "subscribe", "subscribe": "publish", "request": "reply", "reply": "request", "call": "execute",
@@ -90,17 +90,17 @@ OF_EVERY_NODE = ("rosout", "parameter_events", "clock")  # of every node, under 
 AROUND = ("enclaves", "contexts", "enclave", "context", "profiles")  # what profiles stand in
 Line = tuple[str, str, str, str]
 """Kind, role, ALLOW or DENY, and name."""
-MOST = 64 * 2**10  # bytes
+BOUND = 64 * 2**10  # bytes
 FRAME = 440  # of a grant: subject, validity, domains, default and what is around them
 SECTION = 78  # <publish><topics> with their ends
 TOPIC = 28  # <topic></topic> with its indent and the end of its line
 SIGNATURE = 1_700
 
 
-def read_breaches(said: Iterable[Diagnostic]) -> Iterator[Breach]:
+def read_breaches(diagnostics: Iterable[Diagnostic]) -> Iterator[Breach]:
     """Yield the rules that are broken, of what was said of policies as they were read."""
-    for one in said:
-        if rule := RULES.get(CALLED.get(one.code, one.code)):
+    for one in diagnostics:
+        if rule := RULES.get(CHECK_NAMES.get(one.code, one.code)):
             yield Breach(rule, one.place, one.message)
 
 
@@ -192,7 +192,7 @@ def _alone_in_a_namespace(grants: Iterable[Grant]) -> Iterator[Breach]:
 
 def _few(names: Iterable[str]) -> str:
     unlike = list(dict.fromkeys(names))
-    return ", ".join(map(shown, unlike[:NAMED])) + (", …" if len(unlike) > NAMED else "")
+    return ", ".join(map(shown, unlike[:SHOWN_AT_MOST])) + (", …" if len(unlike) > SHOWN_AT_MOST else "")
 
 
 class _Include(NamedTuple):
@@ -302,9 +302,9 @@ def enclave_breaches(policies: Sequence[Policy], graph: FlowGraph, bound: Bound)
             yield Breach(RULES["mixed-enclave"], place, f"{what}; give them enclaves of their own")
     for policy in policies:
         for enclave, size in sorted(permissions_sizes(policy.grants).items()):
-            if size > MOST:
+            if size > BOUND:
                 place = next(profile.place for profile in policy.profiles if profile.enclave == enclave)
-                what = f"the permissions of enclave {shown(enclave)} will have some {size:,} bytes, more than {MOST:,}"
+                what = f"the permissions of enclave {shown(enclave)} will have some {size:,} bytes, more than {BOUND:,}"
                 yield Breach(RULES["large-permissions"], place, f"{what}; split it, or use fewer names")
 
 

@@ -29,10 +29,10 @@ def default_folder() -> Path:
     return user_cache_path("rosprivacy")
 
 
-Kept = tuple[tuple[Category, ...], dict[str, str], Pointed]
+CachedOntology = tuple[tuple[Category, ...], dict[str, str], Pointed]
 
 
-def get(folder: Path, key: str) -> Kept | None:
+def get(folder: Path, key: str) -> CachedOntology | None:
     """Return what an earlier run kept, if it is whole and of these files."""
     try:
         digest, text = _path(folder, key).read_bytes().split(b"\n", 1)

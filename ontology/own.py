@@ -71,12 +71,12 @@ SHAPES = "shapes.ttl"
 
 
 @silence()
-def with_own(known: Known, data: bytes, file: str) -> Known:
+def with_own(present: Known, data: bytes, file: str) -> Known:
     """Return what is known once a user's ontology is read too.
 
     Parameters
     ----------
-    known
+    present
         What is there before: the shipped ontology, and files before this one.
     data
         What stands in the file.
@@ -96,21 +96,21 @@ def with_own(known: Known, data: bytes, file: str) -> Known:
     lines = Lines(as_stored(text), graph)
     if odd := list(odd_terms(graph)):
         raise InputErrors([_error(problem, file, lines) for problem in odd])
-    both = known.graph + graph
-    there = {URIRef(category.iri) for category in known.categories}
+    both = present.graph + graph
+    there = {URIRef(category.iri) for category in present.categories}
     fresh = [subject for subject in subjects if isinstance(subject, URIRef) and subject not in there]
     categories = categories_of(both, fresh)
-    places = {**known.places, **{str(subject): f"{shown(file)}:{lines.of(subject)}" for subject in fresh}}
+    places = {**present.places, **{str(subject): f"{shown(file)}:{lines.of(subject)}" for subject in fresh}}
     problems = [
         *_unfit(subjects, there),
-        *taken_names(categories, replace(known, places=places)),
-        *parent_problems(graph, both, subjects, known),
-        *unfollowed(graph, subjects, known),
-        *_shape_problems(graph, known.graph, set(subjects)),
+        *taken_names(categories, replace(present, places=places)),
+        *parent_problems(graph, both, subjects, present),
+        *unfollowed(graph, subjects, present),
+        *_shape_problems(graph, present.graph, set(subjects)),
     ]
     if problems:
         raise InputErrors([_error(problem, file, lines) for problem in problems])
-    return Known(both, (*known.categories, *categories), places)
+    return Known(both, (*present.categories, *categories), places)
 
 
 def _decoded(data: bytes, file: str) -> str:
@@ -128,12 +128,12 @@ def _error(problem: Problem, file: str, lines: Lines) -> OntologyError:
     return OntologyError(file, lines.of(subject, problem.predicate), what, problem.hint)
 
 
-def _unfit(subjects: list[Node], there: set[URIRef]) -> Iterator[Problem]:
+def _unfit(subjects: list[Node], present: set[URIRef]) -> Iterator[Problem]:
     """Subjects that are no kind of this file's own."""
     for subject in subjects:
         if not isinstance(subject, URIRef):
             yield Problem(subject, "has no IRI of its own", "name it, such as <urn:example:Badge>")
-        elif subject in there:
+        elif subject in present:
             hint = "what is there is not changed: make one of your own below it"
             yield Problem(subject, "is there already", hint)
 
@@ -218,20 +218,20 @@ MATCHES = {
 }
 
 
-def unfollowed(graph: Graph, subjects: list[Node], known: Known) -> Iterator[Problem]:
+def unfollowed(graph: Graph, subjects: list[Node], present: Known) -> Iterator[Problem]:
     """Yield statements about kinds that are not this file's own, and those of the hierarchy that are not followed.
 
     Matches with other vocabularies are no statements of the hierarchy of kinds.
     """
-    shipped = {s for s in known.graph.subjects() if isinstance(s, URIRef) and s in RP}
-    earlier = {URIRef(iri) for iri in known.places}
-    kinds = {*subjects, *(URIRef(category.iri) for category in known.categories)}
+    shipped = {s for s in present.graph.subjects() if isinstance(s, URIRef) and s in RP}
+    earlier = {URIRef(iri) for iri in present.places}
+    kinds = {*subjects, *(URIRef(category.iri) for category in present.categories)}
     for subject, predicate, other in graph:
         told = f"says {_written(predicate)} <{shown(str(other))}>, which is not followed"
         if subject in subjects and subject in shipped | earlier:
             continue  # it is there already, which is said elsewhere
         if subject in earlier:
-            what, hint = f"is defined by another file{known.whence(str(subject))}", "say it there"
+            what, hint = f"is defined by another file{present.whence(str(subject))}", "say it there"
         elif subject in shipped:
             what = "comes with the program and cannot be changed"
             hint = "take the statement away; only a kind of your own can have a skos:broader"
@@ -250,13 +250,13 @@ def _written(predicate: Node) -> str:
     return {**NOT_FOLLOWED, **MATCHES}.get(URIRef(str(predicate)), "skos:broader")
 
 
-def parent_problems(graph: Graph, both: Graph, subjects: list[Node], known: Known) -> Iterator[Problem]:
+def parent_problems(graph: Graph, merged: Graph, subjects: list[Node], present: Known) -> Iterator[Problem]:
     """Yield kinds whose parents are not there, lead nowhere, or to themselves."""
-    ours = {URIRef(iri) for c in known.categories for iri in (c.iri, *c.same_as)}
+    ours = {URIRef(iri) for c in present.categories for iri in (c.iri, *c.same_as)}
     there = ours | set(subjects)
     for subject in subjects:
         parents = set(graph.objects(subject, SKOS.broader))
-        unknown = sorted(str(up) for up in parents - there if (up, RP.inVersion, None) not in both)
+        unknown = sorted(str(up) for up in parents - there if (up, RP.inVersion, None) not in merged)
         for iri in unknown:
             hint = "name a category of rosprivacy categories, or your own"
             yield Problem(subject, f"has the unknown parent <{shown(iri)}>", hint)
@@ -264,7 +264,7 @@ def parent_problems(graph: Graph, both: Graph, subjects: list[Node], known: Know
             yield Problem(subject, "has no parent among the categories", BELOW)
         if _climbs_to_itself(graph, subject):
             yield Problem(subject, "is broader than itself", "take one skos:broader of the circle away")
-        elif not unknown and not any(up in ours for up in both.transitive_objects(subject, SKOS.broader)):
+        elif not unknown and not any(up in ours for up in merged.transitive_objects(subject, SKOS.broader)):
             yield Problem(subject, "leads to none of the shipped categories", BELOW)
 
 
@@ -272,29 +272,29 @@ def _climbs_to_itself(graph: Graph, subject: Node) -> bool:
     return any(subject in graph.transitive_objects(up, SKOS.broader) for up in graph.objects(subject, SKOS.broader))
 
 
-def taken_names(categories: Iterable[Category], known: Known) -> Iterator[Problem]:
+def taken_names(categories: Iterable[Category], present: Known) -> Iterator[Problem]:
     """Yield each name that another kind has: of any sort and language, in upper or lower case.
 
     Parameters
     ----------
     categories
         Of the user's file, sorted by IRI.
-    known
+    present
         What was there before, with the places of these categories too.
     """
     categories = list(categories)
-    kinds = {category.iri for category in (*known.categories, *categories)}
-    used = {name.casefold(): c.iri for c in known.categories for name in (*c.names, *c.same_as)}
+    kinds = {category.iri for category in (*present.categories, *categories)}
+    used = {name.casefold(): c.iri for c in present.categories for name in (*c.names, *c.same_as)}
     for category in categories:
         matches = [iri for iri in category.same_as if iri not in kinds]  # a kind is no match: own_hierarchy.py
         for name in {name.casefold(): name for name in (*matches, *reversed(category.names))}.values():
             other = used.setdefault(name.casefold(), category.iri)
             if other != category.iri:
-                what, hint = _taken(name, is_match=name in matches)
-                yield Problem(URIRef(category.iri), f"{what}, and so has <{shown(other)}>{known.whence(other)}", hint)
+                what, hint = _already_taken(name, is_match=name in matches)
+                yield Problem(URIRef(category.iri), f"{what}, and so has <{shown(other)}>{present.whence(other)}", hint)
 
 
-def _taken(name: str, *, is_match: bool) -> tuple[str, str]:
+def _already_taken(name: str, *, is_match: bool) -> tuple[str, str]:
     if is_match:
         return f"has the exact match <{shown(name)}>", "write skos:broader with the other kind, or take it away"
     return f"has the name {shown(name)!r}", "take another name"

@@ -117,12 +117,12 @@ def _translated(**texts: dict[str, str]) -> dict[str, dict[str, str]]:
     }
 
 
-def _category(graph: Graph, subject: Node, ours: set[Node], same: dict[Node, str]) -> Category:
+def _category(graph: Graph, subject: Node, ours: set[Node], same_as: dict[Node, str]) -> Category:
     title, definition = first_texts(graph, subject, SKOS.prefLabel), first_texts(graph, subject, SKOS.definition)
     reason = first_texts(graph, subject, RP.reason)
     parents = set(graph.objects(subject, SKOS.broader))
     broader = {local_name(str(up)) for up in parents if up in ours}
-    broader |= {same[up] for up in parents if up in same}
+    broader |= {same_as[up] for up in parents if up in same_as}
     own = local_name(str(subject))
     names = [*_texts(graph, subject, SKOS.altLabel).values(), [t for lang, t in title.items() if lang != ENGLISH]]
     gdpr = graph.value(subject, RP.gdprCategory)

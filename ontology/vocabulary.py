@@ -203,7 +203,7 @@ def _shipped(texts: tuple[bytes, ...]) -> tuple[Known, dict[str, str]]:
     return Known(graph, categories_of(graph)), respelt_of(graph)
 
 
-def _parse(shipped: tuple[bytes, ...], own: Iterable[tuple[str, bytes]]) -> kept.Kept:
+def _parse(shipped: tuple[bytes, ...], own: Iterable[tuple[str, bytes]]) -> kept.CachedOntology:
     known, respelt = _shipped(shipped)
     problems = []
     for file, data in own:

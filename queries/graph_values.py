@@ -109,21 +109,21 @@ def nodes_in(value: GraphValue) -> tuple[Node, ...]:
     return value.nodes
 
 
-def with_known(value: Any, known: Mapping[str, Node]) -> Any:
+def with_known(value: Any, nodes: Mapping[str, Node]) -> Any:
     """Return a value with the ends of its relationships as they were looked up, by id."""
     if isinstance(value, Node):
-        return known.get(value.id, value)
+        return nodes.get(value.id, value)
     if isinstance(value, Relationship):
-        start, end = (known.get(node.id, node) for node in (value.start, value.end))
+        start, end = (nodes.get(node.id, node) for node in (value.start, value.end))
         return Relationship(value.id, value.type, start, end, value.properties)
     if isinstance(value, Path):
         return Path(
-            tuple(with_known(node, known) for node in value.nodes),
-            tuple(with_known(relationship, known) for relationship in value.relationships),
+            tuple(with_known(node, nodes) for node in value.nodes),
+            tuple(with_known(relationship, nodes) for relationship in value.relationships),
         )
     if isinstance(value, list | tuple):
-        return type(value)(with_known(item, known) for item in value)
-    return {key: with_known(item, known) for key, item in value.items()} if isinstance(value, dict) else value
+        return type(value)(with_known(item, nodes) for item in value)
+    return {key: with_known(item, nodes) for key, item in value.items()} if isinstance(value, dict) else value
 
 
 def _node(node: Any) -> Node:

@@ -98,22 +98,22 @@ class Query:
         """Whether its rows hold paths of the graph, not only names."""
         return any(COLUMN_TYPES[column.type] is Path for column in self.columns)
 
-    def values(self, given: Mapping[str, str]) -> dict[str, Any]:
+    def values(self, texts: Mapping[str, str]) -> dict[str, Any]:
         """Return the values of all parameters from text of the command line; all faults are one error."""
         known = {field.name: field for field in self.parameters}
         problems = []
-        for name in sorted(set(given) - set(known)):
+        for name in sorted(set(texts) - set(known)):
             hint = did_you_mean([*map(repr, nearest(name, known))], f"it takes {', '.join(known) or 'none'}")
             problems.append(f"{self.name}: unknown parameter {shown(name)!r}; {hint}")
         values: dict[str, Any] = {}
         for name, field in known.items():
-            if name not in given and field.default is None:
+            if name not in texts and field.default is None:
                 problems.append(f"{self.name}: {name} is missing; write {name}=…, {field.meaning}")
                 continue
             try:
-                values[name] = _value(field, given[name]) if name in given else field.default
+                values[name] = _value(field, texts[name]) if name in texts else field.default
             except ValueError:
-                what = f"{shown(given[name])!r} is not of the type {field.type}"
+                what = f"{shown(texts[name])!r} is not of the type {field.type}"
                 problems.append(f"{self.name}: {name}: {what}; {field.meaning}")
         if problems:
             raise QueryError("\n".join(problems))

@@ -66,14 +66,14 @@ _STEP = re.compile(r"(?:Partitioned)?(?:Directed|Undirected)?([^(@]+).*", re.DOT
 # own words. What text of a user stands there too is refused with it if it looks the same.
 _LOADS = re.compile(r"\bLOAD\s+CSV\b", re.IGNORECASE)
 _CALLS = re.compile(r"\b(?:Unr|R)esolvedCall\b|\bCALL\s+[^\s({]|\b(?:TERMINATE|SHOW)\s+TRANSACTION", re.IGNORECASE)
-Known = Mapping[str, Collection[str]]  # by "label", "relationship type", "property"
+KnownNames = Mapping[str, Collection[str]]  # by "label", "relationship type", "property"
 _LISTED = {
     "label": "CALL db.labels()",
     "relationship type": "CALL db.relationshipTypes()",
     "property": "CALL db.propertyKeys()",
 }
 _UNKNOWN = {"01N50": "label", "01N51": "relationship type", "01N52": "property"}  # statuses of GQL
-_NAMED = re.compile(r"`(.+)` does not exist", re.DOTALL)
+_MISSING_NAME = re.compile(r"`(.+)` does not exist", re.DOTALL)
 _EARLIER = re.compile(
     r"\(the missing (label|relationship type|property)(?: name)? is: (.+)\)", re.DOTALL
 )  # before 5.23
@@ -163,21 +163,21 @@ def _faults(step: Mapping[str, Any]) -> Iterator[str]:
         yield "calls a procedure inside an expression; call it in a clause of its own"
 
 
-def refuse_unknown_names(transaction: Transaction, summary: ResultSummary, known: Known) -> None:
+def refuse_unknown_names(transaction: Transaction, summary: ResultSummary, known_names: KnownNames) -> None:
     """Let a query pass that names only what there can be.
 
     Parameters
     ----------
     summary
         Of the query's ``EXPLAIN``.
-    known
+    known_names
         What the graph can have, whether the database has it or not.
     """
     problems = []
     for kind, name in sorted(set(_unknown(summary))):
-        if name in known[kind]:
+        if name in known_names[kind]:
             continue
-        there = set(known[kind]) | {str(record[0]) for record in transaction.run(_LISTED[kind])}
+        there = set(known_names[kind]) | {str(record[0]) for record in transaction.run(_LISTED[kind])}
         hint = did_you_mean(nearest(name, sorted(there), FEW), "see them with rosprivacy query --schema")
         problems.append(f"nothing has the {kind} {shown(name)!r}; {hint}")
     if problems:
@@ -189,7 +189,7 @@ def _unknown(summary: ResultSummary) -> Iterator[tuple[str, str]]:
     for status in summary.gql_status_objects:
         said = status.status_description
         if kind := _UNKNOWN.get(status.gql_status):
-            named = _NAMED.search(said)
+            named = _MISSING_NAME.search(said)
             yield kind, named.group(1) if named else said
         elif earlier := _EARLIER.search(said):
             yield earlier.group(1), earlier.group(2)

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from neo4j import Driver, Transaction
 
     from rosprivacy.queries.library import Query
-    from rosprivacy.queries.reading import Known
+    from rosprivacy.queries.reading import KnownNames
 
 LIMIT = 1000
 LISTED = 30  # names of a hint, where none is near
@@ -48,13 +48,13 @@ class Rows:
         Their names.
     rows
         Values as JSON has them, and nodes, relationships and paths as ``graph_values`` has them.
-    more
+    truncated
         Whether there were more than the bound.
     """
 
     columns: tuple[str, ...]
     rows: tuple[tuple[Any, ...], ...]
-    more: bool = False
+    truncated: bool = False
 
 
 def run(
@@ -64,7 +64,7 @@ def run(
     *,
     limit: int | None = LIMIT,
     timeout: float | None = TIMEOUT,
-    known: Known | None = None,
+    known_names: KnownNames | None = None,
 ) -> Rows:
     """Run Cypher that only reads.
 
@@ -75,7 +75,7 @@ def run(
     timeout
         Seconds that the server may take; None for as long as it takes. What it has not even planned ``GRACE`` later is
         waited for no more.
-    known
+    known_names
         Names that the graph can have: one that is neither among these nor in the database is refused; None lets all
         names pass.
 
@@ -88,7 +88,7 @@ def run(
         If the server cannot answer for a reason of its own.
     """
     refuse_too_much(text)
-    answer = partial(_answer, driver, text, dict(values or {}), limit, timeout, known)
+    answer = partial(_answer, driver, text, dict(values or {}), limit, timeout, known_names)
     with _refusals(driver, timeout):
         return answer() if timeout is None else _in_time(answer, timeout + GRACE)
 
@@ -115,7 +115,12 @@ def _in_time(answer: Callable[[], Rows], seconds: float) -> Rows:
 
 
 def _answer(
-    driver: Driver, text: str, values: dict[str, Any], limit: int | None, timeout: float | None, known: Known | None
+    driver: Driver,
+    text: str,
+    values: dict[str, Any],
+    limit: int | None,
+    timeout: float | None,
+    known_names: KnownNames | None,
 ) -> Rows:
     import neo4j  # noqa: PLC0415 - light start
 
@@ -123,20 +128,20 @@ def _answer(
         driver.session(
             default_access_mode=neo4j.READ_ACCESS,
             fetch_size=FETCHED,
-            notifications_min_severity="WARNING" if known is not None else "OFF",
+            notifications_min_severity="WARNING" if known_names is not None else "OFF",
         ) as session,
         session.begin_transaction(timeout=timeout) as transaction,
     ):
         planned = refuse_unless_reading(transaction, text, values)
-        if known is not None:
-            refuse_unknown_names(transaction, planned, known)
+        if known_names is not None:
+            refuse_unknown_names(transaction, planned, known_names)
         result = transaction.run(text, values)
         columns = tuple(result.keys())
         rows: list[tuple[Any, ...]] = []
         held = 0
         for record in result:
             if limit is not None and len(rows) == limit:
-                return Rows(columns, _with_ends(transaction, rows), more=True)
+                return Rows(columns, _with_ends(transaction, rows), truncated=True)
             row = tuple(value_of(value) for value in record.values())
             held += _size([plain(value) for value in row])
             if held > LARGEST:

@@ -99,7 +99,7 @@ class Answer:
         return self.fleet.shown(self.analysis) if self.fleet else self.analysis
 
     @property
-    def named(self) -> tuple[str, ...]:
+    def named_files(self) -> tuple[str, ...]:
         """The policy files that a user named, without what they include; none where that is not known."""
         return ()
 
@@ -111,7 +111,7 @@ class Answer:
     def taken_away(self) -> tuple[TakenAway, ...]:
         """The ledger: what was taken away on the data's side, and on whose word; of robots that are alike of one."""
         rows = ledger(self.analysis, self.bound, self.vocabulary.hierarchy, self.diagnostics)
-        return tuple(row for row in rows if row.element is None or row.element.robot not in self._beside)
+        return tuple(row for row in rows if row.element is None or row.element.robot not in self._robots_not_shown)
 
     @cached_property
     def hangs_on(self) -> tuple[Reliance, ...] | None:
@@ -124,7 +124,7 @@ class Answer:
     def _of_shown_robots(self, row: Reliance) -> Reliance:
         if self.fleet is None:
             return row
-        beside, between = self._beside, self.fleet.likeness.between
+        beside, between = self._robots_not_shown, self.fleet.likeness.between
         return row._replace(
             elements=tuple(e for e in row.elements if e.robot not in beside),
             to=tuple(e for e in row.to if e.robot not in beside),
@@ -137,12 +137,12 @@ class Answer:
         """Where data comes to each open element from, and what stands behind it."""
         return review_order(self.analysis)
 
-    def globs(self, taken: Iterable[TakenAway]) -> tuple[GlobUse, ...]:
+    def globs(self, ledger_rows: Iterable[TakenAway]) -> tuple[GlobUse, ...]:
         """What each glob of the label files decides and closes, by the ledger; robots as there."""
-        return globs(self.analysis, self.bound, taken, self._beside)
+        return globs(self.analysis, self.bound, ledger_rows, self._robots_not_shown)
 
     @property
-    def _beside(self) -> Collection[str]:
+    def _robots_not_shown(self) -> Collection[str]:
         """Robots of the graph for which another one stands in what readers get."""
         return self.fleet.likeness.second if self.fleet else ()
 
@@ -184,7 +184,7 @@ class Answer:
     def processed(self) -> tuple[Processed, ...]:
         """What is stated of purposes and legal bases where data begin and end, by kind; of robots alike of one."""
         rows = processed(self.shown, self.bound, self.vocabulary.hierarchy)
-        return tuple(row for row in rows if row.element.robot not in self._beside)
+        return tuple(row for row in rows if row.element.robot not in self._robots_not_shown)
 
     @cached_property
     def ways(self) -> tuple[Ways, ...]:
@@ -194,7 +194,7 @@ class Answer:
         """
         likeness = self.fleet.likeness if self.fleet else NO_ROBOTS
 
-        def told(row: Ways) -> Ways:
+        def difference(row: Ways) -> Ways:
             shown = (
                 p._replace(element=replace(p.element, robot=likeness.second.get(p.element.robot, p.element.robot)))
                 for p in row.protections
@@ -203,7 +203,7 @@ class Answer:
             unnamed = row.unnamed or (self.counts is not None and shared)
             return row._replace(protections=tuple(dict.fromkeys(shown)), unnamed=unnamed)
 
-        return tuple(map(told, ways(self.shown, self.bound, self.vocabulary.categories)))
+        return tuple(map(difference, ways(self.shown, self.bound, self.vocabulary.categories)))
 
     def fleet_counts(self, view: FleetView) -> Counts:
         """Return how many elements, flows and standard channels the fleet has, not its graph."""
@@ -232,6 +232,6 @@ def _stated(facts: NonRosFacts) -> Iterator[tuple[str, str]]:
     yield from ((what, value) for what, value in said.items() if value)
 
 
-def _with_backups(kept: Iterable[str], backups: Duration | bool | None) -> str:  # noqa: FBT001 - three values and a length
+def _with_backups(categories: Iterable[str], backups: Duration | bool | None) -> str:  # noqa: FBT001 - three values and a length
     more = "in backups, nobody says for how long" if backups is True else f"in backups {backups} more"
-    return ", ".join([*kept, *([more] if backups else [])])
+    return ", ".join([*categories, *([more] if backups else [])])

@@ -30,7 +30,7 @@ class _Output(NamedTuple):
 
     Attributes
     ----------
-    named
+    written_path
         As the user wrote it.
     file
         What is behind the name, links followed.
@@ -38,7 +38,7 @@ class _Output(NamedTuple):
         Of what is there already.
     """
 
-    named: Path
+    written_path: Path
     file: Path
     status: os.stat_result | None
 
@@ -73,15 +73,15 @@ def write_texts(texts: Iterable[tuple[Path, Text | None]], *, edited: Path | Non
     try:
         for at, text in pairs:
             if not at.stream:
-                with writing(at.named):
+                with writing(at.written_path):
                     staged.append((_stage(at, _pieces(text)), at))
         for at, text in pairs:
             if at.stream:
-                with writing(at.named), at.named.open("wb") as file:
+                with writing(at.written_path), at.written_path.open("wb") as file:
                     file.writelines(_pieces(text))
         _check_edited(outputs, edited)
         for temporary, at in staged:
-            with writing(at.named):
+            with writing(at.written_path):
                 temporary.replace(at.file)
                 keep_name(at.file.parent)
     finally:
@@ -111,19 +111,21 @@ def check_outputs(files: Iterable[Path], *, edited: Path | None = None) -> list[
 
 def _over_inputs(outputs: list[_Output], edited: Path | None) -> Iterator[InputError]:
     for at in outputs:
-        if at.stream or at.named == edited:
+        if at.stream or at.written_path == edited:
             continue
         name = read_as(str(at.file), at.status)
         if name is not None:
-            same = "" if name == str(at.named) else f"is the same file as {shown(name)}, which "
-            yield InputError(str(at.named), 0, f"{same}is read in this run", "name another file to write to")
+            same = "" if name == str(at.written_path) else f"is the same file as {shown(name)}, which "
+            yield InputError(str(at.written_path), 0, f"{same}is read in this run", "name another file to write to")
 
 
 def _check_edited(outputs: list[_Output], edited: Path | None) -> None:
     """What somebody else wrote into the file meanwhile is not written over."""
     for at in outputs:
-        if at.named == edited and not at.stream and changed_since(str(at.named), _status(at.file)):
-            raise InputError(str(at.named), 0, "was changed meanwhile, so nothing is written", "run the command again")
+        if at.written_path == edited and not at.stream and changed_since(str(at.written_path), _status(at.file)):
+            raise InputError(
+                str(at.written_path), 0, "was changed meanwhile, so nothing is written", "run the command again"
+            )
 
 
 def _on_one_file(outputs: list[_Output]) -> Iterator[InputError]:
@@ -133,10 +135,12 @@ def _on_one_file(outputs: list[_Output]) -> Iterator[InputError]:
             continue
         key = _key(at)
         if key in first:
-            also = "" if first[key] == at.named else f", also as {shown(str(first[key]))}"
+            also = "" if first[key] == at.written_path else f", also as {shown(str(first[key]))}"
             what = f"is named for two outputs{also}"
-            yield InputError(str(at.named), 0, what, "name a file for each; upper and lower case alone do not differ")
-        first.setdefault(key, at.named)
+            yield InputError(
+                str(at.written_path), 0, what, "name a file for each; upper and lower case alone do not differ"
+            )
+        first.setdefault(key, at.written_path)
 
 
 def _key(at: _Output) -> object:

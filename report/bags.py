@@ -22,7 +22,7 @@ HEAD = (
     "bag", "verdict", "kinds", "open_topics", "complete", "storage", "distro", "compression", "bytes", "start", "end",
     "messages", "topics", "not_known", "suggested",
 )  # fmt: skip
-FOUND = {
+VERDICT_TEXTS = {
     BagVerdict.PERSONAL_DATA: "kinds of personal data can be in {}",
     BagVerdict.UNDETERMINED: "of {} nobody can say what is in it",
     BagVerdict.NOTHING_FOUND: "by the labels no kind of personal data is in {}",
@@ -60,7 +60,7 @@ def _bag(judged: JudgedBag) -> BagEntry:
         "open_topics": list(judged.open_topics),
         "topics": [_topic(topic) for topic in judged.topics],
         "gaps": list(bag.gaps),
-        "beside": list(bag.beside),
+        "beside": list(bag.extras),
         "notes": list(bag.notes),
     }
 
@@ -97,7 +97,9 @@ def bag_lines(document: BagsDocument) -> Iterator[str]:
     bags = document["bags"]
     verdicts = [bag["verdict"] for bag in bags]
     said = [
-        words.format(counted(verdicts.count(verdict), "bag")) for verdict, words in FOUND.items() if verdict in verdicts
+        words.format(counted(verdicts.count(verdict), "bag"))
+        for verdict, words in VERDICT_TEXTS.items()
+        if verdict in verdicts
     ]
     yield f"{document['verdict']}: {'; '.join(said)}"
     for bag in bags:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.element_counts import ElementCount
 
-NAMED = 5  # names in a row
+SHOWN_AT_MOST = 5  # names in a row
 
 
 def legs(count: ElementCount, words: Words) -> str:
@@ -25,25 +25,25 @@ def legs(count: ElementCount, words: Words) -> str:
 
 def kind_in(element: Mapping[str, Any], words: Words) -> str:
     """Return what an element is; in English in the program's own words."""
-    parts = [words.known(f"terminal.kind.of.{element['kind']}", element["kind"])]
-    parts += [words.known(f"terminal.leg.{element['leg']}", element["leg"])] if element.get("leg") else []
+    parts = [words.of_value(f"terminal.kind.of.{element['kind']}", element["kind"])]
+    parts += [words.of_value(f"terminal.leg.{element['leg']}", element["leg"])] if element.get("leg") else []
     parts += [words("wildcard")] if element.get("pattern") else []
     return " ".join(parts)
 
 
-def named(names: Iterable[str], words: Words) -> str:
+def names_shown(names: Iterable[str], words: Words) -> str:
     """Return some names, and how many more there are.
 
     >>> from rosprivacy.report.catalogs.words import IN_ENGLISH
-    >>> named(["a", "b", "c", "d", "e", "f"], IN_ENGLISH)
+    >>> names_shown(["a", "b", "c", "d", "e", "f"], IN_ENGLISH)
     'a, b, c, d, e and 1 more'
     """
     everything = list(names)
-    more = words("terminal.more", n=len(everything) - NAMED) if len(everything) > NAMED else ""
-    return shown(", ".join(everything[:NAMED])) + more
+    more = words("terminal.more", n=len(everything) - SHOWN_AT_MOST) if len(everything) > SHOWN_AT_MOST else ""
+    return shown(", ".join(everything[:SHOWN_AT_MOST])) + more
 
 
-def both(parts: Sequence[str], words: Words) -> str:
+def joined_by_and(parts: Sequence[str], words: Words) -> str:
     """Return parts joined by 'and'."""
     return words("terminal.and").join(parts)
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.text import counted
-from rosprivacy.report.naming import whole
+from rosprivacy.report.naming import without_leg
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -28,17 +28,17 @@ class ElementCount(NamedTuple):
         >>> str(ElementCount(4, 6)), str(ElementCount(1, 1))
         ('4 elements (6 counting the legs of services and actions)', '1 element')
         """
-        return f"{counted(self.elements, 'element')}{self.more}"
+        return f"{counted(self.elements, 'element')}{self.remark}"
 
     @property
-    def more(self) -> str:
+    def remark(self) -> str:
         """What is said beside the number of elements; empty where no leg makes a difference."""
         return f" ({self.legs:,} counting the legs of services and actions)" if self.legs != self.elements else ""
 
 
 def count_rows(rows: Iterable[Mapping[str, Any]]) -> ElementCount:
     """Count the elements of rows of a document."""
-    keys = [whole(row["element"]) for row in rows]
+    keys = [without_leg(row["element"]) for row in rows]
     return ElementCount(len(set(keys)), len(keys))
 
 

@@ -71,7 +71,7 @@ def kinds_of(analysis: Analysis, categories: Mapping[str, Category], hierarchy: 
             category=categories[name],
             law=strongest_first(categories[name].law),
             sources=_distinct(e for e, said in analysis.roles.items() if "source" in said.get(name, ())),
-            made=tuple(dict.fromkeys((making.element, making.made_of) for making in made if making.made == name)),
+            made=tuple(dict.fromkeys((making.element, making.made_of) for making in made if making.target == name)),
             reached=_distinct(reached[name]),
             cleaned=tuple(c for c in cleaned if c.category == name and c.element in shown),
             findings=tuple(f for f in analysis.findings if f.category == name and not f.dismissed),

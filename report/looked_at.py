@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-KNOWN = ("DE", "FR")  # countries of which the ontology knows some provisions
+LANGUAGE_COUNTRIES = ("DE", "FR")  # countries of which the ontology knows some provisions
 
 
 def countries_of_use(document: Mapping[str, Any]) -> list[str]:

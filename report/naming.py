@@ -69,7 +69,7 @@ def key(element: Mapping[str, Any]) -> Key:
     return (element["robot"], element["kind"], element["name"], element.get("leg", ""))
 
 
-def whole(element: Mapping[str, Any]) -> Key:
+def without_leg(element: Mapping[str, Any]) -> Key:
     """Return the same without the leg: the service or action as a whole."""
     return (element["robot"], element["kind"], element["name"], "")
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.report.catalogs.words import Words
 
-NAMED = 3  # of files that say the same, and of what files of a fleet say of one thing
+SHOWN_AT_MOST = 3  # of files that say the same, and of what files of a fleet say of one thing
 
 
 def observed_lines(report: Mapping[str, Any], words: Words) -> Iterator[str]:
@@ -30,19 +30,19 @@ def observed_lines(report: Mapping[str, Any], words: Words) -> Iterator[str]:
             said[one["code"]][one["message"]].append(shown(one["file"]))
     for code, messages in said.items():
         for number, (message, files) in enumerate(messages.items(), 1):
-            if number <= NAMED:
+            if number <= SHOWN_AT_MOST:
                 yield words(
                     f"assumption.{code}",
-                    file=_named(files),
-                    said=_told(code, message, words),
+                    file=_names(files),
+                    said=_diagnostic_text(code, message, words),
                     n=message.partition(" ")[0],
                 )
-        if len(messages) > NAMED:
-            others = [file for files in list(messages.values())[NAMED:] for file in files]
-            yield words(f"assumption.{code}", file=_named(others), said="…", n="…")
+        if len(messages) > SHOWN_AT_MOST:
+            others = [file for files in list(messages.values())[SHOWN_AT_MOST:] for file in files]
+            yield words(f"assumption.{code}", file=_names(others), said="…", n="…")
 
 
-def _told(code: str, message: str, words: Words) -> str:
+def _diagnostic_text(code: str, message: str, words: Words) -> str:
     """What the reader of an input said; when somebody looked, by which doors, what has no domain, in the language."""
     if code == OWN_DOMAINS:
         names, _, more = message.rpartition(": ")[2].partition(" and ")
@@ -52,10 +52,10 @@ def _told(code: str, message: str, words: Words) -> str:
     if when is None:
         return message
     start, end, doors = when
-    named = words.row(words.known(f"door.{door}", shown(door)) for door in doors)
+    named = words.row(words.of_value(f"door.{door}", shown(door)) for door in doors)
     return words("assumption.observed.when", start=words.moment(start), end=words.moment(end), doors=named)
 
 
-def _named(files: list[str]) -> str:
-    more = [f"… (+{len(files) - NAMED:,})"] if len(files) > NAMED else []
-    return ", ".join([*files[:NAMED], *more])
+def _names(files: list[str]) -> str:
+    more = [f"… (+{len(files) - SHOWN_AT_MOST:,})"] if len(files) > SHOWN_AT_MOST else []
+    return ", ".join([*files[:SHOWN_AT_MOST], *more])

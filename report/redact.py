@@ -17,7 +17,7 @@ LEFT_OUT = "[…]"
 OURS = "rosprivacy:"  # files that come with the program
 PATHS = ("node", "topic", "service", "action")
 AS_IT_IS = ("categories", "contexts", "look_at")  # of the ontology: kinds of data and the law
-KEPT = {
+SAFE_KEYS = {
     "because", "area", "article9", "backups", "beside", "by", "carries", "cause", "categories", "categories_asked",
     "category", "condition", "context", "contexts", "countries_as_of", "country", "data_types_asked", "decision",
     "doubt", "expires",
@@ -29,7 +29,7 @@ KEPT = {
 }  # fmt: skip
 MAPS = ("because", "legal_bases", "purposes", "retention", "taken_away_by", "taken_by_kind")  # keys are no names
 FILES = ("file", "joining_file")  # also among the values of a reason
-NAMED = {
+NAME_KEYS = {
     "robot": "robot", "robots": "robot", "model": "model", "file": "file", "joining_file": "file",
     "enclave": "enclave",
     "enclaves": "enclave", "split": "enclave",
@@ -57,17 +57,17 @@ class Replacements:
     """What stands for names, numbered in their order; those that are seen later, after those that are settled."""
 
     def __init__(self) -> None:
-        self._known: dict[str, set[str]] = defaultdict(set)
+        self._replaced: dict[str, set[str]] = defaultdict(set)
         self._numbers: dict[tuple[str, str], int] = {}
 
     def see(self, kind: str, name: str) -> str:
         """Take note of a name."""
-        self._known[kind].add(name)
+        self._replaced[kind].add(name)
         return name
 
     def settle(self) -> None:
         """Number what was seen."""
-        for kind, names in self._known.items():
+        for kind, names in self._replaced.items():
             before = {name for name in names if (kind, name) in self._numbers}
             fresh = enumerate(sorted(names - before), len(before) + 1)
             self._numbers |= {(kind, name): number for number, name in fresh}
@@ -104,8 +104,8 @@ def _element(element: Mapping[str, Any], change: Callable[[str, str], str]) -> d
 
 
 def _text(key: str, value: str, change: Callable[[str, str], str]) -> str:
-    if key in KEPT or (key == "file" and value.startswith(OURS)):
+    if key in SAFE_KEYS or (key == "file" and value.startswith(OURS)):
         return value
     if key == "subjects":
         return change("persons", value)
-    return change(NAMED[key], value) if key in NAMED else LEFT_OUT
+    return change(NAME_KEYS[key], value) if key in NAME_KEYS else LEFT_OUT

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.fleet.patterns import FleetView, Pattern
     from rosprivacy.report.contract.analysis import FormEntry
 
-NAMED = 30  # robots in a row
+SHOWN_AT_MOST = 30  # robots in a row
 FORMS = {
     "dismissed": ("only through another leak", "by a path of its own"),
     "accepted": ("accepted", "not accepted"),
@@ -29,11 +29,11 @@ def note(view: FleetView) -> str:
     """Return what a reader has to know who sees the robots that are shown only."""
     members = view.likeness.members
     standing = [f"{shown(robot)} for {len(robots):,}" for robot, robots in members.items() if len(robots) > 1]
-    more = [f"and {len(standing) - NAMED:,} more"] if len(standing) > NAMED else []
+    more = [f"and {len(standing) - SHOWN_AT_MOST:,} more"] if len(standing) > SHOWN_AT_MOST else []
     robots = counted(sum(map(len, members.values())), "robot")
     if not standing:
         return f"A fleet of {robots}"
-    rows = ", ".join([*standing[:NAMED], *more])
+    rows = ", ".join([*standing[:SHOWN_AT_MOST], *more])
     return f"A fleet of {robots}; of those that are alike one is named and counted: {rows}"
 
 
@@ -51,7 +51,7 @@ def form_rows(pattern: Pattern) -> list[FormEntry]:
 
 
 def forms_in_words(
-    forms: Iterable[Mapping[str, Any]], said: Mapping[str, tuple[str, str]] = MappingProxyType(FORMS)
+    forms: Iterable[Mapping[str, Any]], texts: Mapping[str, tuple[str, str]] = MappingProxyType(FORMS)
 ) -> list[tuple[Sequence[str], str]]:
     """Return the robots of a pattern, with how their finding stands; none where it stands alike on all.
 
@@ -59,7 +59,7 @@ def forms_in_words(
     ----------
     forms
         Rows of a document.
-    said
+    texts
         Key of such a row -> words where it holds, and where it does not.
 
     >>> lent = {"robots": ["b"], "dismissed": False, "accepted": False, "pseudonymised": False}
@@ -68,7 +68,7 @@ def forms_in_words(
     """
     rows = list(forms)
     differ = [key for key in FORMS if len({row[key] for row in rows}) > 1]
-    return [(row["robots"], ", ".join(said[key][not row[key]] for key in differ)) for row in rows if differ]
+    return [(row["robots"], ", ".join(texts[key][not row[key]] for key in differ)) for row in rows if differ]
 
 
 def on_robots(pattern: Pattern, view: FleetView) -> str:

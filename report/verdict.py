@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import GOES_NOWHERE, MAY_REVEAL, NO_LEAK_NAMED, RESTRICTED, Rank
-from rosprivacy.report.called_alike import both, named
+from rosprivacy.report.called_alike import joined_by_and, names_shown
 from rosprivacy.report.catalogs.words import IN_ENGLISH, Words
 from rosprivacy.report.naming import shown_name
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 ALL = "all"
-NAMED = 3  # elements or files of one sort of doubts
+SHOWN_AT_MOST = 3  # elements or files of one sort of doubts
 
 
 def verdict_sentence(document: Mapping[str, Any], words: Words = IN_ENGLISH) -> str:
@@ -97,7 +97,7 @@ def phrase(doubts: Sequence[Mapping[str, Any]], words: Words) -> str:
 def about(doubts: Iterable[Mapping[str, Any]], words: Words) -> str:
     """Return the names of what some doubts are about, and how many more there are."""
     names = dict.fromkeys(subject(doubt) for doubt in doubts)
-    return words.row(words.first(list(names), NAMED))
+    return words.row(words.first(list(names), SHOWN_AT_MOST))
 
 
 def subject(doubt: Mapping[str, Any]) -> str:
@@ -110,14 +110,14 @@ def restriction(document: Mapping[str, Any], words: Words = IN_ENGLISH) -> str:
     assumed = document["assumptions"]
     parts = []
     if assumed["categories_asked"] != ALL:
-        parts.append(named(assumed["categories_asked"], words))
+        parts.append(names_shown(assumed["categories_asked"], words))
     if assumed["data_types_asked"] != ALL:
         parts.append(asked_types(assumed, words))
     if "identity_factors_asked" in assumed:
         parts.append(asked_factors(assumed, words))
     if assumed["article9_only"]:
         parts.append(asked_level(assumed, words))
-    return words("terminal.asked", what=both(parts, words)) if parts else ""
+    return words("terminal.asked", what=joined_by_and(parts, words)) if parts else ""
 
 
 def asked_types(assumed: Mapping[str, Any], words: Words) -> str:

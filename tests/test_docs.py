@@ -24,7 +24,7 @@ from rosprivacy.analysis.model import NON_ROS, RANKS
 from rosprivacy.cli.app import program
 from rosprivacy.cli.exit_code import CODES
 from rosprivacy.cli.inputs import WRITTEN
-from rosprivacy.cli.options import ASKED, READ
+from rosprivacy.cli.options import QUESTION_PANEL, READ
 from rosprivacy.ingest.database.schema import NODES, RELATIONSHIPS, Property
 from rosprivacy.ingest.labels.keywords import CHANNEL, KEYWORDS, NODE, rows
 from rosprivacy.ingest.labels.label_file import read_labels
@@ -133,7 +133,7 @@ def shared_options(command: Any) -> Iterator[str]:
     """The options of a command that mean what they mean everywhere; some commands have others of the same name."""
     for parameter in getattr(command, "params", ()):
         panel = getattr(parameter, "rich_help_panel", None)
-        if not parameter.hidden and (panel in (READ, ASKED) or parameter.metavar == "POLICY"):
+        if not parameter.hidden and (panel in (READ, QUESTION_PANEL) or parameter.metavar == "POLICY"):
             yield from {parameter.name} & WRITTEN.keys()
 
 

@@ -106,7 +106,7 @@ def test_findings_stand_that_stand_in_the_whole_answer(system: tuple[Enclaves, s
             assume(False)
             raise
         before = [finding for finding in result.analysis.findings if finding.stands]
-        left = Trials(whole, result, read, question).left(change, before)
+        left = Trials(whole, result, read, question).still_open(change, before)
     wanted = {finding.id for finding in before}
     stands = [finding for finding in anew.analysis.findings if finding.stands and finding.id in wanted]
     assert sorted(map(_shown, left), key=str) == sorted(map(_shown, stands), key=str)

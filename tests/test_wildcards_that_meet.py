@@ -54,7 +54,7 @@ def told(stored: int, most: int) -> list[str]:
     """All that is told of a system, or why nothing is."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(flow_graph, "STORED", stored)
-        patch.setattr(review_order, "MOST", most)
+        patch.setattr(review_order, "BOUND", most)
         try:
             result = analyze("p.xml", labels="l.yaml", paths="disjoint")
         except RosPrivacyError as error:

@@ -93,7 +93,7 @@ def _by_lines(
     for lines, categories in by_lines.items():
         facts = [decided[category] for category in categories]
         itself = to < 0 and any(not (fact.reviewers or fact.leaks or fact.emits) for fact in facts)
-        yield Closure(_role(lines), vertex, to, stopped & sum(map(spread.both, categories)), lines, itself)
+        yield Closure(_role(lines), vertex, to, stopped & sum(map(spread.forms_of, categories)), lines, itself)
 
 
 def _role(lines: tuple[Statement, ...]) -> str:
@@ -198,7 +198,7 @@ def _closing(spread: Spread, decided: Mapping[str, Facts]) -> dict[Line, int]:
     closing: dict[Line, int] = defaultdict(int)
     for category in spread.categories:
         for line in decided[category].closers if category in decided else ():
-            closing[line] |= spread.both(category)
+            closing[line] |= spread.forms_of(category)
     return closing
 
 

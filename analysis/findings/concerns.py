@@ -62,7 +62,9 @@ def concerns(spread: Spread, bound: Bound, hierarchy: Hierarchy) -> Iterator[Con
         bits: dict[int, int] = {}
         for (vertex, category), why in reasons.items():
             if why:
-                here = spread.both(category) & ~spread.gone.get(vertex, 0)  # nothing gets to what is not on the robot
+                here = spread.forms_of(category) & ~spread.absent_bits.get(
+                    vertex, 0
+                )  # nothing gets to what is not on the robot
                 bits[vertex] = bits.get(vertex, 0) | here
         yield Concern(kind, bits, {key: why for key, why in reasons.items() if why})
 

@@ -60,7 +60,7 @@ def origins(spread: Spread) -> tuple[Origin, ...]:
     >>> origin.category, [NAMES[vertex] for vertex in origin.path]
     ('FaceTemplate', ['/camera', '/video', '/face_id'])
     """
-    if not spread.made:
+    if not spread.made_categories:
         return ()
     net = Net.of(spread)
     sources = sorted(vertex for vertex in spread.facts if spread.begins(vertex))
@@ -70,9 +70,9 @@ def origins(spread: Spread) -> tuple[Origin, ...]:
 def _of(net: Net, source: int) -> Iterator[Origin]:
     spread = net.spread
     whole = search(net, [source], spread.all_bits, {})
-    for number in sorted(spread.made):
+    for number in sorted(spread.made_categories):
         category = spread.categories[number]
-        both = spread.both(category)
+        both = spread.forms_of(category)
         if not _can_make(spread, whole, both):
             continue
         # Where the category also arrives ready-made through a leak, only the search past no leak shows that it is made.
@@ -86,20 +86,20 @@ def _of(net: Net, source: int) -> Iterator[Origin]:
             yield Origin(maker, source, category, vertices, tuple(flow for flow, _, _ in path[1:]), past)
 
 
-def _can_make(spread: Spread, reach: Search, both: int) -> bool:
+def _can_make(spread: Spread, reach: Search, category_bits: int) -> bool:
     """Whether anything arrives of which a category is made, also where that arrives ready-made as well."""
     return any(
-        both >> made & 1 and reach.seen.get(vertex, 0) >> of & 1
+        category_bits >> made & 1 and reach.arrived_bits.get(vertex, 0) >> of & 1
         for vertex, pairs in spread.derives.items()
         for of, made in pairs
     )
 
 
-def _makers(reach: Search, both: int) -> dict[int, int]:
+def _makers(reach: Search, category_bits: int) -> dict[int, int]:
     """Vertex -> the bit of which it makes a category, where it does; to pseudonymise makes nothing new."""
     makers: dict[int, int] = {}
-    for vertex, left in reach.left.items():
+    for vertex, left in reach.leaving.items():
         for bits, origin in left:
-            if bits & both and origin is not None and origin != START and not both >> origin & 1:
+            if bits & category_bits and origin is not None and origin != START and not category_bits >> origin & 1:
                 makers.setdefault(vertex, origin)
     return makers

@@ -41,7 +41,7 @@ def number_in_groups(steps: Sequence[Step], groups: Sequence[Group], source: Sta
     2
     """
     search = _Search(steps, groups, source, leak, work)
-    number, most = 0, search.most()
+    number, most = 0, search.upper_bound()
     while number < most and search.layers():
         number += search.blocking()
     return number
@@ -60,10 +60,10 @@ class _Search:
             for before in befores:
                 self._of[before].append(number)
         self._into = sum(after == leak for _, after in steps)
-        self._taken: dict[State, set[State]] = defaultdict(set)  # step of a path, from its end
+        self._path_steps: dict[State, set[State]] = defaultdict(set)  # step of a path, from its end
         self._layer: dict[State, int] = {}
 
-    def most(self) -> int:
+    def upper_bound(self) -> int:
         """No more than there are steps out of the source, or into the leak."""
         out = len(self._ahead[self._source]) + sum(len(self._groups[n][1]) for n in self._of[self._source])
         return min(out, self._into + sum(len(befores) for befores, afters in self._groups if self._leak in afters))
@@ -76,11 +76,11 @@ class _Search:
         while now and self._leak not in self._layer:
             new: list[State] = []
             for here in now:
-                nexts = [after for after in self._ahead.get(here, ()) if here not in self._taken[after]]
-                nexts += sorted(self._taken[here])
+                nexts = [after for after in self._ahead.get(here, ()) if here not in self._path_steps[after]]
+                nexts += sorted(self._path_steps[here])
                 for number in self._of.get(here, ()):
-                    nexts += (after for after in left[number] if here not in self._taken[after])
-                    left[number] = [after for after in left[number] if here in self._taken[after]]
+                    nexts += (after for after in left[number] if here not in self._path_steps[after])
+                    left[number] = [after for after in left[number] if here in self._path_steps[after]]
                 self._work.count += len(nexts) + 1
                 for after in nexts:
                     if after not in self._layer:
@@ -115,20 +115,20 @@ class _Search:
         return number
 
     def _next(
-        self, here: State, waiting: dict[State, list[State]], members: list[dict[int, list[State]]], dead: set[State]
+        self, state: State, waiting: dict[State, list[State]], members: list[dict[int, list[State]]], dead: set[State]
     ) -> State | None:
         """A state of the next layer that may lead to the leak; each step is tried once."""
-        layer = self._layer[here] + 1
-        if here not in waiting:
-            free = [after for after in self._ahead.get(here, ()) if here not in self._taken[after]]
-            every = [*free, *sorted(self._taken[here])]
-            waiting[here] = [after for after in every if self._layer.get(after) == layer]
+        layer = self._layer[state] + 1
+        if state not in waiting:
+            free = [after for after in self._ahead.get(state, ()) if state not in self._path_steps[after]]
+            every = [*free, *sorted(self._path_steps[state])]
+            waiting[state] = [after for after in every if self._layer.get(after) == layer]
             self._work.count += len(every) + 1
-        while waiting[here]:
-            after = waiting[here].pop()
+        while waiting[state]:
+            after = waiting[state].pop()
             if after not in dead:
                 return after
-        for number in self._of.get(here, ()):
+        for number in self._of.get(state, ()):
             some = members[number].get(layer, [])
             at = len(some) - 1
             while at >= 0:
@@ -136,7 +136,7 @@ class _Search:
                 if some[at] in dead:  # for all of the group
                     some[at] = some[-1]
                     some.pop()
-                elif here not in self._taken[some[at]]:
+                elif state not in self._path_steps[some[at]]:
                     return some[at]
                 at -= 1
         return None
@@ -144,7 +144,7 @@ class _Search:
     def _take(self, path: list[State]) -> None:
         for before, after in pairwise(path):
             self._work.count += 1
-            if after in self._taken[before]:  # against the direction: taken back
-                self._taken[before].remove(after)
+            if after in self._path_steps[before]:  # against the direction: taken back
+                self._path_steps[before].remove(after)
             else:
-                self._taken[after].add(before)
+                self._path_steps[after].add(before)

@@ -154,12 +154,12 @@ def _backups(analysis: Analysis) -> Iterator[Doubt]:
             yield Doubt(BACKUPS_NOT_STATED, element, categories=holding[element.identity])
 
 
-def _by_globs(rows: Iterable[ByGlobs], asked: AbstractSet[str]) -> Iterator[Doubt]:
+def _by_globs(rows: Iterable[ByGlobs], questioned: AbstractSet[str]) -> Iterator[Doubt]:
     """Elements that only globs answer for; of a flow its start."""
     seen: dict[Element, tuple[set[str], list[Place]]] = {}
     for row in rows:
         kinds, places = seen.setdefault(row.element, (set(), []))
-        kinds.update(asked & {*row.categories})
+        kinds.update(questioned & {*row.categories})
         places += row.places
     for element, (kinds, places) in seen.items():
         if kinds:

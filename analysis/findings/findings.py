@@ -123,7 +123,7 @@ def analyse(
     kinds = tuple(concerns(spread, bound, hierarchy))
     wanted = [c for c in spread.categories if options.categories is None or c in options.categories]
     mask = _mask(spread, options)
-    net = Net.kept(spread)
+    net = Net.cached(spread)
     work = _Work(options.bounds)
     findings = _kept_findings(net, mask, kinds, options, work)
     questions = open_questions(net, mask, unanswered(graph.elements, bound.outside))
@@ -131,12 +131,12 @@ def analyse(
     leak = any(finding.stands for finding in findings)
     return Analysis(
         graph=graph,
-        verdict=Verdict.of(leak=leak, is_open=bool(questions), known=not lacks),
+        verdict=Verdict.of(leak=leak, is_open=bool(questions), grounded=not lacks),
         emitted=tuple(wanted),
         findings=findings,
         open=questions,
-        carried=spread.course.kept(
-            "carried", (mask, spread.gone, hierarchy), lambda: _carried(spread, mask, hierarchy)
+        carried=spread.course.memoised(
+            "carried", (mask, spread.absent_bits, hierarchy), lambda: _carried(spread, mask, hierarchy)
         ),
         roles=_roles(spread, mask),
         standard_channels=_standard_channels(spread),
@@ -183,7 +183,7 @@ def chosen_findings(
 
 def _mask(spread: Spread, options: Options) -> int:
     """The bits of the categories that the answer is about."""
-    return sum(spread.both(c) for c in spread.categories if options.categories is None or c in options.categories)
+    return sum(spread.forms_of(c) for c in spread.categories if options.categories is None or c in options.categories)
 
 
 class _Work:
@@ -213,7 +213,7 @@ def _kept_findings(net: Net, mask: int, kinds: Sequence[Concern], options: Optio
         return find()
     spread = net.spread
     ends = [(one.kind, {v: bits for v, bits in one.bits.items() if bits}, one.reasons) for one in kinds]
-    return spread.course.kept("findings", (mask, options, spread.gone, ends), find)
+    return spread.course.memoised("findings", (mask, options, spread.absent_bits, ends), find)
 
 
 def _findings(net: Net, mask: int, kinds: Sequence[Concern], options: Options, work: _Work) -> Iterator[Finding]:
@@ -229,15 +229,15 @@ def _findings(net: Net, mask: int, kinds: Sequence[Concern], options: Options, w
     for source in sorted(sources) if reached else ():
         only = None if chosen is None else chosen[source]
         whole = searches(spread, room).of(net, source, spread.all_bits, {}, None)
-        work.searches.add(len(whole.seen), NOWHERE)
+        work.searches.add(len(whole.arrived_bits), NOWHERE)
         memory: dict[Any, Any] = {}
         for concern, leaks in reached:
-            there = _there(whole, leaks)
+            there = _leaks_met(whole, leaks)
             for leak, category, finding in _findings_of(
                 net, source, whole, concern, there, options, memory, only, work, stops
             ):
                 work.findings.add(1, NOWHERE)
-                results.append((category, source, leak, finding.kind, finding.beside, finding))
+                results.append((category, source, leak, finding.kind, finding.plain_also, finding))
     yield from (finding for *_, finding in sorted(results, key=lambda row: row[:5]))
 
 
@@ -246,26 +246,26 @@ class _Stops:
 
     def __init__(self, spread: Spread) -> None:
         self._leaks = spread.leaks
-        self._known: dict[int, dict[int, int]] = {}
+        self._bits_at_leaks: dict[int, dict[int, int]] = {}
 
     def of(self, ends: int, accepted: Mapping[int, int]) -> Mapping[int, int]:
         """Leak -> bits that are not followed on from there; one mapping for all sources where nothing is accepted."""
-        if ends not in self._known:
-            self._known[ends] = {v: bits & ends for v, bits in self._leaks.items() if bits & ends}
-        every = self._known[ends]
+        if ends not in self._bits_at_leaks:
+            self._bits_at_leaks[ends] = {v: bits & ends for v, bits in self._leaks.items() if bits & ends}
+        every = self._bits_at_leaks[ends]
         return {**every, **{v: every[v] & ~bits for v, bits in accepted.items() if v in every}} if accepted else every
 
 
-def _there(whole: Search, leaks: Mapping[int, int]) -> dict[int, int]:
+def _leaks_met(search: Search, leaks: Mapping[int, int]) -> dict[int, int]:
     """The leaks that a search comes to, with the bits that do; in their order, and not one look at each leak."""
-    near = whole.seen.keys() | whole.begun.keys()
+    near = search.arrived_bits.keys() | search.begun.keys()
     some = leaks if len(leaks) <= len(near) else {v: leaks[v] for v in sorted(near & leaks.keys())}
-    return {v: bits & found for v, bits in some.items() if bits & (found := present(whole, v))}
+    return {v: bits & found for v, bits in some.items() if bits & (found := present(search, v))}
 
 
 def _findings_of(
-    net: Net, source: int, whole: Search, concern: Concern, reached: Mapping[int, int], options: Options,
-    memory: dict[Any, Any], only: AbstractSet[Chosen] | None, work: _Work, stops: _Stops,
+    net: Net, source: int, search: Search, concern: Concern, reached: Mapping[int, int], options: Options,
+    memory: dict[Any, Any], limited_to: AbstractSet[Chosen] | None, work: _Work, stops: _Stops,
 ) -> Iterator[tuple[int, int, Finding]]:  # fmt: skip
     """(leak, number of the category, finding) of one source and kind.
 
@@ -274,23 +274,26 @@ def _findings_of(
     spread = net.spread
     paths = PathsOfSource(net, source, memory, options.paths, options.max_paths, work.paths)
     accepted = _accepted(spread, source, concern.kind, reached, options)
-    anywhere: Followed = whole, {}
+    anywhere: Followed = search, {}
     free: dict[int, Followed] = {}  # number of the category -> search that stops at other leaks of it
     for leak, bits in reached.items():
         for i in bits_of(spread.bits.merged(bits)):
-            if only is not None and not {(concern.kind, leak, i, False), (concern.kind, leak, i, True)} & only:
+            if (
+                limited_to is not None
+                and not {(concern.kind, leak, i, False), (concern.kind, leak, i, True)} & limited_to
+            ):
                 continue
             if concern.kind != DISCLOSURE:
                 free[i] = anywhere
             elif i not in free:
                 _search_free(net, source, i, accepted, free, stops)
-                work.searches.add(len(free[i][0].seen), NOWHERE)
+                work.searches.add(len(free[i][0].arrived_bits), NOWHERE)
             for beside, ((chosen, stop), bit) in enumerate(_shown_forms(free[i], anywhere, leak, spread.bits.forms(i))):
-                if only is not None and (concern.kind, leak, i, bool(beside)) not in only:
+                if limited_to is not None and (concern.kind, leak, i, bool(beside)) not in limited_to:
                     continue
-                dismissed = chosen is whole and concern.kind == DISCLOSURE
+                dismissed = chosen is search and concern.kind == DISCLOSURE
                 finding = _finding(net, chosen, source, leak, bit, concern, accepted, dismissed=dismissed)
-                finding = _beside(finding, options) if beside else finding
+                finding = _as_plain_also(finding, options) if beside else finding
                 if not options.count_paths or (options.uncounted and options.uncounted(finding.source, finding.leak)):
                     finding = replace(finding, number_of_paths=None)
                 elif len(finding.witness) > 1 and work.paths.met:
@@ -323,10 +326,14 @@ def _search_free(
 ) -> None:
     """Search with the leaks of category i as ends; one search serves all categories that nothing is made into."""
     spread = net.spread
-    together = [i] if i in spread.made else [j for j, _ in enumerate(spread.categories) if j not in spread.made]
-    ends = sum(map(spread.bits.both, together))
+    together = (
+        [i]
+        if i in spread.made_categories
+        else [j for j, _ in enumerate(spread.categories) if j not in spread.made_categories]
+    )
+    ends = sum(map(spread.bits.pair, together))
     stop = stops.of(ends, accepted)
-    allowed = spread.all_bits if i in spread.made else ends
+    allowed = spread.all_bits if i in spread.made_categories else ends
     result = searches(spread).of(net, source, allowed, stop, (ends, frozenset(accepted.items())))
     free.update(dict.fromkeys(together, (result, stop)))
 
@@ -339,13 +346,13 @@ def _shown_forms(free: Followed, anywhere: Followed, leak: int, forms: tuple[int
     return [one for one, shown in zip(each, flags, strict=True) if shown]
 
 
-def _beside(finding: Finding, options: Options) -> Finding:
+def _as_plain_also(finding: Finding, options: Options) -> Finding:
     """Return a finding as one that stands beside a pseudonymised one; it is decided about by itself.
 
     What is accepted here hides nothing in any case: all that lies behind it lies behind the other leak, too.
     """
-    own = finding_id(finding.category, finding.source, finding.leak, finding.kind, beside=True)
-    told = replace(finding, id=own, beside=True)
+    own = finding_id(finding.category, finding.source, finding.leak, finding.kind, plain_also=True)
+    told = replace(finding, id=own, plain_also=True)
     return replace(told, accepted=bool(options.accepts and options.accepts(Case.of(told))))
 
 
@@ -380,22 +387,24 @@ def _finding(
 
 def _other_leaks(spread: Spread, path: list[tuple[int, int, int]], i: int, accepted: Mapping[int, int]) -> list[int]:
     """Leaks of a category inside a path that are not accepted, where it arrives or is made."""
-    both = spread.bits.both(i)
+    both = spread.bits.pair(i)
     leaks = {v: spread.leaks.get(v, 0) & both & ~accepted.get(v, 0) for _, v, _ in path}
     inside = [(v, bits) for (_, v, arriving), (_, _, leaving) in pairwise(path[1:]) for bits in [{arriving, leaving}]]
     return [v for v, bits in inside if any(leaks[v] >> b & 1 for b in bits)]
 
 
-def finding_id(category: str, source: Element, leak: Element, kind: str = DISCLOSURE, *, beside: bool = False) -> str:
+def finding_id(
+    category: str, source: Element, leak: Element, kind: str = DISCLOSURE, *, plain_also: bool = False
+) -> str:
     """Return the stable id of a finding, made from category, source and leak, and the kind if several can be (S10).
 
-    Data as it is ``beside`` a pseudonymised finding has an id of its own, made with the word 'plain'. Only a
+    Data as it is ``plain_also`` a pseudonymised finding has an id of its own, made with the word 'plain'. Only a
     channel has a leg, or names that a DENY takes out.
 
     >>> finding_id("Video", Element("node", "/camera"), Element("node", "/uplink"))
     '72abf86b6fa9e2ae'
     """
-    more = [*(["plain"] if beside else []), *([] if kind == DISCLOSURE else [kind])]
+    more = [*(["plain"] if plain_also else []), *([] if kind == DISCLOSURE else [kind])]
     more += [*([leak.leg] if leak.leg else []), *leak.without]
     parts = [*more, category, *source.identity, *leak.identity]
     return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:16]

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.kernel.bits import bits_of
-from rosprivacy.analysis.kernel.states import States, made
+from rosprivacy.analysis.kernel.states import States, derived_bits
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping
@@ -133,9 +133,13 @@ class _Walk:
     def __init__(self, net: Net, category: str, ends: Mapping[int, int] | None, *, past_leaks: bool) -> None:
         self._spread = spread = net.spread
         self._ends = spread.leaks if ends is None else ends
-        number, self._both = spread.categories.index(category), spread.both(category)
-        relevant = spread.all_bits if number in spread.made else self._both
-        stop = {} if past_leaks else {v: bits & self._both for v, bits in spread.leaks.items() if bits & self._both}
+        number, self._two_bits = spread.categories.index(category), spread.forms_of(category)
+        relevant = spread.all_bits if number in spread.made_categories else self._two_bits
+        stop = (
+            {}
+            if past_leaks
+            else {v: bits & self._two_bits for v, bits in spread.leaks.items() if bits & self._two_bits}
+        )
         self._states = States(net, relevant, stop)
         self._starts: set[State] = set()
 
@@ -180,8 +184,8 @@ class _Walk:
             yield from ((flow, (ARRIVED, target, moved)) for moved in bits_of(bits))
 
     def _leaks(self, vertex: int, bit: int) -> bool:
-        here = self._ends.get(vertex, 0) & self._both
-        return bool(here and here & (1 << bit | made(self._spread, vertex, 1 << bit)))
+        here = self._ends.get(vertex, 0) & self._two_bits
+        return bool(here and here & (1 << bit | derived_bits(self._spread, vertex, 1 << bit)))
 
 
 def _distances(edges: list[Edge], start: State, *, forth: bool) -> dict[State, int]:

@@ -79,9 +79,9 @@ class Between:
         self.emits = self.states.emitted(source)
         self.width = FIRST + self.bits.merged(net.spread.all_bits).bit_length()
         self.begin = self.state(source, SOURCE)
-        self.reached = len(reach.seen)
+        self.reached = len(reach.arrived_bits)
         self._reach: Search | None = reach
-        self._known: dict[int, list[tuple[int, int]]] = {}
+        self._meetings: dict[int, list[tuple[int, int]]] = {}
         self.back: dict[State, set[State]] = defaultdict(set)
         self.met: dict[tuple[int, int], tuple[Meeting, set[State]]] = {}  # by meeting and bits: who sends these
         self.groups: list[tuple[set[State], set[State]]] = []
@@ -113,7 +113,7 @@ class Between:
     def _edges(self, reach: Search) -> Iterator[tuple[State, State]]:
         """The steps from what arrives somewhere; those from the source's own data are linked before."""
         states, net = self.states, self.states.net
-        for vertex, seen in reach.seen.items():
+        for vertex, seen in reach.arrived_bits.items():
             moves, single = net.flows.get(vertex, ()), net.spread.flow_emits if vertex == self.source else {}
             for form, both in self._forms(seen) if moves or vertex in net.meetings else ():
                 if self._begun(vertex, form):
@@ -125,15 +125,15 @@ class Between:
                     if moved := leaving & passing & ~single.get(index, 0):
                         yield from ((here, state) for state in self._at(target, moved))
 
-    def _meet(self, here: State, vertex: int, leaving: int) -> None:
+    def _meet(self, state: State, vertex: int, leaving: int) -> None:
         """Note what a state sends to all that its meetings read."""
         for meeting in self.states.net.meetings.get(vertex, ()) if leaving else ():
-            self.met.setdefault((id(meeting), leaving), (meeting, set()))[1].add(here)
+            self.met.setdefault((id(meeting), leaving), (meeting, set()))[1].add(state)
 
     def _read(self, meeting: Meeting, bits: int) -> Iterator[State]:
         spread = self.states.net.spread
         for target in meeting.read:
-            yield from self._at(target, bits & spread.taken(target))
+            yield from self._at(target, bits & spread.absorbed(target))
 
     def _at(self, vertex: int, bits: int) -> list[State]:
         """The states that data with some bits is in at a vertex, its two planes put together."""
@@ -144,10 +144,10 @@ class Between:
 
     def _forms(self, bits: int) -> list[tuple[int, int]]:
         """Form and bits of each category among some."""
-        forms = self._known.get(bits)
+        forms = self._meetings.get(bits)
         if forms is None:
             numbers = bits_of(self.bits.merged(bits & self.states.allowed))
-            forms = self._known[bits] = [(number + FIRST, self.bits.both(number)) for number in numbers]
+            forms = self._meetings[bits] = [(number + FIRST, self.bits.pair(number)) for number in numbers]
         return forms
 
     def _begun(self, vertex: int, form: int) -> bool:
@@ -281,15 +281,15 @@ def number_disjoint(edges: Sequence[tuple[State, State]], source: State, leak: S
 
 
 def _one_more(
-    ahead: Mapping[State, Sequence[State]], taken: Mapping[State, AbstractSet[State]], source: State, leak: State,
-    work: Tally,
+    ahead: Mapping[State, Sequence[State]], step_origins: Mapping[State, AbstractSet[State]], source: State,
+    leak: State, work: Tally,
 ) -> dict[State, State]:  # fmt: skip
     """Where a search came from at each state: along steps that no path takes, and back along those that one does."""
     came = {source: source}
     waiting = deque([source])
     while waiting and leak not in came:
         here = waiting.popleft()
-        nexts = [*ahead.get(here, ()), *taken.get(here, ())]
+        nexts = [*ahead.get(here, ()), *step_origins.get(here, ())]
         work.count += len(nexts) + 1
         for after in nexts:
             if after not in came:
@@ -316,14 +316,14 @@ def _shortest(edges: list[tuple[State, State]], source: State, leak: State) -> l
     return path[::-1]
 
 
-def further(between: Between, leak: int, memory: dict[Any, Any], asked: str, most: int, work: Tally) -> FurtherPaths:
+def further(between: Between, leak: int, memory: dict[Any, Any], detail: str, bound: int, work: Tally) -> FurtherPaths:
     """Count the paths that share no flow, and list those asked for.
 
     Parameters
     ----------
-    asked
+    detail
         ``witness`` (none), ``disjoint`` or ``all``.
-    most
+    bound
         Bound on the list.
     work
         Counts the steps.
@@ -343,7 +343,7 @@ def further(between: Between, leak: int, memory: dict[Any, Any], asked: str, mos
     >>> paths.disjoint, [[element.name for element in path] for path in paths.paths]
     (1, [['/camera', '/video', '/filter', '/filtered', '/archive']])
     """
-    mode = Paths(asked)
+    mode = Paths(detail)
     if mode is Paths.witness:
         return FurtherPaths(between.number_to(leak, memory, work))
     between.link(work)
@@ -358,8 +358,8 @@ def further(between: Between, leak: int, memory: dict[Any, Any], asked: str, mos
     shown: dict[tuple[Element, ...], None] = {}
     for number, path in enumerate(chosen):  # two paths of data that differs may be one path to the reader
         shown[_elements(between.graph, path)] = None
-        if len(shown) > most or number >= SEARCHED * most:
-            return FurtherPaths(len(disjoint), tuple(shown)[:most], bounded=True)
+        if len(shown) > bound or number >= SEARCHED * bound:
+            return FurtherPaths(len(disjoint), tuple(shown)[:bound], bounded=True)
     return FurtherPaths(len(disjoint), tuple(shown))
 
 

@@ -84,7 +84,7 @@ def open_questions(net: Net, mask: int, unknown: Mapping[int, tuple[str, ...]] =
     _, nearest = from_sources(spread)
     first = _first(net, nearest.begun, uncovered)
     merged: dict[tuple[str, str, str, str], OpenQuestion] = {}
-    levels: dict[tuple[int, int], int] = spread.course.kept("levels", None, dict)
+    levels: dict[tuple[int, int], int] = spread.course.memoised("levels", None, dict)
     names = {bits: spread.names(bits & mask) for bits in set(uncovered.values())}
     for vertex, everything in sorted(uncovered.items()):
         element, bits = elements[vertex], everything & mask
@@ -132,9 +132,9 @@ def _first(net: Net, sources: Iterable[int], uncovered: Mapping[int, int]) -> di
     asked = 0
     for bits in nodes.values():
         asked |= bits
-    made = sum(map(spread.bits.both, spread.made))
+    made = sum(map(spread.bits.pair, spread.made_categories))
     first: dict[int, int] = dict.fromkeys(nodes, 0)
-    for own in [asked & ~made, *(spread.bits.both(i) & asked for i in sorted(spread.made))]:
+    for own in [asked & ~made, *(spread.bits.pair(i) & asked for i in sorted(spread.made_categories))]:
         if own:
             ends = nodes | {v: nodes.get(v, 0) | there for v, bits in spread.leaks.items() if (there := bits & own)}
             reached = search(net, sources, _becoming(spread, own), ends)
@@ -192,7 +192,7 @@ def unknown_ends(spread: Spread, mask: int) -> tuple[UnknownEnd, ...]:
 def _unread(spread: Spread, mask: int) -> Iterator[int]:
     """Channels with data from which no flow leads to anything but channels."""
     elements = spread.graph.elements
-    known = spread.shape.kept("readable", None, lambda: _readable(spread.graph))
+    known = spread.shape.memoised("readable", None, lambda: _readable(spread.graph))
     for vertex in sorted(spread.leaves):
         if elements[vertex].is_channel and spread.present(vertex) & mask and vertex not in known:
             yield vertex
@@ -305,11 +305,11 @@ def _onward(spread: Spread, mask: int) -> bool:
     return any(spread.leaves.get(spread.graph.flows[index].source, 0) & mask for index in spread.flow_keeps)
 
 
-def _judged(spread: Spread, vertex: int, asked: tuple[str, ...]) -> bool:
+def _judged(spread: Spread, vertex: int, question_role: tuple[str, ...]) -> bool:
     """Whether it is a storage, or is said to be a leak or none: by a label, outranked or not, or by its kind."""
     if spread.graph.elements[vertex].kind == "storage":
         return True
-    facts = [fact for category, fact in spread.facts[vertex].items() if category in asked]
+    facts = [fact for category, fact in spread.facts[vertex].items() if category in question_role]
     said = (statement for fact in facts for statement in (*fact.accepted, *(lost for lost, _ in fact.outdone)))
     return any(statement.role in SPEAKS_OF_LEAKS for statement in said)
 

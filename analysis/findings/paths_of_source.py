@@ -40,9 +40,9 @@ class PathsOfSource:
         As of ``further``.
     """
 
-    def __init__(self, net: Net, source: int, memory: dict[Any, Any], asked: str, most: int, work: Tally) -> None:
+    def __init__(self, net: Net, source: int, memory: dict[Any, Any], detail: str, bound: int, work: Tally) -> None:
         self._net, self._source, self._memory = net, source, memory
-        self._asked, self._most, self._work = asked, most, work
+        self._detail, self._bound, self._work = detail, bound, work
         self._counted: dict[int, NumberOfPaths] = {}  # by search
         self._between: dict[tuple[int, int], Between] = {}  # by search and category
 
@@ -57,16 +57,16 @@ class PathsOfSource:
             The search that they lie in, which is kept as long as this is, and what it did not follow.
         """
         spread = self._net.spread
-        made = category in spread.made
-        if self._asked == Paths.witness and not made:
+        made = category in spread.made_categories
+        if self._detail == Paths.witness and not made:
             if id(reach) not in self._counted:
                 self._counted[id(reach)] = NumberOfPaths(self._net, reach, self._source, stop, self._work)
             return FurtherPaths(self._counted[id(reach)].to(leak, category))
         if (id(reach), category) not in self._between:
-            relevant = spread.all_bits if made else spread.bits.both(category)  # all, for simplicity
+            relevant = spread.all_bits if made else spread.bits.pair(category)  # all, for simplicity
             between = Between(self._net, reach, self._source, category, relevant, stop)
             self._between[id(reach), category] = between
-        return further(self._between[id(reach), category], leak, self._memory, self._asked, self._most, self._work)
+        return further(self._between[id(reach), category], leak, self._memory, self._detail, self._bound, self._work)
 
 
 class NumberOfPaths:
@@ -98,8 +98,8 @@ class NumberOfPaths:
         self._work = work
         self._into: dict[int, dict[int, int]] = defaultdict(dict)  # vertex -> the one before -> categories
         self._led: tuple[int, _Led] = BEGIN, _Led({}, [])  # the last leak, and what leads to it
-        self._known: dict[tuple[int, Kinds], int] = {}
-        self._taken = cache(lambda vertex: net.spread.bits.merged(net.spread.taken(vertex)))
+        self._counts: dict[tuple[int, Kinds], int] = {}
+        self._steps = cache(lambda vertex: net.spread.bits.merged(net.spread.absorbed(vertex)))
         merged = net.spread.bits.merged
         groups: dict[int, tuple[Meeting, dict[int, int]]] = {}  # by meeting: who sends which categories there
         for before, after, bits in _steps(net, reach, source, stop, groups):
@@ -129,11 +129,11 @@ class NumberOfPaths:
             self._led = leak, self._leading_to(leak, last)
             self._work.count += self._led[1].size
         led = self._led[1].of(category)
-        if (leak, led.kinds) not in self._known:
-            self._known[leak, led.kinds] = len(direct) + self._beside(direct, leak, led)
-        return self._known[leak, led.kinds]
+        if (leak, led.kinds) not in self._counts:
+            self._counts[leak, led.kinds] = len(direct) + self._longer(direct, leak, led)
+        return self._counts[leak, led.kinds]
 
-    def _beside(self, direct: Collection[int], leak: int, led: _Led) -> int:
+    def _longer(self, direct: Collection[int], leak: int, led: _Led) -> int:
         """How many paths there are beside those of two steps."""
         gone = {*((BEGIN, vertex) for vertex in direct), *((vertex, leak) for vertex in direct)}
         steps = [step for some in led.steps.values() for step in some if step not in gone]
@@ -149,7 +149,7 @@ class NumberOfPaths:
         last = dict(self._into.get(leak, {}))
         for number in self._groups.get(leak, ()):
             for vertex, categories in self._senders[number].items():
-                if some := categories & self._taken(leak):
+                if some := categories & self._steps(leak):
                     last[vertex] = last.get(vertex, 0) | some
         return last
 
@@ -159,7 +159,7 @@ class NumberOfPaths:
         waiting = OrderedDict({leak: -1})  # the first key of a dict is found past all that were taken out
         met: dict[int, int] = defaultdict(int)  # group -> categories of which all that send them are found
 
-        def found(befores: Mapping[int, int], new: int) -> None:
+        def add_found(befores: Mapping[int, int], new: int) -> None:
             for before, categories in befores.items():
                 if more := categories & new & ~led.get(before, 0):
                     led[before] = led.get(before, 0) | more
@@ -167,11 +167,11 @@ class NumberOfPaths:
 
         while waiting:
             vertex, new = waiting.popitem(last=False)
-            found(last if vertex == leak else self._into.get(vertex, {}), new)
+            add_found(last if vertex == leak else self._into.get(vertex, {}), new)
             for number in self._groups.get(vertex, ()) if vertex != leak else ():
-                more = new & self._taken(vertex) & ~met[number]
+                more = new & self._steps(vertex) & ~met[number]
                 met[number] |= more
-                found(self._senders[number] if more else {}, more)
+                add_found(self._senders[number] if more else {}, more)
         steps: dict[int, list[tuple[int, int]]] = defaultdict(list)
         afters: dict[int, dict[int, list[int]]] = defaultdict(lambda: defaultdict(list))
         for vertex, on in led.items():
@@ -179,7 +179,7 @@ class NumberOfPaths:
                 if categories & on:
                     steps[categories & on].append((before, vertex))
             for number in self._groups.get(vertex, ()) if vertex != leak else ():
-                if some := on & self._taken(vertex):
+                if some := on & self._steps(vertex):
                     afters[number][some].append(vertex)
         return _Led(steps, [(_by_value(self._senders[number]), of) for number, of in afters.items()])
 
@@ -204,10 +204,12 @@ class _Led(NamedTuple):
     def of(self, category: int) -> _Led:
         """Return what one category takes."""
 
-        def taken(by_categories: Mapping[int, list[Any]]) -> dict[int, list[Any]]:
+        def of_category(by_categories: Mapping[int, list[Any]]) -> dict[int, list[Any]]:
             return {some: of for some, of in by_categories.items() if some >> category & 1}
 
-        return _Led(taken(self.steps), [(taken(befores), taken(afters)) for befores, afters in self.groups])
+        return _Led(
+            of_category(self.steps), [(of_category(befores), of_category(afters)) for befores, afters in self.groups]
+        )
 
 
 def _by_value(categories: Mapping[int, int]) -> dict[int, list[int]]:
@@ -225,15 +227,15 @@ def _steps(
     What is sent to all that a meeting reads is put into the groups; but for what the source emits.
     """
     spread = net.spread
-    allowed = spread.all_bits & ~sum(map(spread.bits.both, spread.made))
+    allowed = spread.all_bits & ~sum(map(spread.bits.pair, spread.made_categories))
     states = States(net, allowed, stop)
     emitted = states.emitted(source)
     begun = spread.bits.in_both_forms(emitted & spread.bits.planes(allowed)[0])
     for _, target, bits in (*states.after_alone(source, emitted), *states.single(source)):
         yield BEGIN, target, bits
     for meeting in net.meetings.get(source, ()) if emitted else ():
-        yield from ((BEGIN, target, bits) for target in meeting.read if (bits := emitted & spread.taken(target)))
-    for vertex, seen in reach.seen.items():
+        yield from ((BEGIN, target, bits) for target in meeting.read if (bits := emitted & spread.absorbed(target)))
+    for vertex, seen in reach.arrived_bits.items():
         new, single = (seen & ~begun, spread.flow_emits) if vertex == source else (seen, {})
         leaving = states.leaving(vertex, new & allowed)
         for index, target, passing in net.flows.get(vertex, ()) if leaving else ():

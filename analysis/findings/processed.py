@@ -139,7 +139,7 @@ class _Rows:
 
     def row(self, vertex: int, category: str) -> Processed:
         """What is stated of a kind of data at one end."""
-        element, both = self._analysis.graph.elements[vertex], self._spread.both(category)
+        element, both = self._analysis.graph.elements[vertex], self._spread.forms_of(category)
         ways = [way for reach, way in self._reached if present(reach, vertex) & both]
         ways = list(dict.fromkeys(ways)) or [(self._of_robot(vertex),)]
         own = (self._of(vertex),)

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Element
 
 START = -1  # before all sources
-MOST = 200_000  # flows with data; of more it is not worked out what stands behind an element
+BOUND = 200_000  # flows with data; of more it is not worked out what stands behind an element
 Shown = tuple[str, str, str, str]
 
 
@@ -66,11 +66,11 @@ def review_order(analysis: Analysis) -> dict[Shown, Behind]:
         return {}
     spread = analysis.spread
     elements = spread.graph.elements
-    kinds = {q.categories: spread.bits.merged(sum(map(spread.both, q.categories))) for q in analysis.open}
+    kinds = {q.categories: spread.bits.merged(sum(map(spread.forms_of, q.categories))) for q in analysis.open}
     asked = {q.element.shown_as: kinds[q.categories] for q in analysis.open}
-    following = spread.course.kept("following", None, lambda: _Following.of(Net.kept(spread)))
-    reached = spread.course.kept("reached", None, following.reached)
-    shown = spread.course.kept("shown", None, lambda: {vertex: elements[vertex].shown_as for vertex in reached})
+    following = spread.course.memoised("following", None, lambda: _Following.of(Net.cached(spread)))
+    reached = spread.course.memoised("reached", None, following.reached)
+    shown = spread.course.memoised("shown", None, lambda: {vertex: elements[vertex].shown_as for vertex in reached})
     open_at = {vertex: one for vertex, one in shown.items() if one in asked}
     through = _through(following, {vertex: asked[one] for vertex, one in open_at.items()}, reached)
     leaks = {vertex for vertex, bits in spread.leaks.items() if bits & spread.present(vertex)}
@@ -84,13 +84,13 @@ def review_order(analysis: Analysis) -> dict[Shown, Behind]:
         comes_from = elements[through[vertex]] if vertex in through else None
         one = Behind(comes_from, closes, leaking, waits=elements[vertex].is_channel and vertex not in going_on)
         other = result.get(as_shown)  # the other side of a wildcard
-        result[as_shown] = one if other is None else _both(one, other)
+        result[as_shown] = one if other is None else _merged(one, other)
     return result
 
 
-def _both(one: Behind, other: Behind) -> Behind:
-    first = max(one, other, key=lambda side: (side.leaks, side.closes))
-    return Behind(one.through or other.through, first.closes, first.leaks, waits=one.waits and other.waits)
+def _merged(behind: Behind, other: Behind) -> Behind:
+    first = max(behind, other, key=lambda side: (side.leaks, side.closes))
+    return Behind(behind.through or other.through, first.closes, first.leaks, waits=behind.waits and other.waits)
 
 
 class _Following(NamedTuple):
@@ -128,15 +128,15 @@ class _Following(NamedTuple):
         """What is sent in a meeting."""
         return self.spread.sent.get(source, 0)
 
-    def taken(self, target: int) -> int:
+    def absorbed(self, target: int) -> int:
         """What is taken up of it."""
-        return self.spread.taken(target)
+        return self.spread.absorbed(target)
 
     def number(self) -> int:
         """How many flows have data, with the steps to where it begins."""
         number = sum(map(len, self.single.values()))
         for meeting in self.meetings:
-            sent, taken = Counter(map(self.sent, meeting.written)), Counter(map(self.taken, meeting.read))
+            sent, taken = Counter(map(self.sent, meeting.written)), Counter(map(self.absorbed, meeting.read))
             number += sum(n * m for bits, n in sent.items() for others, m in taken.items() if bits & others)
         return number
 
@@ -148,7 +148,7 @@ class _Following(NamedTuple):
         hub = len(self.spread.graph.elements)
         for meeting in self.meetings:
             for bits in {self.sent(source) for source in meeting.written} - {0}:
-                flows[hub] = [target for target in meeting.read if bits & self.taken(target)]
+                flows[hub] = [target for target in meeting.read if bits & self.absorbed(target)]
                 for source in meeting.written:
                     if self.sent(source) == bits:
                         flows.setdefault(source, []).append(hub)
@@ -157,7 +157,7 @@ class _Following(NamedTuple):
 
     def dominators(self) -> dict[int, int]:
         """Return the last vertex that all data to each vertex goes through; nothing of too many flows."""
-        return immediate_dominators(self.with_hubs(), START) if 0 < self.number() <= MOST else {}
+        return immediate_dominators(self.with_hubs(), START) if 0 < self.number() <= BOUND else {}
 
     def reached(self) -> list[int]:
         """Every vertex that data gets to, the nearest to a source first."""
@@ -171,7 +171,7 @@ class _Following(NamedTuple):
             for meeting in written.get(here, ()):
                 new = self.sent(here) & ~met[id(meeting)]
                 met[id(meeting)] |= new
-                nexts += (there for there in meeting.read if new & self.taken(there)) if new else ()
+                nexts += (there for there in meeting.read if new & self.absorbed(there)) if new else ()
             found = {there for there in nexts if there not in reached}
             for there in sorted(found):
                 reached[there] = None
@@ -186,18 +186,18 @@ class _Following(NamedTuple):
                 entering[there].append(here)
         return entering
 
-    def reaching(self, wanted: Iterable[int]) -> set[int]:
+    def reaching(self, targets: Iterable[int]) -> set[int]:
         """The vertices from which data gets to one of some."""
-        entering = self.spread.course.kept("entering", None, self.entering)
+        entering = self.spread.course.memoised("entering", None, self.entering)
         read = _by_member((meeting.read, meeting) for meeting in self.meetings)
         met: dict[int, int] = defaultdict(int)  # bits of which all that write them to a meeting are found
-        seen = set(wanted)
+        seen = set(targets)
         waiting = deque(seen)
         while waiting:
             there = waiting.popleft()
             nexts = list(entering.get(there, ()))
             for meeting in read.get(there, ()):
-                new = self.taken(there) & ~met[id(meeting)]
+                new = self.absorbed(there) & ~met[id(meeting)]
                 met[id(meeting)] |= new
                 nexts += (here for here in meeting.written if new & self.sent(here)) if new else ()
             for here in nexts:
@@ -215,45 +215,45 @@ def _by_member(rows: Iterable[tuple[Iterable[int], Meeting]]) -> dict[int, list[
     return meetings
 
 
-def _through(following: _Following, asked: Mapping[int, int], reached: Iterable[int]) -> dict[int, int]:
+def _through(following: _Following, open_at: Mapping[int, int], reached: Iterable[int]) -> dict[int, int]:
     """Open vertex -> the vertex from which most of the kinds that are open there come along a flow."""
-    known: dict[tuple[int, int], int | None] = following.spread.course.kept("through", None, dict)
-    if left := {vertex: bits for vertex, bits in asked.items() if (vertex, bits) not in known}:
+    known: dict[tuple[int, int], int | None] = following.spread.course.memoised("through", None, dict)
+    if left := {vertex: bits for vertex, bits in open_at.items() if (vertex, bits) not in known}:
         found = _found_through(following, left, reached)
         known.update(((vertex, bits), found.get(vertex)) for vertex, bits in left.items())
-    through = ((vertex, known[vertex, bits]) for vertex, bits in asked.items())
+    through = ((vertex, known[vertex, bits]) for vertex, bits in open_at.items())
     return {vertex: source for vertex, source in through if source is not None}
 
 
-def _found_through(following: _Following, asked: Mapping[int, int], reached: Iterable[int]) -> dict[int, int]:
+def _found_through(following: _Following, open_at: Mapping[int, int], reached: Iterable[int]) -> dict[int, int]:
     spread = following.spread
     order = {vertex: place for place, vertex in enumerate(reached)}
     best: dict[int, tuple[int, int, int]] = {}
     merged = cache(spread.bits.merged)
 
     def comes(source: int, target: int, bits: int) -> None:
-        if own := merged(bits) & asked[target]:
+        if own := merged(bits) & open_at[target]:
             one = (-own.bit_count(), order[source], source)
             if target not in best or one < best[target]:
                 best[target] = one
 
     for source, ways in following.along.items():
         for target, bits in ways:
-            if target in asked:
+            if target in open_at:
                 comes(source, target, bits)
     for meeting in following.meetings:
         first: dict[int, int] = {}  # what is sent -> the first that sends it
         for source in sorted(set(meeting.written) & order.keys(), key=lambda one: -order[one]):
             first[following.sent(source)] = source
-        for target in asked.keys() & meeting.read:
+        for target in open_at.keys() & meeting.read:
             for bits, source in first.items():
-                comes(source, target, bits & following.taken(target))
+                comes(source, target, bits & following.absorbed(target))
     return {vertex: source for vertex, (_, _, source) in best.items()}
 
 
 def _below(following: _Following, questions: Iterable[int], leaks: Iterable[int]) -> Mapping[int, tuple[int, int]]:
     """Vertex -> how many of the questions, and of the leaks, data gets to past it only; without itself."""
-    parents = following.spread.course.kept("dominators", None, following.dominators)
+    parents = following.spread.course.memoised("dominators", None, following.dominators)
     asked, leaking = set(questions), set(leaks)
     below: dict[int, tuple[int, int]] = defaultdict(lambda: (0, 0))
     for vertex in asked | leaking:

@@ -31,7 +31,7 @@ class Cleaning(NamedTuple):
         Whether the category gets there at all.
     leaves, pseudonymised
         What leaves the element all the same, as it is and pseudonymised: sorted names.
-    beside
+    neighbours
         Elements that read the same channels and do not clean it: what the sanitizer takes out, they get.
     cleaning_beside
         Elements that read the same channels and are said to clean it, too.
@@ -46,7 +46,7 @@ class Cleaning(NamedTuple):
     reached: bool
     leaves: tuple[str, ...]
     pseudonymised: tuple[str, ...]
-    beside: tuple[Element, ...]
+    neighbours: tuple[Element, ...]
     cleaning_beside: tuple[Element, ...] = ()
     places: tuple[Place, ...] = ()
 
@@ -56,11 +56,11 @@ class Making(NamedTuple):
 
     element: Element
     made_of: str
-    made: str
+    target: str
     reached: bool
 
 
-def cleanings(spread: Spread, wanted: Collection[str]) -> tuple[Cleaning, ...]:
+def cleanings(spread: Spread, categories: Collection[str]) -> tuple[Cleaning, ...]:
     """Return what sanitizes any of the categories.
 
     Complexity: O(flows) once, then the channels around each sanitizer.
@@ -68,17 +68,19 @@ def cleanings(spread: Spread, wanted: Collection[str]) -> tuple[Cleaning, ...]:
     >>> from rosprivacy.analysis.example import factory
     >>> from rosprivacy.analysis.kernel.spreading import spread
     >>> (cleaning,) = cleanings(spread(*factory()), ["Video"])
-    >>> cleaning.element.name, cleaning.pseudonymised, [element.name for element in cleaning.beside]
+    >>> cleaning.element.name, cleaning.pseudonymised, [element.name for element in cleaning.neighbours]
     ('/filter', ('Video',), ['/face_id'])
     """
     around = _Around(spread)
-    mask = sum(spread.both(category) for category in wanted)
+    mask = sum(spread.forms_of(category) for category in categories)
     rows = []
     for vertex, decided in sorted(spread.facts.items()):
         leaves = spread.planes(spread.leaves.get(vertex, 0) & mask)
-        for category in (name for name in spread.categories if name in wanted and "sanitizer" in decided[name].roles):
-            both = spread.both(category)
-            beside, cleaning = around.beside(vertex, category, both)
+        for category in (
+            name for name in spread.categories if name in categories and "sanitizer" in decided[name].roles
+        ):
+            both = spread.forms_of(category)
+            beside, cleaning = around.neighbours(vertex, category, both)
             places = {statement.place for statement in decided[category].by_role("sanitizer")}
             rows.append(
                 Cleaning(
@@ -89,7 +91,7 @@ def cleanings(spread: Spread, wanted: Collection[str]) -> tuple[Cleaning, ...]:
                     reached=bool(spread.arrives.get(vertex, 0) & both),
                     leaves=leaves[0],
                     pseudonymised=leaves[1],
-                    beside=beside,
+                    neighbours=beside,
                     cleaning_beside=cleaning,
                     places=tuple(sorted(places, key=lambda place: (place.file, place.line))),
                 )
@@ -97,21 +99,21 @@ def cleanings(spread: Spread, wanted: Collection[str]) -> tuple[Cleaning, ...]:
     return tuple(rows)
 
 
-def makings(spread: Spread, wanted: Collection[str]) -> tuple[Making, ...]:
+def makings(spread: Spread, categories: Collection[str]) -> tuple[Making, ...]:
     """Return what makes any of the categories of another one; what is that kind already is not made.
 
     >>> from rosprivacy.analysis.example import factory
     >>> from rosprivacy.analysis.kernel.spreading import spread
     >>> (making,) = makings(spread(*factory()), ["FaceTemplate"])
-    >>> making.element.name, making.made_of, making.made, making.reached
+    >>> making.element.name, making.made_of, making.target, making.reached
     ('/face_id', 'Video', 'FaceTemplate', True)
     """
     return tuple(
-        Making(spread.graph.elements[vertex], category, made, bool(spread.present(vertex) & spread.both(category)))
+        Making(spread.graph.elements[vertex], category, made, bool(spread.present(vertex) & spread.forms_of(category)))
         for vertex, decided in sorted(spread.facts.items())
         for category in spread.categories
         for made in decided[category].derives
-        if made in wanted and made != category
+        if made in categories and made != category
     )
 
 
@@ -152,7 +154,7 @@ class _Around:
         self._spread = spread
         self._near: dict[bool, _Near] = {}  # by whether it is asked for what comes before
 
-    def beside(self, vertex: int, category: str, bits: int) -> tuple[tuple[Element, ...], tuple[Element, ...]]:
+    def neighbours(self, vertex: int, category: str, bits: int) -> tuple[tuple[Element, ...], tuple[Element, ...]]:
         """Elements that get the category from a channel from which the vertex gets it: those that clean it last."""
         elements = self._spread.graph.elements
         channels = self._walk([vertex], bits, back=True)
@@ -211,12 +213,12 @@ class _Near(NamedTuple):
                 near[vertex].append((meeting, end))
         return cls(flows, near, back)
 
-    def after(self, spread: Spread, here: int, bits: int, met: dict[int, int]) -> Iterator[int]:
+    def after(self, spread: Spread, state: int, bits: int, met: dict[int, int]) -> Iterator[int]:
         """Yield where some bits go, or come from; of a meeting only what is new."""
-        yield from (there for index, there in self.flows.get(here, ()) if spread.along(index) & bits)
-        for meeting, end in self.meetings.get(here, ()):
-            new = bits & ~met[id(meeting)] & (spread.taken(here) if self.back else spread.sent.get(here, 0))
+        yield from (there for index, there in self.flows.get(state, ()) if spread.along(index) & bits)
+        for meeting, end in self.meetings.get(state, ()):
+            new = bits & ~met[id(meeting)] & (spread.absorbed(state) if self.back else spread.sent.get(state, 0))
             met[id(meeting)] |= new
             for there in end if new else ():
-                if new & (spread.sent.get(there, 0) if self.back else spread.taken(there)):
+                if new & (spread.sent.get(there, 0) if self.back else spread.absorbed(there)):
                     yield there

@@ -94,11 +94,11 @@ def ways(analysis: Analysis, bound: Bound, categories: Mapping[str, Category]) -
     persons = _Persons.of(spread, bound)
     rows = []
     for (_, _, category), places in _places(analysis).items():
-        both, protections = spread.both(category), _protections(spread, passed, places, category)
+        both, protections = spread.forms_of(category), _protections(spread, passed, places, category)
         for vertices in places.values():
             rows.append(Ways(spread.graph.elements[vertices[0]], category, *persons.at(vertices, both), protections))
             protections = ()
-    rows += [Ways(None, category, *persons.anywhere(spread.both(category))) for category in analysis.emitted]
+    rows += [Ways(None, category, *persons.anywhere(spread.forms_of(category))) for category in analysis.emitted]
     return tuple(row for row in rows if row.persons or row.protections)
 
 
@@ -127,27 +127,27 @@ class _Persons(NamedTuple):
         for vertex in spread.facts if bound.subjects else ():
             if spread.begins(vertex):
                 groups[bound.subjects.get(vertex, ())].append(vertex)
-        net = Net.kept(spread) if groups else None
+        net = Net.cached(spread) if groups else None
         return cls(tuple((named, search(net, some, spread.all_bits, {})) for named, some in groups.items() if net))
 
     def at(self, vertices: Iterable[int], bits: int) -> tuple[tuple[str, ...], bool]:
         """Return the persons whose data get to one of some vertices, and whether there are more that nobody names."""
         found = [named for named, reach in self.reached if any(present(reach, v) & bits for v in vertices)]
-        return _named(found)
+        return _grouped(found)
 
     def anywhere(self, bits: int) -> tuple[tuple[str, ...], bool]:
         """Return the same of all vertices."""
-        return _named(named for named, reach in self.reached if _anywhere(reach) & bits)
+        return _grouped(named for named, reach in self.reached if _anywhere(reach) & bits)
 
 
-def _named(found: Iterable[tuple[str, ...]]) -> tuple[tuple[str, ...], bool]:
-    groups = list(found)
+def _grouped(name_groups: Iterable[tuple[str, ...]]) -> tuple[tuple[str, ...], bool]:
+    groups = list(name_groups)
     return tuple(sorted({one for named in groups for one in named})), () in groups or not groups
 
 
 def _anywhere(reach: Search) -> int:
-    there = reduce(or_, (*reach.seen.values(), *reach.begun.values()), 0)
-    return there | reduce(or_, (bits for vertex in reach.making for bits, _ in reach.left[vertex]), 0)
+    there = reduce(or_, (*reach.arrived_bits.values(), *reach.begun.values()), 0)
+    return there | reduce(or_, (bits for vertex in reach.making for bits, _ in reach.leaving[vertex]), 0)
 
 
 def _protections(
@@ -158,12 +158,12 @@ def _protections(
     number = spread.categories.index(category)
     plain, hidden = spread.bits.forms(number)
     there = reduce(or_, map(spread.present, vertices), 0)
-    if not passed or not (there >> hidden & 1 or number in spread.made):
+    if not passed or not (there >> hidden & 1 or number in spread.made_categories):
         return ()
-    leading = backward(spread, dict.fromkeys(vertices, there & spread.both(category))).entering
+    leading = backward(spread, dict.fromkeys(vertices, there & spread.forms_of(category))).entering
     found = []
     for vertex, cleaned in passed:
-        arriving = spread.arrives.get(vertex, 0) & leading.get(vertex, 0) & spread.both(cleaned)
+        arriving = spread.arrives.get(vertex, 0) & leading.get(vertex, 0) & spread.forms_of(cleaned)
         if arriving and vertex not in vertices:
             facts = spread.facts[vertex][cleaned]
             everywhere = facts.method != Method.PSEUDONYMISE or not there >> plain & 1

@@ -92,11 +92,13 @@ def pattern_id(finding: Finding, likeness: Likeness) -> str:
     >>> one.id == other.id, {pattern_id(finding, likeness) for finding in (one, other)}
     (False, {'97ef632758ef7fc3'})
     """
-    return pattern_of(finding.kind, finding.category, finding.source, finding.leak, likeness, beside=finding.beside)
+    return pattern_of(
+        finding.kind, finding.category, finding.source, finding.leak, likeness, plain_also=finding.plain_also
+    )
 
 
 def pattern_of(
-    kind: str, category: str, source: Element, leak: Element, likeness: Likeness, *, beside: bool = False
+    kind: str, category: str, source: Element, leak: Element, likeness: Likeness, *, plain_also: bool = False
 ) -> str:
     """Return the id of the pattern of what would be a finding.
 
@@ -108,4 +110,4 @@ def pattern_of(
     ['1158fa035bd7d664', 'f8c322aefdae946b']
     """
     kind = f"across {kind}" if likeness.apart(source, leak) else kind
-    return finding_id(category, likeness.alike(source), likeness.alike(leak), kind, beside=beside)
+    return finding_id(category, likeness.alike(source), likeness.alike(leak), kind, plain_also=plain_also)

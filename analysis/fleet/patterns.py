@@ -69,7 +69,7 @@ class Deviant:
 
     robots: tuple[str, ...]
     model: str
-    more: tuple[Share, ...]
+    additional: tuple[Share, ...]
     fewer: tuple[Share, ...]
     more_open: tuple[Element, ...]
     fewer_open: tuple[Element, ...]
@@ -127,7 +127,7 @@ def tallied(findings: Iterable[Finding], likeness: Likeness) -> Tallies:
     for finding in findings:
         if count := likeness.count(finding):
             form = Form(finding.dismissed, finding.accepted, finding.pseudonymised)
-            pair = Pair(finding.kind, finding.category, finding.source, finding.leak, finding.beside)
+            pair = Pair(finding.kind, finding.category, finding.source, finding.leak, finding.plain_also)
             key = tallies.add(pair, form, Count.of(count, form))
             tallies.share(key, (finding.source.robot,), (finding.leak.robot,), form, across=likeness.across(finding))
     return tallies
@@ -144,7 +144,7 @@ def patterns_of(groups: Iterable[Group], findings: Iterable[Finding]) -> tuple[P
     >>> [(pattern.finding.category, pattern.count) for pattern in patterns_of(groups, findings)]
     [('FaceTemplate', 2), ('FaceTemplate', 2), ('Video', 2), ('Video', 2)]
     """
-    order = {(f.kind, f.category, f.source, f.leak, f.beside): (n, f) for n, f in enumerate(findings)}
+    order = {(f.kind, f.category, f.source, f.leak, f.plain_also): (n, f) for n, f in enumerate(findings)}
     return tuple(
         Pattern(
             group.id,
@@ -192,7 +192,7 @@ def different(
     >>> robots = ("amr-1", "amr-2", "amr-3")
     >>> likeness = Likeness({name: (name,) for name in robots}, models=dict.fromkeys(robots, "amr"))
     >>> shares = {"amr-3": [Share("1158fa035bd7d664", False, False, False)]}
-    >>> [(deviant.robots, [share.pattern for share in deviant.more]) for deviant in different(shares, {}, likeness)]
+    >>> [(row.robots, [share.pattern for share in row.additional]) for row in different(shares, {}, likeness)]
     [(('amr-3',), ['1158fa035bd7d664'])]
     """
     results = {

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     Indices = NDArray[np.int64]
     Flags = NDArray[np.bool_]
 
-Wanted = dict[int, set[tuple[str, int, int, bool]]]  # source -> as ``Chosen`` of the findings
+WantedPairs = dict[int, set[tuple[str, int, int, bool]]]  # source -> as ``Chosen`` of the findings
 
 
 class _Table:
@@ -83,17 +83,17 @@ class Groups:
         self._likeness, self._most_across = likeness, most_across
         self._tallies = Tallies(likeness)
 
-    def __call__(self, spread: Spread, kinds: Sequence[Concern], mask: int) -> Wanted:
+    def __call__(self, spread: Spread, kinds: Sequence[Concern], mask: int) -> WantedPairs:
         """Return the findings to make."""
         table = _Table(spread.graph.elements, self._likeness)
-        wanted: Wanted = defaultdict(set)
+        wanted: WantedPairs = defaultdict(set)
         for part in pairs(spread, kinds, mask):
-            for some, beside in _each(part):
-                for source, leak in self._take(spread, some, table, beside=beside):
+            for some, beside in _with_plain(part):
+                for source, leak in self._take(spread, some, table, plain_also=beside):
                     wanted[source].add((part.kind, leak, part.category, beside))
         return dict(wanted)
 
-    def _take(self, spread: Spread, part: Pairs, table: _Table, *, beside: bool) -> Iterator[tuple[int, int]]:
+    def _take(self, spread: Spread, part: Pairs, table: _Table, *, plain_also: bool) -> Iterator[tuple[int, int]]:
         """Group the pairs of one kind and category; return those to make."""
         counts = table.counts(table.robot[part.sources], table.robot[part.leaks])
         chosen = np.flatnonzero(counts)
@@ -112,7 +112,7 @@ class Groups:
         for start, end in zip(starts.tolist(), ends, strict=True):
             rows = order[start:end]
             source, leak = int(sources[rows[0]]), int(leaks[rows[0]])
-            pair = Pair(part.kind, category, elements[source], elements[leak], beside)
+            pair = Pair(part.kind, category, elements[source], elements[leak], plain_also)
             form = Form(bool(dismissed[rows[0]]), False, bool(hidden[rows[0]]))
             some = counts[rows]
             count = Count(int(some.sum()), int(some[dismissed[rows]].sum()), 0, int(some[hidden[rows]].sum()))
@@ -148,9 +148,9 @@ class Closed:
 
     def __init__(self, likeness: Likeness, under: Spread) -> None:
         self._likeness, self._under = likeness, under
-        self._gone: set[tuple[str, str, Element, Element, bool]] = set()
+        self._closed_pairs: set[tuple[str, str, Element, Element, bool]] = set()
 
-    def __call__(self, spread: Spread, kinds: Sequence[Concern], mask: int) -> Wanted:
+    def __call__(self, spread: Spread, kinds: Sequence[Concern], mask: int) -> WantedPairs:
         """Return the findings to make."""
         elements, size = spread.graph.elements, len(spread.graph.elements)
         table = _Table(elements, self._likeness)
@@ -158,21 +158,21 @@ class Closed:
         left = {
             (part.kind, part.category, beside): some.sources * size + some.leaks
             for part in pairs(self._under, kinds, mask)
-            for some, beside in _each(part)
+            for some, beside in _with_plain(part)
         }
         for part in pairs(spread, kinds, mask):
-            for some, beside in _each(part):
+            for some, beside in _with_plain(part):
                 there = left.get((part.kind, part.category, beside), np.zeros(0, np.int64))
                 gone = np.flatnonzero(~np.isin(some.sources * size + some.leaks, there))
                 for source, leak in _first_of_each(some, gone, table):
                     wanted[source].add((part.kind, leak, part.category, beside))
                     category = spread.categories[part.category]
-                    self._gone.add((part.kind, category, elements[source], elements[leak], beside))
+                    self._closed_pairs.add((part.kind, category, elements[source], elements[leak], beside))
         return dict(wanted)
 
     def of(self, findings: Iterable[Finding]) -> tuple[Finding, ...]:
         """Return those of the findings that are closed, one of each pattern."""
-        return tuple(f for f in findings if (f.kind, f.category, f.source, f.leak, f.beside) in self._gone)
+        return tuple(f for f in findings if (f.kind, f.category, f.source, f.leak, f.plain_also) in self._closed_pairs)
 
 
 def _first_of_each(part: Pairs, chosen: Indices, table: _Table) -> Iterator[tuple[int, int]]:
@@ -186,15 +186,15 @@ def _first_of_each(part: Pairs, chosen: Indices, table: _Table) -> Iterator[tupl
     return zip(sources[first].tolist(), leaks[first].tolist(), strict=True)
 
 
-def _each(part: Pairs) -> tuple[tuple[Pairs, bool], ...]:
+def _with_plain(part: Pairs) -> tuple[tuple[Pairs, bool], ...]:
     """The pairs of a kind and category, and those that stand beside them."""
     return (part, False), (_plain_beside(part), True)
 
 
 def _plain_beside(part: Pairs) -> Pairs:
     """The findings of data as it is that stand beside pseudonymised ones: pairs of their own, dismissed (rule S10)."""
-    at = np.flatnonzero(part.beside)
+    at = np.flatnonzero(part.plain_also)
     no = np.zeros(len(at), bool)
     return replace(
-        part, sources=part.sources[at], leaks=part.leaks[at], pseudonymised=no, dismissed=~no, beside=no
+        part, sources=part.sources[at], leaks=part.leaks[at], pseudonymised=no, dismissed=~no, plain_also=no
     )  # fmt: skip

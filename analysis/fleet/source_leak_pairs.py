@@ -46,7 +46,7 @@ class Pairs:
         Vertices, shape (n,), sorted by source and leak.
     pseudonymised, dismissed
         Shape (n,).
-    beside
+    plain_also
         Whether data as it is arrives there, too, through another leak only: a finding of its own, dismissed.
     """
 
@@ -56,7 +56,7 @@ class Pairs:
     leaks: Indices
     pseudonymised: Flags
     dismissed: Flags
-    beside: Flags
+    plain_also: Flags
 
 
 def pairs(spread: Spread, kinds: Sequence[Concern], mask: int) -> Iterator[Pairs]:
@@ -87,7 +87,7 @@ def pairs(spread: Spread, kinds: Sequence[Concern], mask: int) -> Iterator[Pairs
     network: GraphArrays | None = None
     for i, _ in enumerate(spread.categories):
         leaks = [np.flatnonzero(_has(bits, spread.bits.plain(i))) for bits in ends]
-        if not mask & spread.bits.both(i) or not any(len(some) for some in leaks):
+        if not mask & spread.bits.pair(i) or not any(len(some) for some in leaks):
             continue
         network = network or GraphArrays.of(spread)
         yield from _pairs_of(spread, network, i, kinds, leaks)
@@ -140,11 +140,11 @@ class CategoryRun:
 
     def __init__(self, spread: Spread, network: GraphArrays, category: int, forms: tuple[int, ...]) -> None:
         self._network = network
-        self._own = spread.bits.forms(category)
+        self._forms_of_category = spread.bits.forms(category)
         self._forms = forms
         both = sum(1 << form for form in forms)
         self.sources = np.array(sorted(v for v in spread.facts if spread.begins(v) & both), np.int64)
-        self._is_leak = _has(as_bits(spread, len(network.keep), spread.leaks, 0), self._own[0])
+        self._is_leak = _has(as_bits(spread, len(network.keep), spread.leaks, 0), self._forms_of_category[0])
         self._passes = {form: _has(network.keep, form) for form in forms}
         self._derivations = network.derivations[np.isin(network.derivations[:, 1:], forms).all(axis=1)]
         self._begins = {source: spread.begins(source) for source in self.sources.tolist()}
@@ -180,13 +180,13 @@ class CategoryRun:
         keep = self.nothing(n)
         for at, form in enumerate(self._forms):
             passes = self._passes[form]
-            if stop and form in self._own:
+            if stop and form in self._forms_of_category:
                 passes = passes & ~self._is_leak
             for word, bits in _split(((1 << n) - 1) << n * at):
                 np.bitwise_or(keep[:, word], bits, out=keep[:, word], where=passes)
         return fixpoint(self._network.edges, emitted, keep, self._derived(n, stop=stop)[0])
 
-    def there(self, arrives: Bits, leaves: Bits, at: Indices, n: int, *, stop: bool) -> tuple[Flags, Flags]:
+    def arriving(self, arrives: Bits, leaves: Bits, at: Indices, n: int, *, stop: bool) -> tuple[Flags, Flags]:
         """(as it is, pseudonymised): shape (len(at), n), which data gets to some vertices.
 
         Parameters
@@ -202,15 +202,15 @@ class CategoryRun:
         return self._at(there, 0, n), self._at(there, 1, n)
 
     def brought(
-        self, there: tuple[Flags, Flags], at: Indices, sources: Indices, numbers: Indices
+        self, arriving: tuple[Flags, Flags], at: Indices, sources: Indices, numbers: Indices
     ) -> tuple[Flags, Flags]:
         """The same with what sources bring in themselves, also if it leaves along single flows only."""
         rows = {vertex: row for row, vertex in enumerate(at.tolist())}
         for source, number in zip(sources.tolist(), numbers.tolist(), strict=True):
             if source in rows:
-                for flags, form in zip(there, self._own, strict=True):
+                for flags, form in zip(arriving, self._forms_of_category, strict=True):
                     flags[rows[source], number] |= bool(self._begins[source] >> form & 1)
-        return there
+        return arriving
 
     def _derived(self, n: int, *, stop: bool) -> tuple[Indices, Indices]:
         """Derivations for each source: those that go on, and those that stop at a leak once they are made."""
@@ -218,18 +218,18 @@ class CategoryRun:
         made = np.zeros(len(rows), bool)
         if stop:
             at_leak = self._is_leak[rows[:, 0]]
-            rows = rows[~(at_leak & np.isin(rows[:, 1], self._own))]
-            made = self._is_leak[rows[:, 0]] & np.isin(rows[:, 2], self._own)
+            rows = rows[~(at_leak & np.isin(rows[:, 1], self._forms_of_category))]
+            made = self._is_leak[rows[:, 0]] & np.isin(rows[:, 2], self._forms_of_category)
         place = np.searchsorted(self._forms, rows[:, 1:]) * n
         number = np.tile(np.arange(n), len(rows))[:, None]
         each = np.column_stack([np.repeat(rows[:, 0], n), np.repeat(place, n, axis=0) + number]).astype(np.int64)
         ends = np.repeat(made, n)
         return each[~ends], each[ends]
 
-    def _at(self, there: Bits, plane: int, n: int) -> Flags:
-        if self._own[plane] not in self._forms:
-            return np.zeros((len(there), n), bool)
-        return unpacked(there, n * self._forms.index(self._own[plane]), n)
+    def _at(self, arriving: Bits, plane: int, n: int) -> Flags:
+        if self._forms_of_category[plane] not in self._forms:
+            return np.zeros((len(arriving), n), bool)
+        return unpacked(arriving, n * self._forms.index(self._forms_of_category[plane]), n)
 
 
 def unpacked(rows: Bits, first: int, n: int) -> Flags:
@@ -272,7 +272,7 @@ def _reached(category: CategoryRun, sources: Indices, leaks: Indices, *, stop: b
     """(as it is, pseudonymised): shape (leaks, sources), whether data is there; and the leaks."""
     numbers, n = np.arange(len(sources)), len(sources)
     arrives, leaves = category.carried(category.begun(sources, numbers, n), n, stop=stop)
-    there = category.there(arrives, leaves, leaks, n, stop=stop)
+    there = category.arriving(arrives, leaves, leaks, n, stop=stop)
     return *category.brought(there, leaks, sources, numbers), leaks
 
 

@@ -42,7 +42,7 @@ class Count(NamedTuple):
         return cls(count, *(count * flag for flag in form))
 
 
-NONE = Count(0, 0, 0, 0)
+ZERO = Count(0, 0, 0, 0)
 
 
 class Pair(NamedTuple):
@@ -52,7 +52,7 @@ class Pair(NamedTuple):
     category: str
     source: Element
     leak: Element
-    beside: bool
+    plain_also: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,9 +121,9 @@ class Tallies:
             Of the graph, where they begin or, if that is on no robot, where they end; by default those of the pair.
         """
         likeness = self._likeness
-        key = pattern_of(pair.kind, pair.category, pair.source, pair.leak, likeness, beside=pair.beside)
+        key = pattern_of(pair.kind, pair.category, pair.source, pair.leak, likeness, plain_also=pair.plain_also)
         rank = (form, pair.source.sort_key(), pair.leak.sort_key())
-        tally = self._tallies.setdefault(key, _Tally(pair, rank, NONE))
+        tally = self._tallies.setdefault(key, _Tally(pair, rank, ZERO))
         if rank < tally.rank:
             tally.shown, tally.rank = pair, rank
         tally.count = Count(*map(add, tally.count, count))

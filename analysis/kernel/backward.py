@@ -29,13 +29,13 @@ class Opened(NamedTuple):
     ----------
     elements, flows
         Vertex, or index of a flow -> bits that pass it although labels close it for them.
-    more
+    added_flows
         (source, target) of flows that are not in the graph, such as denied ones.
     """
 
     elements: Mapping[int, int] = {}
     flows: Mapping[int, int] = {}
-    more: Collection[tuple[int, int]] = ()
+    added_flows: Collection[tuple[int, int]] = ()
 
     @classmethod
     def of(cls, parts: Iterable[Opened]) -> Opened:
@@ -48,13 +48,13 @@ class Opened(NamedTuple):
                 elements[opened] |= bits
             for opened, bits in part.flows.items():
                 flows[opened] |= bits
-            more.update(part.more)
+            more.update(part.added_flows)
         return cls(elements, flows, tuple(sorted(more)))
 
     @property
     def size(self) -> int:
         """How many elements and flows it is about."""
-        return len(self.elements) + len(self.flows) + len(self.more)
+        return len(self.elements) + len(self.flows) + len(self.added_flows)
 
 
 NOTHING_OPENED = Opened()
@@ -92,7 +92,7 @@ def backward(spread: Spread, places: Mapping[int, int], opened: Opened = NOTHING
     >>> from rosprivacy.analysis.example import ARCHIVE, FACE_ID, FACES, factory
     >>> from rosprivacy.analysis.kernel.spreading import spread
     >>> carried = spread(*factory())
-    >>> entering = backward(carried, {ARCHIVE: carried.both("FaceTemplate")}).entering
+    >>> entering = backward(carried, {ARCHIVE: carried.forms_of("FaceTemplate")}).entering
     >>> carried.names(entering[FACE_ID]), carried.names(entering[FACES])
     (('FaceTemplate', 'Video'), ('FaceTemplate',))
     """
@@ -100,8 +100,8 @@ def backward(spread: Spread, places: Mapping[int, int], opened: Opened = NOTHING
     keeps = {v: bits | opened.elements.get(v, 0) for v, bits in spread.keeps.items()}
     restricted = sorted(spread.flow_keeps)
     sources, targets, meetings = ends(graph, restricted)
-    sources += [source for source, _ in opened.more]
-    targets += [target for _, target in opened.more]
+    sources += [source for source, _ in opened.added_flows]
+    targets += [target for _, target in opened.added_flows]
     passing = {n: spread.flow_keeps[i] | opened.flows.get(i, 0) for n, i in enumerate(restricted, count)}
     turned = LabelledGraph(
         count,

@@ -18,7 +18,7 @@ class CategoryBits:
     """The bits of some categories, which are numbered from 0 on.
 
     >>> bits = CategoryBits(3)
-    >>> bits.plain(1), bits.pseudonymised(1), bin(bits.both(1))
+    >>> bits.plain(1), bits.pseudonymised(1), bin(bits.pair(1))
     (1, 4, '0b10010')
     >>> bits.category(4), bits.is_pseudonymised(4), bin(bits.merged(0b10100))
     (1, True, '0b110')
@@ -43,7 +43,7 @@ class CategoryBits:
         """Return the bits of a category: as it is, pseudonymised."""
         return self.plain(category), self.pseudonymised(category)
 
-    def both(self, category: int) -> int:
+    def pair(self, category: int) -> int:
         """Return the two bits of a category, as a set."""
         return 1 << self.plain(category) | 1 << self.pseudonymised(category)
 

@@ -42,7 +42,7 @@ class _Folded:
     ----------
     order, slot
         As in ``Edges``, but a single channel that is not folded has a slot of its own.
-    gone
+    passing
         Whether a vertex is folded.
     """
 
@@ -50,7 +50,7 @@ class _Folded:
     blocks: tuple[tuple[Rows, ...], ...]
     order: Indices
     slot: Indices
-    gone: Flags
+    passing: Flags
 
     @classmethod
     def of(cls, edges: Edges, busy: Flags) -> _Folded:
@@ -80,7 +80,7 @@ class _Folded:
     def following(self, slots: Indices, bits: Bits) -> tuple[Indices, Bits]:
         """The slots that follow, once per edge, with the bits that get there; folded channels are passed through."""
         targets, arriving = self._out(self.order[slots], bits)
-        through = self.gone[targets]
+        through = self.passing[targets]
         further, passing = self._out(targets[through], arriving[through])
         targets = np.concatenate((targets[~through], further))
         return self.slot[targets], np.concatenate((arriving[~through], passing))
@@ -155,7 +155,7 @@ def fixpoint(edges: Edges, emitted: Bits, keep: Bits, derivations: Indices) -> t
     for number, word in enumerate(words):
         word.leaves.take(graph.slot, out=leaves[number], mode="clip")
         word.arrives.take(graph.slot, out=arrives[number], mode="clip")
-        np.copyto(arrives[number], leaves[number], where=graph.gone)
+        np.copyto(arrives[number], leaves[number], where=graph.passing)
     return arrives.T, leaves.T
 
 
@@ -164,7 +164,7 @@ def _busy(emitted: Bits, keep: Bits, vertices: Indices, outgoing: Indices) -> Fl
     busy = np.zeros(len(emitted), bool)
     busy[vertices] = True
     for number in range(emitted.shape[1]):
-        made = _one(outgoing[outgoing // WORD == number])
+        made = _bit(outgoing[outgoing // WORD == number])
         used = np.bitwise_or.reduce(emitted[:, number]) | np.bitwise_or.reduce(made, initial=np.uint64(0))
         busy |= keep[:, number] & used != used
         busy |= emitted[:, number] != 0
@@ -179,10 +179,10 @@ def _between_words(
         for after in range(words):
             here = np.flatnonzero((incoming // WORD == before) & (outgoing // WORD == after))
             if len(here):
-                yield before, after, slots[here], _one(incoming[here]), _one(outgoing[here])
+                yield before, after, slots[here], _bit(incoming[here]), _bit(outgoing[here])
 
 
-def _one(bits: Indices) -> Bits:
+def _bit(bits: Indices) -> Bits:
     return np.left_shift(np.uint64(1), (bits % WORD).astype(np.uint64))
 
 

@@ -38,7 +38,7 @@ class Lanes(NamedTuple):
     Examples
     --------
     >>> lanes = Lanes.of([7, 9], 4)
-    >>> bin(lanes.every(0b11)), bin(lanes.own(9, 0b1)), lanes.merged(0b0001_0100)
+    >>> bin(lanes.every(0b11)), bin(lanes.lane_of(9, 0b1)), lanes.merged(0b0001_0100)
     ('0b110011', '0b10000', 5)
     """
 
@@ -55,7 +55,7 @@ class Lanes(NamedTuple):
         """Return some bits in every lane."""
         return self.unit * bits
 
-    def own(self, source: int, bits: int) -> int:
+    def lane_of(self, source: int, bits: int) -> int:
         """Return some bits in the lane of a source, if it has one here."""
         return bits << self.width * self.number[source] if source in self.number else 0
 
@@ -133,7 +133,7 @@ class Doing(NamedTuple):
         for meeting in meetings:
             for source in meeting.written:
                 met[source].append(meeting)
-        begun = {index: lanes.own(flows[index].source, bits) for index, bits in spread.flow_emits.items()}
+        begun = {index: lanes.lane_of(flows[index].source, bits) for index, bits in spread.flow_emits.items()}
         return cls(
             lanes,
             ahead,
@@ -143,7 +143,7 @@ class Doing(NamedTuple):
             {v: lanes.every(bits) for v, bits in spread.keeps.items() if bits != spread.all_bits},
             {v: pairs for v, pairs in spread.derives.items() if pairs},
             {index: lanes.every(bits) for index, bits in spread.flow_keeps.items()},
-            {v: lanes.own(v, spread.emits.get(v, 0)) for v in sources},
+            {v: lanes.lane_of(v, spread.emits.get(v, 0)) for v in sources},
             {index: bits for index, bits in begun.items() if bits},
             lanes.every(spread.all_bits),
         )
@@ -158,12 +158,12 @@ class Doing(NamedTuple):
         now = {v: (every(bits), spread.derives[v]) for v, bits in spread.keeps.items()}
         return self._replace(now=now, flows_now={i: every(bits) for i, bits in spread.flow_keeps.items()})
 
-    def made(self, vertex: int, bits: int) -> int:
+    def results(self, vertex: int, bits: int) -> int:
         """Return what an element makes of what arrives, in the same lanes."""
         derives = self.now[vertex][1] if vertex in self.now else self.derives.get(vertex)
-        return self._made(derives, bits) if derives else 0
+        return self._results(derives, bits) if derives else 0
 
-    def _made(self, derives: Iterable[tuple[int, int]], bits: int) -> int:
+    def _results(self, derives: Iterable[tuple[int, int]], bits: int) -> int:
         result, unit = 0, self.lanes.unit
         for before, after in derives:
             result |= (bits >> before & unit) << after
@@ -174,7 +174,7 @@ class Doing(NamedTuple):
         stop = self.stop.get(vertex, 0)
         bits &= ~stop
         kept, derives = self.now.get(vertex) or (self.keeps.get(vertex, self.allowed), self.derives.get(vertex))
-        made = self._made(derives, bits) if derives else 0
+        made = self._results(derives, bits) if derives else 0
         return (bits & kept | made) & self.allowed & ~stop
 
     def along(self, flow: int, bits: int) -> int:
@@ -227,7 +227,7 @@ class Flood:
             return self.arrives.get(vertex, 0)
         return self.before.arrives.get(vertex, 0)
 
-    def left(self, vertex: int) -> int:
+    def leaving(self, vertex: int) -> int:
         """Return what leaves an element along all of its flows."""
         if vertex in self.leaves or self.before is None:
             return self.leaves.get(vertex, 0)
@@ -237,7 +237,7 @@ class Flood:
         """Return what arrives at an element, begins there or is made there; ``begun`` is what begins, in lanes."""
         arrived = self.arrived(vertex)
         stop = self.doing.stop.get(vertex, 0)
-        return (arrived | begun | self.doing.made(vertex, arrived & ~stop)) & self.doing.allowed
+        return (arrived | begun | self.doing.results(vertex, arrived & ~stop)) & self.doing.allowed
 
     def further(self, doing: Doing, vertices: Iterable[int], flows: Iterable[tuple[int, int, int]]) -> Flood:
         """Take a whole one further where some elements and flows do more than before, and none does less.
@@ -265,11 +265,11 @@ class Flood:
         more = Flood(doing, self)
         pending: dict[int, int] = {}
         for vertex in vertices:
-            if new := doing.onward(vertex, self.arrived(vertex)) & ~self.left(vertex):
-                more.leaves[vertex] = self.left(vertex) | new
+            if new := doing.onward(vertex, self.arrived(vertex)) & ~self.leaving(vertex):
+                more.leaves[vertex] = self.leaving(vertex) | new
                 pending[vertex] = new
         for index, source, target in flows:
-            bits = self.left(source) | doing.flow_emits.get(index, 0)
+            bits = self.leaving(source) | doing.flow_emits.get(index, 0)
             more._arrive((target,), doing.along(index, bits), pending)
         more._follow(pending)
         return more

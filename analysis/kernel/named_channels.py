@@ -66,7 +66,7 @@ def keep_named(
     labels.yaml:9: /video is never [Video] here, and the source at labels.yaml:2 names it for Video; keep one of them
     """
     told: set[tuple[Place, Place]] = set()
-    for category, source, vertex, index in named(elements, graph, bound):
+    for category, source, vertex, index in channels_of_sources(elements, graph, bound):
         for meaning, of, at in ((elements, bound.elements, vertex), (flows, bound.flows, index)):
             decided = meaning.get(at, {}).get(category)
             if decided is None or decided.passes:
@@ -81,7 +81,7 @@ def keep_named(
                     yield _contradiction(name, category, closer, source)
 
 
-def named(
+def channels_of_sources(
     elements: Mapping[int, Mapping[str, Facts]], graph: FlowGraph, bound: Bound
 ) -> list[tuple[str, Statement, int, int]]:
     """Return (category, statement of a source, channel that it names, flow to it), with what wildcards match there.
@@ -94,7 +94,7 @@ def named(
     >>> source = Statement("source", ("Video",), (1, 1), Place("labels.yaml", 2), through=("/video",))
     >>> bound = Bound({CAMERA: (source,)}, through={(CAMERA, source.through): (2,)})
     >>> elements = {CAMERA: {"Video": facts("/camera", (source,), "Video", hierarchy)}}
-    >>> [(category, NAMES[channel], flow) for category, _, channel, flow in named(elements, graph, bound)]
+    >>> [(category, NAMES[channel], flow) for category, _, channel, flow in channels_of_sources(elements, graph, bound)]
     [('Video', '/video', 2)]
     """
     rows: list[tuple[str, Statement, int, int]] = []

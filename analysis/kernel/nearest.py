@@ -122,7 +122,7 @@ def _flows(spread: Spread, opened: Opened) -> Iterator[tuple[int, int, int]]:
     everything = spread.all_bits
     for index, flow in _parted(spread, opened)[0]:
         yield flow.source, flow.target, spread.flow_keeps.get(index, everything) | opened.flows.get(index, 0)
-    more: Iterable[tuple[int, int]] = opened.more
+    more: Iterable[tuple[int, int]] = opened.added_flows
     yield from ((source, target, everything) for source, target in more)
 
 

@@ -103,10 +103,10 @@ def untouched(
     """
     kinds = set(emitted)
     of_these = {v: {kind: decided[kind] for kind in kinds & decided.keys()} for v, decided in meaning.items()}
-    return (row.stays() for row in _rows(of_these, elements, _beside))
+    return (row.stays() for row in _rows(of_these, elements, _beside_conduits))
 
 
-def _beside(fact: Facts) -> Iterable[tuple[Statement, Statement]]:
+def _beside_conduits(fact: Facts) -> Iterable[tuple[Statement, Statement]]:
     conduits = fact.by_role("conduit")[:1]
     stand = [one for role in NONE_OF for one in fact.by_role(role) if one.rank[0] > STANDARD] if conduits else ()
     return ((one, conduit) for one in stand for conduit in conduits)

@@ -42,7 +42,9 @@ OPPOSED = frozenset(
 # What is not on the robot does nothing: a label of higher rank that says it does makes it be there (rule S7).
 OPPOSED_TO_ABSENT = frozenset(frozenset(("sanitizer", role)) for role in ("leak", "derivation"))
 NONE_OF = {"source": "no-source", "leak": "no-leak"}  # role -> what takes it back
-KEPT = frozenset({("conduit", "source"), ("conduit", "leak"), ("sanitizer", "source")})  # not taken away by the first
+COEXISTING = frozenset(
+    {("conduit", "source"), ("conduit", "leak"), ("sanitizer", "source")}
+)  # not taken away by the first
 
 Rank = tuple[int, int, int]
 
@@ -54,7 +56,7 @@ class Decided(NamedTuple):
     outdone: tuple[tuple[Statement, Statement], ...]
 
 
-def decided(name: str, said: Sequence[Statement], category: str, hierarchy: Hierarchy) -> Decided:
+def decided(name: str, statements: Sequence[Statement], category: str, hierarchy: Hierarchy) -> Decided:
     """Return which statements about an element hold for a category.
 
     Raises
@@ -74,12 +76,12 @@ def decided(name: str, said: Sequence[Statement], category: str, hierarchy: Hier
     """
     ranked = [
         ((*statement.rank, -distance), statement)
-        for statement in said
+        for statement in statements
         if (distance := _distance(statement, category, hierarchy)) is not None
-        and (statement.seen(category) or _lets_through(statement, category, hierarchy))
+        and (statement.counts_for(category) or _lets_through(statement, category, hierarchy))
     ]
     if len(ranked) < 2:  # noqa: PLR2004 - nothing to weigh
-        return Decided(_seen((statement for _, statement in ranked), category), ())
+        return Decided(_observed((statement for _, statement in ranked), category), ())
     ranked.sort(key=lambda pair: (pair[0], str(pair[1].place)), reverse=True)
     accepted: list[Statement] = []
     outdone: list[tuple[Statement, Statement]] = []
@@ -94,12 +96,12 @@ def decided(name: str, said: Sequence[Statement], category: str, hierarchy: Hier
         elif statement.role in NONE_OF:
             outdone.append((statement, _decisive(statement, winners)))
     _check_sanitizers(name, category, accepted)
-    return Decided(_seen(accepted, category), tuple(sorted(outdone, key=lambda pair: by_line(pair[0]))))
+    return Decided(_observed(accepted, category), tuple(sorted(outdone, key=lambda pair: by_line(pair[0]))))
 
 
-def _seen(accepted: Iterable[Statement], category: str) -> tuple[Statement, ...]:
+def _observed(accepted: Iterable[Statement], category: str) -> tuple[Statement, ...]:
     """What holds, but for what nobody has seen: that reviews nothing, and only let through what lower ranks close."""
-    return tuple(statement.line for statement in accepted if statement.seen(category))
+    return tuple(statement.line for statement in accepted if statement.counts_for(category))
 
 
 def _lets_through(statement: Statement, category: str, hierarchy: Hierarchy) -> bool:
@@ -206,7 +208,7 @@ def _opposed(a: Statement, b: Statement, category: str, hierarchy: Hierarchy) ->
 def _outdoes(rank: Rank, statement: Statement, other_rank: Rank, other: Statement) -> bool:
     """Whether the first statement outdoes the other."""
     pair = (statement.role, other.role)
-    if pair in KEPT and statement.method is not Method.ABSENT and other.rank[0] >= STANDARD:
+    if pair in COEXISTING and statement.method is not Method.ABSENT and other.rank[0] >= STANDARD:
         return False  # below are leaks that the sort of an element implies: a conduit takes these back
     if statement.role == NONE_OF.get(other.role):
         return statement.rank > other.rank
@@ -216,9 +218,9 @@ def _outdoes(rank: Rank, statement: Statement, other_rank: Rank, other: Statemen
     return lets or rank > other_rank or (_standard(statement) and _open_ended(other))
 
 
-def _clash(near: int, a: Statement, other: int, b: Statement, category: str) -> bool:
+def _clash(near: int, a: Statement, opponent: int, b: Statement, category: str) -> bool:
     """Whether two of one rank that are opposed, at these distances, are an error."""
-    by_role = {a.role: (a, near), b.role: (b, other)}
+    by_role = {a.role: (a, near), b.role: (b, opponent)}
     if by_role.keys() <= OF_EVERY_KIND:
         return True
     if by_role.keys() == {"only", "never"}:
@@ -228,16 +230,16 @@ def _clash(near: int, a: Statement, other: int, b: Statement, category: str) -> 
     for role, none in NONE_OF.items():
         if by_role.keys() == {role, none}:
             return by_role[none][1] <= by_role[role][1]
-    return near == other
+    return near == opponent
 
 
 def _decisive(lost: Statement, winners: Sequence[Statement]) -> Statement:
     """Of those that outdo a statement, the one to name: what says so by name, then the highest not beside it."""
 
-    def beside(winner: Statement) -> bool:
+    def is_weaker(winner: Statement) -> bool:
         return winner.rank == lost.rank and winner.place.file == lost.place.file
 
-    return min(winners, key=lambda winner: (winner.role != NONE_OF[lost.role], beside(winner)))
+    return min(winners, key=lambda winner: (winner.role != NONE_OF[lost.role], is_weaker(winner)))
 
 
 def _standard(statement: Statement) -> bool:

@@ -88,14 +88,14 @@ class Facts(NamedTuple):
 NOTHING_SAID = Facts()
 
 
-def facts(name: str, said: Sequence[Statement], category: str, hierarchy: Hierarchy) -> Facts:
+def facts(name: str, statements: Sequence[Statement], category: str, hierarchy: Hierarchy) -> Facts:
     """Decide what holds of an element or flow for one category.
 
     Parameters
     ----------
     name
         Of the element, for messages.
-    said
+    statements
         All statements about it.
 
     Raises
@@ -111,7 +111,7 @@ def facts(name: str, said: Sequence[Statement], category: str, hierarchy: Hierar
     >>> cleaning.roles, cleaning.passes, cleaning.pseudonymises
     (('sanitizer',), False, True)
     """
-    return _sum_up(decided(name, said, category, hierarchy), category, hierarchy)
+    return _sum_up(decided(name, statements, category, hierarchy), category, hierarchy)
 
 
 def _sum_up(decided: Decided, category: str, hierarchy: Hierarchy) -> Facts:

@@ -31,7 +31,7 @@ class Search:
     arrived
         Vertex -> (level, bits new at that level, flow that brought them), in order. The two sides of a wildcard are
         at one level. In place of a flow of a meeting stands -2 minus the vertex that it is from.
-    left
+    leaving
         Vertex -> (bits, the bit that they were made from, or None if they just passed, or ``START``), in order.
     seen, gone
         Vertex -> all bits that arrived, all that left.
@@ -42,9 +42,9 @@ class Search:
     """
 
     arrived: dict[int, list[tuple[int, int, int]]] = field(default_factory=lambda: defaultdict(list))
-    left: dict[int, list[tuple[int, int | None]]] = field(default_factory=lambda: defaultdict(list))
-    seen: dict[int, int] = field(default_factory=dict)
-    gone: dict[int, int] = field(default_factory=dict)
+    leaving: dict[int, list[tuple[int, int | None]]] = field(default_factory=lambda: defaultdict(list))
+    arrived_bits: dict[int, int] = field(default_factory=dict)
+    left_bits: dict[int, int] = field(default_factory=dict)
     begun: dict[int, int] = field(default_factory=dict)
     making: set[int] = field(default_factory=set)
 
@@ -54,7 +54,7 @@ class Search:
             return 0
         arrived = self.arrived.get(vertex, ())
         nearest = _first_level(arrived, bits)
-        for made, origin in self.left[vertex] if vertex in self.making else ():
+        for made, origin in self.leaving[vertex] if vertex in self.making else ():
             if origin is not None and origin != START and made & bits:
                 before = _first_level(arrived, 1 << origin)
                 if before is not None and (nearest is None or before < nearest):
@@ -98,12 +98,12 @@ def search(net: Net, starts: Iterable[int], allowed: int, stop: Mapping[int, int
     >>> net = Net.of(spread(*factory()))
     >>> reach = search(net, [CAMERA], net.spread.all_bits, {})
     >>> past = search(net, [CAMERA], net.spread.all_bits, {FACE_ID: net.spread.all_bits})
-    >>> [some.level(ARCHIVE, net.spread.both("FaceTemplate")) for some in (reach, past)]
+    >>> [some.level(ARCHIVE, net.spread.forms_of("FaceTemplate")) for some in (reach, past)]
     [4, None]
     """
     spread = net.spread
     reach = Search()
-    arrived, seen, gone = reach.arrived, reach.seen, reach.gone
+    arrived, seen, gone = reach.arrived, reach.arrived_bits, reach.left_bits
     flows, meetings = net.flows, net.meetings
     keeps, derives, everything = spread.keeps, spread.derives, spread.all_bits
     level = 0
@@ -153,15 +153,15 @@ def from_sources(spread: Spread) -> tuple[Net, Search]:
     >>> from rosprivacy.analysis.kernel.spreading import spread
     >>> carried = spread(*factory())
     >>> _, reach = from_sources(carried)
-    >>> reach.level(ARCHIVE, carried.both("FaceTemplate"))
+    >>> reach.level(ARCHIVE, carried.forms_of("FaceTemplate"))
     4
     """
-    net = Net.kept(spread)
+    net = Net.cached(spread)
 
     def find() -> Search:
         return search(net, [vertex for vertex in spread.facts if spread.begins(vertex)], spread.all_bits, {})
 
-    return net, spread.course.kept("from sources", None, find)
+    return net, spread.course.memoised("from sources", None, find)
 
 
 def _across_sides(net: Net, reach: Search, level: int, leaving: Mapping[int, int]) -> dict[int, int]:
@@ -186,9 +186,9 @@ def _through_flows(net: Net, first: Mapping[int, int], allowed: int) -> list[tup
 
 
 def _arrive(reach: Search, target: int, bits: int, level: int, flow: int, arriving: dict[int, int]) -> None:
-    new = bits & ~reach.seen.get(target, 0)
+    new = bits & ~reach.arrived_bits.get(target, 0)
     if new:
-        reach.seen[target] = reach.seen.get(target, 0) | new
+        reach.arrived_bits[target] = reach.arrived_bits.get(target, 0) | new
         reach.arrived[target].append((level, new, flow))
         arriving[target] |= new
 
@@ -197,7 +197,7 @@ def _arrive_at_all(
     net: Net, reach: Search, vertex: int, targets: Iterable[int], bits: int, level: int, arriving: dict[int, int]
 ) -> None:
     """What gets from an element to all that its meeting reads."""
-    taken, seen, came = net.spread.taken, reach.seen, -2 - vertex
+    taken, seen, came = net.spread.absorbed, reach.arrived_bits, -2 - vertex
     for target in targets:
         if some := bits & ~seen.get(target, 0) & taken(target):
             _arrive(reach, target, some, level, came, arriving)
@@ -215,16 +215,16 @@ def _pass_on(
             reach.making.add(vertex)
             made = 1 << after & allowed
             if made & stop:
-                reach.left[vertex].append((made, before))  # it gets here, and ends here
+                reach.leaving[vertex].append((made, before))  # it gets here, and ends here
             else:
                 _leave(reach, vertex, made, before, leaving)
 
 
 def _leave(reach: Search, vertex: int, bits: int, origin: int | None, leaving: dict[int, int]) -> None:
-    new = bits & ~reach.gone.get(vertex, 0)
+    new = bits & ~reach.left_bits.get(vertex, 0)
     if new:
-        reach.gone[vertex] = reach.gone.get(vertex, 0) | new
-        reach.left[vertex].append((new, origin))
+        reach.left_bits[vertex] = reach.left_bits.get(vertex, 0) | new
+        reach.leaving[vertex].append((new, origin))
         leaving[vertex] |= new
 
 
@@ -240,10 +240,10 @@ def present(reach: Search, vertex: int) -> int:
     [('Video',), ('FaceTemplate', 'Video'), ('FaceTemplate',)]
     """
     made = 0
-    for bits, origin in reach.left.get(vertex, ()):
+    for bits, origin in reach.leaving.get(vertex, ()):
         if origin is not None:
             made |= bits
-    return reach.seen.get(vertex, 0) | reach.begun.get(vertex, 0) | made
+    return reach.arrived_bits.get(vertex, 0) | reach.begun.get(vertex, 0) | made
 
 
 def path_to(net: Net, reach: Search, vertex: int, bit: int) -> list[tuple[int, int, int]]:
@@ -270,7 +270,7 @@ def path_to(net: Net, reach: Search, vertex: int, bit: int) -> list[tuple[int, i
     came = _flow_of(net, reach, vertex, bit) if reach.arrives_first(vertex, bit) else START
     while True:
         if came == START:  # it was made here, or starts here
-            origin = next((o for bits, o in reach.left.get(vertex, ()) if bits >> bit & 1 and o is not None), START)
+            origin = next((o for bits, o in reach.leaving.get(vertex, ()) if bits >> bit & 1 and o is not None), START)
             if origin == START:
                 return [(START, vertex, bit), *steps[::-1]]
             bit = origin
@@ -279,7 +279,7 @@ def path_to(net: Net, reach: Search, vertex: int, bit: int) -> list[tuple[int, i
         vertex = graph.flows[came].source
         if vertex in reach.begun and single.get(came, 0) >> bit & 1:
             return [(START, vertex, bit), *steps[::-1]]
-        passed = any(bits >> bit & 1 and origin is None for bits, origin in reach.left[vertex])
+        passed = any(bits >> bit & 1 and origin is None for bits, origin in reach.leaving[vertex])
         came = _flow_of(net, reach, vertex, bit) if passed else START
 
 

@@ -37,30 +37,30 @@ class Searches:
         Those that hold already.
     """
 
-    def __init__(self, room: int = 0, made: Mapping[Key, Search] | None = None) -> None:
-        self._made = dict(made or {})
-        self._room = room - sum(len(one.seen) for one in self._made.values())
+    def __init__(self, room: int = 0, earlier: Mapping[Key, Search] | None = None) -> None:
+        self._earlier = dict(earlier or {})
+        self._room = room - sum(len(one.arrived_bits) for one in self._earlier.values())
 
     def past(self, changed: AbstractSet[int]) -> Searches:
         """Return those that came to none of some vertices, with room for more."""
-        return Searches(ROOM, {key: one for key, one in self._made.items() if _untouched(key[0], one, changed)})
+        return Searches(ROOM, {key: one for key, one in self._earlier.items() if _untouched(key[0], one, changed)})
 
-    def of(self, net: Net, source: int, allowed: int, stop: Mapping[int, int], named: Hashable) -> Search:
+    def of(self, net: Net, source: int, allowed: int, stop: Mapping[int, int], stop_key: Hashable) -> Search:
         """Return a search as ``search`` makes it, from one source.
 
         Parameters
         ----------
-        named
+        stop_key
             What ``stop`` is made of beside ``Spread.leaks``; equal only where it is made alike.
         """
-        key = source, allowed, named
-        known = self._made.get(key)
+        key = source, allowed, stop_key
+        known = self._earlier.get(key)
         if known is not None:
             return known
         made = search(net, [source], allowed, stop)
-        if len(made.seen) <= self._room:
-            self._room -= len(made.seen)
-            self._made[key] = made
+        if len(made.arrived_bits) <= self._room:
+            self._room -= len(made.arrived_bits)
+            self._earlier[key] = made
         return made
 
 
@@ -79,10 +79,10 @@ def searches(spread: Spread, room: int = 0) -> Searches:
     >>> from rosprivacy.analysis.kernel.states import Net
     >>> carried = spread(*factory())
     >>> made = searches(carried, ROOM).of(Net.of(carried), CAMERA, carried.all_bits, {}, None)
-    >>> made.level(ARCHIVE, carried.both("FaceTemplate"))
+    >>> made.level(ARCHIVE, carried.forms_of("FaceTemplate"))
     4
     """
-    return spread.own.kept("searches", None, lambda: Searches(room))
+    return spread.memory.memoised("searches", None, lambda: Searches(room))
 
 
 def searches_after(before: Spread, now: Spread, changed: AbstractSet[int]) -> None:
@@ -106,11 +106,11 @@ def searches_after(before: Spread, now: Spread, changed: AbstractSet[int]) -> No
     True
     """
     left = searches(before).past(_met_otherwise(before, now, changed))
-    now.own.kept("searches", None, lambda: left)
+    now.memory.memoised("searches", None, lambda: left)
 
 
-def _untouched(source: int, made: Search, changed: AbstractSet[int]) -> bool:
-    return source not in changed and not any(vertex in made.seen for vertex in changed)
+def _untouched(source: int, earlier: Search, changed: AbstractSet[int]) -> bool:
+    return source not in changed and not any(vertex in earlier.arrived_bits for vertex in changed)
 
 
 def _met_otherwise(before: Spread, now: Spread, changed: AbstractSet[int]) -> set[int]:

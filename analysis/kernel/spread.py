@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.kernel.roles import Facts
     from rosprivacy.analysis.model import FlowGraph, Statement
 
-    Said = TypeVar("Said")
+    Value = TypeVar("Value")
 
-Found = TypeVar("Found")
+Computed = TypeVar("Computed")
 
 
 class Course:
@@ -31,26 +31,26 @@ class Course:
     Examples
     --------
     >>> course = Course()
-    >>> [course.kept("length", words, lambda: len(words)) for words in (("a", "b"), ("a", "b"), ("c",))]
+    >>> [course.memoised("length", words, lambda: len(words)) for words in (("a", "b"), ("a", "b"), ("c",))]
     [2, 2, 1]
     """
 
     def __init__(self) -> None:
-        self._kept: dict[str, tuple[object, Any]] = {}
+        self._memory: dict[str, tuple[object, Any]] = {}
 
-    def kept(self, what: str, under: object, find: Callable[[], Found]) -> Found:
+    def memoised(self, what: str, under: object, find: Callable[[], Computed]) -> Computed:
         """Return what is found, or was found before under the same; of each thing the last is kept."""
-        known = self._kept.get(what)
+        known = self._memory.get(what)
         if known is None or known[0] != under:
-            known = self._kept[what] = under, find()
-        found: Found = known[1]
+            known = self._memory[what] = under, find()
+        found: Computed = known[1]
         return found
 
 
 @lru_cache(maxsize=1)  # what is said of single elements is asked for again and again
-def _both(categories: tuple[str, ...]) -> Mapping[str, int]:
+def _bits_of(categories: tuple[str, ...]) -> Mapping[str, int]:
     bits = CategoryBits(len(categories))
-    return {category: bits.both(number) for number, category in enumerate(categories)}
+    return {category: bits.pair(number) for number, category in enumerate(categories)}
 
 
 @dataclass(slots=True, eq=False, repr=False)
@@ -79,7 +79,7 @@ class Spread:
         The same for single flows.
     flow_begins
         Vertex -> bits that it emits along single flows only.
-    named
+    channel_sources
         Channel -> bits that a source names it for.
     standard
         Channels taken as mundane on a shipped file's word alone (rule S13).
@@ -87,11 +87,11 @@ class Spread:
         Channel -> bits that stop there only since its type cannot carry them (rule S15).
     absent
         Nodes that a label says are not on the robot; what is sent to them gets to nobody.
-    gone
+    absent_bits
         Vertex -> bits for which that holds; of some that are there for others, since a label of higher rank says so.
     overruled
         Sources and leaks that a statement says and another takes away.
-    made
+    made_categories
         Numbers of the categories that others are made into.
     arrives, leaves
         Vertex -> bits, where there are any.
@@ -105,7 +105,7 @@ class Spread:
         What is found of how data goes on; the same one where it goes the same ways as in an answer before.
     shape
         What is found of the graph alone; the same one as in an answer before about the same graph.
-    own
+    memory
         What is found of this answer only.
     """
 
@@ -123,13 +123,13 @@ class Spread:
     flow_emits: dict[int, int] = field(default_factory=dict)
     flow_keeps: dict[int, int] = field(default_factory=dict)
     flow_begins: dict[int, int] = field(default_factory=dict)
-    named: dict[int, int] = field(default_factory=dict)
+    channel_sources: dict[int, int] = field(default_factory=dict)
     standard: set[int] = field(default_factory=set)
     limited: dict[int, int] = field(default_factory=dict)
     absent: set[int] = field(default_factory=set)
-    gone: dict[int, int] = field(default_factory=dict)
+    absent_bits: dict[int, int] = field(default_factory=dict)
     overruled: tuple[Overruled, ...] = ()
-    made: set[int] = field(default_factory=set)
+    made_categories: set[int] = field(default_factory=set)
     arrives: dict[int, int] = field(default_factory=dict)
     leaves: dict[int, int] = field(default_factory=dict)
     sent: dict[int, int] = field(default_factory=dict)
@@ -138,15 +138,15 @@ class Spread:
     hierarchy: Hierarchy | None = None
     course: Course = field(default_factory=Course, init=False)
     shape: Course = field(default_factory=Course, init=False)
-    own: Course = field(default_factory=Course, init=False)
-    _both: Mapping[str, int] = field(init=False, repr=False, compare=False)
+    memory: Course = field(default_factory=Course, init=False)
+    _bits_of_category: Mapping[str, int] = field(init=False, repr=False, compare=False)
     _names: dict[int, tuple[str, ...]] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         """Number the bits."""
         self.bits = CategoryBits(len(self.categories))
         self.all_bits = self.bits.all
-        self._both = _both(self.categories)
+        self._bits_of_category = _bits_of(self.categories)
 
     def with_fewer_flows(self, graph: FlowGraph) -> Spread:
         """Return the same for a graph that lacks some flows; what arrives where is no less than it is there.
@@ -191,15 +191,15 @@ class Spread:
         """Bits that a vertex emits, along all of its flows or single ones."""
         return self.emits.get(vertex, 0) | self.flow_begins.get(vertex, 0)
 
-    def both(self, category: str) -> int:
+    def forms_of(self, category: str) -> int:
         """The two bits of a category, as it is and pseudonymised; none of one that nothing here emits."""
-        return self._both.get(category, 0)
+        return self._bits_of_category.get(category, 0)
 
     def present(self, vertex: int) -> int:
         """What arrives at or starts from an element, or is carried by a channel; nothing at what is not there."""
         arrives, leaves = self.arrives.get(vertex, 0), self.leaves.get(vertex, 0)
         here = leaves if self.graph.elements[vertex].is_channel else arrives | leaves
-        return here & ~self.gone.get(vertex, 0)
+        return here & ~self.absent_bits.get(vertex, 0)
 
     def sends(self, index: int) -> int:
         """What is sent along a flow, whether its end takes it up or not."""
@@ -208,9 +208,9 @@ class Spread:
 
     def passing(self, index: int) -> int:
         """What can go along a flow and be taken up at its end."""
-        return self.flow_keeps.get(index, self.all_bits) & self.taken(self.graph.flows[index].target)
+        return self.flow_keeps.get(index, self.all_bits) & self.absorbed(self.graph.flows[index].target)
 
-    def taken(self, vertex: int) -> int:
+    def absorbed(self, vertex: int) -> int:
         """What an element takes up of what is sent to it: a channel what it carries, any other all."""
         return self.keeps.get(vertex, self.all_bits) if self.graph.elements[vertex].is_channel else self.all_bits
 
@@ -231,10 +231,10 @@ class Spread:
         return self.names(plain), self.names(pseudonymised)
 
 
-def differing(one: Mapping[int, Said], other: Mapping[int, Said], nothing: Said) -> Iterator[int]:
+def differing(first: Mapping[int, Value], second: Mapping[int, Value], nothing: Value) -> Iterator[int]:
     """Yield where two mappings say something else; what is absent says ``nothing``.
 
     >>> list(differing({1: 3, 2: 0}, {1: 2}, 0))
     [1]
     """
-    return (at for at in one.keys() | other.keys() if one.get(at, nothing) != other.get(at, nothing))
+    return (at for at in first.keys() | second.keys() if first.get(at, nothing) != second.get(at, nothing))

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.analysis.kernel.labelled_graph import LabelledGraph
 from rosprivacy.analysis.kernel.least_solution import least_solution
-from rosprivacy.analysis.kernel.named_channels import keep_named, named, stated_flows
+from rosprivacy.analysis.kernel.named_channels import channels_of_sources, keep_named, stated_flows
 from rosprivacy.analysis.kernel.overruled import overruled
 from rosprivacy.analysis.kernel.ranks import applies
 from rosprivacy.analysis.kernel.roles import Facts, facts
@@ -102,9 +102,9 @@ def meaning(
     problems += keep_named(spread.facts, spread.flow_facts, graph, bound, hierarchy)
     restricted = any(statement.through for said in bound.elements.values() for statement in said)
     stated = stated_flows(graph) if restricted else {}
-    for category, _, vertex, _ in named(spread.facts, graph, bound):
+    for category, _, vertex, _ in channels_of_sources(spread.facts, graph, bound):
         if category in spread.categories:
-            spread.named[vertex] = spread.named.get(vertex, 0) | spread.both(category)
+            spread.channel_sources[vertex] = spread.channel_sources.get(vertex, 0) | spread.forms_of(category)
     alike: dict[int, _Does] = {}
     for vertex in bound.elements:
         decided = spread.facts[vertex]
@@ -112,7 +112,7 @@ def meaning(
             alike[id(decided)] = _Does.of(spread, decided)
         _set_vertex(spread, vertex, alike[id(decided)])
         _begin_through(spread, vertex, bound, stated)
-    spread.gone.update(_read_by_nobody(spread))
+    spread.absent_bits.update(_read_by_nobody(spread))
     for index, kept in spread.flow_facts.items():
         spread.flow_keeps[index] = _bits(spread, kept, lambda fact: fact.passes)
     if problems:
@@ -130,14 +130,14 @@ def _decide(
     problems: list[InputError] = []
     alike: dict[tuple[int, ...], dict[str, Facts]] = {}  # globs say the same of many elements
 
-    def decide(said: tuple[Statement, ...], name: str, before: Mapping[str, Facts]) -> dict[str, Facts]:
-        key = tuple(map(id, said))
+    def decide(statements: tuple[Statement, ...], name: str, before: Mapping[str, Facts]) -> dict[str, Facts]:
+        key = tuple(map(id, statements))
         if key in alike:
             return alike[key]
-        if said in decisions:
-            spread.decisions[said] = alike[key] = decisions[said]
+        if statements in decisions:
+            spread.decisions[statements] = alike[key] = decisions[statements]
             return alike[key]
-        mentioned = {category for statement in said for category in statement.categories}
+        mentioned = {category for statement in statements for category in statement.categories}
         result: dict[str, Facts] = {}
         known = len(problems)
         for category in sorted(mentioned.union(spread.categories) or hierarchy.ancestors):
@@ -145,13 +145,13 @@ def _decide(
                 result[category] = before[category]
                 continue
             try:
-                result[category] = facts(name, said, category, hierarchy)
+                result[category] = facts(name, statements, category, hierarchy)
             except InputError as error:
                 problems.append(error)
         if len(problems) == known:
             alike[key] = result
             if not left_out:
-                spread.decisions[said] = result
+                spread.decisions[statements] = result
         return result
 
     facts_before = left_out.spread.facts if left_out else {}
@@ -188,7 +188,7 @@ def _bits(spread: Spread, decided: Mapping[str, Facts], test: Callable[[Facts], 
     bits = 0
     for category, fact in decided.items():
         if test(fact):
-            bits |= spread.both(category)
+            bits |= spread.forms_of(category)
     return bits
 
 
@@ -197,13 +197,13 @@ class _Does(NamedTuple):
 
     standard: bool
     limited: int
-    gone: int
+    absent_bits: int
     keeps: int
     leaks: int
     covered: int
     derives: tuple[tuple[int, int], ...]
     emits: int
-    made: frozenset[int]
+    made_categories: frozenset[int]
 
     @classmethod
     def of(cls, spread: Spread, decided: Mapping[str, Facts]) -> _Does:
@@ -213,13 +213,13 @@ class _Does(NamedTuple):
         derives = {category: fact.derives for category, fact in decided.items() if fact.derives}
         closed = _closed(spread, derives) if derives else {}
         for category, fact in decided.items():
-            both = spread.both(category)
+            both = spread.forms_of(category)
             keeps |= both if fact.passes else 0
             covered |= both if fact.covered else 0
             leaks |= both if fact.leaks else 0
             limited |= both if fact.limited else 0
             gone |= both if fact.method == Method.ABSENT else 0
-            covered |= sum(map(spread.both, fact.derives))  # who makes it knows of it
+            covered |= sum(map(spread.forms_of, fact.derives))  # who makes it knows of it
             if both and (fact.emits or fact.pseudonymises or category in closed):
                 i = spread.categories.index(category)
                 plain, pseudonymised = spread.bits.forms(i)
@@ -242,28 +242,28 @@ def _set_vertex(spread: Spread, vertex: int, does: _Does) -> None:
         spread.standard.add(vertex)
     if does.limited:
         spread.limited[vertex] = does.limited
-    if does.gone:
-        spread.gone[vertex] = does.gone
-    if does.gone == spread.all_bits != 0:
+    if does.absent_bits:
+        spread.absent_bits[vertex] = does.absent_bits
+    if does.absent_bits == spread.all_bits != 0:
         spread.absent.add(vertex)
     spread.keeps[vertex] = does.keeps
     spread.leaks[vertex] = does.leaks
     spread.covered[vertex] = does.covered
     spread.derives[vertex] = does.derives
     spread.emits[vertex] = does.emits
-    spread.made.update(does.made)
+    spread.made_categories.update(does.made_categories)
 
 
 def _read_by_nobody(spread: Spread) -> dict[int, int]:
     """What is read from wildcards, with the bits for which nobody to whom that is granted is there."""
-    own, meetings = parted(spread.graph.flows) if spread.gone else ((), ())
+    own, meetings = parted(spread.graph.flows) if spread.absent_bits else ((), ())
     ends: list[tuple[tuple[int, ...], tuple[int, ...]]] = [((flow.source,), (flow.target,)) for _, flow in own]
     ends += [(meeting.written, meeting.read) for meeting in meetings if meeting.of_written]
     read: dict[int, int] = {}
     for channels, readers in ends:
         for vertex in (v for v in channels if spread.graph.elements[v].side == "read"):
             for reader in readers:
-                read[vertex] = read.get(vertex, spread.all_bits) & spread.gone.get(reader, 0)
+                read[vertex] = read.get(vertex, spread.all_bits) & spread.absent_bits.get(reader, 0)
     return {vertex: bits for vertex, bits in read.items() if bits}
 
 
@@ -279,7 +279,7 @@ def _begin_through(spread: Spread, vertex: int, bound: Bound, stated: Mapping[in
 
 def _closed(spread: Spread, derives: Mapping[str, tuple[str, ...]]) -> dict[str, set[int]]:
     """Numbers of what is made of each category, and of that in turn; of those that are emitted."""
-    made = {category: set(to) for category, to in derives.items() if spread.both(category)}
+    made = {category: set(to) for category, to in derives.items() if spread.forms_of(category)}
     changed = True
     while changed:
         changed = False

@@ -38,7 +38,7 @@ def reached(spread: Spread, mask: int) -> tuple[tuple[Element, tuple[str, ...]],
         standard = [c for c in spread.names(stopped) if spread.facts[target][c].standard]
         if standard:
             element = elements[target]
-            bits[element.identity] |= sum(spread.both(name) for name in standard)
+            bits[element.identity] |= sum(spread.forms_of(name) for name in standard)
             first.setdefault(element.identity, element)
     return tuple((first[key], spread.names(bits[key])) for key in sorted(bits))
 

@@ -46,10 +46,10 @@ class Net(NamedTuple):
         graph = spread.graph
         flows: dict[int, list[Move]] = defaultdict(list)
         inner: dict[int, list[Move]] = defaultdict(list)
-        by_source, meetings = spread.shape.kept(
+        by_source, meetings = spread.shape.memoised(
             "flows by source", spread.told_apart, lambda: _by_source(graph.flows, spread.told_apart)
         )
-        taken = {vertex: spread.taken(vertex) for vertex in spread.keeps}
+        taken = {vertex: spread.absorbed(vertex) for vertex in spread.keeps}
         keeps, everything = spread.flow_keeps, spread.all_bits
         for source, ways in by_source.items():
             if spread.leaves.get(source):
@@ -72,9 +72,9 @@ class Net(NamedTuple):
         return cls(spread, flows, {source: sorted(moves) for source, moves in inner.items()}, met)
 
     @classmethod
-    def kept(cls, spread: Spread) -> Net:
+    def cached(cls, spread: Spread) -> Net:
         """Do the same of a spread that is whole; the flows are indexed once for all answers of one course."""
-        return spread.course.kept("net", None, lambda: cls.of(spread))._replace(spread=spread)
+        return spread.course.memoised("net", None, lambda: cls.of(spread))._replace(spread=spread)
 
     def leaving(self, vertex: int) -> list[Move]:
         """Return all flows of an element, with the pairs of its meetings."""
@@ -98,7 +98,7 @@ def _by_source(
 
 def _move(spread: Spread, source: int, target: int) -> Move:
     """One flow of a meeting."""
-    return number(spread.graph.flows, source, target), target, spread.taken(target)
+    return number(spread.graph.flows, source, target), target, spread.absorbed(target)
 
 
 class States(NamedTuple):
@@ -144,13 +144,13 @@ class States(NamedTuple):
                 yield index, target, bits
 
 
-def made(spread: Spread, vertex: int, bits: int) -> int:
+def derived_bits(spread: Spread, vertex: int, bits: int) -> int:
     """Return the bits that an element makes of some that arrive.
 
     >>> from rosprivacy.analysis.example import FACE_ID, factory
     >>> from rosprivacy.analysis.kernel.spreading import spread
     >>> carried = spread(*factory())
-    >>> carried.names(made(carried, FACE_ID, carried.both("Video")))
+    >>> carried.names(derived_bits(carried, FACE_ID, carried.forms_of("Video")))
     ('FaceTemplate',)
     """
     result = 0
@@ -172,10 +172,10 @@ def onward(spread: Spread, vertex: int, bits: int, opened: int = 0) -> int:
     >>> from rosprivacy.analysis.example import FILTER, factory
     >>> from rosprivacy.analysis.kernel.spreading import spread
     >>> carried = spread(*factory())
-    >>> carried.planes(onward(carried, FILTER, carried.both("Video")))  # as it is, pseudonymised
+    >>> carried.planes(onward(carried, FILTER, carried.forms_of("Video")))  # as it is, pseudonymised
     ((), ('Video',))
     """
-    return bits & (spread.keeps.get(vertex, spread.all_bits) | opened) | made(spread, vertex, bits)
+    return bits & (spread.keeps.get(vertex, spread.all_bits) | opened) | derived_bits(spread, vertex, bits)
 
 
 def back(spread: Spread, vertex: int, bits: int, opened: int = 0) -> int:
@@ -184,7 +184,7 @@ def back(spread: Spread, vertex: int, bits: int, opened: int = 0) -> int:
     >>> from rosprivacy.analysis.example import FACE_ID, factory
     >>> from rosprivacy.analysis.kernel.spreading import spread
     >>> carried = spread(*factory())
-    >>> carried.names(back(carried, FACE_ID, carried.both("FaceTemplate")))
+    >>> carried.names(back(carried, FACE_ID, carried.forms_of("FaceTemplate")))
     ('FaceTemplate', 'Video')
     """
     result = bits & (spread.keeps.get(vertex, spread.all_bits) | opened)
@@ -199,7 +199,7 @@ def back_from(spread: Spread, vertex: int, bits: int, opened: int = 0) -> int:
     >>> from rosprivacy.analysis.example import FACES, FILTER, factory
     >>> from rosprivacy.analysis.kernel.spreading import spread
     >>> carried = spread(*factory())
-    >>> [carried.planes(back_from(carried, vertex, carried.both("Video"))) for vertex in (FACES, FILTER)]
+    >>> [carried.planes(back_from(carried, vertex, carried.forms_of("Video"))) for vertex in (FACES, FILTER)]
     [((), ()), (('Video',), ('Video',))]
     """
     return back(spread, vertex, bits, opened) | (0 if spread.graph.elements[vertex].is_channel else bits)

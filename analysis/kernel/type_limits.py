@@ -70,7 +70,7 @@ def under_limits(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, limits: T
             for one in types
         ]
         some = [one for one in found if one]
-        if not some or len(some) < len(found) or not kept.known(vertex, types):
+        if not some or len(some) < len(found) or not kept.types_known(vertex, types):
             continue
         excluded = frozenset.intersection(*(one.kinds for one in some)) & begun
         kinds = tuple(sorted(kind for kind in excluded if not kept.keeps(vertex, kind)))
@@ -100,24 +100,24 @@ class _Kept:
     def __init__(self, graph: FlowGraph, bound: Bound, hierarchy: Hierarchy) -> None:
         self._elements, self._hierarchy = graph.elements, hierarchy
         self._writers: dict[int, set[int]] = defaultdict(set)
-        self._said: dict[int, list[tuple[bool, tuple[Statement, ...]]]] = defaultdict(list)
+        self._stated_flows: dict[int, list[tuple[bool, tuple[Statement, ...]]]] = defaultdict(list)
         for index, flow in enumerate(graph.flows):
             self._writers[flow.target].add(flow.source)
             stated, said = flow.role == STATED, bound.flows.get(index, ())
             for vertex in (flow.source, flow.target) if stated or said else ():
-                self._said[vertex].append((stated, said))
-        self._made = _made(graph, bound)
+                self._stated_flows[vertex].append((stated, said))
+        self._made_kinds = _made_kinds(graph, bound)
 
-    def known(self, vertex: int, types: tuple[MessageType, ...]) -> bool:
+    def types_known(self, vertex: int, types: tuple[MessageType, ...]) -> bool:
         """Whether the type of all that comes to a channel is known; what comes through a wildcard only if stated."""
         writers = (self._elements[writer] for writer in self._writers[vertex])
         return all(any(one.written_by(writer) for one in types) for writer in writers)
 
     def keeps(self, vertex: int, kind: str) -> bool:
         """Whether a node that writes a channel makes a kind of others, or a label says that a flow there carries it."""
-        if kind in self._made.get(vertex, ()):
+        if kind in self._made_kinds.get(vertex, ()):
             return True
-        for stated, said in self._said.get(vertex, ()):
+        for stated, said in self._stated_flows.get(vertex, ()):
             if any(closes(one, kind, self._hierarchy) for one in said):
                 continue
             if stated or any(one.role == "only" for one in said):
@@ -125,7 +125,7 @@ class _Kept:
         return False
 
 
-def _made(graph: FlowGraph, bound: Bound) -> dict[int, set[str]]:
+def _made_kinds(graph: FlowGraph, bound: Bound) -> dict[int, set[str]]:
     """Channel -> kinds that a node which writes it makes of others, also through wildcards."""
     makers = {v: {s.to for s in said if s.role == "derivation"} for v, said in bound.elements.items()}
     made: dict[int, set[str]] = defaultdict(set)

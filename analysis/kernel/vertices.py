@@ -28,7 +28,7 @@ def by_identity(spread: Spread) -> Mapping[tuple[str, str, str], Sequence[int]]:
             found.setdefault(element.identity, []).append(vertex)
         return found
 
-    return spread.shape.kept("vertices by identity", None, find)
+    return spread.shape.memoised("vertices by identity", None, find)
 
 
 def by_shown(spread: Spread) -> Mapping[tuple[str, str, str, str], Sequence[int]]:
@@ -46,4 +46,4 @@ def by_shown(spread: Spread) -> Mapping[tuple[str, str, str, str], Sequence[int]
             found.setdefault(element.shown_as, []).append(vertex)
         return found
 
-    return spread.shape.kept("vertices by what is shown", None, find)
+    return spread.shape.memoised("vertices by what is shown", None, find)

@@ -46,7 +46,7 @@ class _Rights:
     without: dict[Shown, set[str]]
 
     @classmethod
-    def none(cls) -> _Rights:
+    def empty(cls) -> _Rights:
         return cls(defaultdict(set), set(), defaultdict(set))
 
 
@@ -65,7 +65,7 @@ def affected(before: Analysis, after: Analysis) -> tuple[Affected, ...]:
     was, becomes = _rights(before), _rights(after)
     rows = []
     for element in sorted(was, key=lambda e: e.sort_key()):
-        old, new = was[element], becomes.get(element, _Rights.none())
+        old, new = was[element], becomes.get(element, _Rights.empty())
         lost = {at: names - new.reads[at] for at, names in old.reads.items() if at in new.reads}
         less = Affected(
             element,
@@ -81,7 +81,7 @@ def affected(before: Analysis, after: Analysis) -> tuple[Affected, ...]:
 
 def _rights(analysis: Analysis) -> dict[Element, _Rights]:
     graph, spread = analysis.graph, analysis.spread
-    rights: dict[Element, _Rights] = defaultdict(_Rights.none)
+    rights: dict[Element, _Rights] = defaultdict(_Rights.empty)
     for index, flow in enumerate(graph.flows):
         source, target = graph.elements[flow.source], graph.elements[flow.target]
         for reads, mine, other in ((True, target, source), (False, source, target)):

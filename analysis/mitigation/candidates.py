@@ -146,7 +146,7 @@ def _reviews(places: ChangeSites, by_channel: Mapping[int, set[int]]) -> Iterato
             parts[element.identity].append(vertex)
     for identity in dict.fromkeys(elements[v].identity for v in sorted(by_channel) if not elements[v].pattern):
         vertices = parts[identity]
-        covered = [spread.bits.merged(spread.covered.get(v, 0) | spread.named.get(v, 0)) for v in vertices]
+        covered = [spread.bits.merged(spread.covered.get(v, 0) | spread.channel_sources.get(v, 0)) for v in vertices]
         passed = {i for v in vertices for i in by_channel.get(v, ())}
         open_ = frozenset(i for i in passed if not any(bits >> i & 1 for bits in covered))
         factor = places.factor(REVIEW, frozenset(), frozenset(vertices))
@@ -170,7 +170,7 @@ def _filters(places: ChangeSites, by_flow: Mapping[int, set[int]]) -> Iterator[C
         yield Candidate(FILTER, cost, flows, categories=categories, readers=tuple(sorted(readers)), private=private)
 
 
-def _together(graph: FlowGraph, wanted: Iterable[int]) -> Iterator[frozenset[int]]:
+def _together(graph: FlowGraph, bits: Iterable[int]) -> Iterator[frozenset[int]]:
     """For each flow, those that a filter in its place takes in: all between the same two elements.
 
     Under the enforced view a right is the enclave's (rule S6), so a filter only helps where the whole enclave gets
@@ -182,7 +182,7 @@ def _together(graph: FlowGraph, wanted: Iterable[int]) -> Iterator[frozenset[int
         by_ends[_ends(graph, index)].add(index)
         if flow.grants:
             by_channel[_channel(graph, index)].add(index)
-    for index in wanted:
+    for index in bits:
         flows, more = set[int](), by_ends[_ends(graph, index)]
         while more - flows:
             flows |= more

@@ -91,9 +91,9 @@ class ChangeSites:
     def _made_into(self, vertex: int, i: int) -> Iterator[int]:
         """The categories that leave a vertex as i when they arrive there; not where it or they leak."""
         bits, leaks = self.spread.bits, self.spread.leaks.get(vertex, 0)
-        if leaks & bits.both(i):
+        if leaks & bits.pair(i):
             return
-        yield from bits_of(bits.merged(back(self.spread, vertex, bits.both(i)) & ~leaks))
+        yield from bits_of(bits.merged(back(self.spread, vertex, bits.pair(i)) & ~leaks))
 
     def delays(self, flow: int) -> bool:
         """Whether what goes along a flow goes on to a time-critical node."""
@@ -107,10 +107,10 @@ class ChangeSites:
     def factor(self, kind: str, flows: frozenset[int], channels: frozenset[int] = frozenset()) -> int | None:
         """How many times as dear a change is at some places; None if it may not be made there."""
         rules = [rule for rule in self.limits.rules if rule.flows & flows or rule.vertices & channels]
-        if kind not in self.limits.kinds or any(kind in rule.never for rule in rules):
+        if kind not in self.limits.kinds or any(kind in rule.excluded for rule in rules):
             return None
         return max((rule.factor for rule in rules), default=1)
 
-    def cost(self, own: int, factor: int, readers: Iterable[int]) -> int:
+    def cost(self, own_cost: int, factor: int, readers: Iterable[int]) -> int:
         """The cost of a change: its own, and the nodes beside the leaks that it would reach."""
-        return factor * (own + self.limits.weights.node * len(set(readers) - self.leaks))
+        return factor * (own_cost + self.limits.weights.node * len(set(readers) - self.leaks))

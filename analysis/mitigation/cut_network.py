@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.kernel.bits import bits_of
-from rosprivacy.analysis.kernel.states import States, made
+from rosprivacy.analysis.kernel.states import States, derived_bits
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
@@ -33,16 +33,16 @@ class Group:
         Vertices.
     accepted
         Leaks that a person has accepted: data goes on from there (rule S10).
-    kept
+    remaining
         Leaks where paths end that need not, or cannot, be cut.
-    others
+    other_kinds
         Places with an open finding of another kind: data is not to arrive there, but goes on, also from leaks.
     """
 
     sources: tuple[int, ...]
     accepted: frozenset[At] = frozenset()
-    kept: frozenset[At] = frozenset()
-    others: frozenset[At] = frozenset()
+    remaining: frozenset[At] = frozenset()
+    other_kinds: frozenset[At] = frozenset()
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,7 +103,7 @@ def cut_network(net: Net, groups: Iterable[Group], categories: Collection[int]) 
     for group in groups:
         for category in sorted(categories):
             _Builder(net, group, category, network, past=False).build()
-            if any(i == category for _, i in group.others):
+            if any(i == category for _, i in group.other_kinds):
                 _Builder(net, group, category, network, past=True).build()
     return _pruned(network)
 
@@ -117,9 +117,9 @@ class _Builder:
         self.category = category
         self.network = network
         self.past = past
-        self.own = self.bits.both(category)
+        self.category_bits = self.bits.pair(category)
         ends = (vertex for vertex in self.spread.leaks if not past and (vertex, category) not in group.accepted)
-        self.states = States(net, self.spread.all_bits, {v: self.spread.leaks[v] & self.own for v in ends})
+        self.states = States(net, self.spread.all_bits, {v: self.spread.leaks[v] & self.category_bits for v in ends})
         self.numbers: dict[tuple[bool, int, int], int] = {}
         self.waiting: deque[tuple[bool, int, int]] = deque()
 
@@ -149,14 +149,14 @@ class _Builder:
 
     def _stops(self, vertex: int, i: int) -> int:
         """Whether paths to leaks end here: at a leak of the category that is not accepted."""
-        return self.states.stop.get(vertex, 0) & self.bits.both(i)
+        return self.states.stop.get(vertex, 0) & self.bits.pair(i)
 
     def _open(self, vertex: int, i: int) -> bool:
         """Whether data of the category may not get here."""
         at = (vertex, i)
         if self.past:
-            return i == self.category and at in self.group.others
-        return at not in self.group.kept and bool(self._stops(vertex, i))
+            return i == self.category and at in self.group.other_kinds
+        return at not in self.group.remaining and bool(self._stops(vertex, i))
 
     def _arrive(self, vertex: int, i: int) -> None:
         here = self._state(False, vertex, i)
@@ -164,12 +164,12 @@ class _Builder:
             self._arc(here, END, i)
         if self._stops(vertex, i):
             return
-        arriving = self.bits.both(i)
+        arriving = self.bits.pair(i)
         leaving = self.bits.merged(self.states.leaving(vertex, arriving))
         if leaving >> i & 1:
             channel = vertex if self.spread.graph.elements[vertex].is_channel else -1
             self._arc(here, self._state(True, vertex, i), i, channel=channel)
-        for j in bits_of(self.bits.merged(made(self.spread, vertex, arriving) & ~arriving)):
+        for j in bits_of(self.bits.merged(derived_bits(self.spread, vertex, arriving) & ~arriving)):
             if self._open(vertex, j):
                 self._arc(here, END, j)
             if leaving >> j & 1:
@@ -177,7 +177,7 @@ class _Builder:
 
     def _leave(self, vertex: int, i: int) -> None:
         here = self._state(True, vertex, i)
-        for index, target, _ in self.states.after(vertex, self.bits.both(i)):
+        for index, target, _ in self.states.after(vertex, self.bits.pair(i)):
             self._arc(here, self._state(False, target, i), i, flow=index)
 
 

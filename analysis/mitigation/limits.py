@@ -35,7 +35,7 @@ class Rule:
     ----------
     flows, vertices
         The places.
-    never
+    excluded
         Kinds of change that are not made there.
     factor
         How many times as dear a change is there.
@@ -43,7 +43,7 @@ class Rule:
 
     flows: frozenset[int]
     vertices: frozenset[int]
-    never: frozenset[str] = frozenset()
+    excluded: frozenset[str] = frozenset()
     factor: int = 1
 
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 BUDGET = 50_000  # steps of the search, each a choice of one change
 DEEPEST = 200  # changes that a search may choose
-WHOLE = 720_720  # parts of a cost; many numbers divide it
+COMMON_MULTIPLE = 720_720  # parts of a cost; many numbers divide it
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,10 +175,10 @@ class _Network:
         """A bound that no set of changes undercuts: each change shares its cost among the arcs that it cuts."""
         import networkx as nx  # noqa: PLC0415 - as above
 
-        graph, _ = self._graph(self.arcs_of, WHOLE)
-        return -(-int(nx.minimum_cut_value(graph, BEGIN, END)) // WHOLE)
+        graph, _ = self._graph(self.arcs_of, COMMON_MULTIPLE)
+        return -(-int(nx.minimum_cut_value(graph, BEGIN, END)) // COMMON_MULTIPLE)
 
-    def _graph(self, parts: Mapping[int, int], whole: int) -> tuple[nx.DiGraph[int], dict[tuple[int, int], int]]:
+    def _graph(self, parts: Mapping[int, int], total: int) -> tuple[nx.DiGraph[int], dict[tuple[int, int], int]]:
         """The network for networkx: an arc that several changes cut is as many in a row."""
         import networkx as nx  # noqa: PLC0415 - as above
 
@@ -188,7 +188,7 @@ class _Network:
         for tail, head, numbers in self.arcs:
             here = tail
             for number in numbers:
-                graph.add_edge(here, fresh, capacity=self.costs[number] * whole // parts[number])
+                graph.add_edge(here, fresh, capacity=self.costs[number] * total // parts[number])
                 named[here, fresh] = number
                 here, fresh = fresh, fresh + 1
             graph.add_edge(here, head)  # without a capacity: it cannot be cut
@@ -219,7 +219,7 @@ class _Hitting:
         self.costs = costs
         self.budget = budget
         self.chosen: frozenset[int] | None = None
-        self.least = sum(costs) + 1
+        self.lowest = sum(costs) + 1
 
     def best(self) -> tuple[frozenset[int] | None, int]:
         """The set, and what is left of the budget; None if that was spent."""
@@ -233,10 +233,10 @@ class _Hitting:
             self.budget = 0
             return
         if not left:
-            if cost < self.least:
-                self.chosen, self.least = chosen, cost
+            if cost < self.lowest:
+                self.chosen, self.lowest = chosen, cost
             return
-        if not all(left) or cost + self._at_least(left) >= self.least:
+        if not all(left) or cost + self._at_least(left) >= self.lowest:
             return
         branch = min(left, key=len)
         for number in sorted(branch, key=lambda n: (self.costs[n], n)):

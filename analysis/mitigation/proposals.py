@@ -95,7 +95,7 @@ class Proposal:
         Names.
     removed
         Findings that the steps remove.
-    kept
+    remaining
         Findings that stay.
     steps
         Reviews, filters, DENY lines; empty if nothing can be removed, or if no proposal could be proven.
@@ -113,7 +113,7 @@ class Proposal:
 
     categories: tuple[str, ...]
     removed: tuple[Finding, ...]
-    kept: tuple[Kept, ...]
+    remaining: tuple[Kept, ...]
     steps: tuple[ProposedStep, ...]
     lower: int
     proven: bool

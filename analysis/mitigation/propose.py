@@ -114,7 +114,7 @@ class _Work:
         self.net = Net.of(analysis.spread)
         self.elements = analysis.graph.elements
         self.number = {name: i for i, name in enumerate(analysis.spread.categories)}
-        self.wanted = frozenset(self.number[name] for name in names)
+        self.categories = frozenset(self.number[name] for name in names)
         self.vertex = {element: v for v, element in enumerate(self.elements)}
         mine = [f for f in open_findings(analysis) if f.category in names]
         self.findings = [f for f in mine if f.kind != UNPROTECTED]
@@ -126,12 +126,12 @@ class _Work:
         """Find what to cut, cut it, and prove it; what a governance leaves in the open is no matter of cuts."""
         sources = sorted({self.vertex[finding.source] for finding in self.findings})
         groups = [self._group(source) for source in sources]
-        everything = cut_network(self.net, groups, self.wanted)
+        everything = cut_network(self.net, groups, self.categories)
         options = candidates(self.places, everything.arcs, self.system.denials)
-        kept = [kept for group in groups for kept in self._kept(group, options)]
+        kept = [kept for group in groups for kept in self._remaining_of_source(group, options)]
         stays = {kept.finding.id for kept in kept}
         removed = tuple(finding for finding in self.findings if finding.id not in stays)
-        left = cut_network(self.net, self._grouped(groups, kept), self.wanted)
+        left = cut_network(self.net, self._grouped(groups, kept), self.categories)
         plain = Proposal(
             self.names, removed, tuple(kept), (), 0, proven=not removed, verdict=self.analysis.verdict,
             protect=self.protect,
@@ -148,29 +148,34 @@ class _Work:
         return replace(plain, lower=lower)
 
     def _cuts(
-        self, left: CutNetwork, options: Sequence[Candidate], groups: Sequence[Group], kept: Sequence[Kept], budget: int
+        self,
+        narrowed: CutNetwork,
+        options: Sequence[Candidate],
+        groups: Sequence[Group],
+        remaining: Sequence[Kept],
+        budget: int,
     ) -> Iterator[tuple[ChangeSet, CutNetwork]]:
         """Cuts to try, the cheapest first: without regard to wildcards that get past filters, then with."""
-        yield from ((cut, left) for cut in cheapest(left, options, budget))
+        yield from ((cut, narrowed) for cut in cheapest(narrowed, options, budget))
         if all(change.private for change in options):
             return
         later: list[tuple[ChangeSet, CutNetwork]] = []
         private = [n for n, change in enumerate(options) if change.private]
-        for network, numbers in ((left, private), (self._opened(options, groups, kept), range(len(options)))):
+        for network, numbers in ((narrowed, private), (self._opened(options, groups, remaining), range(len(options)))):
             some = [options[n] for n in numbers]
             if a_path(network, uncut(some)) is None:
                 cuts = cheapest(network, some, budget)
                 later += [(replace(cut, chosen=tuple(numbers[n] for n in cut.chosen)), network) for cut in cuts]
         yield from sorted(later, key=lambda pair: pair[0].cost)
 
-    def _opened(self, options: Iterable[Candidate], groups: Iterable[Group], kept: Iterable[Kept]) -> CutNetwork:
+    def _opened(self, options: Iterable[Candidate], groups: Iterable[Group], remaining: Iterable[Kept]) -> CutNetwork:
         """The paths that there are when wildcards get past all filters that could be made."""
         graph, bound = self.system.graph, self.system.bound
         filtered = sorted({flow for change in options if not change.private for flow in change.flows})
         grown = spread(*opened(graph, bound, filtered, self.wild, bound), self.system.hierarchy)
         known = {group.sources for group in groups}
         others = [self._group(v) for v in grown.facts if grown.begins(v) and (v,) not in known]
-        return cut_network(Net.of(grown), self._grouped([*groups, *others], kept), self.wanted)
+        return cut_network(Net.of(grown), self._grouped([*groups, *others], remaining), self.categories)
 
     def _group(self, source: int) -> Group:
         """What is decided of one source."""
@@ -178,7 +183,7 @@ class _Work:
         others: set[At] = set()
         for finding in self.analysis.findings:
             at = self._at(finding)
-            elsewhere = self.vertex[finding.source] != source or at[1] not in self.wanted
+            elsewhere = self.vertex[finding.source] != source or at[1] not in self.categories
             if elsewhere or finding.kind == UNPROTECTED:
                 continue
             if finding.kind != DISCLOSURE:
@@ -190,9 +195,9 @@ class _Work:
         return Group((source,), frozenset(accepted), frozenset(itself), frozenset(others))
 
     def _leaks(self, at: At) -> bool:
-        return bool(self.analysis.spread.leaks.get(at[0], 0) & self.analysis.spread.bits.both(at[1]))
+        return bool(self.analysis.spread.leaks.get(at[0], 0) & self.analysis.spread.bits.pair(at[1]))
 
-    def _kept(self, group: Group, options: Sequence[Candidate]) -> Iterable[Kept]:
+    def _remaining_of_source(self, group: Group, options: Sequence[Candidate]) -> Iterable[Kept]:
         """The findings of one source that no change removes, with a path on which none can be made."""
         (source,) = group.sources
         mine: dict[tuple[At, bool], list[Finding]] = defaultdict(list)
@@ -201,7 +206,7 @@ class _Work:
                 yield Kept(finding, ITSELF, (finding.source,))
             else:
                 mine[self._at(finding), finding.kind != DISCLOSURE].append(finding)
-        network = cut_network(self.net, [group], self.wanted)
+        network = cut_network(self.net, [group], self.categories)
         for at, past, path in open_ends(network, uncut(options)):
             for finding in mine[at, past]:
                 yield Kept(finding, NOT_ALLOWED, self._shown(source, network, path))
@@ -217,16 +222,16 @@ class _Work:
                 shown.append(element)
         return tuple(shown)
 
-    def _grouped(self, groups: Iterable[Group], kept: Iterable[Kept]) -> list[Group]:
+    def _grouped(self, groups: Iterable[Group], remaining: Iterable[Kept]) -> list[Group]:
         """Sources of which the same is decided together: in one network, each flow is one arc."""
         stays: dict[tuple[int, bool], set[At]] = defaultdict(set)
-        for one in kept:
+        for one in remaining:
             stays[self.vertex[one.finding.source], one.finding.kind == DISCLOSURE].add(self._at(one.finding))
         together: dict[tuple[frozenset[At], ...], list[int]] = defaultdict(list)
         for group in groups:
             (source,) = group.sources
             leaks, others = stays[source, True], stays[source, False]
-            together[group.accepted, group.kept | leaks, group.others - others].append(source)
+            together[group.accepted, group.remaining | leaks, group.other_kinds - others].append(source)
         return [Group(tuple(sources), *decided) for decided, sources in together.items()]
 
     def _proven(self, plain: Proposal, chosen: Sequence[tuple[Candidate, frozenset[int]]]) -> Proposal:
@@ -234,7 +239,7 @@ class _Work:
         steps = tuple(self._step(change, categories) for change, categories in chosen)
         after = self._analysed(steps)
         before = {finding.id for finding in open_findings(self.analysis)}
-        stays = {kept.finding.id for kept in plain.kept}
+        stays = {kept.finding.id for kept in plain.remaining}
         left = {finding.id for finding in open_findings(after) if finding.category in self.names}
         if not left <= stays or not {finding.id for finding in open_findings(after)} <= before:
             return plain
@@ -244,7 +249,7 @@ class _Work:
     def _step(self, change: Candidate, categories: frozenset[int]) -> ProposedStep:
         flows = [self.analysis.graph.flows[f] for f in sorted(change.flows)]
         if change.kind == DENY:
-            return ProposedStep(DENY, change.cost, grants=change.grants, readers=self._named(change.readers))
+            return ProposedStep(DENY, change.cost, grants=change.grants, readers=self._elements_of(change.readers))
         names = tuple(self.analysis.spread.categories[i] for i in sorted(categories))
         if change.kind == REVIEW:
             part = self.elements[min(change.channels)]
@@ -255,11 +260,12 @@ class _Work:
         others = {reader for f in read - change.flows for reader in self.places.readers(f, bits)} - readers
         between = dict.fromkeys((self.elements[flow.source], self.elements[flow.target]) for flow in flows)
         return ProposedStep(
-            FILTER, change.cost, names, tuple(between), readers=self._named(readers), spared=self._named(others),
+            FILTER, change.cost, names, tuple(between), readers=self._elements_of(readers),
+            spared=self._elements_of(others),
             grants=tuple(dict.fromkeys(grant for flow in flows for grant in flow.grants)),
         )  # fmt: skip
 
-    def _named(self, vertices: Iterable[int]) -> tuple[Element, ...]:
+    def _elements_of(self, vertices: Iterable[int]) -> tuple[Element, ...]:
         return tuple(self.elements[vertex] for vertex in sorted(vertices))
 
     def _analysed(self, steps: Iterable[ProposedStep]) -> Analysis:

@@ -59,7 +59,7 @@ class Grant(NamedTuple):
         read it there. An ALLOW is taken all the same, a DENY takes nothing away (rule S5).
     absolute
         Whether the policy writes the name so: then it stays as it is under a namespace that is pushed (rule S1).
-    seen
+    observation
         When it was seen in use, of an observed policy (rule S16).
     rank
         Of permissions, the place of its rule, from 1: the first rule that matches decides, so a DENY takes away only
@@ -76,7 +76,7 @@ class Grant(NamedTuple):
     policy: str = ""
     dead: bool = False
     absolute: bool = False
-    seen: Seen | None = None
+    observation: Seen | None = None
     rank: int = 0
 
     def __hash__(self) -> int:

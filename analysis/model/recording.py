@@ -55,7 +55,7 @@ class Bag:
         As the bag names it, such as ``zstd (file)``; empty for none.
     gaps
         Why topics may be missing: what is broken, cut, too large or not to be read; one sentence each.
-    beside
+    extras
         What is in it beside the messages of its topics, such as attachments.
     notes
         What else a reader has to know.
@@ -71,7 +71,7 @@ class Bag:
     distro: str = ""
     compression: str = ""
     gaps: tuple[str, ...] = ()
-    beside: tuple[str, ...] = ()
+    extras: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
 
     @property
@@ -217,5 +217,5 @@ class JudgedBag:
         """
         if self.kinds:
             return BagVerdict.PERSONAL_DATA
-        known = self.bag.complete and not self.open_topics and not self.bag.beside
+        known = self.bag.complete and not self.open_topics and not self.bag.extras
         return BagVerdict.NOTHING_FOUND if known else BagVerdict.UNDETERMINED

@@ -107,7 +107,7 @@ class Statement(NamedTuple):
         """Whether a glob takes away or reviews: a person has to have seen what gets there (rule S11)."""
         return self.glob and self.role not in ("source", "leak", "derivation")
 
-    def seen(self, category: str) -> bool:
+    def counts_for(self, category: str) -> bool:
         """Return whether it holds for a kind that gets there, as far as pins say (rule S11)."""
         return self.pinned is None or category in self.pinned
 

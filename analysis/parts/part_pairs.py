@@ -166,7 +166,7 @@ def ends_of(spread: Spread, number: int, kinds: Sequence[Concern]) -> dict[str, 
     >>> {kind: [NAMES[vertex] for vertex in vertices] for kind, vertices in ends.items() if len(vertices)}
     {'disclosure': ['/archive'], 'storage-limitation': ['disk']}
     """
-    both = spread.both(spread.categories[number])
+    both = spread.forms_of(spread.categories[number])
     ends = {concern.kind: concern.taken_up(spread).items() for concern in kinds}
     return {kind: np.array(sorted(v for v, bits in some if bits & both), np.int64) for kind, some in ends.items()}
 
@@ -203,7 +203,7 @@ def how(
     """
 
     def there(number: int, at: Indices) -> tuple[Flags, Flags]:
-        flags = category.there(*carried[number], at, n, stop=STOPS[number])
+        flags = category.arriving(*carried[number], at, n, stop=STOPS[number])
         return category.brought(flags, at, sources, numbers)
 
     codes = {}

@@ -36,8 +36,10 @@ def answered_by_globs(spread: Spread, bound: Bound, hierarchy: Hierarchy) -> tup
     [('/faces', ('FaceTemplate', 'Video'), 'labels.yaml:5')]
     """
     answers = _Answers(spread, hierarchy)
-    at = [v for v, said in sorted(bound.elements.items()) if answers.asked(spread.facts[v], said)]
-    along = [index for index, said in sorted(bound.flows.items()) if answers.asked(spread.flow_facts[index], said)]
+    at = [v for v, said in sorted(bound.elements.items()) if answers.answers_alone(spread.facts[v], said)]
+    along = [
+        index for index, said in sorted(bound.flows.items()) if answers.answers_alone(spread.flow_facts[index], said)
+    ]
     if not at and not along:
         return ()
     ends: dict[int, int] = defaultdict(int)
@@ -49,7 +51,7 @@ def answered_by_globs(spread: Spread, bound: Bound, hierarchy: Hierarchy) -> tup
     first: dict[tuple[str, str, str], Element] = {}  # the legs and sides of a channel are one
     for vertex in at:
         here = spread.present(vertex) | ends[vertex] | _taken_back(spread, vertex)
-        named = spread.named.get(vertex, 0)
+        named = spread.channel_sources.get(vertex, 0)
         for places, kinds in answers.of(spread.facts[vertex], bound.elements[vertex], here, named).items():
             rows[first.setdefault(elements[vertex].identity, elements[vertex]), None, places].update(kinds)
     for index in along:
@@ -69,7 +71,7 @@ def _unseen(statement: Statement) -> bool:
 def _taken_back(spread: Spread, vertex: int) -> int:
     """The bits of what it would bring in, if a glob did not take the source away."""
     lost = (c for c, fact in spread.facts[vertex].items() if any(s.role == "source" for s, _ in fact.outdone))
-    return sum(map(spread.both, lost))
+    return sum(map(spread.forms_of, lost))
 
 
 class _Answers:
@@ -77,53 +79,59 @@ class _Answers:
 
     def __init__(self, spread: Spread, hierarchy: Hierarchy) -> None:
         self._spread, self._hierarchy = spread, hierarchy
-        self._asked: dict[int, bool] = {}
-        self._known: dict[tuple[int, int, int], Mapping[tuple[Place, ...], set[str]]] = {}
+        self._questioned: dict[int, bool] = {}
+        self._answers: dict[tuple[int, int, int], Mapping[tuple[Place, ...], set[str]]] = {}
 
-    def asked(self, decided: Mapping[str, Facts], said: Sequence[Statement]) -> bool:
+    def answers_alone(self, decided: Mapping[str, Facts], statements: Sequence[Statement]) -> bool:
         """Whether a glob says there what nobody need have seen."""
-        if id(decided) not in self._asked:
-            self._asked[id(decided)] = any(map(_unseen, said))
-        return self._asked[id(decided)]
+        if id(decided) not in self._questioned:
+            self._questioned[id(decided)] = any(map(_unseen, statements))
+        return self._questioned[id(decided)]
 
     def of(
-        self, decided: Mapping[str, Facts], said: Sequence[Statement], here: int, named: int = 0, *, flow: bool = False
+        self,
+        decided: Mapping[str, Facts],
+        statements: Sequence[Statement],
+        bits: int,
+        named_bits: int = 0,
+        *,
+        flow: bool = False,
     ) -> Mapping[tuple[Place, ...], set[str]]:
         """Lines of globs -> the kinds of what is there for which they answer.
 
         Parameters
         ----------
-        named
+        named_bits
             Bits for which sources name a channel: there no glob takes anything away (rule S7).
         flow
             Whether it is one: nobody is asked to review it.
         """
-        key = id(decided), here, named
-        if key not in self._known:
+        key = id(decided), bits, named_bits
+        if key not in self._answers:
             by_places: dict[tuple[Place, ...], set[str]] = defaultdict(set)
             makes = {made for fact in decided.values() for made in fact.derives}  # who makes it knows of it
-            for category in self._spread.names(here):
-                holding = said
-                if named & self._spread.both(category):
-                    holding = [s for s in said if s.by_name or not closes(s, category, self._hierarchy)]
-                if places := self._by(holding, category, known=flow or category in makes):
+            for category in self._spread.names(bits):
+                holding = statements
+                if named_bits & self._spread.forms_of(category):
+                    holding = [s for s in statements if s.by_name or not closes(s, category, self._hierarchy)]
+                if places := self._by(holding, category, is_covered=flow or category in makes):
                     by_places[places].add(category)
-            self._known[key] = by_places
-        return self._known[key]
+            self._answers[key] = by_places
+        return self._answers[key]
 
-    def _by(self, said: Sequence[Statement], category: str, *, known: bool) -> tuple[Place, ...]:
+    def _by(self, holding: Sequence[Statement], category: str, *, is_covered: bool) -> tuple[Place, ...]:
         """The lines of globs without which something else would be done with a category; none if nothing would."""
-        without = [s._replace(pinned=()) if _unseen(s) else s for s in said]
-        now, then = (facts("", statements, category, self._hierarchy) for statements in (said, without))
-        if _does(now, known=known) == _does(then, known=known):
+        without = [s._replace(pinned=()) if _unseen(s) else s for s in holding]
+        now, then = (facts("", statements, category, self._hierarchy) for statements in (holding, without))
+        if _does(now, is_covered=is_covered) == _does(then, is_covered=is_covered):
             return ()
-        globs = [s for s in said if _unseen(s)]
+        globs = [s for s in holding if _unseen(s)]
         lines = sorted([s for s in globs if s in now.accepted] or globs, key=by_line)
         return tuple(dict.fromkeys(s.place for s in lines))
 
 
-def _does(fact: Facts, *, known: bool) -> tuple[object, ...]:
+def _does(fact: Facts, *, is_covered: bool) -> tuple[object, ...]:
     """What an element does with a category, whatever the lines that say so."""
     through = fact.through if fact.emits else ()
     flows = (fact.emits, through, fact.passes, fact.pseudonymises, fact.derives, fact.method)
-    return (*flows, fact.leaks, known or fact.covered)
+    return (*flows, fact.leaks, is_covered or fact.covered)

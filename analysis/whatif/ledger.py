@@ -121,7 +121,7 @@ def ledger(
     [('deny', 'policy.xml:10'), ('only', 'labels.yaml:5'), ('sanitizer', 'labels.yaml:4')]
     """
     spread = analysis.spread
-    asked = sum(spread.both(category) for category in analysis.emitted)
+    asked = sum(spread.forms_of(category) for category in analysis.emitted)
     leaks = _leaks(spread, bound, hierarchy)
     unread = (diagnostic for diagnostic in dict.fromkeys(diagnostics) if diagnostic.code == UNREAD)
     rows = [
@@ -145,15 +145,15 @@ def _leaks(spread: Spread, bound: Bound, hierarchy: Hierarchy) -> dict[int, int]
     leaks: dict[int, int] = defaultdict(int, spread.leaks)
     for concern in concerns(spread, bound, hierarchy):
         for vertex, category in concern.reasons:
-            leaks[vertex] |= spread.both(category)
+            leaks[vertex] |= spread.forms_of(category)
     return leaks
 
 
-def _unlabelled(spread: Spread, bound: Bound, asked: int) -> dict[int, int]:
+def _unlabelled(spread: Spread, bound: Bound, open_bits: int) -> dict[int, int]:
     """Vertex -> the bits for which it is or would be open (rule S11)."""
     elements = spread.graph.elements
     unknown = unanswered(elements, bound.outside)
-    return {v: asked & ~(0 if v in unknown else spread.covered.get(v, 0)) for v in range(len(elements))}
+    return {v: open_bits & ~(0 if v in unknown else spread.covered.get(v, 0)) for v in range(len(elements))}
 
 
 def _closed(spread: Spread, leaks: Mapping[int, int], unlabelled: Mapping[int, int]) -> Iterator[TakenAway]:
@@ -206,11 +206,11 @@ def _outdone(spread: Spread) -> Iterator[TakenAway]:
         )  # fmt: skip
 
 
-def _reviewed(spread: Spread, asked: int) -> Iterator[TakenAway]:
+def _reviewed(spread: Spread, open_bits: int) -> Iterator[TakenAway]:
     """Elements that are not asked about because labels answer for them (rule S11)."""
     alike: dict[tuple[int, tuple[str, ...]], list[tuple[tuple[str, ...], tuple[Place, ...], bool]]] = {}
     for vertex, decided in sorted(spread.facts.items()):
-        here = spread.names(spread.present(vertex) & asked)
+        here = spread.names(spread.present(vertex) & open_bits)
         if (id(decided), here) not in alike:  # the same is said of many elements
             alike[id(decided), here] = list(_reviewed_by(decided, here))
         for categories, places, glob in alike[id(decided), here]:
@@ -218,12 +218,12 @@ def _reviewed(spread: Spread, asked: int) -> Iterator[TakenAway]:
 
 
 def _reviewed_by(
-    decided: Mapping[str, Facts], here: Iterable[str]
+    decided: Mapping[str, Facts], kinds: Iterable[str]
 ) -> Iterator[tuple[tuple[str, ...], tuple[Place, ...], bool]]:
     """Some of the categories that are there, the lines that answer for them, and whether all of these are globs."""
     by_lines: dict[tuple[Statement, ...], list[str]] = defaultdict(list)
     makers = {line for fact in decided.values() for line in fact.reviewers if line.role == "derivation"}
-    for category in here:
+    for category in kinds:
         fact = decided.get(category, NOTHING_SAID)
         reviewers = {*fact.reviewers, *(line for line in makers if line.to == category)}  # who makes it knows of it
         if reviewers and not fact.leaks and not fact.emits:
@@ -232,11 +232,11 @@ def _reviewed_by(
         yield tuple(categories), tuple(sorted({line.place for line in lines})), all(line.glob for line in lines)
 
 
-def _restricted(spread: Spread, leaks: Mapping[int, int], asked: int) -> Iterator[TakenAway]:
+def _restricted(spread: Spread, leaks: Mapping[int, int], open_bits: int) -> Iterator[TakenAway]:
     """Kinds of data that are emitted and that the answer is not about."""
     for category in spread.categories:
-        bits = spread.both(category)
-        if not bits & asked:
+        bits = spread.forms_of(category)
+        if not bits & open_bits:
             reached = (v for v, leaking in sorted(leaks.items()) if leaking & bits & spread.present(v))
             leak = next((spread.graph.elements[v] for v in reached), None)
             yield TakenAway(RESTRICTION, None, None, (category,), (), leak=leak)
@@ -279,13 +279,13 @@ class GlobUse(NamedTuple):
 
 
 def globs(
-    analysis: Analysis, bound: Bound, taken: Iterable[TakenAway], left_out: Collection[str] = ()
+    analysis: Analysis, bound: Bound, ledger_rows: Iterable[TakenAway], left_out: Collection[str] = ()
 ) -> tuple[GlobUse, ...]:
     """Return a row for each line of a user's label files that names by a glob, in the order of the lines.
 
     Parameters
     ----------
-    taken
+    ledger_rows
         The ledger.
     left_out
         Robots that are not counted: another one stands for them.
@@ -302,7 +302,7 @@ def globs(
     """
     says, ends = _said_by_globs(analysis.spread, bound, left_out)
     rows: dict[Place, list[TakenAway]] = defaultdict(list)
-    for row in taken if says else ():
+    for row in ledger_rows if says else ():
         if row.glob and (row.by in CLOSERS or row.by == REVIEW):
             for place in row.places:
                 rows[place].append(row)

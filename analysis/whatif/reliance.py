@@ -44,7 +44,9 @@ if TYPE_CHECKING:
     Key = tuple[str, int, int, int]  # kind, number of the category, source, leak
     State = tuple[bool, bool]  # of a finding that is not accepted: whether it stands, whether plain data is in it
     Pair = tuple[Mapping[Key, State], Mapping[Key, State]]  # findings at an element before and after
-    Same = tuple[Statement, tuple[str, ...]]  # a statement; of a name also the names, and the robots if typed by hand
+    Identity = tuple[
+        Statement, tuple[str, ...]
+    ]  # a statement; of a name also the names, and the robots if typed by hand
     Spots = tuple[list[int], list[int]]  # vertices and flows about which a statement is
 
 BRINGS_IN = frozenset({"source", "leak", "derivation"})
@@ -134,7 +136,7 @@ def reliances(
     on_that_day = {v: analysis.outside[e] for v, e in enumerate(elements) if e in analysis.outside}
     bound = replace(bound, outside=on_that_day)
     spots = _spots(spread, bound)
-    asked = sum(map(spread.both, analysis.emitted))
+    asked = sum(map(spread.forms_of, analysis.emitted))
     if not spots or not asked:
         return ()
     places = Places(spread, tuple(concerns(spread, bound, hierarchy)), asked, accepts)
@@ -144,21 +146,23 @@ def reliances(
     return tuple(row for row in rows if row.hangs)
 
 
-def _spots(spread: Spread, bound: Bound) -> dict[Same, Spots]:
+def _spots(spread: Spread, bound: Bound) -> dict[Identity, Spots]:
     """Where each statement is said that takes something away, if data is there."""
     elements, flows = spread.graph.elements, spread.graph.flows
-    spots: dict[Same, Spots] = defaultdict(lambda: ([], []))
-    reached: set[Same] = set()
+    spots: dict[Identity, Spots] = defaultdict(lambda: ([], []))
+    reached: set[Identity] = set()
     for vertex, said in bound.elements.items():
         sources = any(statement.role == "source" for statement in said)
         data = sources or vertex in spread.arrives or vertex in spread.leaves
-        for same in (_same(statement, elements[vertex]) for statement in said if _takes(statement)):
+        for same in (_identity(statement, elements[vertex]) for statement in said if _takes(statement)):
             spots[same][0].append(vertex)
             reached.update([same] if data else ())
     for index, said in bound.flows.items():
         source, target = flows[index].source, flows[index].target
         data = bool(spread.sent.get(source, 0) | spread.flow_emits.get(index, 0))
-        for same in (_same(statement, elements[source], elements[target]) for statement in said if _takes(statement)):
+        for same in (
+            _identity(statement, elements[source], elements[target]) for statement in said if _takes(statement)
+        ):
             spots[same][1].append(index)
             reached.update([same] if data else ())
     return {same: spots[same] for same in spots if same in reached}
@@ -168,7 +172,7 @@ def _takes(statement: Statement) -> bool:
     return statement.role not in BRINGS_IN and statement.place != NOWHERE
 
 
-def _same(statement: Statement, *ends: Element) -> Same:
+def _identity(statement: Statement, *ends: Element) -> Identity:
     """What is one statement: a glob with all that it is about, a name on all robots; by hand, of one robot."""
     if statement.glob:
         return statement.line, ()
@@ -176,8 +180,8 @@ def _same(statement: Statement, *ends: Element) -> Same:
     return statement, (*(end.name for end in ends), *robots)
 
 
-def _without(said: tuple[Statement, ...], statement: Statement) -> tuple[Statement, ...]:
-    return tuple(s for s in said if s.categories != statement.categories or s.line != statement)
+def _without(statements: tuple[Statement, ...], statement: Statement) -> tuple[Statement, ...]:
+    return tuple(s for s in statements if s.categories != statement.categories or s.line != statement)
 
 
 @dataclass(eq=False, repr=False)
@@ -188,7 +192,7 @@ class _Today:
     ----------
     unknown
         Vertices of which something has to be known and is not stated.
-    left
+    rounds_left
         How many analyses of the whole are left.
     """
 
@@ -196,7 +200,7 @@ class _Today:
     hierarchy: Hierarchy
     places: Places
     unknown: Collection[int]
-    left: int = field(default_factory=lambda: ROUNDS)
+    rounds_left: int = field(default_factory=lambda: ROUNDS)
 
     @cached_property
     def ends(self) -> set[int]:
@@ -214,7 +218,7 @@ class _Today:
         spread = self.places.spread
         numbers: dict[tuple[str, ...], int] = defaultdict(int)
         for vertex, bits in open_bits(spread, self.unknown).items():
-            numbers[spread.graph.elements[vertex].shown_as] |= spread.bits.merged(bits & self.places.asked)
+            numbers[spread.graph.elements[vertex].shown_as] |= spread.bits.merged(bits & self.places.question_bits)
         return numbers
 
     def without(self, statement: Statement, vertices: Sequence[int], indices: Sequence[int]) -> Reliance:
@@ -233,7 +237,7 @@ class _Today:
         )
         try:
             now = self._letting_more_pass(statement, less)
-            if now is None and not self.left:
+            if now is None and not self.rounds_left:
                 return row._replace(perhaps=True)
             pairs, is_open = self._further(now) if now else self._anew(less)
         except InputErrors as error:
@@ -242,21 +246,24 @@ class _Today:
         questions = () if statement.role == CANNOT else self._new_questions(is_open)
         return row._replace(findings=self._worse(pairs), questions=questions)
 
-    def _letting_more_pass(self, statement: Statement, less: Bound) -> Spread | None:
+    def _letting_more_pass(self, statement: Statement, weaker: Bound) -> Spread | None:
         """What elements and flows do of which less is said, if that is more and nothing less; else None."""
         spread, graph = self.places.spread, self.places.spread.graph
-        named = {*less.elements, *(graph.flows[index].target for index in less.flows)} & spread.named.keys()
-        if named or any(s.through for said in less.elements.values() for s in said):
+        named = {
+            *weaker.elements,
+            *(graph.flows[index].target for index in weaker.flows),
+        } & spread.channel_sources.keys()
+        if named or any(s.through for said in weaker.elements.values() for s in said):
             return None
         left_out = spreading.LeftOut(spread, statement)
-        now = spreading.meaning(graph, less, self.hierarchy, spread.categories, left_out)
-        more = all(self._does_more(now, vertex) for vertex in less.elements)
-        return now if more and not any(spread.flow_keeps[i] & ~now.flow_keeps[i] for i in less.flows) else None
+        now = spreading.meaning(graph, weaker, self.hierarchy, spread.categories, left_out)
+        more = all(self._does_more(now, vertex) for vertex in weaker.elements)
+        return now if more and not any(spread.flow_keeps[i] & ~now.flow_keeps[i] for i in weaker.flows) else None
 
     def _does_more(self, now: Spread, vertex: int) -> bool:
         """Whether an element does nothing less: what it pseudonymised may go on as it is, which is more."""
         spread = self.places.spread
-        for name in ("emits", "leaks", "gone"):
+        for name in ("emits", "leaks", "absent_bits"):
             if getattr(now, name).get(vertex, 0) != getattr(spread, name).get(vertex, 0):
                 return False
         lost = set(spread.derives[vertex]) - set(now.derives[vertex])
@@ -279,19 +286,20 @@ class _Today:
         pairs: list[Pair] = []
         new = {v: spread.present(v) for v in now.facts}  # of others only what is more
         for reach in self.reaches if opened or along else ():
-            more = reach.further(now, [v for v in opened if reach.whole.arrived(v)], along)
+            more = reach.further(now, [v for v in opened if reach.flood.arrived(v)], along)
             pairs += [(reach.states(v), more.states(v)) for v in more.touched & self.ends]
             for vertex, bits in more.new().items():
                 new[vertex] = new.get(vertex, 0) | bits
         covered = {v: now.covered.get(v, 0) if v in now.facts else spread.covered.get(v, 0) for v in new}
         return pairs, {
-            v: bits & ~spread.gone.get(v, 0) & ~(0 if v in self.unknown else covered[v]) for v, bits in new.items()
+            v: bits & ~spread.absent_bits.get(v, 0) & ~(0 if v in self.unknown else covered[v])
+            for v, bits in new.items()
         }
 
-    def _anew(self, less: Bound) -> tuple[list[Pair], dict[int, int]]:
+    def _anew(self, weaker: Bound) -> tuple[list[Pair], dict[int, int]]:
         """The same by an analysis of the whole."""
-        self.left -= 1
-        elements, flows = {**self.bound.elements, **less.elements}, {**self.bound.flows, **less.flows}
+        self.rounds_left -= 1
+        elements, flows = {**self.bound.elements, **weaker.elements}, {**self.bound.flows, **weaker.flows}
         bound = replace(self.bound, elements=elements, flows=flows)
         spread = spreading.spread(self.places.spread.graph, bound, self.hierarchy)
         places = self.places._replace(spread=spread, concerns=tuple(concerns(spread, bound, self.hierarchy)))
@@ -321,7 +329,7 @@ class _Today:
         spread, elements = self.places.spread, self.places.spread.graph.elements
         asked: dict[tuple[str, ...], tuple[Element, set[str]]] = {}
         for vertex, bits in sorted(is_open.items()):
-            numbers = spread.bits.merged(bits & self.places.asked)
+            numbers = spread.bits.merged(bits & self.places.question_bits)
             if numbers and (new := numbers & ~self.open.get(shown := elements[vertex].shown_as, 0)):
                 asked.setdefault(shown, (elements[vertex], set()))[1].update(spread.names(new))
         return tuple((element, tuple(sorted(names))) for element, names in asked.values())
@@ -333,16 +341,18 @@ def _distinct(elements: Iterable[Element]) -> tuple[Element, ...]:
 
 
 class Places(NamedTuple):
-    """Where each kind of finding can be, and what people accepted there; ``asked``: what the answer is about."""
+    """Where each kind of finding can be, and what people accepted there; ``question_bits``: what is asked about."""
 
     spread: Spread
     concerns: tuple[Concern, ...]
-    asked: int
+    question_bits: int
     accepts: Callable[[Case], bool] | None
 
     def vertices(self) -> set[int]:
         """Return all of them."""
-        return {vertex for concern in self.concerns for vertex, bits in concern.bits.items() if bits & self.asked}
+        return {
+            vertex for concern in self.concerns for vertex, bits in concern.bits.items() if bits & self.question_bits
+        }
 
     def accepted(self, kind: str, source: int, leak: int, bit: int) -> bool:
         """Return whether a person has accepted that a source's data gets there in this form."""
@@ -359,14 +369,14 @@ class Reach(NamedTuple):
 
     Attributes
     ----------
-    whole
+    flood
         Wherever it gets.
     past
         (Categories in both forms; where these get past no other leak of them), for what more than one leak lets out.
     """
 
     places: Places
-    whole: Flood
+    flood: Flood
     past: tuple[tuple[int, Flood], ...]
 
     @classmethod
@@ -379,22 +389,22 @@ class Reach(NamedTuple):
     def further(self, now: Spread, vertices: Collection[int], flows: Collection[tuple[int, int, int]]) -> Reach:
         """Return it where some elements and flows let more pass, as another spread says, and nothing lets less."""
 
-        def more(flood: Flood) -> Flood:
+        def extended(flood: Flood) -> Flood:
             return flood.further(flood.doing.changed(now), vertices, flows)
 
-        return self._replace(whole=more(self.whole), past=tuple((own, more(flood)) for own, flood in self.past))
+        return self._replace(flood=extended(self.flood), past=tuple((own, extended(flood)) for own, flood in self.past))
 
     @property
     def touched(self) -> set[int]:
         """Where something is new, of one that was taken further."""
-        floods = (self.whole, *(flood for _, flood in self.past))
+        floods = (self.flood, *(flood for _, flood in self.past))
         return {*chain.from_iterable((*flood.arrives, *flood.leaves) for flood in floods)}
 
     def new(self) -> dict[int, int]:
         """Return what there is at elements to which more gets, or from which it leaves, of one taken further."""
-        elements, merged = self.places.spread.graph.elements, self.whole.doing.lanes.merged
-        there = {v: merged(bits) for v, bits in self.whole.leaves.items()}
-        for vertex, bits in self.whole.arrives.items():
+        elements, merged = self.places.spread.graph.elements, self.flood.doing.lanes.merged
+        there = {v: merged(bits) for v, bits in self.flood.leaves.items()}
+        for vertex, bits in self.flood.arrives.items():
             if not elements[vertex].is_channel:
                 there[vertex] = there.get(vertex, 0) | merged(bits)
         return there
@@ -402,14 +412,14 @@ class Reach(NamedTuple):
     def states(self, vertex: int) -> dict[Key, State]:
         """Return the findings that end at an element."""
         states: dict[Key, State] = {}
-        spread, lanes = self.places.spread, self.whole.doing.lanes
-        begun = lanes.own(vertex, spread.begins(vertex))
+        spread, lanes = self.places.spread, self.flood.doing.lanes
+        begun = lanes.lane_of(vertex, spread.begins(vertex))
         for concern in self.places.concerns:
-            bits = concern.bits.get(vertex, 0) & self.places.asked & ~spread.gone.get(vertex, 0)
+            bits = concern.bits.get(vertex, 0) & self.places.question_bits & ~spread.absent_bits.get(vertex, 0)
             if not bits:
                 continue
             is_channel = spread.graph.elements[vertex].is_channel  # it takes up only what it carries
-            present = self.whole.left(vertex) if is_channel else self.whole.present(vertex, begun)
+            present = self.flood.leaving(vertex) if is_channel else self.flood.present(vertex, begun)
             there = present & lanes.every(bits)
             past = self._past(vertex, begun, there) if concern.kind == DISCLOSURE else there
             for source, arriving in lanes.apart(there):
@@ -423,10 +433,10 @@ class Reach(NamedTuple):
                         states[concern.kind, i, source, vertex] = bool(stands), bool(arriving >> plain & 1)
         return states
 
-    def _past(self, vertex: int, begun: int, there: int) -> int:
+    def _past(self, vertex: int, begun: int, arriving: int) -> int:
         """What of the data at a leak got there past no other leak of its category."""
-        every = self.whole.doing.lanes.every
-        result = there
+        every = self.flood.doing.lanes.every
+        result = arriving
         for own, flood in self.past:
             result &= ~every(own) | flood.present(vertex, begun)
         return result
@@ -445,9 +455,9 @@ def _stops(places: Places, doing: Doing) -> Iterator[tuple[int, dict[int, int], 
     leaks = {v: spread.bits.merged(bits) for v, bits in spread.leaks.items() if bits}
     number = Counter(i for bits in leaks.values() for i in bits_of(bits))
     several = [i for i in sorted(number) if number[i] > 1]
-    unmade = sum(spread.bits.both(i) for i in several if i not in spread.made)
+    unmade = sum(spread.bits.pair(i) for i in several if i not in spread.made_categories)
     runs = [(unmade, unmade)] if unmade else []
-    runs += [(spread.bits.both(i), spread.all_bits) for i in several if i in spread.made]
+    runs += [(spread.bits.pair(i), spread.all_bits) for i in several if i in spread.made_categories]
     for own, allowed in runs:
         stop = {v: every(spread.leaks[v] & own) & ~_accepted(places, doing, v, spread.leaks[v] & own) for v in leaks}
         yield own, stop, every(allowed)
@@ -458,7 +468,7 @@ def _accepted(places: Places, doing: Doing, leak: int, bits: int) -> int:
     if places.accepts is None:
         return 0
     return sum(
-        doing.lanes.own(source, 1 << bit)
+        doing.lanes.lane_of(source, 1 << bit)
         for source in doing.lanes.number
         for bit in bits_of(bits)
         if places.accepted(DISCLOSURE, source, leak, bit)

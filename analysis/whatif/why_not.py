@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.kernel.bits import bits_of
 from rosprivacy.analysis.kernel.roles import NOTHING_SAID
-from rosprivacy.analysis.kernel.states import made
+from rosprivacy.analysis.kernel.states import derived_bits
 from rosprivacy.analysis.model import CANNOT
 
 if TYPE_CHECKING:
@@ -110,7 +110,7 @@ def why_not(analysis: Analysis, source: Sequence[int], leak: Sequence[int], cate
     between = (f for f in analysis.findings if (f.source.identity, f.leak.identity, f.category) == ends)
     finding = next(between, None)
     path, obstacles = (finding.witness, ()) if finding else _easiest(spread, source, leak, category)
-    reached = sum(bool(spread.present(v) & spread.both(category)) for v in range(len(elements)))
+    reached = sum(bool(spread.present(v) & spread.forms_of(category)) for v in range(len(elements)))
     return WhyNot(category, first, last, finding, path, obstacles, reached)
 
 
@@ -208,7 +208,7 @@ class _Steps(NamedTuple):
         else:
             closers = spread.facts[vertex].get(self._name(bit), NOTHING_SAID).closers
             yield bit, (self._closed(closers, bit, vertex),)
-        for after in bits_of(spread.bits.planes(made(spread, vertex, 1 << bit))[0]):
+        for after in bits_of(spread.bits.planes(derived_bits(spread, vertex, 1 << bit))[0]):
             yield after, self._no_leak(vertex, after) if vertex in self.ends else ()
 
     def _no_leak(self, vertex: int, bit: int) -> tuple[Obstacle, ...]:

@@ -37,7 +37,9 @@ if TYPE_CHECKING:
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 SECTION = {NODE: "nodes", "topic": "topics", "service": "services", "action": "actions"}
-BESIDE = "put it on the line of a call or class of a node, or directly above it; or name the element: privacy(/name): …"
+WHERE_TO_PUT = (
+    "put it on the line of a call or class of a node, or directly above it; or name the element: privacy(/name): …"
+)
 BELOW = "*"  # image_transport adds /compressed and others; not all of them are granted, so it is one glob
 Key = tuple[str, str]  # section of a label file, name
 HEAD = "# Written by rosprivacy annotations"
@@ -61,7 +63,7 @@ class Labelled(NamedTuple):
     section: str
     name: str
     place: Place
-    said: tuple[Statement, ...] = ()
+    statements: tuple[Statement, ...] = ()
     note: str = ""
 
 
@@ -79,7 +81,7 @@ def attach(
                 labelled.append(made)
             else:
                 problems.append(made)
-    said = [one for one in labelled if one.said]
+    said = [one for one in labelled if one.statements]
     elements = {(one.section, one.name) for one in said}
     for note in (one for one in labelled if one.note):
         about = sorted(key for key in elements if key[1] == note.name and note.section in ("", key[0]))
@@ -99,7 +101,7 @@ def _of_file(code: Code, names: CodeNames, vocabulary: Vocabulary) -> Iterator[L
         if read is None:
             continue
         if isinstance(read, LabelError) or read.name:
-            yield read if isinstance(read, LabelError) else _named(read)
+            yield read if isinstance(read, LabelError) else _by_name(read)
             continue
         site = beside.of(comment.line)
         if isinstance(site, LabelError):
@@ -119,42 +121,54 @@ def _of_file(code: Code, names: CodeNames, vocabulary: Vocabulary) -> Iterator[L
             yield _no_name(note, site, "/name")
 
 
-def _named(one: Annotation) -> Labelled:
+def _by_name(annotation: Annotation) -> Labelled:
     """What names its element; a note is about all that is said of that name."""
-    section = "" if one.word == NOTE else "nodes" if one.word in OF_NODES else "channels"
-    return Labelled(section, one.name, one.place, one.said, one.note)
+    section = "" if annotation.word == NOTE else "nodes" if annotation.word in OF_NODES else "channels"
+    return Labelled(section, annotation.name, annotation.place, annotation.statements, annotation.note)
 
 
-def _at_site(code: Code, names: CodeNames, site: Site, one: Annotation) -> Labelled | LabelError:
+def _at_site(code: Code, names: CodeNames, site: Site, annotation: Annotation) -> Labelled | LabelError:
     name = names.name(code, site)
     if site.kind == NODE:
-        if one.word in OF_CHANNELS:
-            hint = f"write it at the call that makes the channel, or name it: privacy(/topic): {one.word} …"
-            return LabelError(*one.place, f"{one.word} is said of a channel, and this is a node", hint)
-        return Labelled("nodes", name, one.place, one.said) if name else _no_name(one, site, "/camera")
-    if one.word == "source":
-        return _source(code, names, site, one)
-    if one.word in OF_NODES:
-        hint = f"write it at the node's class or constructor, or name the node: privacy(/camera): {one.word} …"
-        return LabelError(*one.place, f"{one.word} is said of a node, and this is a {site.kind}", hint)
-    return Labelled(SECTION[site.kind], name, one.place, one.said) if name else _no_name(one, site, "/image")
+        if annotation.word in OF_CHANNELS:
+            hint = f"write it at the call that makes the channel, or name it: privacy(/topic): {annotation.word} …"
+            return LabelError(*annotation.place, f"{annotation.word} is said of a channel, and this is a node", hint)
+        return (
+            Labelled("nodes", name, annotation.place, annotation.statements)
+            if name
+            else _no_name(annotation, site, "/camera")
+        )
+    if annotation.word == "source":
+        return _source(code, names, site, annotation)
+    if annotation.word in OF_NODES:
+        hint = f"write it at the node's class or constructor, or name the node: privacy(/camera): {annotation.word} …"
+        return LabelError(*annotation.place, f"{annotation.word} is said of a node, and this is a {site.kind}", hint)
+    return (
+        Labelled(SECTION[site.kind], name, annotation.place, annotation.statements)
+        if name
+        else _no_name(annotation, site, "/image")
+    )
 
 
-def _source(code: Code, names: CodeNames, site: Site, one: Annotation) -> Labelled | LabelError:
+def _source(code: Code, names: CodeNames, site: Site, annotation: Annotation) -> Labelled | LabelError:
     """A call that writes: its node is a source, through this channel (rule S8)."""
     if site.role not in WRITES:
-        return LabelError(*one.place, "source at a subscription, which brings nothing in", "write it at the publisher")
-    if any(said.through or not said.categories for said in one.said):
+        return LabelError(
+            *annotation.place, "source at a subscription, which brings nothing in", "write it at the publisher"
+        )
+    if any(said.through or not said.categories for said in annotation.statements):
         hint = "write the kinds of data alone: privacy: source Video"
-        return LabelError(*one.place, "the call itself says through which channel the data come", hint)
+        return LabelError(*annotation.place, "the call itself says through which channel the data come", hint)
     name, node = names.name(code, site), names.node(code, site.owner)
     if not name or not node:
-        return _no_name(one, site, "/camera", "source Video through /image")
-    through = (name + BELOW,) if site.more else (name,)
-    return Labelled("nodes", node, one.place, tuple(said._replace(through=through) for said in one.said))
+        return _no_name(annotation, site, "/camera", "source Video through /image")
+    through = (name + BELOW,) if site.prefix else (name,)
+    return Labelled(
+        "nodes", node, annotation.place, tuple(said._replace(through=through) for said in annotation.statements)
+    )
 
 
-def _no_name(one: Annotation, site: Site, example: str, says: str = "") -> LabelError:
+def _no_name(annotation: Annotation, site: Site, example: str, says: str = "") -> LabelError:
     written = site.written
     if written is not None and not is_ros_name(written):
         what = f"{shown(written)!r} is no full name of ROS"
@@ -162,8 +176,8 @@ def _no_name(one: Annotation, site: Site, example: str, says: str = "") -> Label
         what = "the name here is no literal"
     else:
         what = "the node here has no name that is a literal"
-    hint = f"name the element in the annotation: privacy({example}): {says or one.word}"
-    return LabelError(*one.place, what, hint)
+    hint = f"name the element in the annotation: privacy({example}): {says or annotation.word}"
+    return LabelError(*annotation.place, what, hint)
 
 
 class _Beside:
@@ -182,7 +196,7 @@ class _Beside:
         told_apart = {(self.names.name(self.code, site) or site.lines, site.kind, site.role) for site in sites}
         place = Place(self.code.file, line)
         if not sites:
-            return LabelError(*place, "an annotation attached to nothing", BESIDE)
+            return LabelError(*place, "an annotation attached to nothing", WHERE_TO_PUT)
         if len(told_apart) > 1:
             what = f"an annotation beside {len(told_apart)} calls or classes"
             return LabelError(*place, what, "put each on a line of its own, or name the element: privacy(/name): …")
@@ -211,47 +225,47 @@ def conflicts(labelled: Iterable[Labelled], vocabulary: Vocabulary) -> Iterator[
     """Yield where annotations contradict each other, or say together what no label file can say."""
     by_element: dict[Key, list[Statement]] = defaultdict(list)
     for one in labelled:
-        by_element[one.section, one.name] += one.said
+        by_element[one.section, one.name] += one.statements
     for (section, name), own in sorted(by_element.items()):
         said = _united(own)
         beside = () if section in ("nodes", CHANNELS) else _united(by_element.get((CHANNELS, name), ()))
         yield from tuple(_contradictions(name, [*said, *beside], vocabulary)) or _not_together(name, said)
 
 
-def _united(said: Iterable[Statement]) -> list[Statement]:
+def _united(statements: Iterable[Statement]) -> list[Statement]:
     """Statements with one for all channels that a source of one kind goes through, by file and line."""
     united: dict[Any, Statement] = {}
-    for one in sorted(said, key=lambda s: (s.place.file, s.place.line)):
+    for one in sorted(statements, key=lambda s: (s.place.file, s.place.line)):
         key = (one.role, one.categories, bool(one.through), one.method, one.stated, one.to)
         first = united.setdefault(key, one)
         united[key] = first._replace(through=tuple(sorted({*first.through, *one.through})))
     return [*united.values()]
 
 
-def _contradictions(name: str, said: Sequence[Statement], vocabulary: Vocabulary) -> Iterator[LabelError]:
-    named = {category for one in said for category in (*one.categories, one.to) if category} or {TOP}
+def _contradictions(name: str, statements: Sequence[Statement], vocabulary: Vocabulary) -> Iterator[LabelError]:
+    named = {category for one in statements for category in (*one.categories, one.to) if category} or {TOP}
     for category in sorted({narrower for one in named for narrower in vocabulary.with_narrower(one)}):
         try:
-            decided(name, said, category, vocabulary.hierarchy)
+            decided(name, statements, category, vocabulary.hierarchy)
         except LabelError as error:
             yield error
             return
 
 
-def _not_together(name: str, said: Sequence[Statement]) -> Iterator[LabelError]:
+def _not_together(name: str, statements: Sequence[Statement]) -> Iterator[LabelError]:
     """What contradicts nothing, and what one line of a label file cannot say."""
-    bare = next((one for one in said if not one.categories and one.role in BARE), None)
-    other = next((one for one in said if bare and one.role != bare.role), None)
-    other = other or next((one for one in said if bare and one.categories), None)
+    bare = next((one for one in statements if not one.categories and one.role in BARE), None)
+    other = next((one for one in statements if bare and one.role != bare.role), None)
+    other = other or next((one for one in statements if bare and one.categories), None)
     if bare and other:
         what = f"{shown(name)} is {bare.role} of every kind here and {other.role} at {printable(str(other.place))}"
         yield LabelError(*bare.place, what, "keep one of them, or name its kinds of data")
     for role, none in NONE_OF.items():
-        back, stated = (next((one for one in said if one.role == key), None) for key in (none, role))
+        back, stated = (next((one for one in statements if one.role == key), None) for key in (none, role))
         if back and stated:
             what = f"{shown(name)} is {role} none here, and a {role} at {printable(str(stated.place))}"
             yield LabelError(*back.place, what, "keep one of them")
-    sources = [one for one in said if one.role == "source"]
+    sources = [one for one in statements if one.role == "source"]
     free = next((one for one in sources if not one.through), None)
     through = next((one for one in sources if one.through), None)
     if free and through:
@@ -261,10 +275,10 @@ def _not_together(name: str, said: Sequence[Statement]) -> Iterator[LabelError]:
         yield LabelError(*free.place, what, "write source at the publishers alone, or at the class alone")
 
 
-def _line(key: Key, some: Iterable[Labelled]) -> NewLine:
+def _line(key: Key, elements: Iterable[Labelled]) -> NewLine:
     section, name = key
-    ordered = sorted(some, key=lambda one: (one.place, one.note))
-    said = _united(statement for one in ordered for statement in one.said)
+    ordered = sorted(elements, key=lambda one: (one.place, one.note))
+    said = _united(statement for one in ordered for statement in one.statements)
     notes = [blanked(one.note) for one in ordered if one.note]
     label = _label(said)
     if isinstance(label, str):  # takes no note of its own
@@ -275,16 +289,16 @@ def _line(key: Key, some: Iterable[Labelled]) -> NewLine:
     return NewLine(section, name, _places(ordered), _flow(label))
 
 
-def _places(some: Iterable[Labelled]) -> str:
-    return ", ".join(dict.fromkeys(str(one.place) for one in some))
+def _places(elements: Iterable[Labelled]) -> str:
+    return ", ".join(dict.fromkeys(str(one.place) for one in elements))
 
 
-def _label(said: Sequence[Statement]) -> str | dict[str, Any]:
+def _label(statements: Sequence[Statement]) -> str | dict[str, Any]:
     """The label as a label file has it."""
-    if said[0].role in BARE and not said[0].categories:
-        return said[0].role
+    if statements[0].role in BARE and not statements[0].categories:
+        return statements[0].role
     label: dict[str, Any] = {}
-    for one in said:
+    for one in statements:
         if one.role in ROLE_NONE:
             label[ROLE_NONE[one.role]] = NONE
         elif one.role == "source" and one.through:

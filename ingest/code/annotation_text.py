@@ -53,7 +53,7 @@ class Annotation(NamedTuple):
         The element that it names; empty where it is about what it stands beside.
     word
         One of ``WORDS``.
-    said
+    statements
         What it says of its element; none for a note.
     note
         Of a note: its text.
@@ -62,7 +62,7 @@ class Annotation(NamedTuple):
     place: Place
     name: str
     word: str
-    said: tuple[Statement, ...] = ()
+    statements: tuple[Statement, ...] = ()
     note: str = ""
 
 
@@ -77,7 +77,7 @@ def read_annotation(text: str, place: Place, vocabulary: Vocabulary) -> Annotati
     Examples
     --------
     >>> from rosprivacy.ontology.vocabulary import load
-    >>> read_annotation("privacy: source Video", Place("camera.py", 3), load()).said[0].categories
+    >>> read_annotation("privacy: source Video", Place("camera.py", 3), load()).statements[0].categories
     ('Video',)
     >>> print(read_annotation("privacy: sorce Video", Place("camera.py", 3), load()))
     camera.py:3: unknown word 'sorce' in an annotation; did you mean 'source'?
@@ -140,10 +140,10 @@ def _no_annotation(text: str, place: Place) -> LabelError | None:
     return LabelError(*place, what, "begin the comment line with privacy: and one of its words, or reword the comment")
 
 
-def _name(given: str | None, name: str, place: Place) -> str:
+def _name(written_name: str | None, name: str, place: Place) -> str:
     if len(name) > LONGEST:
         raise LabelError(*place, f"a name of more than {LONGEST} characters", "write a shorter one, or a glob")
-    if given is not None and (is_non_ros(name) or any(c.isspace() or not c.isprintable() for c in name)):
+    if written_name is not None and (is_non_ros(name) or any(c.isspace() or not c.isprintable() for c in name)):
         raise LabelError(*place, f"name {shown(name)!r} is not absolute", "begin it with /: privacy(/camera): …")
     return name
 
@@ -182,16 +182,16 @@ class _Reader:
             yield self.blank._replace(role=NO_ROLE[word])
         elif word == "source":
             kinds, through, channels = (part.strip() for part in _parted(rest, THROUGH))
-            names = self.each(channels, self.channel) if through else ()
-            yield from (self.about(kind)._replace(through=names) for kind in self.each(kinds, self.kind))
+            names = self.items(channels, self.channel) if through else ()
+            yield from (self.about(kind)._replace(through=names) for kind in self.items(kinds, self.kind))
         elif word in ("leak", "conduit"):
-            yield from map(self.about, self.each(rest, self.kind))
+            yield from map(self.about, self.items(rest, self.kind))
         elif word == "sanitizer":
-            yield from self.each(rest, self.sanitizer)
+            yield from self.items(rest, self.sanitizer)
         elif word == "derives":
-            yield from self.each(rest, self.derivation)
+            yield from self.items(rest, self.derivation)
         else:  # only, never: one statement about all
-            yield self.blank._replace(categories=tuple(sorted(set(self.each(rest, self.kind)))))
+            yield self.blank._replace(categories=tuple(sorted(set(self.items(rest, self.kind)))))
 
     def wrong(self, problem: str) -> LabelError:
         return LabelError(*self.place, problem, f"write: {SIGN}: {WORDS[self.word]}")
@@ -199,7 +199,7 @@ class _Reader:
     def about(self, kind: str) -> Statement:
         return self.blank._replace(categories=(kind,))
 
-    def each(self, text: str, read: Callable[[str], _Read]) -> tuple[_Read, ...]:
+    def items(self, text: str, read: Callable[[str], _Read]) -> tuple[_Read, ...]:
         parts = [part.strip() for part in text.split(",")]
         if not all(parts):
             raise self.wrong(f"{self.word} names nothing" if not text.strip() else f"{self.word} with a comma too many")

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.ingest.code.source_code import Code, Site
 
-    Named = tuple[str, str]  # kind and full name of an element
+    PlacedName = tuple[str, str]  # kind and full name of an element
 
 ROOT = "/"
 
@@ -163,7 +163,7 @@ def code_evidence(codes: Sequence[Code], namespace: str = ROOT) -> tuple[CodeEvi
     )
 
 
-def code_comments(codes: Sequence[Code], namespace: str = ROOT) -> dict[Named, tuple[str, ...]]:
+def code_comments(codes: Sequence[Code], namespace: str = ROOT) -> dict[PlacedName, tuple[str, ...]]:
     """Return the comments beside each element whose name is a literal, by file and line.
 
     A comment beside calls about several elements is one of none.
@@ -182,9 +182,9 @@ def code_comments(codes: Sequence[Code], namespace: str = ROOT) -> dict[Named, t
     {('topic', '/faces'): ('of guests', 'with names')}
     """
     names = CodeNames(codes, namespace)
-    found: dict[Named, list[str]] = defaultdict(list)
+    found: dict[PlacedName, list[str]] = defaultdict(list)
     for code in codes:
-        beside = _beside(code, names)
+        beside = _elements_near(code, names)
         for comment in code.comments:
             elements = beside.get(comment.line, set())
             if len(elements) == 1 and comment.text.strip():
@@ -200,10 +200,10 @@ def comments_above(code: Code) -> dict[int, int]:
     return above
 
 
-def _beside(code: Code, names: CodeNames) -> dict[int, set[Named]]:
+def _elements_near(code: Code, names: CodeNames) -> dict[int, set[PlacedName]]:
     """By line the elements that a comment there is about."""
     above = comments_above(code)
-    beside: dict[int, set[Named]] = defaultdict(set)
+    beside: dict[int, set[PlacedName]] = defaultdict(set)
     for site in code.sites:
         if site.kind == NODE and not names.is_node(code, site):
             continue

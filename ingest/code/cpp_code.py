@@ -95,23 +95,23 @@ class _Names:
 
     def __init__(self) -> None:
         self.namespaces: list[str] = []
-        self._meant: dict[str, str] = {}
+        self._aliases: dict[str, str] = {}
         self._used: dict[tuple[str, str], int] = {}
 
     def using(self, kind: str, names: list[str]) -> None:
         """Note one ``using A::B;``, ``using B = A::C;`` or ``namespace b = a::c;``."""
         if kind == "using_declaration" and len(names) == 1:
-            self._meant[names[0].rpartition("::")[2].strip()] = names[0]
+            self._aliases[names[0].rpartition("::")[2].strip()] = names[0]
         elif kind != "using_declaration" and len(names) > 1:
-            self._meant[names[0]] = names[-1]
+            self._aliases[names[0]] = names[-1]
 
     def meaning(self, name: str) -> str:
         """What a name stands for, by what ``using`` says of its first part."""
         for _ in range(STEPS):
             head, colons, rest = name.partition("::")
-            if head not in self._meant or self._meant[head] == name:
+            if head not in self._aliases or self._aliases[head] == name:
                 break
-            name = self._meant[head] + colons + rest
+            name = self._aliases[head] + colons + rest
         return name
 
     def message(self, written: str) -> str:
@@ -298,7 +298,7 @@ class _Reader:
             self.names.use(started, line, unit)
 
     def _endpoint(
-        self, path: list[str], template: list[Node], receiver: str, given: list[Node], at: tuple[Lines, Lines],
+        self, path: list[str], template: list[Node], receiver: str, arguments: list[Node], at: tuple[Lines, Lines],
         where: Where,
     ) -> None:  # fmt: skip
         kind, role = CALLS[path[-1]]
@@ -306,15 +306,15 @@ class _Reader:
         found = brief(template[0]) if template else ""
         if space == ACTIONS and path[-1] == "create_client":
             kind, role = "action", "call"
-        free = space in FREE and not (given and literal_of(given[0]) is not None)
+        free = space in FREE and not (arguments and literal_of(arguments[0]) is not None)
         if free:
-            receiver = brief(given[0]) if given else "?"
-            given = given[1:]
+            receiver = brief(arguments[0]) if arguments else "?"
+            arguments = arguments[1:]
         owner = class_owner(where.of_class) if receiver in ("", "this", "*this") else variable(receiver, where)
-        name = literal_of(given[0]) if given else None
+        name = literal_of(arguments[0]) if arguments else None
         if "generic" in path[-1]:
-            found = (literal_of(given[1]) if len(given) > 1 else "") or ""
+            found = (literal_of(arguments[1]) if len(arguments) > 1 else "") or ""
         images = space == IMAGES
         found = IMAGE if images else found
         more = images and role == "publish"
-        self.sites.append(Site(kind, name, *at, owner, role, found, more=more))
+        self.sites.append(Site(kind, name, *at, owner, role, found, prefix=more))

@@ -92,7 +92,7 @@ class CodeUnits:
         self.uses: dict[Piece, list[NodeUse]] = defaultdict(list)
         self.links: dict[Piece, set[Piece]] = defaultdict(set)
         self.local: list[Local] = []
-        self._known: dict[tuple[str, str], Piece | None] = {}
+        self._code_units: dict[tuple[str, str], Piece | None] = {}
         for code in codes:
             for use in code.uses:
                 piece = self.piece(code, use.unit)
@@ -135,9 +135,9 @@ class CodeUnits:
 
     def _link(self, code: Code, name: str) -> Piece | None:
         key = (str(PurePath(code.file).parent), name)
-        if key not in self._known:
-            self._known[key] = (self._cpp_link if code.language == CPP else self._python_link)(code, name)
-        return self._known[key]
+        if key not in self._code_units:
+            self._code_units[key] = (self._cpp_link if code.language == CPP else self._python_link)(code, name)
+        return self._code_units[key]
 
     def _cpp_link(self, code: Code, name: str) -> Piece | None:
         package, last = package_of(code.file), name.rpartition("::")[2]

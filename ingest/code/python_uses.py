@@ -66,10 +66,12 @@ class PythonUses:
             if isinstance(one, DEFINITIONS)
         )
         own = {one.name: f".{Path(file).stem}.{one.name}" for one in self.units}
-        self._known = own | dict(imported(tree))
-        self._all_of = self._known.pop(ALL, "").removesuffix(f".{ALL}")  # the last module of which all is imported
+        self._known_names = own | dict(imported(tree))
+        self._all_of = self._known_names.pop(ALL, "").removesuffix(
+            f".{ALL}"
+        )  # the last module of which all is imported
         self._own = set(_named_here(tree)) if self._all_of else set()
-        self._made: dict[tuple[str, str], set[str]] = defaultdict(set)  # by unit and variable: what makes its values
+        self._built: dict[tuple[str, str], set[str]] = defaultdict(set)  # by unit and variable: what makes its values
         self._commands: dict[tuple[str, str], list[ast.expr]] = defaultdict(list)  # lists and texts that variables are
 
     def uses(self, late: Callable[[], bool]) -> tuple[Use, ...]:
@@ -113,11 +115,11 @@ class PythonUses:
                 if isinstance(value, ast.List | ast.Tuple | ast.Constant | ast.JoinedStr):
                     self._commands[unit, name].append(value)
                 if value is not None and not _is_none(value):
-                    self._made[unit, name].add(self._value(value, unit))
+                    self._built[unit, name].add(self._value(value, unit))
 
     def _value(self, value: ast.expr, unit: str) -> str:
         """What makes a value: a call, or a library that it stands for (``self.sr = speech_recognition``)."""
-        alias = isinstance(value, ast.Name) and value.id in self._known
+        alias = isinstance(value, ast.Name) and value.id in self._known_names
         return self._chain(value, unit, set()) if alias or isinstance(value, ast.Call | ast.Await) else ""
 
     def _names(self, node: ast.expr, unit: str, inside: set[int]) -> Iterator[str]:
@@ -157,7 +159,7 @@ class PythonUses:
                 inside.add(id(node))
         if not isinstance(node, ast.Name):
             return ""
-        head = self._known.get(node.id) or (node.id if node.id in BUILT_IN else self._of_all(node.id))
+        head = self._known_names.get(node.id) or (node.id if node.id in BUILT_IN else self._of_all(node.id))
         return ".".join([head, *reversed(parts)]) if head else ""
 
     def _of_all(self, name: str) -> str:
@@ -168,7 +170,7 @@ class PythonUses:
     def _by_variable(self, node: ast.expr, unit: str) -> str:
         """What a variable is made by, if all its values are made by one."""
         name = _variable(node)
-        made = (self._made.get((unit, name)) or self._made.get(("", name), set())) if name else set()
+        made = (self._built.get((unit, name)) or self._built.get(("", name), set())) if name else set()
         return next(iter(made)) if len(made) == 1 else ""
 
 

@@ -93,7 +93,7 @@ class Site(NamedTuple):
         Of a node: as it is written; None where it is no literal.
     base
         Of a node: the constructor that is called, where it is one of a class that may be no node.
-    more
+    prefix
         Whether channels below this name are written with it, as image_transport does.
     head
         Whether it is the head of a class; its constructors name its nodes.
@@ -108,7 +108,7 @@ class Site(NamedTuple):
     type: str = ""
     namespace: str | None = ""
     base: str = ""
-    more: bool = False
+    prefix: bool = False
     head: bool = False
 
 

@@ -93,7 +93,7 @@ def _files(source: str, problems: list[InputError], left_out: dict[str, str]) ->
             return set()
         return {source}  # one that is not there is told when it is read
     problems += [one for one in found.problems if not (_hidden(source, one.file) or _left_out(source, one.file))]
-    files = {file for file in (*found.files, *found.others) if not _hidden(source, file) and _language(file)}
+    files = {file for file in (*found.files, *found.passed_over) if not _hidden(source, file) and _language(file)}
     folders = {file: _left_out(source, file) for file in files}
     others = {folder for folder in folders.values() if folder}
     if not files:

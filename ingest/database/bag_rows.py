@@ -67,7 +67,7 @@ def bag_rows(judged: JudgedBag, robot: str, assumptions: Mapping[str, Any]) -> B
         "suggested": _suggested(judged.suggested),
         "open_topics": list(judged.open_topics),
         "gaps": list(bag.gaps),
-        "beside": list(bag.beside),
+        "beside": list(bag.extras),
         "storage": bag.storage,
         "distro": bag.distro or None,
         "compression": bag.compression or None,

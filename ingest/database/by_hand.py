@@ -35,18 +35,18 @@ MADE_OF = {
 SEALED = tuple(name for name, _ in MADE_OF.values())
 NEAR_TYPE, NEAR_LABEL = 0.72, 0.85  # LEAKED and FLOW are near to ours, LEADS_TO and HAS_ROLE are not; measured
 WRITTEN = (FLOWS_TO.type, *sorted(kind.type for kind in ROLES.values()))  # what people write; the rest is made
-_KNOWN = {kind.type for kind in RELATIONSHIPS}
-_THERE = "(any(l IN labels({0}) WHERE l IN $kinds) OR EXISTS {{ ({0})-[:FLOWS_TO]-() }})"
+_RELATIONSHIP_TYPES = {kind.type for kind in RELATIONSHIPS}
+_EXISTS = "(any(l IN labels({0}) WHERE l IN $kinds) OR EXISTS {{ ({0})-[:FLOWS_TO]-() }})"
 _ENDS = "RETURN type(r) AS type, coalesce(a.name, '') AS source, coalesce(b.name, '') AS target"
 TYPES = "CALL db.relationshipTypes() YIELD relationshipType AS type RETURN type ORDER BY type"
 OF_TYPES = (
-    f"MATCH (a)-[r]->(b) WHERE type(r) IN $types AND (a:DataCategory OR {_THERE.format('a')}) "
-    f"AND (b:DataCategory OR {_THERE.format('b')} OR size(labels(b)) = 0) {_ENDS} ORDER BY type, source, target"
+    f"MATCH (a)-[r]->(b) WHERE type(r) IN $types AND (a:DataCategory OR {_EXISTS.format('a')}) "
+    f"AND (b:DataCategory OR {_EXISTS.format('b')} OR size(labels(b)) = 0) {_ENDS} ORDER BY type, source, target"
 )
 WRONG_ENDS = (
     f"MATCH (a)-[r:{'|'.join(sorted(kind.type for kind in ROLES.values()))}]->(b) "
     "WHERE NOT (b:DataCategory AND (a:Element OR EXISTS { (a)-[:FLOWS_TO]-() })) "
-    f"AND (a:DataCategory OR b:DataCategory OR {_THERE.format('a')}) {_ENDS} ORDER BY type, source, target"
+    f"AND (a:DataCategory OR b:DataCategory OR {_EXISTS.format('a')}) {_ENDS} ORDER BY type, source, target"
 )
 _ELEMENTS = ["Element", *KIND_LABELS.values()]
 
@@ -64,15 +64,15 @@ def seal_of(properties: Mapping[str, Any], labels: Iterable[str]) -> str | None:
 def meaningless_relationships(transaction: ManagedTransaction) -> Iterator[GraphError]:
     """Return those that look like one that people write, and those of a role that do not go to a kind of data."""
     types = [record["type"] for record in transaction.run(TYPES)]
-    theirs = [name for name in types if name not in _KNOWN and not name.startswith(CARRIES)]
+    theirs = [name for name in types if name not in _RELATIONSHIP_TYPES and not name.startswith(CARRIES)]
     near = {name: close for name in theirs if (close := _near(name, WRITTEN, NEAR_TYPE))}
     wrong = transaction.run(WRONG_ENDS, kinds=_ELEMENTS)
-    yield from _told(wrong, "a role goes from an element to a kind: (n)-[:{}]->(:DataCategory {{name: 'Video'}})", {})
+    yield from _errors(wrong, "a role goes from an element to a kind: (n)-[:{}]->(:DataCategory {{name: 'Video'}})", {})
     if near:
-        yield from _told(transaction.run(OF_TYPES, types=sorted(near), kinds=_ELEMENTS), "", near)
+        yield from _errors(transaction.run(OF_TYPES, types=sorted(near), kinds=_ELEMENTS), "", near)
 
 
-def _told(records: Iterable[Record], hint: str, near: Mapping[str, Collection[str]]) -> Iterator[GraphError]:
+def _errors(records: Iterable[Record], hint: str, near: Mapping[str, Collection[str]]) -> Iterator[GraphError]:
     """One error for each type, with the first of them."""
     by_type: dict[str, list[tuple[str, str]]] = defaultdict(list)
     for record in records:
@@ -86,9 +86,9 @@ def _told(records: Iterable[Record], hint: str, near: Mapping[str, Collection[st
         yield GraphError(DATABASE, 0, what, did_you_mean(near.get(name, ()), hint.format(name)))
 
 
-def _near(name: str, known: Iterable[str], like: float) -> list[str]:
+def _near(name: str, names: Iterable[str], like: float) -> list[str]:
     """Known names that one looks like, whatever its case and its ``_``."""
-    plain = {_plain(one): one for one in known}
+    plain = {_plain(one): one for one in names}
     return [plain[close] for close in nearest(_plain(name), plain, FEW, like)]
 
 
@@ -107,13 +107,13 @@ class Sealed:
         self._strange: dict[str, list[str]] = {}
 
     def problems(
-        self, name: str, labels: Iterable[str], properties: Mapping[str, Any], made: Iterable[str]
+        self, name: str, labels: Iterable[str], properties: Mapping[str, Any], made_kinds: Iterable[str]
     ) -> Iterator[GraphError]:
         """Return what is written by hand of an element and says nothing.
 
         Parameters
         ----------
-        made
+        made_kinds
             Kinds that a role says it makes of others.
         """
         ours = {label for label in labels if label in self._of}
@@ -124,13 +124,13 @@ class Sealed:
                 hint = f"{did_you_mean(close)} it would say nothing either: {self._instead(close[0])}"
                 yield GraphError(DATABASE, 0, f"{shown(name)!r} has the label {shown(label)}", hint)
         if seal_of(properties, ours) != properties.get("seal"):
-            yield self._unsealed(name, ours, properties, made)
+            yield self._unsealed(name, ours, properties, made_kinds)
 
     def _unsealed(
-        self, name: str, ours: Collection[str], properties: Mapping[str, Any], made: Iterable[str]
+        self, name: str, ours: Collection[str], properties: Mapping[str, Any], made_kinds: Iterable[str]
     ) -> GraphError:
         lists = {key: [kind for kind in _list(properties, key) if kind in self._labels] for key in SEALED}
-        lists["begins"] += made
+        lists["begins"] += made_kinds
         explained = {
             self._labels[up] + end
             for end, (key, _) in MADE_OF.items()

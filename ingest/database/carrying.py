@@ -35,7 +35,7 @@ class Moving:
 
     passed: int
     begun: int
-    made: int
+    derived: int
 
 
 def moving(analysis: Analysis) -> Iterator[Moving]:
@@ -51,13 +51,13 @@ def moving(analysis: Analysis) -> Iterator[Moving]:
         yield Moving(passed & taken, begun & taken, made & taken)
 
 
-def passed_and_made(found: Spread, vertex: int) -> tuple[int, int]:
+def passed_and_made(spread: Spread, vertex: int) -> tuple[int, int]:
     """Return what comes to an element and goes on, pseudonymised or not; and what it makes of what comes."""
-    arrives = found.arrives.get(vertex, 0)
-    passed, made = arrives & found.keeps.get(vertex, found.all_bits), 0
-    for before, after in found.derives.get(vertex, ()):
+    arrives = spread.arrives.get(vertex, 0)
+    passed, made = arrives & spread.keeps.get(vertex, spread.all_bits), 0
+    for before, after in spread.derives.get(vertex, ()):
         if arrives >> before & 1:
-            same = found.bits.category(before) == found.bits.category(after)  # pseudonymised here
+            same = spread.bits.category(before) == spread.bits.category(after)  # pseudonymised here
             made |= 0 if same else 1 << after
             passed |= 1 << after if same else 0
     return passed, made
@@ -81,15 +81,15 @@ class Carrying:
 
     def __init__(self, analysis: Analysis, labels: Sequence[Sequence[str]], stems: Mapping[str, str]) -> None:
         self._analysis = analysis
-        self._found = analysis.spread
+        self._spread = analysis.spread
         self._merged = analysis.spread.bits.merged
-        self._sources = {stems[name] + "Source": 1 << i for i, name in enumerate(self._found.categories)}
-        self._types = [carries(stems[name]) for name in self._found.categories]
-        self._stems = [stems[name] for name in self._found.categories]
+        self._sources = {stems[name] + "Source": 1 << i for i, name in enumerate(self._spread.categories)}
+        self._types = [carries(stems[name]) for name in self._spread.categories]
+        self._stems = [stems[name] for name in self._spread.categories]
         self._lists: dict[int, list[str]] = {}
         self._made_apart: dict[int, int] = {}
         self.intakes: dict[int, int] = {}
-        for vertex in sorted(self._found.arrives):
+        for vertex in sorted(self._spread.arrives):
             self._split(vertex, labels[vertex])
 
     def _split(self, vertex: int, labels: Sequence[str]) -> None:
@@ -100,7 +100,7 @@ class Carrying:
         labelled = sum(self._sources.get(label, 0) for label in dict.fromkeys(labels))
         if not labelled:
             return
-        found = self._found
+        found = self._spread
         passed, made = map(self._merged, passed_and_made(found, vertex))
         own, everywhere = self._merged(found.begins(vertex)), self._merged(found.emits.get(vertex, 0))
         differ = (passed & ~(everywhere | made)) | ((own | made) & ~passed)
@@ -110,7 +110,7 @@ class Carrying:
 
     def labels(self, vertex: int) -> list[str]:
         """Return the labels of an ``Intake``: of leaks; of a source where what it makes goes further."""
-        leaks = self.intakes[vertex] & self._merged(self._found.leaks.get(vertex, 0))
+        leaks = self.intakes[vertex] & self._merged(self._spread.leaks.get(vertex, 0))
         said = (("Source", self._made_apart[vertex]), ("Leak", leaks))
         return [self._stems[i] + suffix for suffix, kinds in said for i in bits_of(kinds)]
 
@@ -119,7 +119,7 @@ class Carrying:
         """(from, to, types of relationships), sorted; one from an element to itself where it is source and leak."""
         steps: dict[tuple[End, End], int] = defaultdict(int)
         for flow, some in zip(self._analysis.graph.flows, moving(self._analysis), strict=True):
-            passed, begun, made = self._merged(some.passed), self._merged(some.begun), self._merged(some.made)
+            passed, begun, made = self._merged(some.passed), self._merged(some.begun), self._merged(some.derived)
             split, reached = self.intakes.get(flow.source, 0), self.intakes.get(flow.target, 0)
             apart = self._made_apart.get(flow.source, 0)
             for end, kinds in (
@@ -128,15 +128,15 @@ class Carrying:
             ):
                 steps[end, (flow.target, False)] |= kinds & ~reached
                 steps[end, (flow.target, INTAKE)] |= kinds & reached
-        for vertex, bits in self._found.leaks.items():
-            leaks, made = self._merged(bits), self._merged(passed_and_made(self._found, vertex)[1])
+        for vertex, bits in self._spread.leaks.items():
+            leaks, made = self._merged(bits), self._merged(passed_and_made(self._spread, vertex)[1])
             apart = self._made_apart.get(vertex, 0)
-            own = self._merged(self._found.begins(vertex)) | made & ~apart
+            own = self._merged(self._spread.begins(vertex)) | made & ~apart
             steps[(vertex, False), (vertex, False)] |= own & leaks
             steps[(vertex, INTAKE), (vertex, INTAKE)] |= made & apart & leaks
-        return [(*ends, self._named(kinds)) for ends, kinds in sorted(steps.items()) if kinds]
+        return [(*ends, self._names_of(kinds)) for ends, kinds in sorted(steps.items()) if kinds]
 
-    def _named(self, kinds: int) -> list[str]:
+    def _names_of(self, kinds: int) -> list[str]:
         if kinds not in self._lists:
             self._lists[kinds] = [self._types[i] for i in bits_of(kinds)]
         return self._lists[kinds]

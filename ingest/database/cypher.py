@@ -178,8 +178,8 @@ COUNT_RECORDS = (
     f"UNWIND $ids AS id MATCH {_node('b', BAG, 'id')}{_TOPIC} WHERE EXISTS {{ (t)-[:{quoted(RECORDS.type)}]->() }} "
     "RETURN count(t) AS linked"
 )
-_THERE = f"MATCH (b:{quoted(BAG.label)}) WHERE b.`id` = $path OR b.`id` STARTS WITH $path + '/'"
+_BAGS_THERE = f"MATCH (b:{quoted(BAG.label)}) WHERE b.`id` = $path OR b.`id` STARTS WITH $path + '/'"
 DELETE_BAGS = (
-    f"{_THERE} OPTIONAL MATCH (b){_TOPIC} WITH b, b.`id` AS id, collect(t) AS topics "
+    f"{_BAGS_THERE} OPTIONAL MATCH (b){_TOPIC} WITH b, b.`id` AS id, collect(t) AS topics "
     "FOREACH (t IN topics | DETACH DELETE t) DETACH DELETE b RETURN id ORDER BY id"
 )

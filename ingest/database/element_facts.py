@@ -110,19 +110,19 @@ def types_properties(types: Iterable[MessageType], robot: str) -> Row:
     }
 
 
-def _type_as_json(each: MessageType, robot: str) -> Row:
+def _type_as_json(message_type: MessageType, robot: str) -> Row:
     facts = {
-        "stated": each.stated,
-        "hash": each.hash,
-        "writers": list(each.writers),
-        "readers": list(each.readers),
-        "first": each.first,
-        "last": each.last,
-        "file": each.place.file,
-        "line": each.place.line,
-        "robot": each.robot if each.robot != robot else "",
+        "stated": message_type.stated,
+        "hash": message_type.hash,
+        "writers": list(message_type.writers),
+        "readers": list(message_type.readers),
+        "first": message_type.first,
+        "last": message_type.last,
+        "file": message_type.place.file,
+        "line": message_type.place.line,
+        "robot": message_type.robot if message_type.robot != robot else "",
     }
-    return {"type": each.name, **{key: value for key, value in facts.items() if value}}
+    return {"type": message_type.name, **{key: value for key, value in facts.items() if value}}
 
 
 def types_of(properties: Properties, robot: str) -> tuple[MessageType, ...]:

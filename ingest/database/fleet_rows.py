@@ -55,7 +55,7 @@ def robot_rows(
     analysis: Analysis,
     bound: Bound,
     vocabulary: Vocabulary,
-    more: Mapping[str, Any] | None = None,
+    extra: Mapping[str, Any] | None = None,
     beyond: Beyond | None = None,
 ) -> RobotRows:
     """Return the rows of one robot.
@@ -70,7 +70,7 @@ def robot_rows(
         The statements that it rests on.
     """
     placed = Placed(analysis.graph, bound, Likeness({"": (robot,)}), {"": analysis.graph.profiles})
-    known = {"verdict": str(analysis.verdict), **(more or {})}
+    known = {"verdict": str(analysis.verdict), **(extra or {})}
     properties, parts = FleetRows(placed, analysis, vocabulary, {"": known}, beyond=beyond).parts("", robot)
     del parts["foreign"]  # there is no other robot
     return rows_of(robot, properties, parts)
@@ -107,14 +107,14 @@ class FleetRows:
         placed: Placed,
         analysis: Analysis,
         vocabulary: Vocabulary,
-        more: Mapping[str, Mapping[str, Any]],
+        extra: Mapping[str, Mapping[str, Any]],
         most_across: int | None = None,
         not_read: Iterable[str] = (),
         beyond: Beyond | None = None,
         counts: Mapping[str, int] | None = None,
     ) -> None:
         most_across = MOST_ACROSS if most_across is None else most_across
-        self._more, self._beyond = more, beyond
+        self._extra, self._beyond = extra, beyond
         self._not_read = frozenset(not_read)
         self._placed = placed
         self._analysis = analysis
@@ -200,7 +200,7 @@ class FleetRows:
             "shared": True if part else None,
             "part": part,
             **processing_properties(stated),
-            **self._more.get(owner, {}),
+            **self._extra.get(owner, {}),
             **({"beyond": len(parts["beyond"].findings)} if self._beyond else {}),
         }
         if "verdict" not in properties and part != DOMAIN:
@@ -286,7 +286,7 @@ class FleetRows:
             if finding.source.robot != owner or not self._likeness.count(finding):
                 continue
             leaks = ids.expanded(finding.leak.robot)
-            for robot in self._some(owner, name, leaks) if self._across_too_often(finding) else leaks:
+            for robot in self._sample(owner, name, leaks) if self._across_too_often(finding) else leaks:
                 row, steps = self._finding_row(finding, ids, _Moved(finding, name, robot, self._likeness))
                 rows.append(row)
                 across += steps
@@ -315,7 +315,7 @@ class FleetRows:
     def _contexts(self) -> Contexts:
         return Contexts.of(self._graph, self._placed.bound, self._vocabulary.categories)
 
-    def _some(self, owner: str, name: str, leaks: list[str]) -> list[str]:
+    def _sample(self, owner: str, name: str, leaks: list[str]) -> list[str]:
         """Some of the robots where data of one robot ends: one, or so that each of them has data of some robot."""
         if not self._at_either_end:
             return leaks[:1]

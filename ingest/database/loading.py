@@ -197,19 +197,19 @@ def _policies(assumptions: str | None) -> frozenset[tuple[str, str]]:
     return frozenset((entry["file"], entry["sha256"]) for entry in said.get("policies", ()))
 
 
-def _changed(there: Mapping[str, _There], batch: list[RobotRows]) -> list[RobotRows]:
-    known = {name: robot.digest for name, robot in there.items()}
+def _changed(stored: Mapping[str, _There], batch: list[RobotRows]) -> list[RobotRows]:
+    known = {name: robot.digest for name, robot in stored.items()}
     return [rows for rows in sorted(batch, key=lambda rows: rows.robot) if known.get(rows.robot) != rows.digest]
 
 
-def _of_other_policies(there: Mapping[str, _There], robots: Iterable[RobotRows]) -> dict[str, Collection[str]]:
+def _of_other_policies(stored: Mapping[str, _There], robots: Iterable[RobotRows]) -> dict[str, Collection[str]]:
     """Robots that are to be replaced, and were loaded from other files; a file more or less that is included is none.
 
     Files of other names with the same contents are the same.
     """
     replaced: dict[str, Collection[str]] = {}
     for rows in robots:
-        before = there[rows.robot].policies if rows.robot in there else frozenset()
+        before = stored[rows.robot].policies if rows.robot in stored else frozenset()
         now = _policies(rows.properties.get("assumptions"))
         (old, contents), (new, same) = (
             [{entry[part] for entry in files} for part in (0, 1)] for files in (before, now)
@@ -314,10 +314,10 @@ def delete_beyond(transaction: ManagedTransaction, names: list[str]) -> None:
         run(transaction, statement, names=names)
 
 
-def write(transaction: ManagedTransaction, statement: str, rows: Sequence[Row | str], **more: Any) -> None:
+def write(transaction: ManagedTransaction, statement: str, rows: Sequence[Row | str], **values: Any) -> None:
     """Run a statement over rows, ``BATCH`` at a time."""
     for start in range(0, len(rows), BATCH):
-        run(transaction, statement, rows=rows[start : start + BATCH], **more)
+        run(transaction, statement, rows=rows[start : start + BATCH], **values)
 
 
 def run(transaction: ManagedTransaction, statement: str, **parameters: Any) -> None:

@@ -75,8 +75,12 @@ def denied(flow: Flow) -> Row:
 
 def _grant_as_json(grant: Grant) -> Row:
     row: Row = {"file": grant.place.file, "line": grant.place.line, "enclave": grant.enclave, "profile": grant.node}
-    if grant.seen:
-        row |= {"seen_by": list(grant.seen.by), "first_seen": grant.seen.first, "last_seen": grant.seen.last}
+    if grant.observation:
+        row |= {
+            "seen_by": list(grant.observation.by),
+            "first_seen": grant.observation.first,
+            "last_seen": grant.observation.last,
+        }
     return row
 
 
@@ -117,13 +121,13 @@ def _grants(lines: Iterable[Properties], role: str, channel: Element, *, allow: 
             enclave=str(line.get("enclave") or ""),
             node=str(line.get("profile") or ""),
             place=Place(str(line["file"]), int(line.get("line") or 0)),
-            seen=_seen(line),
+            observation=_seen_in_use(line),
         )
         for line in lines
     )
 
 
-def _seen(line: Properties) -> Seen | None:
+def _seen_in_use(line: Properties) -> Seen | None:
     """When a line of an observed policy was seen in use (rule S16)."""
     if not line.get("first_seen"):
         return None

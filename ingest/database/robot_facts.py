@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 FILES = ("policies", "labels", "fleet")
 ROBOTS = "MATCH (r:Robot) RETURN r.name AS name, r.version AS version, r.schema AS schema"
 HINT = "load it again from its files, with rosprivacy load"
-NAMED = 5  # robots in a message
+SHOWN_AT_MOST = 5  # robots in a message
 
 
 def diagnostics_text(diagnostics: Iterable[Diagnostic]) -> str:
@@ -81,7 +81,9 @@ def of_other_schemas(robots: Iterable[Mapping[str, Any]]) -> str:
     others = {name: schema for name, schema in sorted(others.items()) if schema != SCHEMA}
     if not others:
         return ""
-    names = ", ".join(map(shown, list(others)[:NAMED])) + (f" and {len(others) - NAMED:,} more" * (len(others) > NAMED))
+    names = ", ".join(map(shown, list(others)[:SHOWN_AT_MOST])) + (
+        f" and {len(others) - SHOWN_AT_MOST:,} more" * (len(others) > SHOWN_AT_MOST)
+    )
     which = "an earlier version" if all((schema or 1) < SCHEMA for schema in others.values()) else "another version"
     return (
         f"{'robot' if len(others) == 1 else 'robots'} {names} {'was' if len(others) == 1 else 'were'} loaded by {which}"

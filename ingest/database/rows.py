@@ -178,13 +178,13 @@ class Roles:
         self._hierarchy = vocabulary.hierarchy
         self._labels = labels
         self._top = [name for name, above in self._hierarchy.ancestors.items() if len(above) == 1]
-        self._known: dict[tuple[Statement, ...], tuple[list[str], list[str]]] = {}
+        self._numbers: dict[tuple[Statement, ...], tuple[list[str], list[str]]] = {}
 
     def of(self, statements: tuple[Statement, ...]) -> tuple[list[str], list[str]]:
         """(kinds that leak, kinds that are cleaned)."""
-        if statements not in self._known:
-            self._known[statements] = self._decided(statements, "leak"), self._decided(statements, "sanitizer")
-        return self._known[statements]
+        if statements not in self._numbers:
+            self._numbers[statements] = self._decided(statements, "leak"), self._decided(statements, "sanitizer")
+        return self._numbers[statements]
 
     def labels(self, statements: tuple[Statement, ...], gets: Iterable[str]) -> list[str]:
         """The labels of what is made, let out and cleaned; leaks of kinds that get there or that somebody names.
@@ -255,7 +255,7 @@ def flow_results(analysis: Analysis, names: Names) -> Iterator[Row]:
             "carries": names.broad(spread.along(index)),
             "passes": names.exact(moved.passed) or None,
             "begins": names.exact(moved.begun) or None,
-            "made": names.exact(moved.made) or None,
+            "made": names.exact(moved.derived) or None,
             "stops": names.exact(_stopped(spread, spread.passing(index))) or None,
         }
 

@@ -202,14 +202,14 @@ class _Changes:
         write(transaction, cypher.MERGE_INTAKES, self._intakes, labels=sorted(self._ours))
         new = {ends: types for robot in robots for ends, types in self._carried.get(robot, {}).items()}
         old = {(a, b): set(types) for a, b, types in transaction.run(cypher.READ_CARRIES, names=robots)}
-        write(transaction, cypher.DELETE_CARRIES, _more(old, new))
-        write(transaction, cypher.CREATE_CARRIES, _more(new, old))
+        write(transaction, cypher.DELETE_CARRIES, _additions(old, new))
+        write(transaction, cypher.CREATE_CARRIES, _additions(new, old))
         run(transaction, cypher.DELETE_INTAKES, names=robots, ids=[row["id"] for row in self._intakes])
 
 
-def _more(some: Mapping[tuple[str, str], set[str]], others: Mapping[tuple[str, str], set[str]]) -> list[Row]:
+def _additions(present: Mapping[tuple[str, str], set[str]], former: Mapping[tuple[str, str], set[str]]) -> list[Row]:
     """What goes between two ends in one and not in the other."""
-    more = {ends: types - others.get(ends, set()) for ends, types in some.items()}
+    more = {ends: types - former.get(ends, set()) for ends, types in present.items()}
     return [{"source": a, "target": b, "types": sorted(types)} for (a, b), types in more.items() if types]
 
 

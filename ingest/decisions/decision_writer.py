@@ -144,12 +144,12 @@ def _in_brackets(names: Iterable[str]) -> CommentedSeq:
     return made
 
 
-def _change(there: Any, entry: Mapping[str, Any]) -> None:
+def _change(previous: Any, entry: Mapping[str, Any]) -> None:
     """Say it anew; what was said before stays in the ``history`` of the entry, the latest last."""
-    before = {key: there[key] for key in there if key not in (*TARGET, *OF_DOUBTS, "history", "note")}
+    before = {key: previous[key] for key in previous if key not in (*TARGET, *OF_DOUBTS, "history", "note")}
     if any(before.get(key) != value for key, value in entry.items() if key not in (*TARGET, *OF_DOUBTS, "date")):
-        there.setdefault("history", CommentedSeq()).append(CommentedMap(deepcopy(before)))  # no alias
-    there.update(entry)
+        previous.setdefault("history", CommentedSeq()).append(CommentedMap(deepcopy(before)))  # no alias
+    previous.update(entry)
 
 
 def _entries(top: Any, section: str) -> Any:

@@ -160,10 +160,10 @@ class _Reader(FileReader):
         about = self._made_about(said) if "made_about" in said else None
         return Decision(choice, Place(self.file, item.line), legal_basis=basis, made_about=about, **texts)
 
-    def _made_about(self, said: dict[str, Value]) -> About | None:
+    def _made_about(self, entries: dict[str, Value]) -> About | None:
         """What was there when it was decided; ``rosprivacy decide --report`` writes it."""
-        value = said["made_about"]
-        if "id" not in said:
+        value = entries["made_about"]
+        if "id" not in entries:
             self.problem(value.line, "made_about without an id", "remove it: names and globs are about what there is")
         elif value.kind != "map":
             self.problem(value.line, f"made_about is a map, not a {value.kind}", "remove it, or decide anew")
@@ -197,23 +197,23 @@ class _Reader(FileReader):
             self.problem(value.line, f"decision {shown(value.text or value.kind)!r}", hint)
         return Choice.MITIGATE
 
-    def _target(self, item: Value, said: dict[str, Value], texts: dict[str, Any]) -> None:
+    def _target(self, item: Value, entries: dict[str, Value], texts: dict[str, Any]) -> None:
         if not any(texts.get(key) for key in ("id", "category", "source", "leak")):
             self.problem(item.line, "a decision about everything", "name an id, a category, a source or a leak")
         if texts.get("id"):
-            line = said["id"].line
+            line = entries["id"].line
             if not is_id(texts["id"]):
                 self.problem(line, f"id {shown(texts['id'])!r}", "copy the 16 digits and letters of a finding")
-            form = said["pseudonymised"].text if "pseudonymised" in said else ""
+            form = entries["pseudonymised"].text if "pseudonymised" in entries else ""
             robots = (frozenset(texts.get(key, ())) for key in LISTS)
             first = self.ids.setdefault((texts["id"], form, *robots), line)
             if first != line:
                 self.problem(line, f"{texts['id']} again, first in line {first}", "keep one")
         for one, several in (("robot", "robots"), ("from_robot", "from_robots")):
-            if one in said and several in said:
-                self.problem(said[several].line, f"{one} and {several}", "keep one of the two")
+            if one in entries and several in entries:
+                self.problem(entries[several].line, f"{one} and {several}", "keep one of the two")
         if texts.get("category"):
-            texts["category"] = self.category_of_name(self.vocabulary, texts["category"], said["category"].line)
+            texts["category"] = self.category_of_name(self.vocabulary, texts["category"], entries["category"].line)
 
     def _text(self, value: Value, key: str) -> str:
         if value.kind == "number" and key in ("id", "ticket"):  # 1234567812345678 is an id too

@@ -170,11 +170,11 @@ class _Reader(FileReader):
         rules = tuple(self._rule(value) for value in lists["rules"])
         subjects = tuple(self._subject(value) for value in lists["subjects"])
         policies = tuple(self._policy(value) for value in lists["policies"])
-        self._once((rule.id, rule.place) for rule in rules)
-        self._once((subject.id, subject.place) for subject in subjects)
-        self._once((policy.id, policy.place) for policy in policies if policy.id)
+        self._without_repeats((rule.id, rule.place) for rule in rules)
+        self._without_repeats((subject.id, subject.place) for subject in subjects)
+        self._without_repeats((policy.id, policy.place) for policy in policies if policy.id)
         if all(lists.values()):  # otherwise Zenoh looks at none of them
-            self._known(policies, {rule.id for rule in rules}, {subject.id for subject in subjects})
+            self._of_known_kind(policies, {rule.id for rule in rules}, {subject.id for subject in subjects})
         place = Place(self.file, section.line)
         return AccessFile(self.file, enabled, allow, rules, subjects, policies, place, namespace)
 
@@ -188,7 +188,7 @@ class _Reader(FileReader):
 
     def _rule(self, value: Value) -> AccessRule:
         parts = self._parts(value, ("id", "permission", "messages", "flows", "key_exprs"))
-        self._needed(value, parts, ("id", "permission", "messages", "key_exprs"))
+        self._required(value, parts, ("id", "permission", "messages", "key_exprs"))
         keys = [(item.text, Place(self.file, item.line)) for item in self._texts(parts.get("key_exprs"))]
         for key, place in keys:
             problem = problem_of(key)
@@ -205,7 +205,7 @@ class _Reader(FileReader):
 
     def _subject(self, value: Value) -> AccessSubject:
         parts = self._parts(value, ("id", *PROPERTIES))
-        self._needed(value, parts, ("id",))
+        self._required(value, parts, ("id",))
         properties = []
         for name in PROPERTIES:
             if name in parts:
@@ -220,18 +220,18 @@ class _Reader(FileReader):
 
     def _policy(self, value: Value) -> AccessPolicy:
         parts = self._parts(value, ("id", "rules", "subjects"))
-        self._needed(value, parts, ("rules", "subjects"))
+        self._required(value, parts, ("rules", "subjects"))
         rules, subjects = (tuple(item.text for item in self._texts(parts.get(name))) for name in ("rules", "subjects"))
         return AccessPolicy(self._id(parts), rules, subjects, Place(self.file, value.line))
 
-    def _parts(self, value: Value, known: tuple[str, ...]) -> dict[str, Value]:
+    def _parts(self, value: Value, keys: tuple[str, ...]) -> dict[str, Value]:
         """What a map states; null is as good as nothing."""
         if value.kind != "map":
-            self.problem(value.line, f"a {value.kind} where a map belongs", f"write {{…}} with {', '.join(known)}")
+            self.problem(value.line, f"a {value.kind} where a map belongs", f"write {{…}} with {', '.join(keys)}")
             return {}
-        return {key: part for key, _, part in self.entries_of(value, known) if part.kind != "empty"}
+        return {key: part for key, _, part in self.entries_of(value, keys) if part.kind != "empty"}
 
-    def _needed(self, value: Value, parts: dict[str, Value], names: Iterable[str]) -> None:
+    def _required(self, value: Value, parts: dict[str, Value], names: Iterable[str]) -> None:
         for name in names:
             if value.kind == "map" and name not in parts:
                 self.problem(value.line, f"no {name!r}", f"add {name}: …")
@@ -251,16 +251,16 @@ class _Reader(FileReader):
                 self.problem(item.line, f"a {item.kind} where a text belongs", "write it in quotes")
         return [item for item in items if item.kind == "text"]
 
-    def _words(self, value: Value | None, known: tuple[str, ...]) -> tuple[str, ...]:
+    def _words(self, value: Value | None, words: tuple[str, ...]) -> tuple[str, ...]:
         items = self._texts(value)
         for item in items:
-            self._chosen(item, dict.fromkeys(known, True))
+            self._chosen(item, dict.fromkeys(words, True))
         return tuple(dict.fromkeys(item.text for item in items))
 
-    def _chosen(self, value: Value, known: dict[str, bool], kind: str = "text") -> bool:
-        if value.kind == kind and value.text in known:
-            return known[value.text]
-        self.problem(value.line, f"{shown(value.text or value.kind)!r}", f"write one of {', '.join(known)}")
+    def _chosen(self, value: Value, words: dict[str, bool], kind: str = "text") -> bool:
+        if value.kind == kind and value.text in words:
+            return words[value.text]
+        self.problem(value.line, f"{shown(value.text or value.kind)!r}", f"write one of {', '.join(words)}")
         return False
 
     def _id(self, parts: dict[str, Value]) -> str:
@@ -270,14 +270,14 @@ class _Reader(FileReader):
             self.problem(parts["id"].line, "an id that is no text, or empty", "write a name in quotes")
         return parts["id"].text
 
-    def _once(self, ids: Iterable[tuple[str, Place]]) -> None:
+    def _without_repeats(self, ids: Iterable[tuple[str, Place]]) -> None:
         first: dict[str, Place] = {}
         for one, place in ids:
             if one in first:
                 self.problem(place.line, f"id {shown(one)!r} again, first in line {first[one].line}", "rename one")
             first.setdefault(one, place)
 
-    def _known(self, policies: Iterable[AccessPolicy], rules: set[str], subjects: set[str]) -> None:
+    def _of_known_kind(self, policies: Iterable[AccessPolicy], rules: set[str], subjects: set[str]) -> None:
         for policy in policies:
             for what, named, there in (("rule", policy.rules, rules), ("subject", policy.subjects, subjects)):
                 for name in named:

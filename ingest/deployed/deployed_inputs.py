@@ -49,7 +49,7 @@ if TYPE_CHECKING:
 PERMISSIONS_FILE, GOVERNANCE_FILE, CERTIFICATE = "permissions.p7s", "governance.p7s", "cert.pem"
 FILES = (".p7s", ".pem")
 PERMISSIONS_CA, IDENTITY_CA = "permissions_ca.cert.pem", "identity_ca.cert.pem"
-CALLED = {PERMISSIONS_CA: "the permissions CA", IDENTITY_CA: "the identity CA"}
+CA_NAMES = {PERMISSIONS_CA: "the permissions CA", IDENTITY_CA: "the identity CA"}
 PINNED = "it is that of --permissions-ca"
 NOT_PINNED = "it lies beside what it signed, so nothing shows whose it is (--permissions-ca pins it)"
 PIN = "find out who made it; correct the option, or the keystore"
@@ -60,7 +60,7 @@ ALONE = "not verified with --permissions-ca, since it is named without its keyst
 Hashed = tuple[str, str]
 """A file and its SHA-256."""
 Read = tuple[tuple["Policy", ...], tuple["Diagnostic", ...]]
-_Found = tuple[list["Policy"], list["Diagnostic"]]
+_Granted = tuple[list["Policy"], list["Diagnostic"]]
 
 
 def read_deployed(
@@ -127,7 +127,7 @@ class _Reading(NamedTuple):
     besides: tuple[str, ...]
     pins: frozenset[str]
 
-    def keystore(self, folder: str) -> _Found:
+    def keystore(self, folder: str) -> _Granted:
         """What a keystore grants; each enclave has a governance beside it."""
         keystore = _Keystore(folder, self)
         policies: list[Policy] = []
@@ -140,7 +140,7 @@ class _Reading(NamedTuple):
         remarks += self._remarks([enclave.permissions for enclave in enclaves])
         return policies, sorted(remarks, key=lambda d: (d.place.file, d.place.line, d.message))
 
-    def alone(self, names: Iterable[str]) -> _Found:
+    def alone(self, names: Iterable[str]) -> _Granted:
         """What files by themselves grant; each governance counts for the domains that its rules name."""
         if self.pins:
             raise InputErrors([PolicyError(name, 0, ALONE, "name the keystore") for name in names])
@@ -158,14 +158,14 @@ class _Reading(NamedTuple):
         return policies, [*remarks, *self._remarks(read)]
 
     def _granted(
-        self, permissions: Permissions, sources: tuple[tuple[str, str], ...], found: Iterable[Governed]
+        self, permissions: Permissions, sources: tuple[tuple[str, str], ...], policies: Iterable[Governed]
     ) -> Iterator[Policy]:
         """What permissions grant, and in the enforced view what governance leaves open beside it."""
-        found = tuple(found)
+        policies = tuple(policies)
         granted = policy_of(permissions, self.domain, sources)
-        yield replace(granted, protections=tuple(protection(one.rule) for one in found))
+        yield replace(granted, protections=tuple(protection(one.rule) for one in policies))
         if View(self.view) is View.enforced:
-            for one in found:
+            for one in policies:
                 yield open_topics(one.file, one.rule, granted.profiles, granted.sources)
 
     def _remarks(self, stated: Sequence[Permissions]) -> Iterator[Diagnostic]:
@@ -196,7 +196,7 @@ class _Keystore:
         """Read all enclaves, also such as a certificate alone stands in; raise every problem."""
         inside = contents(str(Path(self.folder) / "enclaves")) or Contents()
         unread = {Path(error.file): error for error in inside.problems}
-        paths = (*map(Path, inside.files | (inside.others - inside.hidden)), *unread)
+        paths = (*map(Path, inside.files | (inside.passed_over - inside.hidden)), *unread)
         folders = sorted({path.parent for path in paths if path.name in (PERMISSIONS_FILE, CERTIFICATE)})
         self.problems += (error for path, error in unread.items() if path.suffix not in FILES)  # of others who reads it
         if not (folders or self.problems):
@@ -213,7 +213,7 @@ class _Keystore:
         """Return a CA; a permissions CA that is not pinned is none."""
         if name not in self.authorities:
             file = str(Path(self.folder) / "public" / name)
-            read = read_authority(file, CALLED[name])
+            read = read_authority(file, CA_NAMES[name])
             others = [fingerprint for fingerprint in read.fingerprints if fingerprint not in self.how.pins]
             if name == PERMISSIONS_CA and self.how.pins and others:
                 what = f"not the CA of --permissions-ca: its SHA-256 fingerprint is {others[0]}"

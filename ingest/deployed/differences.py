@@ -86,7 +86,7 @@ def differences(
     )
     found: set[Difference] = set()
     for enclave in sorted({*ours, *theirs}):
-        first, second = ours.get(enclave, _NONE), theirs.get(enclave, _NONE)
+        first, second = ours.get(enclave, _NO_RIGHTS), theirs.get(enclave, _NO_RIGHTS)
         for one, other, is_stated in ((first, second, True), (second, first, False)):
             for grant, end in one.rights():
                 if end.dds != ADDED and not other.holds(end, one.takes_out(grant, end)):
@@ -148,7 +148,7 @@ class _Rights:
         return False
 
 
-_NONE = _Rights(())
+_NO_RIGHTS = _Rights(())
 
 
 class Loss(NamedTuple):
@@ -168,7 +168,7 @@ class Loss(NamedTuple):
 
 
 def generator_losses(
-    stated: Iterable[Policy], deployed: Iterable[Policy], found: Iterable[Difference], who: Callable[[Grant], str]
+    stated: Iterable[Policy], deployed: Iterable[Policy], differences: Iterable[Difference], who: Callable[[Grant], str]
 ) -> tuple[Loss, ...]:
     """Return the differences that the known generator makes, by the line that does not hold.
 
@@ -186,7 +186,7 @@ def generator_losses(
     files = {profile.enclave: profile.place.file for policy in deployed for profile in policy.profiles}
     missing: dict[str, list[Difference]] = defaultdict(list)
     more: dict[str, list[Difference]] = defaultdict(list)
-    for one in found:
+    for one in differences:
         (missing if one.stated else more)[one.enclave].append(one)
     losses: list[Loss] = list(_profiles(stated, files))
     for name, grants in _by_name(stated, who).items():
@@ -198,10 +198,10 @@ def generator_losses(
     return tuple(sorted(set(losses)))
 
 
-def _deny(grant: Grant, grants: Iterable[Grant], more: Iterable[Difference]) -> Iterator[Loss]:
+def _deny(grant: Grant, grants: Iterable[Grant], differences: Iterable[Difference]) -> Iterator[Loss]:
     """A DENY of which the list allows something."""
     for end in _ends(grant):
-        for extra in more:
+        for extra in differences:
             if extra.writes != end.writes or not overlaps(end.dds, extra.dds):
                 continue
             ends = (other for one in grants if one.allow for other in _ends(one))
@@ -213,7 +213,7 @@ def _deny(grant: Grant, grants: Iterable[Grant], more: Iterable[Difference]) -> 
 
 
 def _lost(
-    grant: Grant, missing: Iterable[Difference], grants: Iterable[Grant], there: list[Grant], file: str
+    grant: Grant, missing: Iterable[Difference], grants: Iterable[Grant], listed: list[Grant], file: str
 ) -> Iterator[Loss]:
     """An ALLOW that the list does not have, or not under this name."""
     lacking = {(one.writes, one.dds) for one in missing}
@@ -225,7 +225,7 @@ def _lost(
         return
     namespace = grant.node.rpartition("/")[0]
     plain = {(end.writes, end.dds) for end in _ends(grant, grant.name.removeprefix(namespace))}
-    have = {(end.writes, end.dds) for one in there if one.allow for end in _ends(one)}
+    have = {(end.writes, end.dds) for one in listed if one.allow for end in _ends(one)}
     if namespace and not grant.absolute and grant.name.startswith(f"{namespace}/") and have.issuperset(plain):
         yield _of_grant(grant, NAMESPACE, f"{shown(file)} has {shown(grant.name.removeprefix(namespace))}")
     elif any(_other_role(one, grant) for one in grants):
@@ -247,10 +247,10 @@ def _profiles(stated: Iterable[Policy], files: dict[str, str]) -> Iterator[Loss]
                 yield _of_profile(profile, ENCLAVE, f"enclave {shown(profile.enclave)} has no list for it here")
 
 
-def _below(more: Iterable[Difference], there: Iterable[Grant]) -> Iterator[Loss]:
+def _below(differences: Iterable[Difference], listed: Iterable[Grant]) -> Iterator[Loss]:
     """Names below a name that the same line of a list opens."""
-    opened = {(grant.place, grant.role == "publish", grant.name) for grant in there if grant.allow}
-    for extra in more:
+    opened = {(grant.place, grant.role == "publish", grant.name) for grant in listed if grant.allow}
+    for extra in differences:
         base = extra.dds.removesuffix("/*")
         if base != extra.dds and (extra.place, extra.writes, base) in opened:
             message = f"line {_at(extra.place)} opens all names below {shown(extra.name.removesuffix('/*'))} too"
@@ -261,9 +261,9 @@ def _ends(grant: Grant, name: str = "") -> tuple[Endpoint, ...]:
     return endpoints(grant.role, grant.kind, name or grant.name)
 
 
-def _other_role(one: Grant, grant: Grant) -> bool:
+def _other_role(line: Grant, grant: Grant) -> bool:
     """Whether two lines are one element with two roles."""
-    return one.allow and one.role != grant.role and (one.place, one.kind, one.name, one.node) == (
+    return line.allow and line.role != grant.role and (line.place, line.kind, line.name, line.node) == (
         grant.place, grant.kind, grant.name, grant.node,
     )  # fmt: skip
 

@@ -130,7 +130,7 @@ def read_governance(data: bytes, file: str, before: int = 0) -> Governance:
 
 
 def _domain_rule(rule: Section) -> DomainRule:
-    parts = {tag: rule.one(tag, OF_DOMAIN) for tag in OF_DOMAIN}
+    parts = {tag: rule.child(tag, OF_DOMAIN) for tag in OF_DOMAIN}
     domains, topics = parts["domains"], parts["topic_access_rules"]
     return DomainRule(
         domains.domains() if domains else NOWHERE,
@@ -143,7 +143,7 @@ def _domain_rule(rule: Section) -> DomainRule:
 
 
 def _topic_rule(rule: Section) -> TopicRule:
-    parts = {tag: _optional(rule, tag) if tag in LATER else rule.one(tag, OF_TOPIC) for tag in OF_TOPIC}
+    parts = {tag: _optional(rule, tag) if tag in LATER else rule.child(tag, OF_TOPIC) for tag in OF_TOPIC}
     expression = parts["topic_expression"]
     if expression and not expression.text:
         rule.source.problem(expression.element, "<topic_expression> is empty", "write an expression, or * for all")

@@ -107,7 +107,7 @@ def read_permissions(data: bytes, file: str, before: int = 0) -> Permissions:
 
 def _subject_grant(grant: Section) -> SubjectGrant:
     tags = {"subject_name", "validity", "default", *RULES}
-    parts = {tag: grant.one(tag, tags) for tag in ("subject_name", "validity", "default")}
+    parts = {tag: grant.child(tag, tags) for tag in ("subject_name", "validity", "default")}
     subject, validity, default = parts["subject_name"], parts["validity"], parts["default"]
     if subject and not subject.text.strip():
         grant.source.problem(subject.element, "<subject_name> is empty", "write the subject of a certificate")
@@ -128,7 +128,7 @@ def _subject_grant(grant: Section) -> SubjectGrant:
 def _ends(validity: Section | None) -> tuple[Section | None, Section | None]:
     if validity is None:
         return None, None
-    return validity.one("not_before", {"not_after"}), validity.one("not_after", {"not_before"})
+    return validity.child("not_before", {"not_after"}), validity.child("not_after", {"not_before"})
 
 
 def _time(end: Section | None) -> datetime:
@@ -148,7 +148,7 @@ def _time(end: Section | None) -> datetime:
 
 
 def _rule(rule: Section) -> Rule:
-    domains = rule.one("domains", CRITERIA)
+    domains = rule.child("domains", CRITERIA)
     criteria = tuple(_criterion(child) for child in rule.children({"domains", *CRITERIA}) if child.tag in CRITERIA)
     return Rule(RULES[rule.tag], domains.domains() if domains else NOWHERE, criteria, rule.place)
 
@@ -159,15 +159,15 @@ def _criterion(criterion: Section) -> Criterion:
     tags = False
     for part in criterion.children({"topics", "partitions", "data_tags"}):
         if part.tag == "topics":
-            topics += ((name.text, name.place) for name in _named(part, "topic"))
+            topics += ((name.text, name.place) for name in _domains_named(part, "topic"))
         elif part.tag == "partitions":
-            partitions += (name.text for name in _named(part, "partition"))
+            partitions += (name.text for name in _domains_named(part, "partition"))
         else:
             tags = True
     return Criterion(criterion.tag, tuple(topics), tuple(partitions), tags, criterion.place)
 
 
-def _named(part: Section, tag: str) -> Iterator[Section]:
+def _domains_named(part: Section, tag: str) -> Iterator[Section]:
     names = list(part.children({tag}))
     if not names:
         part.source.problem(part.element, f"<{part.tag}> is empty", f"add a <{tag}>")

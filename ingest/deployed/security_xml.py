@@ -86,23 +86,23 @@ class Domains:
         return written(self.spans)
 
 
-def common(one: Spans, other: Spans) -> Spans:
+def common(spans: Spans, other: Spans) -> Spans:
     """Return what is in both.
 
     >>> common(((0, 5), (9, 9)), ((3, 7),))
     ((3, 5),)
     """
-    both = ((max(a, c), min(b, d)) for a, b in one for c, d in other)
+    both = ((max(a, c), min(b, d)) for a, b in spans for c, d in other)
     return tuple(sorted({(first, last) for first, last in both if first <= last}))
 
 
-def without(spans: Spans, taken: Spans) -> Spans:
+def without(spans: Spans, excluded: Spans) -> Spans:
     """Return what is left when some domains are taken out.
 
     >>> without(((0, 9),), ((3, 4), (9, 20)))
     ((0, 2), (5, 8))
     """
-    for low, high in taken:
+    for low, high in excluded:
         spans = tuple(
             (first, last)
             for start, end in spans
@@ -185,7 +185,7 @@ def security_entries(data: bytes, source: Source, section: str, entry: str) -> l
     if top.tag != "dds":
         source.problem(root, f"the root element is <{shown(top.tag)}>, not <dds>", f"name a file with <{section}>")
         return []
-    found = top.one(section)
+    found = top.child(section)
     entries = list(found.children({entry})) if found else []
     if found and not entries:
         source.problem(found.element, f"<{section}> is empty", f"add a <{entry}>")
@@ -224,7 +224,7 @@ class Section:
                 expected = " or ".join(f"<{name}>" for name in sorted(allowed))
                 self.source.problem(element, f"<{shown(child.tag)}> in <{self.tag}>", f"here comes {expected}")
 
-    def one(self, tag: str, among: Collection[str] = ()) -> Section | None:
+    def child(self, tag: str, among: Collection[str] = ()) -> Section | None:
         """Return the child of a name, others of which are ``among``; that it is missing or there twice is a problem."""
         found = [child for child in self.children({tag, *among}) if child.tag == tag]
         if not found:

@@ -119,7 +119,7 @@ def read_authority(file: str, what: str) -> Authority:
     return Authority(file, pem, hashlib.sha256(data).hexdigest(), tuple(fingerprints))
 
 
-def pinned(named: tuple[str, ...]) -> frozenset[str]:
+def pinned(stated: tuple[str, ...]) -> frozenset[str]:
     """Return the fingerprints of CAs that a user names, each by its certificate or by its fingerprint.
 
     Raises
@@ -128,7 +128,7 @@ def pinned(named: tuple[str, ...]) -> frozenset[str]:
         If a certificate cannot be read.
     """
     fingerprints: set[str] = set()
-    for one in named:
+    for one in stated:
         plain = [one.replace(":", "").lower()] if FINGERPRINT.fullmatch(one) else None
         fingerprints.update(plain or read_authority(one, "a CA").fingerprints)
     return frozenset(fingerprints)
@@ -215,13 +215,13 @@ def _verified(file: str, data: bytes, authority: Authority) -> bytes:
     return done.stdout
 
 
-def _refused(file: str, authority: str, said: str) -> InputError:
+def _refused(file: str, authority: str, output: str) -> InputError:
     """Why openssl refuses a signature, in the words of a person."""
-    if "signer certificate not found" in said:
+    if "signer certificate not found" in output:
         what = f"it was signed by somebody else than {shown(authority)}"
-    elif "digest failure" in said or "bad signature" in said or "signature failure" in said:
+    elif "digest failure" in output or "bad signature" in output or "signature failure" in output:
         what = f"it was changed after it was signed by {shown(authority)}"
     else:
-        lines = [line for line in said.splitlines() if "rror" in line]
+        lines = [line for line in output.splitlines() if "rror" in line]
         what = f"its signature is not readable: {shown(lines[-1].rpartition(':')[0][-120:] if lines else 'no reason')}"
     return PolicyError(file, 0, what, "sign it anew, or read it all the same with --allow-unsigned")

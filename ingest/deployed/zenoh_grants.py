@@ -56,7 +56,7 @@ LATE = {"publish": "late joiners get the messages", "subscribe": "as a late join
 ANY_SESSION = "zenoh:any-session"
 """The enclave of all sessions that no list tells apart; no enclave of SROS 2 has such a name."""
 _NAMES = tuple(PROPERTIES.index(name) for name in ("cert_common_names", "usernames"))
-Held = dict["Identity", list["AccessRule"]]
+RulesHeld = dict["Identity", list["AccessRule"]]
 
 
 class Right(NamedTuple):
@@ -114,12 +114,12 @@ def keys_of(access: AccessFile, domain: int | None, namespaces: Iterable[str]) -
     return Keys(first or ONE, own)
 
 
-def rights(access: AccessFile, held: Held, keys: Keys, remarks: list[Diagnostic]) -> Iterator[Right]:
+def rights(access: AccessFile, rules_held: RulesHeld, keys: Keys, remarks: list[Diagnostic]) -> Iterator[Right]:
     """Yield what passes a list between its process and those at the other end of a link.
 
     Parameters
     ----------
-    held
+    rules_held
         The rules of the identities that these may have; of none where no rule is looked at.
     said
         Gets what a reader has to know.
@@ -127,14 +127,14 @@ def rights(access: AccessFile, held: Held, keys: Keys, remarks: list[Diagnostic]
     if access.allow or not access.enabled:
         everything = [*(f"{begins}/*" for begins, _ in LEGS.values()), f"{NON_ROS_KEYS[0]}*", f"{NON_ROS_KEYS[1]}*"]
         yield from (Right(True, role, dds, access.place) for role in OTHER_WAY for dds in everything)
-    everywhere = not access.allow or any(not any(identity) for identity in held)
-    rules = dict.fromkeys(rule for rules in held.values() for rule in rules)
+    everywhere = not access.allow or any(not any(identity) for identity in rules_held)
+    rules = dict.fromkeys(rule for rules in rules_held.values() for rule in rules)
     late = frozenset(OTHER_WAY) if access.allow else _late(rules, keys)
     for rule in rules:
         if rule.allow:
             yield from _of_rule(rule, keys)
         else:
-            for_all = everywhere and all(rule in some for some in held.values())
+            for_all = everywhere and all(rule in some for some in rules_held.values())
             yield from _of_deny(rule, keys, remarks, late if for_all else None)
 
 
@@ -194,7 +194,7 @@ def _late(rules: Iterable[AccessRule], keys: Keys) -> frozenset[str]:
     )
 
 
-def _of_message(some: Channels, message: str, role: str) -> Iterator[tuple[str, str]]:
+def _of_message(channels: Channels, message: str, role: str) -> Iterator[tuple[str, str]]:
     """Yield (role, DDS topic) of a message with data.
 
     Who is asked for history sends messages of the topic, in replies with its own key; what is put behind ``@adv`` are
@@ -202,13 +202,13 @@ def _of_message(some: Channels, message: str, role: str) -> Iterator[tuple[str, 
     """
     if message not in LEGS:
         return
-    if some.what == MESSAGES:
+    if channels.what == MESSAGES:
         begins, ends = LEGS[message]
-        yield from ((role, f"{begins}{name}{ends}") for name in some.names)
-    elif some.what == HISTORY:
-        yield from ((OTHER_WAY[role], f"rt{name}") for name in some.names if message == "query")
-    elif not (some.what == TOKENS and message == "reply"):
-        yield from ((role, name) for name in some.names)
+        yield from ((role, f"{begins}{name}{ends}") for name in channels.names)
+    elif channels.what == HISTORY:
+        yield from ((OTHER_WAY[role], f"rt{name}") for name in channels.names if message == "query")
+    elif not (channels.what == TOKENS and message == "reply"):
+        yield from ((role, name) for name in channels.names)
 
 
 def _nothing(key: str, place: Place, why: str) -> Diagnostic:
@@ -256,24 +256,26 @@ def open_remarks(files: Mapping[AccessFile, Keys]) -> Iterator[Diagnostic]:
         yield _warning(access.place, message, ACCESS_GAP)
 
 
-def _left_to(who: str, access: AccessFile, keys: Keys, known: Collection[str]) -> Iterable[Right]:
+def _left_to(who: str, access: AccessFile, keys: Keys, processes: Collection[str]) -> Iterable[Right]:
     """What passes to and from a process by its name, or those that are not told apart."""
     of_all = identities(access) if access.decides else {}
-    held = {identity: rules for identity, rules in of_all.items() if who in (_named(identity, known) or {""})}
+    held = {
+        identity: rules for identity, rules in of_all.items() if who in (_processes_named(identity, processes) or {""})
+    }
     if not held and (who or (access.enabled and not access.allow)):
         return ()
     return rights(access, held, keys, [])
 
 
-def _named(identity: Identity, known: Collection[str]) -> set[str]:
+def _processes_named(identity: Identity, processes: Collection[str]) -> set[str]:
     """The processes that an identity names; none if it may be any."""
     names = {f"/{name}" for at in _NAMES if (name := identity[at]) is not None}
-    return names if names <= set(known) else set()
+    return names if names <= set(processes) else set()
 
 
-def _who(access: AccessFile, known: Collection[str]) -> str:
+def _who(access: AccessFile, processes: Collection[str]) -> str:
     """Who is not told apart."""
-    open_to = [identity for identity in identities(access) if not _named(identity, known)]
+    open_to = [identity for identity in identities(access) if not _processes_named(identity, processes)]
     names = sorted({name for identity in open_to for at in _NAMES if (name := identity[at]) is not None})
     if access.allow or not access.decides or any(all(one[at] is None for at in _NAMES) for one in open_to):
         return "any session"

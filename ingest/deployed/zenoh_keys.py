@@ -64,7 +64,7 @@ def _aligned(
     narrow: Sequence[str],
     star: str,
     includes_part: Callable[[str, str], bool],
-    taken: Callable[[str], bool],
+    matches: Callable[[str], bool],
 ) -> bool:
     """Whether two rows of parts can be walked to their ends: part by part, or a star of ``wide`` takes parts.
 
@@ -77,7 +77,7 @@ def _aligned(
             if (i, j) not in reached:
                 continue
             if wide[i] == star:
-                reached |= {(i + 1, j)} | ({(i, j + 1)} if j < ends[1] and taken(narrow[j]) else set())
+                reached |= {(i + 1, j)} | ({(i, j + 1)} if j < ends[1] and matches(narrow[j]) else set())
             elif j < ends[1] and includes_part(wide[i], narrow[j]):
                 reached.add((i + 1, j + 1))
     return ends in reached
@@ -146,7 +146,7 @@ def channels(key: str, keys: Keys) -> Iterator[Channels]:
     """
     chunks = key.split("/")
     if _TOKENS in chunks:
-        yield _others(TOKENS, chunks)
+        yield _other_dds_names(TOKENS, chunks)
         return
     rests = {namespace: _rests(chunks, namespace) for namespace in keys.namespaces}
     found = {namespace: [*_of_ros(some, keys.domain)] for namespace, some in rests.items()}
@@ -155,7 +155,7 @@ def channels(key: str, keys: Keys) -> Iterator[Channels]:
     is_ros = any(rest[0].isdigit() and _names(rest)[1] for some in rests.values() for rest in some)
     reached = "" in keys.namespaces or any(rests.values())
     if reached and not is_ros:
-        yield _others(OTHERS, chunks)
+        yield _other_dds_names(OTHERS, chunks)
 
 
 def namespaces_of(keys: Iterable[str]) -> set[str]:
@@ -234,7 +234,7 @@ def _verbatim(chunks: list[str]) -> int | None:
     return next((i for i, chunk in enumerate(chunks) if chunk.startswith(VERBATIM)), None)
 
 
-def _others(what: str, chunks: list[str]) -> Channels:
+def _other_dds_names(what: str, chunks: list[str]) -> Channels:
     """The DDS names that stand for keys of no ROS channel."""
     begins = NON_ROS_KEYS[_verbatim(chunks) is not None]
     first = chunks.index(ANY) if ANY in chunks else len(chunks)

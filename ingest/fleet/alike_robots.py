@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputErrors
-from rosprivacy.analysis.written_names import is_glob, meant
+from rosprivacy.analysis.written_names import bare_name, is_glob
 from rosprivacy.ingest.fleet.dds_domains import pseudo_robot
 from rosprivacy.ingest.labels.label_file import OURS
 from rosprivacy.ingest.policies.names import matcher
@@ -110,7 +110,7 @@ def alike(fleet: Fleet, told_apart: Callable[[str], object] = lambda _: None) ->
 
 
 def _test(robots: str) -> Callable[[str], bool]:
-    return matcher(robots) if is_glob(robots) else lambda name: name == meant(robots)
+    return matcher(robots) if is_glob(robots) else lambda name: name == bare_name(robots)
 
 
 def chosen(end: str, robots: Iterable[str]) -> list[str]:

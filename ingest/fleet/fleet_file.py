@@ -353,9 +353,9 @@ class _Fleet:
         elif self._bounded(int(count.text), spec.place._replace(line=count.line)):
             yield from self._counted(part, spec, item, int(count.text))
 
-    def _bounded(self, more: int, place: Place) -> bool:
+    def _bounded(self, count: int, place: Place) -> bool:
         """Whether there may be so many more robots; counted before one of them is made."""
-        self._count += more
+        self._count += count
         if self._count > self._bounds.robots:
             self._problem(place, *self._bounds.refusal("robots", self._count))
         return self._count <= self._bounds.robots

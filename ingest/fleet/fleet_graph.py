@@ -15,7 +15,7 @@ from rosprivacy.analysis.errors import FleetError, InputError, InputErrors, show
 from rosprivacy.analysis.fleet.likeness import Likeness
 from rosprivacy.analysis.model import UNSTATED, Element, Surroundings
 from rosprivacy.analysis.non_ros import by_kind
-from rosprivacy.analysis.written_names import A_LITTLE, FEW, did_you_mean, meant, nearest
+from rosprivacy.analysis.written_names import A_LITTLE, FEW, bare_name, did_you_mean, nearest
 from rosprivacy.ingest.fleet.alike_robots import COLON, chosen, known_to_flows
 from rosprivacy.ingest.fleet.dds_domains import alone, pseudo_robot, shared
 from rosprivacy.ingest.fleet.mergeable_graph import Part, numbered, together
@@ -133,10 +133,12 @@ def place_chosen(fleet: Fleet, groups: Sequence[Alike], members: Mapping[str, Me
     return _placed(_Placing(fleet, whole=False), groups, members, view)
 
 
-def flow_said(flow: FlowEntry, key: Key, lines: dict[Key, list[Place]], said: dict[Key, tuple[Statement, ...]]) -> None:
+def flow_said(
+    flow: FlowEntry, key: Key, lines: dict[Key, list[Place]], flow_statements: dict[Key, tuple[Statement, ...]]
+) -> None:
     """Note that a line states a flow, with what it says of it."""
     lines[key].append(flow.place)
-    said[key] = tuple(dict.fromkeys((*said.get(key, ()), *flow.statements)))
+    flow_statements[key] = tuple(dict.fromkeys((*flow_statements.get(key, ()), *flow.statements)))
 
 
 def add_lines(part: Part, lines: Mapping[Key, Sequence[Place]]) -> None:
@@ -145,16 +147,16 @@ def add_lines(part: Part, lines: Mapping[Key, Sequence[Place]]) -> None:
         known = part.flows.get(key, ())
         new = [line_of(place) for place in sorted(set(places), key=lambda place: (place.file, place.line))]
         part.flows[key] = tuple(dict.fromkeys((*known, *new)))
-    part.said = {key: said for key, said in part.said.items() if said}
+    part.flow_statements = {key: said for key, said in part.flow_statements.items() if said}
 
 
-def nowhere(flow: FlowEntry, end: End, known: Iterable[str]) -> InputError:
-    """Return the error for the end of a flow that is on no robot; ``known`` are the names that it could mean."""
+def nowhere(flow: FlowEntry, end: End, names: Iterable[str]) -> InputError:
+    """Return the error for the end of a flow that is on no robot; ``names`` are the names that it could mean."""
     name = end.name.partition(COLON)[2] if COLON in end.name else end.name
-    if COLON not in end.name and meant(name).startswith("/"):
+    if COLON not in end.name and bare_name(name).startswith("/"):
         what = f"a flow names {shown(name)!r} and does not say on which robots"
         return FleetError(flow.place.file, flow.place.line, what, f"write *:{name}, or the robot's id")
-    return missing(End(name, end.kind), known, flow.place, FleetError)
+    return missing(End(name, end.kind), names, flow.place, FleetError)
 
 
 def no_robot(fleet: Fleet, flow: FlowEntry, end: str) -> InputError | None:
@@ -268,9 +270,9 @@ class _Placing:
             for source in sources:
                 for target in targets:
                     key = (source, target, FLOW)
-                    if source.robot == target.robot and key not in lines and whole.said.get(key):
+                    if source.robot == target.robot and key not in lines and whole.flow_statements.get(key):
                         self.restated.append(flow.place)
-                    flow_said(flow, key, lines, whole.said)
+                    flow_said(flow, key, lines, whole.flow_statements)
         add_lines(whole, lines)
 
     def _find(self, end: End, flow: FlowEntry, at: tuple[int, int]) -> list[Element]:

@@ -49,7 +49,7 @@ def joins_nothing(
     -----
     Linear in the robots, and in the flows times the groups of robots that are alike.
     """
-    return (*fleet.diagnostics, *_Joins(fleet, groups, met, letting_out).told())
+    return (*fleet.diagnostics, *_Joins(fleet, groups, met, letting_out).diagnostics())
 
 
 class _Joins:
@@ -68,7 +68,7 @@ class _Joins:
         for number, side, name in met:
             self._ends[number][side].add(name)
 
-    def told(self) -> Iterator[Diagnostic]:
+    def diagnostics(self) -> Iterator[Diagnostic]:
         """Yield what is to be said."""
         for name, members in sorted(self._domains.items()):
             if len(members) == 1 and len(self._everyone) > 1:

@@ -46,7 +46,7 @@ class Part:
         Allowed ones, with their grants.
     denied
         With grants and denials; matches that DENYs take out too.
-    said
+    flow_statements
         Statements about flows.
     through
         (source, name expressions) -> the flows that these mean.
@@ -65,7 +65,7 @@ class Part:
     elements: dict[Element, tuple[Statement, ...]] = field(default_factory=dict)
     flows: dict[Key, tuple[Grant, ...]] = field(default_factory=dict)
     denied: dict[Key, tuple[tuple[Grant, ...], tuple[Grant, ...]]] = field(default_factory=dict)
-    said: dict[Key, tuple[Statement, ...]] = field(default_factory=dict)
+    flow_statements: dict[Key, tuple[Statement, ...]] = field(default_factory=dict)
     through: dict[tuple[Element, tuple[str, ...]], tuple[Key, ...]] = field(default_factory=dict)
     outside: dict[Element, NonRosFacts] = field(default_factory=dict)
     subjects: dict[Element, tuple[str, ...]] = field(default_factory=dict)
@@ -108,7 +108,7 @@ def together(parts: Iterable[Part]) -> Part:
         _merged([part.elements for part in parts]),
         _merged([part.flows for part in parts]),
         {key: both for part in parts for key, both in part.denied.items()},
-        _merged([part.said for part in parts]),
+        _merged([part.flow_statements for part in parts]),
         _merged([part.through for part in parts]),
         {element: facts for part in parts for element, facts in part.outside.items()},
         _merged([part.subjects for part in parts]),
@@ -139,7 +139,7 @@ def numbered(part: Part, profiles: Mapping[str, tuple[Profile, ...]], view: str)
     rows = sorted(
         [(number[a], number[b], role, grants) for (a, b, role), grants in part.flows.items()]
     )  # none is twice
-    index = {row[:3]: i for i, row in enumerate(rows)} if part.said or part.through else {}
+    index = {row[:3]: i for i, row in enumerate(rows)} if part.flow_statements or part.through else {}
     flows = tuple(starmap(Flow, rows))
     refused = [(*ends(key), *both) for key, both in part.denied.items() if key not in part.flows]
     denied = [Flow(*row) for row in sorted(refused, key=itemgetter(0, 1, 2))]
@@ -153,7 +153,7 @@ def numbered(part: Part, profiles: Mapping[str, tuple[Profile, ...]], view: str)
     )
     bound = Bound(
         {number[element]: said for element, said in part.elements.items() if said},
-        {index[ends(key)]: said for key, said in part.said.items() if said},
+        {index[ends(key)]: said for key, said in part.flow_statements.items() if said},
         {
             (number[v], names): tuple(sorted(index[ends(key)] for key in keys))
             for (v, names), keys in part.through.items()
@@ -169,8 +169,8 @@ def numbered(part: Part, profiles: Mapping[str, tuple[Profile, ...]], view: str)
     return graph, replace(bound, elements=dict(sorted(bound.elements.items())), flows=dict(sorted(bound.flows.items())))
 
 
-def _by_number(number: Mapping[Element, int], said: Mapping[Element, V]) -> dict[int, V]:
-    return dict(sorted(((number[element], one) for element, one in said.items()), key=itemgetter(0)))
+def _by_number(number: Mapping[Element, int], values: Mapping[Element, V]) -> dict[int, V]:
+    return dict(sorted(((number[element], one) for element, one in values.items()), key=itemgetter(0)))
 
 
 def _merged(parts: Sequence[Mapping[K, tuple[V, ...]]]) -> dict[K, tuple[V, ...]]:

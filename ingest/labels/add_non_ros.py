@@ -28,7 +28,7 @@ from rosprivacy.analysis.model import (
     Severity,
 )
 from rosprivacy.analysis.text import counted
-from rosprivacy.analysis.written_names import A_LITTLE, FEW, did_you_mean, literal, meant, nearest
+from rosprivacy.analysis.written_names import A_LITTLE, FEW, bare_name, did_you_mean, literal, nearest
 from rosprivacy.ingest.labels.entries import End, is_non_ros
 from rosprivacy.ingest.policies.names import covered, covers, is_pattern, recorded_channels
 
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.labels.label_file import Labels
 
 FLOW = STATED
-NAMED = 5  # topics that no policy names, of one bag
+SHOWN_AT_MOST = 5  # topics that no policy names, of one bag
 
 
 def extend(graph: FlowGraph, files: Sequence[Labels]) -> FlowGraph:
@@ -67,7 +67,7 @@ def extended(graph: FlowGraph, files: Sequence[Labels]) -> tuple[FlowGraph, list
     for own in (False, True):  # what one robot's file states takes the place of its model's
         stated |= merged((entry for file in files if file.own == own for entry in file.elements), problems)
     added = [Element(entry.kind, entry.name) for entry in stated.values()]
-    graph = _known(graph, stated)
+    graph = _with_stated_kinds(graph, stated)
     ends = Ends([*graph.elements, *added])
     flows: list[tuple[Element, Element, Place]] = []
     for file in files:
@@ -82,7 +82,7 @@ def extended(graph: FlowGraph, files: Sequence[Labels]) -> tuple[FlowGraph, list
     return with_flows(graph, added, flows), problems
 
 
-def _known(graph: FlowGraph, stated: Mapping[str, Stated]) -> FlowGraph:
+def _with_stated_kinds(graph: FlowGraph, stated: Mapping[str, Stated]) -> FlowGraph:
     """A graph in which a participant that was seen is of the kind that a person states of it (rule S16)."""
     kinds = {name: entry.kind for name, entry in stated.items()}
     elements = tuple(
@@ -147,9 +147,9 @@ class Ends:
         return [element for other in (covered(name, known) if kind else [name]) for element in known.get(other, ())]
 
 
-def two_meanings(end: End, found: Iterable[Element]) -> tuple[str, ...]:
+def two_meanings(end: End, elements: Iterable[Element]) -> tuple[str, ...]:
     """Return the kinds of what an end means if nodes and channels are among it, and which is not said (rule S9)."""
-    kinds = {element.kind for element in found}
+    kinds = {element.kind for element in elements}
     return () if end.kind or "node" not in kinds or kinds == {"node"} else ("node", *sorted(kinds - {"node"}))
 
 
@@ -161,10 +161,10 @@ def ambiguous(end: End, kinds: Iterable[str], place: Place, error: type[InputErr
     return error(place.file, place.line, f"a flow names {shown(end.name)!r}, which is {named}", f"write {hint}")
 
 
-def missing(end: End, known: Iterable[str], place: Place, error: type[InputError] = LabelError) -> InputError:
+def missing(end: End, names: Iterable[str], place: Place, error: type[InputError] = LabelError) -> InputError:
     """Return the error for the end of a flow that is not there, with the nearest names."""
-    alike = [other for other in dict.fromkeys(known) if is_non_ros(other) == is_non_ros(end.name)]
-    close = nearest(meant(end.name), [other for other in alike if other != end.name], FEW, A_LITTLE)
+    alike = [other for other in dict.fromkeys(names) if is_non_ros(other) == is_non_ros(end.name)]
+    close = nearest(bare_name(end.name), [other for other in alike if other != end.name], FEW, A_LITTLE)
     close = close if is_non_ros(end.name) else [literal(name) for name in close]
     otherwise = "define it under elements" if is_non_ros(end.name) else "see the names with rosprivacy labels --init"
     hint = did_you_mean(close, otherwise)
@@ -233,7 +233,7 @@ def told_of_bags(graph: FlowGraph, elements: Iterable[Stated]) -> Iterator[Diagn
     for stated in elements:
         for bag in stated.bags:
             yield Diagnostic(stated.place, Severity.NOTICE, _about(stated.name, bag), RECORDING)
-            for what in (*bag.gaps, *(f"{what} can hold anything" for what in bag.beside)):
+            for what in (*bag.gaps, *(f"{what} can hold anything" for what in bag.extras)):
                 said = f"not all of the bag {shown(bag.path)} is known: {what}"
                 yield Diagnostic(stated.place, Severity.WARNING, said, BAG_GAP)
             if stated.outside.retention and bag.start is None and bag.messages != 0 and bag.complete:
@@ -257,7 +257,7 @@ def _about(name: str, bag: Bag) -> str:
 
 
 def _unknown(bag: Bag, names: Sequence[str]) -> str:
-    told = ", ".join([*map(shown, names[:NAMED]), *(["…"] if len(names) > NAMED else [])])
+    told = ", ".join([*map(shown, names[:SHOWN_AT_MOST]), *(["…"] if len(names) > SHOWN_AT_MOST else [])])
     what = f"{counted(len(names), 'topic')} of the bag {shown(bag.path)} that no policy names: {told}"
     return f"{what}; name the policies of the system that was recorded"
 

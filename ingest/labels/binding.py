@@ -16,7 +16,7 @@ from rosprivacy.analysis.many_flows import at_most, leaving, parted
 from rosprivacy.analysis.model import NOWHERE, PARTICIPANT, Bound, Diagnostic, NonRosFacts, Severity, Surroundings
 from rosprivacy.analysis.non_ros import by_kind
 from rosprivacy.analysis.text import counted
-from rosprivacy.analysis.written_names import A_LITTLE, FEW, did_you_mean, is_glob, literal, meant, nearest
+from rosprivacy.analysis.written_names import A_LITTLE, FEW, bare_name, did_you_mean, is_glob, literal, nearest
 from rosprivacy.ingest.labels.add_non_ros import recorded_types
 from rosprivacy.ingest.labels.label_file import OURS
 from rosprivacy.ingest.labels.pins import Pinned, of_nothing, spot
@@ -81,7 +81,7 @@ class Unmatched:
         """Return the error for a name that matches nothing, with the nearest names."""
         close = self._close(entry.name, entry.kinds)
         what = f"{shown(entry.name)!r} matches no {' or '.join(entry.kinds)} of the policies"
-        name = meant(entry.name)
+        name = bare_name(entry.name)
         elsewhere = [
             kind for kind in self._names.by_kind if kind not in entry.kinds and name in self._names.by_kind[kind]
         ]
@@ -107,7 +107,7 @@ class Unmatched:
         self._comparisons += len(known)
         if self._comparisons > COMPARISONS:
             return []
-        return [literal(close) for close in nearest(meant(name), known, FEW, A_LITTLE)]
+        return [literal(close) for close in nearest(bare_name(name), known, FEW, A_LITTLE)]
 
 
 def bind(
@@ -278,14 +278,14 @@ def _outside(graph: FlowGraph, labels: Iterable[Labels]) -> dict[int, NonRosFact
     ranked = sorted(files, key=lambda file: file.own)
     stated = {(entry.kind, entry.name): entry.outside for file in ranked for entry in file.elements}
     limits = ordered({limit for file in files for limit in file.limits})
-    found = _seen(graph)
+    found = _seen_participants(graph)
     for vertex, element in enumerate(graph.elements):
         if facts := stated.get((element.kind, element.name)):
             found[vertex] = facts._replace(limits=limits)
     return dict(sorted(found.items()))
 
 
-def _seen(graph: FlowGraph) -> dict[int, NonRosFacts]:
+def _seen_participants(graph: FlowGraph) -> dict[int, NonRosFacts]:
     """Participants that were seen and are of no node: they are there without a label (rule S16)."""
     seen = {vertex: NonRosFacts() for vertex, element in enumerate(graph.elements) if element.kind == PARTICIPANT}
     for flow in (*(flow for _, flow in parted(graph.flows)[0]), *graph.denied) if seen else ():
@@ -317,7 +317,7 @@ def _through(
             through[vertex, expressions] = tuple(index for index, name in flows.items() if name in chosen)
         for name in expressions:
             if vertices and not covered(name, written):
-                close = [literal(one) for one in nearest(meant(name), sorted(written), FEW, A_LITTLE)]
+                close = [literal(one) for one in nearest(bare_name(name), sorted(written), FEW, A_LITTLE)]
                 hint = did_you_mean(close, "name a channel that it writes to")
                 what = f"{shown(entry.name)!r} writes to no channel {shown(name)!r}"
                 yield LabelError(entry.place.file, entry.place.line, what, hint)

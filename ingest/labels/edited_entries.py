@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from rosprivacy.analysis.errors import InputErrors, LabelError, shown
 from rosprivacy.analysis.model import NON_ROS
 from rosprivacy.analysis.text import counted
-from rosprivacy.analysis.written_names import is_glob, meant
+from rosprivacy.analysis.written_names import bare_name, is_glob
 from rosprivacy.ingest.labels.entries import OWN, ROBOT, SECTIONS
 from rosprivacy.ingest.labels.label_file import Labels, parse_labels
 from rosprivacy.ingest.labels.label_reader import LabelReader
@@ -78,23 +78,23 @@ class Written(NamedTuple):
     own: bool = False
 
 
-def same_name(one: str, other: str) -> bool:
+def same_name(first: str, second: str) -> bool:
     """Return whether two names of entries mean the same.
 
     >>> same_name("/a", "=/a"), same_name("/*", "=/*")
     (True, False)
     """
-    return one == other or (not is_glob(one) and not is_glob(other) and meant(one) == meant(other))
+    return first == second or (not is_glob(first) and not is_glob(second) and bare_name(first) == bare_name(second))
 
 
-def edited(labels: Labels, said: Sequence[Said], how: Written) -> Labels:
+def edited(labels: Labels, edits: Sequence[Said], how: Written) -> Labels:
     """Return labels with entries said anew, each at the line of the one that it replaces, new ones below the last line.
 
     The file's name and hash say that it is not what stands on the disk (rule S12).
 
     Parameters
     ----------
-    said
+    edits
         Of one name and section at most one.
 
     Raises
@@ -102,7 +102,7 @@ def edited(labels: Labels, said: Sequence[Said], how: Written) -> Labels:
     InputErrors
         With every problem of the new entries.
     """
-    if not said:
+    if not edits:
         return labels
     entries: dict[int, Sequence[Entry]] = {at: (entry,) for at, entry in enumerate(labels.entries)}
     elements = list(labels.elements)
@@ -112,7 +112,7 @@ def edited(labels: Labels, said: Sequence[Said], how: Written) -> Labels:
     problems: list[LabelError] = []
     diagnostics = list(labels.diagnostics)
     below = how.lines + 1
-    for one in said:
+    for one in edits:
         spot = places[_spot(KINDS[one.section], one.name)]
         there = [at for at in spot if entries[at]]
         if one.value is None and not there:
@@ -134,10 +134,10 @@ def edited(labels: Labels, said: Sequence[Said], how: Written) -> Labels:
         elements = _elements(elements, one, reader.elements)
     if problems:
         raise InputErrors(problems)
-    digest = hashlib.sha256(json.dumps([labels.sha256, said], sort_keys=True, default=str).encode()).hexdigest()
+    digest = hashlib.sha256(json.dumps([labels.sha256, edits], sort_keys=True, default=str).encode()).hexdigest()
     return replace(
         labels,
-        file=f"{labels.file} with {counted(len(said), 'edit')} that {'is' if len(said) == 1 else 'are'} not saved",
+        file=f"{labels.file} with {counted(len(edits), 'edit')} that {'is' if len(edits) == 1 else 'are'} not saved",
         sha256=digest,
         entries=tuple(entry for some in entries.values() for entry in some),
         elements=tuple(elements),
@@ -148,16 +148,16 @@ def edited(labels: Labels, said: Sequence[Said], how: Written) -> Labels:
 def _spot(kinds: tuple[str, ...], name: str) -> Spot:
     """Two entries of one spot speak of the same: as ``same_name``, in one section."""
     outside = kinds[0] in NON_ROS
-    return "elements" if outside else kinds, is_glob(name), name if is_glob(name) else meant(name)
+    return "elements" if outside else kinds, is_glob(name), name if is_glob(name) else bare_name(name)
 
 
-def _elements(elements: Iterable[Stated], said: Said, new: Iterable[Stated]) -> list[Stated]:
-    if said.section != "elements":
+def _elements(elements: Iterable[Stated], entry: Said, new: Iterable[Stated]) -> list[Stated]:
+    if entry.section != "elements":
         return list(elements)
-    return [*(one for one in elements if one.name != said.name), *new]
+    return [*(one for one in elements if one.name != entry.name), *new]
 
 
-def read_entry(said: Said, line: int, how: Written) -> LabelReader:
+def read_entry(entry: Said, line: int, how: Written) -> LabelReader:
     """Read one entry as if it stood in a file.
 
     Raises
@@ -166,31 +166,31 @@ def read_entry(said: Said, line: int, how: Written) -> LabelReader:
         With every problem of it.
     """
     reader = LabelReader(how.file, how.vocabulary, "", OWN, ROBOT if how.own else 0, bounds=how.bounds, root=how.root)
-    if said.value is None and said.section == "elements":
+    if entry.value is None and entry.section == "elements":
         return reader
-    content = Value(line, "map", entries=((said.name, line, value_of(said.value, line)),))
-    top = [("labels", line, Value(line, "number", "1")), (said.section, line, content)]
+    content = Value(line, "map", entries=((entry.name, line, value_of(entry.value, line)),))
+    top = [("labels", line, Value(line, "number", "1")), (entry.section, line, content)]
     if how.author:
         top.insert(1, ("author", line, Value(line, "text", how.author)))
     reader.document(Value(line, "map", entries=tuple(top)))
     return reader.whole(reader)
 
 
-def value_of(said: Any, line: int) -> Value:
+def value_of(value: Any, line: int) -> Value:
     """Return what Python says as if it was read from a line of a file.
 
     >>> value_of({"source": ["Video"]}, 3).get("source").items[0].text
     'Video'
     """
-    if said is None:
+    if value is None:
         return Value(line, "empty")
-    if isinstance(said, dict):
-        return Value(line, "map", entries=tuple((str(key), line, value_of(one, line)) for key, one in said.items()))
-    if isinstance(said, list | tuple):
-        return Value(line, "list", items=tuple(value_of(one, line) for one in said))
-    if isinstance(said, str):
-        return Value(line, "text", said)
-    return Value(line, "number", json.dumps(said, default=str))
+    if isinstance(value, dict):
+        return Value(line, "map", entries=tuple((str(key), line, value_of(one, line)) for key, one in value.items()))
+    if isinstance(value, list | tuple):
+        return Value(line, "list", items=tuple(value_of(one, line) for one in value))
+    if isinstance(value, str):
+        return Value(line, "text", value)
+    return Value(line, "number", json.dumps(value, default=str))
 
 
 def plain(value: Value) -> Any:
@@ -220,7 +220,7 @@ def entries_of(top: Value) -> Mapping[tuple[str, str], Any]:
 
 
 def with_entry(
-    files: Iterable[Labels], section: str, name: str, said: object, vocabulary: Vocabulary
+    files: Iterable[Labels], section: str, name: str, content: object, vocabulary: Vocabulary
 ) -> tuple[Labels, ...]:
     """Return label files with one entry in place of all that they say of a name; shipped files stay.
 
@@ -230,7 +230,7 @@ def with_entry(
         One of ``KINDS``.
     name
         As the files write it: a glob stands for the entry of that glob.
-    said
+    content
         The entry as in a label file; None to say nothing of it.
 
     Raises
@@ -242,7 +242,7 @@ def with_entry(
         raise InputErrors(
             [LabelError("labels", 0, f"unknown section {shown(section)!r}", f"one of {', '.join(KINDS)}")]
         )
-    entry = parse_labels({"labels": 1, section: {name: said}}, vocabulary, name=f"{section} {name}")
+    entry = parse_labels({"labels": 1, section: {name: content}}, vocabulary, name=f"{section} {name}")
     return (*(file if file.shipped else _without(file, section, name) for file in files), entry)
 
 

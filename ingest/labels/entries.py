@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.durations import Duration
 from rosprivacy.analysis.model import GLOB, NAME, SEGMENT, STANDARD, UNSTATED
-from rosprivacy.analysis.written_names import GLOB_SIGNS, LITERAL, is_glob, meant
+from rosprivacy.analysis.written_names import GLOB_SIGNS, LITERAL, bare_name, is_glob
 from rosprivacy.ingest.policies.names import covers, literals
 
 if TYPE_CHECKING:
@@ -160,7 +160,7 @@ def is_log(name: str) -> bool:
     >>> [is_log(name) for name in ("*/rosout", "=/a/rosout", "/*", "/rosout_agg", "*/clock")]
     [True, True, True, False, False]
     """
-    return covers(meant(name).rpartition("/")[2], LOG)
+    return covers(bare_name(name).rpartition("/")[2], LOG)
 
 
 def without_text(vocabulary: Vocabulary) -> tuple[str, ...]:

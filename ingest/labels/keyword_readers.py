@@ -198,11 +198,11 @@ def _flag(value: Value) -> bool | None:
     return True if text in TRUE else False if text in FALSE else None
 
 
-def read_duration(reader: NameReader, line: int, value: Value, more: str = "") -> Duration | None:
+def read_duration(reader: NameReader, line: int, value: Value, example: str = "") -> Duration | None:
     """Return a duration of ISO 8601; None, and a problem, if it is none."""
     try:
         return parse_duration(value.text)
     except ValueError as error:
-        hint = f"write a duration of ISO 8601, such as P30D or P6M{more}"
+        hint = f"write a duration of ISO 8601, such as P30D or P6M{example}"
         reader.problem(value.line if value.text else line, f"{written(value)} is {error}", hint)
         return None

@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 
 NODE, CHANNEL, FLOW = "node", "channel", "flow"
 CARRIERS = ("shared-memory", "side-channel")
-NONE = "none"  # in place of categories: takes back what labels of lower rank say (rule S7)
+NO_KIND = "none"  # in place of categories: takes back what labels of lower rank say (rule S7)
 
 
 class Keyword(NamedTuple):
@@ -125,7 +125,7 @@ SHORT_TEXT = {"type": "string", "pattern": "\\S", "maxLength": LONGEST_GROUP}
 BASIS = {"type": ["string", "integer"], "description": "Such as 6(1)(f), 9(2)(h), 46(2)(c)."}
 CONTEXT = {"anyOf": [{"enum": list(CONTEXTS)}, several({"enum": list(CONTEXTS)})]}
 _TYPE = {"type": "string", "pattern": "^[A-Za-z]\\w*/(msg|srv|action)/[A-Za-z]\\w*$"}
-_NONE_OF = {"type": "object", "required": [NONE], "additionalProperties": False, "properties": {NONE: CATEGORIES}}
+_NONE_OF = {"type": "object", "required": [NO_KIND], "additionalProperties": False, "properties": {NO_KIND: CATEGORIES}}
 
 KEYWORDS: tuple[Keyword, ...] = (
     Keyword(
@@ -133,7 +133,11 @@ KEYWORDS: tuple[Keyword, ...] = (
         (NODE,),
         {
             "description": "Brings these in; as a map, only through the channels named; none takes labels back.",
-            "anyOf": [CATEGORIES, {**by_category(several(NAME)), "properties": {NONE: CATEGORIES}}, {"const": NONE}],
+            "anyOf": [
+                CATEGORIES,
+                {**by_category(several(NAME)), "properties": {NO_KIND: CATEGORIES}},
+                {"const": NO_KIND},
+            ],
         },
         read_source,
         docs="""
@@ -151,7 +155,7 @@ KEYWORDS: tuple[Keyword, ...] = (
         "leak",
         (NODE,),
         {
-            "anyOf": [CATEGORIES, {"const": NONE}, _NONE_OF],
+            "anyOf": [CATEGORIES, {"const": NO_KIND}, _NONE_OF],
             "description": "Lets these out; none takes labels of lower rank back, of all kinds or of some.",
         },
         read_each_kind,

@@ -43,8 +43,8 @@ from rosprivacy.ingest.labels.keyword_readers import LONGEST_GROUP, read_duratio
 from rosprivacy.ingest.labels.keywords import (
     CHANNEL,
     FLOW,
+    NO_KIND,
     NODE,
-    NONE,
     keys_of,
     keywords_of,
     moves_data,
@@ -128,11 +128,11 @@ class LabelReader(NameReader):
             elif key == PINS:
                 self.pins = read_pins(self, value)
 
-    def surrounded(self, known: Surroundings, key: str, value: Value) -> Surroundings:
+    def surrounded(self, surroundings: Surroundings, key: str, value: Value) -> Surroundings:
         """Return where a system works with what one more key says of it."""
         if key == "context":
-            return known._replace(contexts=read_context_names(self, value))
-        return known._replace(country=read_country_code(self, value))
+            return surroundings._replace(contexts=read_context_names(self, value))
+        return surroundings._replace(country=read_country_code(self, value))
 
     def system(self, top: Value) -> None:
         """Read what the top says of the whole system; fleet files say it too."""
@@ -266,9 +266,9 @@ class LabelReader(NameReader):
             if keyword is None or keyword.says is None:
                 continue
             blank = Statement(key, (), rank, Place(self.file, line))
-            if key in NONE_OF and (value.text == NONE or value.get(NONE)):
-                yield from self._none(value, blank)
-                value = value._replace(entries=tuple(item for item in value.entries if item[0] != NONE))  # noqa: PLW2901
+            if key in NONE_OF and (value.text == NO_KIND or value.get(NO_KIND)):
+                yield from self._takes_back(value, blank)
+                value = value._replace(entries=tuple(item for item in value.entries if item[0] != NO_KIND))  # noqa: PLW2901
                 if not value.entries:
                     continue
             statements = tuple(keyword.says(self, value, blank))
@@ -278,10 +278,10 @@ class LabelReader(NameReader):
             else:
                 yield from statements
 
-    def _none(self, value: Value, blank: Statement) -> Iterator[Statement]:
+    def _takes_back(self, value: Value, blank: Statement) -> Iterator[Statement]:
         """What takes a source or a leak back: of all kinds, or of some."""
         back = blank._replace(role=NONE_OF[blank.role])
-        if (kinds := value.get(NONE)) is None:
+        if (kinds := value.get(NO_KIND)) is None:
             yield back
             return
         for name in self.categories_of(kinds, f"{blank.role}: none"):

@@ -91,7 +91,7 @@ def key(name: str) -> str:
     return f"{text}:" if len(text) < LONGEST_KEY else f"? {text}\n  :"
 
 
-def told(writes: Iterable[Channel], reads: Iterable[Channel]) -> str:
+def endpoint_comment(writes: Iterable[Channel], reads: Iterable[Channel]) -> str:
     """Return what a node writes and reads, topics first, as a comment; empty if nothing."""
     parts = [
         f"{verb} {', '.join(name for _, name in sorted(channels, key=_topics_first))}"
@@ -137,7 +137,9 @@ def _nodes(graph: FlowGraph, listed: Collection[Channel]) -> Iterator[str]:
     yield "\nnodes:"
     for group, names in sorted(groups.items()):
         yield f"  # enclave {blanked(group, '?')}"
-        yield from (f"  {key(literal(name))}{told(writes.get(name, ()), reads.get(name, ()))}" for name in names)
+        yield from (
+            f"  {key(literal(name))}{endpoint_comment(writes.get(name, ()), reads.get(name, ()))}" for name in names
+        )
 
 
 def _participants(graph: FlowGraph, listed: Collection[Channel]) -> Iterator[str]:
@@ -147,7 +149,7 @@ def _participants(graph: FlowGraph, listed: Collection[Channel]) -> Iterator[str
     if names:
         yield "\nelements:  # seen, and of no node; takes what nodes take, or another kind, such as external-system"
     for name in names:
-        yield f"  {name}: {{kind: {PARTICIPANT}}}{told(writes.get(name, ()), reads.get(name, ()))}"
+        yield f"  {name}: {{kind: {PARTICIPANT}}}{endpoint_comment(writes.get(name, ()), reads.get(name, ()))}"
 
 
 def neighbours(

@@ -48,7 +48,7 @@ class NewLine:
     section: str
     name: str
     remark: str = ""
-    said: Any = None
+    value: Any = None
 
 
 def with_lines(file: str, text: str, lines: Sequence[NewLine], vocabulary: Vocabulary) -> str:
@@ -118,7 +118,7 @@ def add_line(top: Any, line: NewLine) -> None:
             top.ca.items[line.section] = rest
     name = line.name if line.name.startswith("/") else DoubleQuotedScalarString(line.name)
     last = next(reversed(section), None)
-    section[name] = line.said
+    section[name] = line.value
     if section.fa.flow_style() or top.fa.flow_style():
         return
     if line.remark:
@@ -163,14 +163,14 @@ class NewText(NamedTuple):
     remarks: tuple[str, ...] = ()
 
 
-def with_entries(file: str, text: str, said: Sequence[Said]) -> NewText:
+def with_entries(file: str, text: str, entries: Sequence[Said]) -> NewText:
     """Return the text of a label file in which some entries say something else.
 
     Whether it means what it should is for the caller to check, who knows what it should mean.
 
     Parameters
     ----------
-    said
+    entries
         Of one name and section at most one; that of ``PINS`` is the whole section.
 
     Raises
@@ -178,27 +178,27 @@ def with_entries(file: str, text: str, said: Sequence[Said]) -> NewText:
     LabelError
         If it cannot be changed.
     """
-    if not said:
+    if not entries:
         return NewText(text, 0)
     try:
         if text.lstrip().startswith("{") and (value := _json(text)) is not None:
-            return _told(text, _as_json(text, value, said), ())
-        return _as_yaml(file, text, said)
+            return _comment(text, _as_json(text, value, entries), ())
+        return _as_yaml(file, text, entries)
     except FAILURES as error:
         problem = f"cannot be changed: {shown((str(error).splitlines() or [''])[0])}"
         raise LabelError(file, 0, problem, "write the labels by hand") from None
 
 
-def _told(old: str, new: str, remarks: tuple[str, ...]) -> NewText:
+def _comment(old: str, new: str, remarks: tuple[str, ...]) -> NewText:
     lines = old.splitlines(), new.splitlines()
     steps = SequenceMatcher(None, *lines, autojunk=False).get_opcodes()
     return NewText(new, sum(max(b - a, d - c) for what, a, b, c, d in steps if what != "equal"), remarks)
 
 
-def _as_yaml(file: str, text: str, said: Sequence[Said]) -> NewText:
+def _as_yaml(file: str, text: str, entries: Sequence[Said]) -> NewText:
     def change(top: Any) -> None:
-        for one in said:
-            _put(top, one)
+        for one in entries:
+            _with_entry(top, one)
 
     written = changed(text, change)
     new = _only_these(text, changed(text, lambda _: None), written)
@@ -206,10 +206,10 @@ def _as_yaml(file: str, text: str, said: Sequence[Said]) -> NewText:
     new = written if new is None else new
     lost = Counter(comments(text)) - Counter(comments(new))
     if lost:
-        new = _above(new, list(lost.elements()), said)
+        new = _above(new, list(lost.elements()), entries)
         what = f"{counted(lost.total(), 'comment')} of lines that are gone stand above the entry"
         remarks = (*remarks, f"{file}: {what}")
-    return _told(text, new, remarks)
+    return _comment(text, new, remarks)
 
 
 def _only_these(text: str, same: str, new: str) -> str | None:
@@ -227,11 +227,11 @@ def _only_these(text: str, same: str, new: str) -> str | None:
     return "".join(merged)
 
 
-def _above(text: str, lost: Sequence[str], said: Sequence[Said]) -> str:
+def _above(text: str, lost: Sequence[str], entries: Sequence[Said]) -> str:
     """Put comments above the first line that names one of the entries; at the end if there is none."""
     lines = text.splitlines(True)
     end = "\r\n" if "\r\n" in text else "\n"
-    names = [one.name for one in said]
+    names = [one.name for one in entries]
     at = next((i for i, line in enumerate(lines) if any(_is_of(line, name) for name in names)), len(lines))
     first = lines[at] if at < len(lines) else ""
     indent = first[: len(first) - len(first.lstrip())]
@@ -242,24 +242,24 @@ def _is_of(line: str, name: str) -> bool:
     return line.lstrip().lstrip("'\"").startswith((f"{name}:", f"{name}'", f'{name}"'))
 
 
-def _put(top: Any, said: Said) -> None:
-    if said.section == PINS:
-        _put_pins(top, said.value)
+def _with_entry(top: Any, entry: Said) -> None:
+    if entry.section == PINS:
+        _put_pins(top, entry.value)
         return
-    section, key = _place(top, said)
-    if said.value is None:
+    section, key = _place(top, entry)
+    if entry.value is None:
         if key is None:
             return
-        if said.section == "elements":
+        if entry.section == "elements":
             del section[key]
         else:
             section[key] = None
     elif key is None:
-        add_line(top, NewLine(said.section, said.name, "", on_one_line(said.value)))
-    elif isinstance(section[key], CommentedMap) and isinstance(said.value, dict) and not _in_flow(section[key]):
-        _change(section[key], said.value)
+        add_line(top, NewLine(entry.section, entry.name, "", on_one_line(entry.value)))
+    elif isinstance(section[key], CommentedMap) and isinstance(entry.value, dict) and not _in_flow(section[key]):
+        _change(section[key], entry.value)
     else:
-        section[key] = on_one_line(said.value)
+        section[key] = on_one_line(entry.value)
 
 
 def _put_pins(top: Any, value: dict[str, Any] | None) -> None:
@@ -279,19 +279,19 @@ def _in_flow(value: Any) -> bool:
     return bool(value.fa.flow_style())
 
 
-def _change(there: Any, value: dict[str, Any]) -> None:
+def _change(present: Any, value: dict[str, Any]) -> None:
     """Say an entry of several lines anew: lines that say the same stay."""
-    for key in [key for key in there if key not in value]:
-        del there[key]
+    for key in [key for key in present if key not in value]:
+        del present[key]
     for key, one in value.items():
-        if key not in there or there[key] != one:
-            there[key] = on_one_line(one)
+        if key not in present or present[key] != one:
+            present[key] = on_one_line(one)
 
 
-def _place(top: Any, said: Said) -> tuple[Any, Any]:
+def _place(top: Any, entry: Said) -> tuple[Any, Any]:
     """The section of an entry, and its key there; None where there is no such entry."""
-    section = top.get(said.section)
-    return section, next((key for key in section or () if same_name(str(key), said.name)), None)
+    section = top.get(entry.section)
+    return section, next((key for key in section or () if same_name(str(key), entry.name)), None)
 
 
 def on_one_line(value: Any) -> Any:
@@ -320,8 +320,8 @@ def _json(text: str) -> Any:
         return None
 
 
-def _as_json(text: str, top: Any, said: Sequence[Said]) -> str:
-    for one in said:
+def _as_json(text: str, top: Any, entries: Sequence[Said]) -> str:
+    for one in entries:
         if one.section == PINS:
             top.pop(PINS, None)
             top |= {} if one.value is None else {PINS: one.value}

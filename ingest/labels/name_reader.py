@@ -44,9 +44,9 @@ class NameReader(FileReader):
     diagnostics: list[Diagnostic] = field(default_factory=list, kw_only=True)
     error: type[InputError] = field(default=LabelError, kw_only=True)
 
-    def entries_of(self, value: Value, known: tuple[str, ...]) -> Iterable[tuple[str, int, Value]]:
+    def entries_of(self, value: Value, keys: tuple[str, ...]) -> Iterable[tuple[str, int, Value]]:
         """Return the entries of a map but for notes and authors, those with unknown keys reported."""
-        for key, line, child in super().entries_of(value, known):
+        for key, line, child in super().entries_of(value, keys):
             if key not in ("note", "author"):
                 yield key, line, child
             elif key == "note" and child.kind != "text":

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import Diagnostic, Place, Severity
-from rosprivacy.analysis.written_names import is_glob, literal, meant
+from rosprivacy.analysis.written_names import bare_name, is_glob, literal
 from rosprivacy.ingest.labels.entries import END_KINDS, is_non_ros
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ def read_pins(reader: NameReader, value: Value) -> tuple[Pin, ...]:
             reader.problem(line, f"{section} of pins is a map, not a {content.kind}", "write '/name: [Video]'")
         for name, at, kinds in content.entries if content.kind == "map" else ():
             _full(reader, name, at, ros=True)
-            pins.append(Pin(((section[:-1], meant(name)),), _kinds(reader, kinds), Place(reader.file, at)))
+            pins.append(Pin(((section[:-1], bare_name(name)),), _kinds(reader, kinds), Place(reader.file, at)))
     return tuple(pins)
 
 
@@ -77,7 +77,7 @@ def _flow(reader: NameReader, item: Value) -> Pin | None:
     for end in ends:
         _full(reader, end.name, item.line, ros=bool(end.kind))
     kinds = _kinds(reader, said["kinds"])
-    return Pin(tuple((end.kind, meant(end.name)) for end in ends), kinds, Place(reader.file, item.line))
+    return Pin(tuple((end.kind, bare_name(end.name)) for end in ends), kinds, Place(reader.file, item.line))
 
 
 def _full(reader: NameReader, name: str, line: int, *, ros: bool) -> None:
@@ -118,17 +118,17 @@ class Pinned:
 
     def __init__(self, pins: tuple[Pin, ...] | None) -> None:
         self._pins = None if pins is None else {pin.ends: pin.categories for pin in pins}
-        self._known: dict[tuple[int, tuple[str, ...]], tuple[Statement, ...]] = {}
+        self._pinned_kinds: dict[tuple[int, tuple[str, ...]], tuple[Statement, ...]] = {}
 
-    def at(self, said: tuple[Statement, ...], *elements: Element) -> tuple[Statement, ...]:
+    def at(self, statements: tuple[Statement, ...], *elements: Element) -> tuple[Statement, ...]:
         """Return what is said of an element or a flow: what has to be seen is held to the kinds that are pinned."""
-        if self._pins is None or not any(statement.to_be_seen for statement in said):
-            return said
+        if self._pins is None or not any(statement.to_be_seen for statement in statements):
+            return statements
         kinds = self._pins.get(tuple(map(spot, elements)), ())
-        key = id(said), kinds
-        if key not in self._known:  # what is said of elements alike stays one and the same
-            self._known[key] = tuple(s._replace(pinned=kinds) if s.to_be_seen else s for s in said)
-        return self._known[key]
+        key = id(statements), kinds
+        if key not in self._pinned_kinds:  # what is said of elements alike stays one and the same
+            self._pinned_kinds[key] = tuple(s._replace(pinned=kinds) if s.to_be_seen else s for s in statements)
+        return self._pinned_kinds[key]
 
 
 def of_nothing(pins: Iterable[Pin], decided: Iterable[tuple[Spot, ...]]) -> Iterator[Diagnostic]:

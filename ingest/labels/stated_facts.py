@@ -103,8 +103,8 @@ def transfers(bases: ByCategory) -> Iterator[str]:
     yield from filter(None, map(transfer_of, _all(bases)))
 
 
-def _all(said: ByCategory) -> Iterator[str]:
-    return (one for _, some in said for one in some)
+def _all(stated: ByCategory) -> Iterator[str]:
+    return (one for _, some in stated for one in some)
 
 
 def _by_category(
@@ -150,7 +150,7 @@ def _a(kind: str) -> str:
 
 
 def united(
-    said: Iterable[tuple[Rank, Processing]], differ: Callable[[str, Processing, Processing], object] | None = None
+    statements: Iterable[tuple[Rank, Processing]], differ: Callable[[str, Processing, Processing], object] | None = None
 ) -> Processing:
     """Put together what several statements say of one thing: of each fact those of the highest rank count.
 
@@ -159,7 +159,7 @@ def united(
     differ
         Is told of two that name different controllers, or officers, at one rank.
     """
-    ordered = sorted((pair for pair in said if pair[1]), key=lambda pair: pair[0], reverse=True)
+    ordered = sorted((pair for pair in statements if pair[1]), key=lambda pair: pair[0], reverse=True)
     found = {what: _foremost(ordered, what) for what in ("controller", "dpo", "purposes", "bases")}
     for what in ("controller", "dpo"):
         for other in found[what][1:]:
@@ -224,7 +224,7 @@ def read_country_code(reader: FileReader, value: Value) -> str:
     return ""
 
 
-def surroundings_of(said: Mapping[str, Any], *, ros: bool) -> Surroundings:
+def surroundings_of(properties: Mapping[str, Any], *, ros: bool) -> Surroundings:
     """Return what properties of an element in the database state.
 
     Parameters
@@ -242,13 +242,13 @@ def surroundings_of(said: Mapping[str, Any], *, ros: bool) -> Surroundings:
     >>> surroundings_of({"context": ["care"], "country": "DE"}, ros=True)
     Surroundings(contexts=('care',), country='DE')
     """
-    contexts = said.get("context") or []
+    contexts = properties.get("context") or []
     if not isinstance(contexts, list) or not all(isinstance(name, str) for name in contexts):
         raise TypeError("context is not a list of texts")
     for name in contexts:
         if name not in CONTEXTS:
             raise TypeError(f"unknown context {shown(name)!r}; {_hint(name)}")
-    country = said.get("country") or "" if ros else ""
+    country = properties.get("country") or "" if ros else ""
     if country and country not in countries().areas:
         raise TypeError(f"country {shown(str(country))!r} is not an ISO 3166-1 code")
     return Surroundings(tuple(sorted(set(contexts))), country)

@@ -83,9 +83,9 @@ def _part(grant: Grant, end: Endpoint) -> Part:
     return (grant.policy, grant.enclave, end.writes, end.dds, line)
 
 
-def _counts(one: Part, part: Part) -> bool:
+def _counts(denied: Part, part: Part) -> bool:
     """Whether a denial says anything about a part: one that sros2 does not read is about its own line only."""
-    return one[:3] == part[:3] and one[4] in ("", part[4])
+    return denied[:3] == part[:3] and denied[4] in ("", part[4])
 
 
 def _covered(part: Part, denied: Iterable[Part]) -> bool:

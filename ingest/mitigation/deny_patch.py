@@ -180,10 +180,10 @@ def _add(texts: dict[str, bytes], policy: Policy, grant: Grant) -> bool:
     return False
 
 
-def _group(data: bytes, beside: _Span, grant: Grant) -> bytes:
+def _group(data: bytes, neighbour: _Span, grant: Grant) -> bytes:
     """A group that denies, laid out like its neighbour."""
-    newline = b"\r\n" if b"\r\n" in data[: beside.end] else b"\n"
-    margin = data[data.rfind(b"\n", 0, beside.start) + 1 : beside.start]
+    newline = b"\r\n" if b"\r\n" in data[: neighbour.end] else b"\n"
+    margin = data[data.rfind(b"\n", 0, neighbour.start) + 1 : neighbour.start]
     if margin.strip():
         margin = newline = b""
     step = b"  " if newline else b""

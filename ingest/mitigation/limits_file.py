@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import InputError, LimitsError, shown
 from rosprivacy.analysis.mitigation.limits import CHANGES, LARGEST_COST, Limits, Rule, Weights
-from rosprivacy.analysis.written_names import A_LITTLE, FEW, did_you_mean, literal, meant, nearest
+from rosprivacy.analysis.written_names import A_LITTLE, FEW, bare_name, did_you_mean, literal, nearest
 from rosprivacy.ingest.policies.names import covered
 from rosprivacy.ingest.reading.format_reader import FileReader, read_values
 
@@ -133,10 +133,10 @@ class _Reader(FileReader):
         name = item.text
         found = sorted(v for other in covered(name, self.by_name) for v in self.by_name[other])
         if not found:
-            close = [literal(other) for other in nearest(meant(name), self.by_name, FEW, A_LITTLE)]
+            close = [literal(other) for other in nearest(bare_name(name), self.by_name, FEW, A_LITTLE)]
             hint = did_you_mean(close, "name an element of the system")
             self.problem(item.line, f"{shown(name)!r} matches no element of the system", hint)
         return found
 
-    def _items(self, said: Mapping[str, Value], key: str) -> tuple[Value, ...]:
-        return self.list_of(said[key], key) if key in said else ()
+    def _items(self, entries: Mapping[str, Value], key: str) -> tuple[Value, ...]:
+        return self.list_of(entries[key], key) if key in entries else ()

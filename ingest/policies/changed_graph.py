@@ -111,7 +111,7 @@ class _Kept:
         writes = elements[flow.target].is_channel
         ends = (flow.source, flow.target) if writes else (flow.target, flow.source)
         node, channel = (elements[end] for end in ends)
-        grants = self._left(flow.grants, node.name, channel, writes=writes)
+        grants = self._without_removed(flow.grants, node.name, channel, writes=writes)
         return flow._replace(grants=grants) if grants else None
 
     def meeting(
@@ -133,12 +133,16 @@ class _Kept:
         single: list[Flow] = []
         for channel, right in zip(channels, rights, strict=True):
             touched = (self.channels is None or channel in self.channels) and self._touches(right.grants)
-            left = self._left(right.grants, ANYONE, elements[channel], writes=writes) if touched else right.grants
+            left = (
+                self._without_removed(right.grants, ANYONE, elements[channel], writes=writes)
+                if touched
+                else right.grants
+            )
             owners = self._owners(right.grants, vertices).intersection(others) if touched else set()
             if left and not owners:
                 shared[channel] = right._replace(grants=left)
             for node in (*movers, *(others if left and owners else owners)):
-                own = self._left(right.grants, names[node], elements[channel], writes=writes)
+                own = self._without_removed(right.grants, names[node], elements[channel], writes=writes)
                 source, target = (node, channel) if writes else (channel, node)
                 single += [Flow(source, target, right.role, own)] if own else []
         if not shared or not others:
@@ -153,7 +157,9 @@ class _Kept:
         """The nodes that keep a grant of an enclave that is split, since it is their own."""
         return {vertices[grant.node] for grant in grants if grant.enclave in self.change.split}
 
-    def _left(self, grants: Iterable[Grant], node: str, channel: Element, *, writes: bool) -> tuple[Grant, ...]:
+    def _without_removed(
+        self, grants: Iterable[Grant], node: str, channel: Element, *, writes: bool
+    ) -> tuple[Grant, ...]:
         return tuple(one for one in grants if self._has(node, one) and self._open(one, channel, writes=writes))
 
     def _has(self, node: str, grant: Grant) -> bool:

@@ -55,10 +55,10 @@ def _moved(policy: Policy, move: frozenset[tuple[str, str]]) -> Policy:
         one._replace(enclave=own_enclave(one.enclave, one.node)) if (one.enclave, one.node) in move else one
         for one in policy.profiles
     )
-    return replace(policy, profiles=profiles, grants=tuple(new for one in policy.grants for new in _taken(one, move)))
+    return replace(policy, profiles=profiles, grants=tuple(new for one in policy.grants for new in _reduced(one, move)))
 
 
-def _taken(grant: Grant, move: frozenset[tuple[str, str]]) -> Iterator[Grant]:
+def _reduced(grant: Grant, move: frozenset[tuple[str, str]]) -> Iterator[Grant]:
     """An ALLOW goes with its profile; a DENY stays for those who stay, and goes with each who goes."""
     own = (grant.enclave, grant.node) in move
     if not (grant.allow and own):

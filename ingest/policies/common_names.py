@@ -32,12 +32,12 @@ class NameLeft(NamedTuple):
         Whether it took too many: then it is taken that one is left.
     """
 
-    left: bool
+    exists: bool
     steps: int
     careful: bool = False
 
 
-def some_name(wanted: tuple[str, ...], denied: tuple[str, ...]) -> bool:
+def some_name(matching: tuple[str, ...], denied: tuple[str, ...]) -> bool:
     """Return whether a name exists that all of some expressions match and none of others; True if it cannot be told.
 
     Examples
@@ -49,11 +49,11 @@ def some_name(wanted: tuple[str, ...], denied: tuple[str, ...]) -> bool:
     >>> some_name(("/t[0-1]",), ("/t0", "/t1")), some_name(("/t[0-2]",), ("/t0", "/t1"))
     (False, True)
     """
-    return name_left(wanted, denied).left
+    return name_left(matching, denied).exists
 
 
 @lru_cache(maxsize=65536)
-def name_left(wanted: tuple[str, ...], denied: tuple[str, ...]) -> NameLeft:
+def name_left(matching: tuple[str, ...], denied: tuple[str, ...]) -> NameLeft:
     """Return whether a name exists that all of some expressions match and none of others, and what it took to tell.
 
     Notes
@@ -61,11 +61,11 @@ def name_left(wanted: tuple[str, ...], denied: tuple[str, ...]) -> NameLeft:
     The sets of states can be as many as 2 to the power of the positions; ``LARGEST_SEARCH`` of them are looked at,
     for each of the letters that the expressions tell apart.
     """
-    machines = [tokens(expression) for expression in (*wanted, *denied)]
+    machines = [tokens(expression) for expression in (*matching, *denied)]
     first = _first(machines)
     steps = len(first) * sum(map(len, machines))
     if steps > MOST_STEPS:
-        return NameLeft(left=True, steps=0, careful=True)
+        return NameLeft(exists=True, steps=0, careful=True)
     stars = [_positions(token is None for token in machine) for machine in machines]
     ends = [1 << len(machine) for machine in machines]
     letters = _letters(machines, first)
@@ -75,17 +75,17 @@ def name_left(wanted: tuple[str, ...], denied: tuple[str, ...]) -> NameLeft:
     while waiting:
         states = waiting.pop()
         accepted = [bool(state & end) for state, end in zip(states, ends, strict=True)]
-        if all(accepted[: len(wanted)]) and not any(accepted[len(wanted) :]):
-            return NameLeft(left=True, steps=steps)
+        if all(accepted[: len(matching)]) and not any(accepted[len(matching) :]):
+            return NameLeft(exists=True, steps=steps)
         if len(seen) > LARGEST_SEARCH or steps > MOST_STEPS:
-            return NameLeft(left=True, steps=steps, careful=True)
+            return NameLeft(exists=True, steps=steps, careful=True)
         steps += step
         for letter in letters:
             after = tuple(map(_read, states, letter, stars))
-            if all(after[: len(wanted)]) and after not in seen:
+            if all(after[: len(matching)]) and after not in seen:
                 seen.add(after)
                 waiting.append(after)
-    return NameLeft(left=False, steps=steps)
+    return NameLeft(exists=False, steps=steps)
 
 
 def _read(state: int, letter: int, star: int) -> int:

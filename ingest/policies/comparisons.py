@@ -63,16 +63,16 @@ class Comparisons:
             if matches(dds):
                 yield dds, channel
 
-    def name_left(self, wanted: tuple[str, ...], rules: Iterable[tuple[str, Grant]]) -> bool:
+    def name_left(self, matching: tuple[str, ...], rules: Iterable[tuple[str, Grant]]) -> bool:
         """Whether a name is left that all of some expressions match and no rule takes out."""
         from rosprivacy.ingest.policies.common_names import name_left  # noqa: PLC0415 - light start
 
         rules = list(rules)
-        found = name_left(wanted, tuple(sorted({dds for dds, _ in rules})))
+        found = name_left(matching, tuple(sorted({dds for dds, _ in rules})))
         self._steps.add(found.steps, self.at)
         if found.careful:
             self.careful.update(line.place for _, line in rules)
-        return found.left
+        return found.exists
 
 
 def apart(rules: Iterable[tuple[str, Grant]]) -> tuple[dict[str, list[Grant]], list[tuple[str, Grant]]]:

@@ -146,7 +146,7 @@ class _Draft:
     """
 
     allowed: list[Grant] = field(default_factory=list)
-    taken: tuple[set[Grant], set[Grant]] | None = None  # lines that are overridden, and those that deny
+    removed: tuple[set[Grant], set[Grant]] | None = None  # lines that are overridden, and those that deny
 
 
 _MATCH = _Draft()  # of all flows of role ``matches``: no line states them
@@ -158,7 +158,7 @@ class _Drafts:
     def __init__(self, work: Comparisons, bounds: Bounds, participants: Mapping[str, str]) -> None:
         self.work, self.bounds, self.count = work, bounds, Tally(bounds, "flows", PolicyError)
         self.participants = participants  # whose profiles are of no node -> names outside ROS (rule S16)
-        self.said: dict[Element, Place] = {}  # of a pattern: the first line of it
+        self.flow_statements: dict[Element, Place] = {}  # of a pattern: the first line of it
         self.elements: set[Element] = set()
         self.plain: dict[tuple[str, str, str], Element] = {}
         self.flows: dict[tuple[Element, Element, str], _Draft] = {}
@@ -179,7 +179,7 @@ class _Drafts:
         against, part = denials.of(grant, endpoint)
         channel = self._channel(endpoint, tuple(sorted({dds for dds, _ in part})) if part else ())
         if channel.side:
-            self.said.setdefault(channel, grant.place)
+            self.flow_statements.setdefault(channel, grant.place)
         if part:
             self.rules[channel].update(part)
         ends = self.owner(node), channel
@@ -188,9 +188,9 @@ class _Drafts:
         if draft is new:
             self.count.add(1, grant.place)
         if against:
-            draft.taken = draft.taken or (set(), set())
-            draft.taken[0].add(grant)
-            draft.taken[1].update(against)
+            draft.removed = draft.removed or (set(), set())
+            draft.removed[0].add(grant)
+            draft.removed[1].update(against)
         elif not draft.allowed or draft.allowed[-1] is not grant:
             draft.allowed.append(grant)
 
@@ -238,7 +238,7 @@ class _Drafts:
         )
         self._meet(by_ends)
         for pattern in patterns:
-            self.work.at = self.said[pattern]
+            self.work.at = self.flow_statements[pattern]
             for channel, lines in self._covered(pattern, plain):
                 ends = (pattern, channel) if pattern.side == "write" else (channel, pattern)
                 self._match(*ends, lines | gone.get(pattern, set()))
@@ -248,21 +248,21 @@ class _Drafts:
                     if (met := self._met(pattern, reader)) is not None:
                         self._match(pattern, reader, met | gone.get(pattern, set()) | gone.get(reader, set()))
 
-    def _by_ends(self, gone: Mapping[Element, set[Grant]]) -> dict[Element, Ends]:
+    def _by_ends(self, met: Mapping[Element, set[Grant]]) -> dict[Element, Ends]:
         """The patterns of which their literal ends tell what they meet: of one DDS topic, and no DENY is about them."""
-        alone = (e for e, dds in self.ordered.items() if len(dds) == 1 and not self.rules.get(e) and e not in gone)
+        alone = (e for e, dds in self.ordered.items() if len(dds) == 1 and not self.rules.get(e) and e not in met)
         return {e: ends for e in alone if (ends := literal_ends(self.ordered[e][0])) is not None}
 
     def _meet(self, by_ends: Mapping[Element, Ends]) -> None:
         """Join patterns by their ends; large groups as a whole."""
 
         def count(element: Element, groups: int) -> None:
-            self.work.at = self.said[element]
+            self.work.at = self.flow_statements[element]
             self.work.placed(groups)
 
         writers, readers = ({e: ends for e, ends in by_ends.items() if e.side == side} for side in ("write", "read"))
         for written, read in meetings(writers, readers, count):
-            self.work.at = self.said[written[0]]
+            self.work.at = self.flow_statements[written[0]]
             if len(written) * len(read) > STORED * (len(written) + len(read)):
                 self.count.add(len(written) + len(read), self.work.at)
                 self.meetings.append((written, read))
@@ -278,8 +278,8 @@ class _Drafts:
             for end in (source, target):
                 if end.pattern and draft.allowed:
                     opened.add(end)
-                elif end.pattern and draft.taken:
-                    found[end] |= draft.taken[1]
+                elif end.pattern and draft.removed:
+                    found[end] |= draft.removed[1]
         return {pattern: lines for pattern, lines in found.items() if pattern not in opened}
 
     def _match(self, source: Element, target: Element, denials: set[Grant]) -> None:
@@ -334,13 +334,13 @@ class _Drafts:
             if draft.allowed or role == "matches":
                 allowed.append(Flow(*ends, tuple(draft.allowed)))
             else:
-                denied.append(Flow(*ends, *map(_in_order, draft.taken or ())))
+                denied.append(Flow(*ends, *map(_in_order, draft.removed or ())))
         refused = [
             Flow(index[source], index[target], "matches", (), _in_order(lines))
             for (source, target), lines in self.refused.items()
         ]
         met = [Meeting(_sorted(written, index), _sorted(read, index)) for written, read in self.meetings]
-        place = self.said[self.meetings[0][0][0]] if met else NOWHERE
+        place = self.flow_statements[self.meetings[0][0][0]] if met else NOWHERE
         several = {
             index[self.owner(first)]: _sorted(map(self.owner, nodes), index)
             for first, nodes in groups.items()

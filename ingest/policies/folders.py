@@ -26,7 +26,7 @@ SIGNED = ".p7s"
 KEYS = (".pem", ".key")  # never opened
 UNREADABLE = FileKind("a file that cannot be read", "check its permissions")
 GRANTING = (POLICY, ACCESS_LIST, PERMISSIONS, UNREADABLE)  # or it may be
-NAMED = 3  # of the files that are passed over
+SHOWN_AT_MOST = 3  # of the files that are passed over
 
 
 @dataclass(slots=True, eq=False, repr=False)
@@ -37,18 +37,18 @@ class Contents:
     ----------
     files
         To be read.
-    others
+    passed_over
         Passed over, since their names do not end in ``.xml``.
     hidden
         Those of the others that a person does not see; they are not counted.
     """
 
     files: set[str] = field(default_factory=set)
-    others: set[str] = field(default_factory=set)
+    passed_over: set[str] = field(default_factory=set)
     hidden: set[str] = field(default_factory=set)
     problems: list[InputError] = field(default_factory=list)
 
-    def said(self, argument: str, read: Collection[str], bounds: Bounds = BOUNDS) -> Iterator[Diagnostic]:
+    def diagnostics(self, argument: str, read: Collection[str], bounds: Bounds = BOUNDS) -> Iterator[Diagnostic]:
         """Yield what is to be said of what is passed over: what it is by its content, not by its name (rule S11).
 
         Parameters
@@ -56,14 +56,14 @@ class Contents:
         read
             Real paths of files and folders that were read all the same.
         """
-        left = sorted(self.others, key=lambda name: (name in self.hidden, name))
+        left = sorted(self.passed_over, key=lambda name: (name in self.hidden, name))
         left = [name for name in left if not _within(os.path.realpath(name), read)]
         looked = left[: bounds.passed_over]
         kinds = {name: looked_at(name) for name in looked}
         permissions = {name for name, kind in kinds.items() if kind is PERMISSIONS}
         if permissions:
             count = "1 file is" if len(permissions) == 1 else f"{len(permissions):,} files are"
-            yield not_read_here(Place(argument, 0), f"{count} ({_named(permissions, argument)})")
+            yield not_read_here(Place(argument, 0), f"{count} ({_names_shown(permissions, argument)})")
         yield from _unread((name, kind) for name, kind in kinds.items() if kind is not PERMISSIONS)
         if len(looked) < len(left):
             what = "; ".join(bounds.refusal("passed_over", len(left)))
@@ -71,7 +71,7 @@ class Contents:
         others = {name for name, kind in kinds.items() if kind not in GRANTING and name not in self.hidden}
         if others:
             count = "1 file is" if len(others) == 1 else f"{len(others):,} files are"
-            message = f"{count} not read, as the name does not end in .xml: {_named(others, argument)}"
+            message = f"{count} not read, as the name does not end in .xml: {_names_shown(others, argument)}"
             yield Diagnostic(Place(argument, 0), Severity.NOTICE, message, NOT_READ)
 
 
@@ -82,7 +82,7 @@ def beside_keystore(folder: str, read: Collection[str]) -> Iterator[Diagnostic]:
         for entry in Path(folder).iterdir()
         if entry.name not in ("public", "private")
     ]
-    files = sorted({name for one in held for name in one.files | one.others})
+    files = sorted({name for one in held for name in one.files | one.passed_over})
     kinds = ((name, looked_at(name)) for name in files if not _within(os.path.realpath(name), read))
     return _unread((name, kind) for name, kind in kinds if kind is not PERMISSIONS)  # beside those that are signed
 
@@ -112,9 +112,9 @@ def _within(file: str, read: Collection[str]) -> bool:
     return file in read or any(str(folder) in read for folder in Path(file).parents)
 
 
-def _named(files: Iterable[str], argument: str) -> str:
+def _names_shown(files: Iterable[str], argument: str) -> str:
     names = sorted(shown(os.path.relpath(name, argument) if Path(argument).is_dir() else name) for name in files)
-    return ", ".join([*names[:NAMED], *(["…"] if len(names) > NAMED else [])])
+    return ", ".join([*names[:SHOWN_AT_MOST], *(["…"] if len(names) > SHOWN_AT_MOST else [])])
 
 
 def not_read_here(place: Place, what: str) -> Diagnostic:
@@ -202,6 +202,6 @@ class _Walk:
         elif path.is_file() and path.suffix.lower() == ".xml":
             self.contents.files.add(name)
         else:
-            self.contents.others.add(name)
+            self.contents.passed_over.add(name)
             if any(part.startswith(".") for part in path.parts[self.depth :]):
                 self.contents.hidden.add(name)

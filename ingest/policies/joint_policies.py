@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 LONGEST = 247  # characters that the middlewares of ROS 2 take
-NAMED = 3  # of the enclaves that two files share
+SHOWN_AT_MOST = 3  # of the enclaves that two files share
 COMPARED = 50  # refused names that are compared with all others
 
 _WILDCARD = re.compile(r"\[[!^]?\]?[^\]]*\]|[*?]")
@@ -63,13 +63,15 @@ def _shared_enclaves(policies: Sequence[Policy]) -> Iterator[Diagnostic]:
         for profile in policy.profiles:
             stated[profile.enclave].setdefault(policy.file, profile.place)
     several = {enclave: files for enclave, files in stated.items() if len(files) > 1}
-    said = _said(policies, several) if several else {}
+    said = _places_shown(policies, several) if several else {}
     shared: dict[tuple[str, ...], list[str]] = defaultdict(list)
     for enclave, files in several.items():
         if any(said[file, enclave] != said[next(iter(files)), enclave] for file in files):
             shared[tuple(files)].append(enclave)
     for names, enclaves in sorted(shared.items()):
-        named = ", ".join([*map(shown, sorted(enclaves)[:NAMED]), *(["…"] if len(enclaves) > NAMED else [])])
+        named = ", ".join(
+            [*map(shown, sorted(enclaves)[:SHOWN_AT_MOST]), *(["…"] if len(enclaves) > SHOWN_AT_MOST else [])]
+        )
         what = f"enclave {named} is" if len(enclaves) == 1 else f"{len(enclaves):,} enclaves ({named}) are"
         others = " and ".join(shown(file) for file in names[1:])
         message = f"{what} stated in {others} too: sros2 makes permissions of one file; all are read, and no file's "
@@ -77,7 +79,7 @@ def _shared_enclaves(policies: Sequence[Policy]) -> Iterator[Diagnostic]:
         yield Diagnostic(stated[min(enclaves)][names[0]], Severity.WARNING, message, SHARED_ENCLAVE)
 
 
-def _said(policies: Sequence[Policy], enclaves: Collection[str]) -> dict[tuple[str, str], set[object]]:
+def _places_shown(policies: Sequence[Policy], enclaves: Collection[str]) -> dict[tuple[str, str], set[object]]:
     """By file and enclave, the lines that state it: the same ones where a policy includes another one's enclave."""
     said: dict[tuple[str, str], set[object]] = defaultdict(set)
     for policy in policies:
@@ -136,7 +138,7 @@ def _nearest(name: str, good: set[str], *, compare: bool) -> list[str]:
 def seen_although_denied(policies: Iterable[Policy]) -> Iterator[Diagnostic]:
     """Return a warning for each observed grant that a DENY of another policy covers, for an enclave of its node."""
     policies = tuple(policies)
-    seen = [grant for policy in policies for grant in policy.grants if grant.seen]
+    seen = [grant for policy in policies for grant in policy.grants if grant.observation]
     if not seen:
         return
     denials: dict[tuple[str, bool], list[tuple[str, Grant]]] = defaultdict(list)
@@ -157,8 +159,10 @@ def seen_although_denied(policies: Iterable[Policy]) -> Iterator[Diagnostic]:
             for dds, line in denials.get((grant.node, end.writes), ())
             if line.policy != grant.policy and covers(dds, end.dds)
         ]
-        if lines and grant.seen:
+        if lines and grant.observation:
             first = min(lines, key=lambda line: (line.place.file, line.place.line))
-            message = f"seen although denied: {grant.node} {grant.role} {grant.name}, from {grant.seen.first} to "
-            message += f"{grant.seen.last}; {shown(str(first.place))} denies it; see why it runs all the same"
+            message = (
+                f"seen although denied: {grant.node} {grant.role} {grant.name}, from {grant.observation.first} to "
+            )
+            message += f"{grant.observation.last}; {shown(str(first.place))} denies it; see why it runs all the same"
             yield Diagnostic(grant.place, Severity.WARNING, shown(message), SEEN_ALTHOUGH_DENIED)

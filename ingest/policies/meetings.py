@@ -76,9 +76,9 @@ def meetings(
 class _Shorter:
     """Literal texts of one side, to find those that begin one of the other side."""
 
-    def __init__(self, known: set[str]) -> None:
-        self._known = known
-        self._lengths = sorted({len(text) for text in known})
+    def __init__(self, names: set[str]) -> None:
+        self._names = names
+        self._lengths = sorted({len(text) for text in names})
 
     def of(self, text: str, *, is_read: bool) -> list[tuple[str, bool]]:
         """The text itself, and those of the other side that begin it; each with whether it is one that is read.
@@ -86,4 +86,4 @@ class _Shorter:
         Where both sides have one text, it counts as the read side's.
         """
         within = (text[:length] for length in self._lengths if length < len(text) + (not is_read))
-        return [(text, is_read), *((one, not is_read) for one in within if one in self._known)]
+        return [(text, is_read), *((one, not is_read) for one in within if one in self._names)]

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.model import Grant, Place, Policy
 
-NAMED = 3  # of nodes, files and parts
+SHOWN_AT_MOST = 3  # of nodes, files and parts
 EVERYBODY = ("rosout", "parameter_events", "clock")  # channels of every node: they join no two systems
 COMPARED = 1_000_000  # wildcards with names; beyond that nothing is said of parts
 ALONE = "--per-policy analyses each alone"
@@ -55,7 +55,7 @@ def _stated_differently(policies: Sequence[Policy], instead: str) -> Iterator[Di
             nodes[tuple(files)].append(node)
     for files_of, stated in sorted(nodes.items()):
         first = min(stated)
-        what = f"{_some(stated, 'node')} stated differently in {_files(files_of)}"
+        what = f"{_sample(stated, 'node')} stated differently in {_files(files_of)}"
         message = f"{len(policies):,} policies make one graph, with what each of them allows: {what}"
         yield Diagnostic(places[first][files_of[0]], Severity.NOTICE, f"{message}; {instead}", MERGED)
 
@@ -63,8 +63,8 @@ def _stated_differently(policies: Sequence[Policy], instead: str) -> Iterator[Di
 def _without_common_names(policies: Sequence[Policy], instead: str) -> Iterator[Diagnostic]:
     parts = _parts(policies)
     if len(parts) > 1:
-        more = f" | and {len(parts) - NAMED} more" if len(parts) > NAMED else ""
-        named = " | ".join(_files([policy.file for policy in part]) for part in parts[:NAMED]) + more
+        more = f" | and {len(parts) - SHOWN_AT_MOST} more" if len(parts) > SHOWN_AT_MOST else ""
+        named = " | ".join(_files([policy.file for policy in part]) for part in parts[:SHOWN_AT_MOST]) + more
         what = f"{len(policies):,} policies make one graph of {len(parts):,} parts that share no node and no channel"
         message = f"{what}: {named}; if these are several systems, {instead}"
         yield Diagnostic(parts[0][0].profiles[0].place, Severity.NOTICE, message, MERGED)
@@ -98,11 +98,11 @@ def _of_everybody(grant: Grant) -> bool:
     return grant.kind == "topic" and grant.name.rpartition("/")[2] in EVERYBODY
 
 
-def _some(nodes: Sequence[str], noun: str) -> str:
-    named = ", ".join(map(shown, sorted(nodes)[:NAMED])) + (", …" if len(nodes) > NAMED else "")
+def _sample(nodes: Sequence[str], noun: str) -> str:
+    named = ", ".join(map(shown, sorted(nodes)[:SHOWN_AT_MOST])) + (", …" if len(nodes) > SHOWN_AT_MOST else "")
     return f"{noun} {named} is" if len(nodes) == 1 else f"{len(nodes):,} {noun}s ({named}) are"
 
 
 def _files(files: Sequence[str]) -> str:
-    more = f" and {len(files) - NAMED} more" if len(files) > NAMED else ""
-    return (", " if more or len(files) > 2 else " and ").join(map(shown, files[:NAMED])) + more  # noqa: PLR2004 - a pair
+    more = f" and {len(files) - SHOWN_AT_MOST} more" if len(files) > SHOWN_AT_MOST else ""
+    return (", " if more or len(files) > 2 else " and ").join(map(shown, files[:SHOWN_AT_MOST])) + more  # noqa: PLR2004 - a pair

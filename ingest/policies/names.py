@@ -16,7 +16,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.expressions import have_common_name, holds, regex, tokens
-from rosprivacy.analysis.written_names import GLOB_SIGNS, is_glob, meant
+from rosprivacy.analysis.written_names import GLOB_SIGNS, bare_name, is_glob
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection
@@ -235,7 +235,7 @@ def covered(written: str, names: Collection[str]) -> list[str]:
     (['/camera', '/cam*'], ['/cam*'])
     """
     if not is_glob(written):
-        return [meant(written)] if meant(written) in names else []
+        return [bare_name(written)] if bare_name(written) in names else []
     plain = matcher(written)
     return [name for name in names if (covers(written, name) if is_pattern(name) else plain(name))]
 

@@ -66,7 +66,7 @@ def _twice(grants: Iterable[Grant]) -> set[tuple[str, str]]:
     return written[True] & written[False]
 
 
-def told(policies: Sequence[Policy], who: str, namespace: str) -> Iterator[Diagnostic]:
+def notices(policies: Sequence[Policy], who: str, namespace: str) -> Iterator[Diagnostic]:
     """Yield what a reader has to know of a namespace that is pushed.
 
     Parameters

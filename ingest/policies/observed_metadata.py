@@ -58,7 +58,7 @@ UNWARNED = (
     "made without warnings: the text has no line of standard error and no hidden name, so nodes of one name, nodes "
     "that did not answer and all that is hidden can be missing; make it anew with -a, --include-hidden and 2>&1"
 )
-NAMED = 3  # of folded names
+SHOWN_AT_MOST = 3  # of folded names
 
 Key = tuple[str, str, str, str]  # node, kind, role, name
 
@@ -93,8 +93,8 @@ def diagnostics_of(observed: Observed, place: Place) -> Iterator[Diagnostic]:
         message = f"enclaves are made up: one per node ({observed.made_up_enclaves:,})"
         yield Diagnostic(place, Severity.NOTICE, message, ENCLAVES_MADE_UP)
     if observed.folded:
-        named = [f"{shown(name)} by the rule {shown(rule)}" for name, rule in observed.folded[:NAMED]]
-        more = f", and {len(observed.folded) - NAMED:,} more" if len(observed.folded) > NAMED else ""
+        named = [f"{shown(name)} by the rule {shown(rule)}" for name, rule in observed.folded[:SHOWN_AT_MOST]]
+        more = f", and {len(observed.folded) - SHOWN_AT_MOST:,} more" if len(observed.folded) > SHOWN_AT_MOST else ""
         message = f"names made up at each start are folded: {', '.join(named)}{more}"
         yield Diagnostic(place, Severity.NOTICE, message, FOLDED_NAMES)
     for gap, number in observed.gaps:

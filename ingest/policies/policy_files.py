@@ -31,11 +31,11 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True, eq=False, repr=False)
 class _Expanded:
-    """The files behind the arguments; ``found`` by folder or glob."""
+    """The files behind the arguments; ``folder_files`` by folder or glob."""
 
-    named: set[str] = field(default_factory=set)
-    found: dict[str, set[str]] = field(default_factory=dict)
-    held: dict[str, Contents] = field(default_factory=dict)
+    named_files: set[str] = field(default_factory=set)
+    folder_files: dict[str, set[str]] = field(default_factory=dict)
+    contents: dict[str, Contents] = field(default_factory=dict)
     problems: list[InputError] = field(default_factory=list)
 
 
@@ -77,7 +77,7 @@ def read_policies(
     """
     arguments = tuple(arguments)
     expanded = _expand(arguments)
-    named, found, problems = expanded.named, expanded.found, expanded.problems
+    named, found, problems = expanded.named_files, expanded.folder_files, expanded.problems
     everything = sorted({*named, *(file for files in found.values() for file in files)})
     outside = dict.fromkeys(file for file in everything if within is not None and leaves(file, within))
     problems += [PolicyError(file, 0, what_leaves(file, within or ""), WIDEN) for file in outside]
@@ -100,11 +100,13 @@ def read_policies(
         problems.append(PolicyError("nothing", 0, "no SROS 2 policy found", "name a file or folder that has one"))
     if problems:
         raise InputErrors(problems)
-    if not expanded.held:
+    if not expanded.contents:
         return tuple(policies), ()
     included = _included(policies)
     read = {*included, *map(os.path.realpath, besides), *map(os.path.realpath, named)}
-    passed_over = (one for argument, held in expanded.held.items() for one in held.said(argument, read, bounds))
+    passed_over = (
+        one for argument, held in expanded.contents.items() for one in held.diagnostics(argument, read, bounds)
+    )
     return tuple(policies), (*(_not_read(error, included) for error in skipped), *passed_over)
 
 
@@ -159,12 +161,12 @@ def _expand(arguments: Iterable[str]) -> _Expanded:
             expanded.problems.append(PolicyError(argument or "''", 0, what, "name a policy"))
             continue
         if held is None:
-            expanded.named.add(spelt.setdefault(os.path.abspath(argument), argument))  # noqa: PTH100 - by its text
+            expanded.named_files.add(spelt.setdefault(os.path.abspath(argument), argument))  # noqa: PTH100 - by its text
             continue
         expanded.problems += held.problems
-        expanded.held[argument] = held
+        expanded.contents[argument] = held
         if held.files:
-            expanded.found[argument] = {
+            expanded.folder_files[argument] = {
                 spelt.setdefault(os.path.abspath(file), file)  # noqa: PTH100
                 for file in sorted(held.files)
             }

@@ -132,7 +132,7 @@ class _Reader:
     old: bool = False
     namespace: str = ""
     observations: list[tuple[Place, Observed]] = field(default_factory=list)
-    seen: Mapping[Key, Seen] = field(default_factory=dict)  # of the profiles that are being read (rule S16)
+    seen_by_key: Mapping[Key, Seen] = field(default_factory=dict)  # of the profiles that are being read (rule S16)
     participants: Mapping[str, str] = field(default_factory=dict)  # those of them that are of no node
     first: Place | None = None  # where sros2 has read its fill of this enclave: what follows is dead (rule S5)
 
@@ -183,16 +183,16 @@ class _Reader:
         for enclave in enclaves:
             self._enclave(enclave, seen)
 
-    def _enclave(self, enclave: Item, seen: dict[str, Place]) -> None:
+    def _enclave(self, enclave: Item, places: dict[str, Place]) -> None:
         self._attributes(enclave, {"path"})
         path = self._required(enclave, "path")
-        if path in seen:
-            message = f"enclave {path} again (first at {seen[path]}): sros2 uses the first only"
+        if path in places:
+            message = f"enclave {path} again (first at {places[path]}): sros2 uses the first only"
             self._warning(
                 enclave.place, f"{message}; what this one allows is read too, what it denies is not", DUPLICATE_ENCLAVE
             )
-        self.first = seen.get(path)
-        seen.setdefault(path, enclave.place)
+        self.first = places.get(path)
+        places.setdefault(path, enclave.place)
         groups = list(self._elements(enclave, {"profiles"}))
         if not groups:
             self._problem(enclave.place, f"<{enclave.tag}> without <profiles>", "add <profiles> with a <profile>")
@@ -215,14 +215,14 @@ class _Reader:
             self.diagnostics.extend(diagnostics_of(whole, self.observations[0][0]))
 
     def _profiles(self, group: Item, enclave: str | None) -> None:
-        self.seen, self.participants = self._seen(group)
+        self.seen_by_key, self.participants = self._observation(group)
         profiles = list(self._elements(group, {"profile"}))
         if not profiles:
             self._problem(group.place, "<profiles> is empty", "add a <profile>")
         for profile in profiles:
             self._profile(profile, enclave)
 
-    def _seen(self, group: Item) -> Read:
+    def _observation(self, group: Item) -> Read:
         """When the grants of some profiles were seen, if an observation says so, and which profiles are of no node."""
         for child in group.element:
             read = self._seen_in(child, group.file) if child.tag == "metadata" else None
@@ -277,7 +277,7 @@ class _Reader:
             absolute = (item.element.text or "").startswith("/")
             for role, allow in granted:
                 dead = self.first is not None
-                seen = self.seen.get((owned, kind, role, name)) if allow and self.seen else None
+                seen = self.seen_by_key.get((owned, kind, role, name)) if allow and self.seen_by_key else None
                 self.grants.append(
                     Grant(allow, role, kind, name, enclave, owned, place, self.file, dead, absolute, seen)
                 )

@@ -15,7 +15,7 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import GraphError, InputErrors, shown
-from rosprivacy.analysis.json_shape import MOST, misfits, validator
+from rosprivacy.analysis.json_shape import BOUND, misfits, validator
 from rosprivacy.analysis.json_values import parsed
 from rosprivacy.analysis.model import (
     ACCESS_GAP,
@@ -46,8 +46,8 @@ if TYPE_CHECKING:
 
 FORMAT = "rosprivacy.graph/1"
 MAX_BYTES = 2**30
-AGAIN = "save it again with --save-graph"
-_AGAIN = re.compile(r"enclave (.+) again \(first at |several <profiles> in enclave (.+): DDS uses", re.DOTALL)
+REMEDY = "save it again with --save-graph"
+_REPEATED = re.compile(r"enclave (.+) again \(first at |several <profiles> in enclave (.+): DDS uses", re.DOTALL)
 UNKNOWN = (
     "saved by an earlier version, which did not keep which names a policy writes absolute: all are taken so, as they "
     "stand here; save it again from the policies"
@@ -64,7 +64,7 @@ class Saved:
     """What a file keeps of a system: policies, what was not read, and observed types."""
 
     policies: tuple[Policy, ...]
-    left: tuple[Diagnostic, ...] = ()
+    diagnostics: tuple[Diagnostic, ...] = ()
     types: tuple[TypesFile, ...] = ()
 
 
@@ -111,15 +111,15 @@ def read_saved(file: str) -> Saved:
 
 
 def _read(file: str, fail: Callable[[int, str, str], GraphError]) -> Saved:
-    data = parsed(read_regular(file, MAX_BYTES, fail), fail, AGAIN)
+    data = parsed(read_regular(file, MAX_BYTES, fail), fail, REMEDY)
     said = data.get("format") if isinstance(data, dict) else None
     if said != FORMAT:
         newer = isinstance(said, str) and said.startswith("rosprivacy.graph/")
         hint = "use the version of rosprivacy that wrote it" if newer else "name a file written by --save-graph"
-        raise fail(0, f"not a saved graph ({FORMAT})", f"{hint}, or {AGAIN}")
-    wrong = misfits(_validator(), data) or list(islice(_unowned(data["policies"]), MOST))
+        raise fail(0, f"not a saved graph ({FORMAT})", f"{hint}, or {REMEDY}")
+    wrong = misfits(_validator(), data) or list(islice(_unowned(data["policies"]), BOUND))
     if wrong:
-        raise InputErrors([fail(0, f"a damaged graph: {one}", AGAIN) for one in wrong])
+        raise InputErrors([fail(0, f"a damaged graph: {one}", REMEDY) for one in wrong])
     policies = tuple(_read_policy(policy) for policy in data["policies"])
     if any("absolute" not in grant for policy in data["policies"] for grant in policy["grants"]):
         first = policies[0]
@@ -175,7 +175,7 @@ def _policy(policy: Policy) -> dict[str, Any]:
                 "file": grant.place.file,
                 "line": grant.place.line,
                 **({} if grant.allow and not grant.dead else {"dead": grant.dead}),
-                **({"seen": _seen(grant.seen)} if grant.seen else {}),
+                **({"seen": _observation(grant.observation)} if grant.observation else {}),
             }
             for grant in policy.grants
         ],
@@ -189,12 +189,16 @@ def _is_deployed(policy: Policy) -> bool:
     return bool(policy.protections) or any(grant.kind == DDS for grant in policy.grants)
 
 
-def _protection(one: Protection) -> dict[str, Any]:
+def _protection(protection: Protection) -> dict[str, Any]:
     topics = [
         {"expression": t.expression, "encrypted": t.encrypted, "file": t.place.file, "line": t.place.line}
-        for t in one.topics
+        for t in protection.topics
     ]
-    strangers = {"strangers": {"file": one.strangers.file, "line": one.strangers.line}} if one.strangers else {}
+    strangers = (
+        {"strangers": {"file": protection.strangers.file, "line": protection.strangers.line}}
+        if protection.strangers
+        else {}
+    )
     return {"topics": topics, **strangers}
 
 
@@ -203,8 +207,8 @@ def _read_protection(saved: dict[str, Any]) -> Protection:
     return Protection(tuple(topics), _place(saved["strangers"]) if "strangers" in saved else None)
 
 
-def _seen(seen: Seen) -> dict[str, Any]:
-    return {"by": list(seen.by), "first": seen.first, "last": seen.last}
+def _observation(observation: Seen) -> dict[str, Any]:
+    return {"by": list(observation.by), "first": observation.first, "last": observation.last}
 
 
 def _read_seen(saved: dict[str, Any]) -> Seen:
@@ -239,7 +243,7 @@ def _read_policy(saved: dict[str, Any]) -> Policy:
             policy=saved["file"],
             dead=g.get("dead", False),
             absolute=g.get("absolute", True),
-            seen=_read_seen(g["seen"]) if "seen" in g else None,
+            observation=_read_seen(g["seen"]) if "seen" in g else None,
             rank=g.get("rank", 0),
         )
         for g in saved["grants"]
@@ -253,13 +257,13 @@ def _read_policy(saved: dict[str, Any]) -> Policy:
     return Policy(saved["file"], sources, profiles, tuple(grants), tuple(said), saved=True, protections=protections)
 
 
-def _of_earlier_version(grants: list[Grant], said: Iterable[Diagnostic]) -> tuple[list[Grant], list[Diagnostic]]:
+def _of_earlier_version(grants: list[Grant], diagnostics: Iterable[Diagnostic]) -> tuple[list[Grant], list[Diagnostic]]:
     """Grants of a graph that does not say which lines sros2 does not read: those that may be such take nothing away.
 
     The warning about a second ``<profiles>`` or ``<enclave>`` says where it begins; what stands there or below, and
     what is included from another file, may belong to it.
     """
-    again = [(d.place, match[1] or match[2]) for d in said if (match := _AGAIN.match(d.message))]
+    again = [(d.place, match[1] or match[2]) for d in diagnostics if (match := _REPEATED.match(d.message))]
     read: list[Grant] = []
     told: dict[Diagnostic, None] = {}
     for grant in grants:
@@ -268,7 +272,7 @@ def _of_earlier_version(grants: list[Grant], said: Iterable[Diagnostic]) -> tupl
         read.append(grant._replace(dead=bool(starts)))
         if starts and not grant.allow:
             message = f"DENY of {shown(grant.name)} is taken as dead: the graph was saved by an earlier version, which"
-            told[Diagnostic(grant.place, Severity.WARNING, f"{message} does not say; {AGAIN}", DEAD_DENY)] = None
+            told[Diagnostic(grant.place, Severity.WARNING, f"{message} does not say; {REMEDY}", DEAD_DENY)] = None
     return read, list(told)
 
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 ENCLAVE = "/ (nothing enforced)"  # of all unsecured nodes of a domain; no policy has a blank in a path
 READING = {"topic": ("subscribe",), "service": ("request", "reply"), "action": ("call", "execute"), DDS: ("subscribe",)}
-NAMED = 3
+SHOWN_AT_MOST = 3
 
 
 def is_observed(policy: Policy) -> bool:
@@ -42,7 +42,7 @@ def unsecured_notices(policies: Sequence[Policy]) -> Iterator[Diagnostic]:
         nodes = sorted({p.node for p in policy.profiles if p.enclave in enclaves and not p.participant})
         if nodes and is_observed(policy):
             first = min(p.place for p in policy.profiles)
-            named = ", ".join([*map(shown, nodes[:NAMED]), *(["…"] if len(nodes) > NAMED else [])])
+            named = ", ".join([*map(shown, nodes[:SHOWN_AT_MOST]), *(["…"] if len(nodes) > SHOWN_AT_MOST else [])])
             what = f"nothing is enforced for what was observed here ({named}): any program on the network may do it"
             yield Diagnostic(first, Severity.WARNING, f"{what}; see --view both", NOTHING_ENFORCED, len(nodes))
 

@@ -82,7 +82,7 @@ class Documents:
 
     def __init__(self, root: Path, max_bytes: int = MAX_BYTES) -> None:
         self.root = root.resolve()
-        self.left = max_bytes
+        self.budget = max_bytes
         self.max_bytes = max_bytes
         self.problems: list[InputError] = []
         self.diagnostics: list[Diagnostic] = []
@@ -212,8 +212,8 @@ class Documents:
         """Parse a file, once; count its bytes each time."""
         known = self._parsed.get(path)
         size = known[1] if known else _size(path, file, place)
-        self.left -= size
-        if self.left < 0:
+        self.budget -= size
+        if self.budget < 0:
             what = f"more than {self.max_bytes} bytes with all includes"
             raise _error(place, what, "allow more with --max-bytes, or split the policy")
         if known:

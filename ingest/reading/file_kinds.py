@@ -18,7 +18,7 @@ from rosprivacy.ingest.reading.bounded_file import beginning
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
-MOST = 2**18  # bytes in which a file says what it is: a configuration of Zenoh has its list far behind
+BOUND = 2**18  # bytes in which a file says what it is: a configuration of Zenoh has its list far behind
 HEAD = 4096  # bytes in which a signed file says that it is
 SIGNED = b"multipart/signed"
 ACCESS = "access_control"
@@ -30,9 +30,9 @@ class FileKind(NamedTuple):
     name: str
     instead: str
 
-    def refused(self, wanted: str, file: str) -> tuple[str, str]:
+    def refused(self, purpose: str, file: str) -> tuple[str, str]:
         """Return the problem and what to do where something else is wanted."""
-        return f"this is {self.name}, and not {wanted}", self.instead.replace("FILE", shown(file))
+        return f"this is {self.name}, and not {purpose}", self.instead.replace("FILE", shown(file))
 
 
 POLICY = FileKind("an SROS 2 policy", "name it by itself")
@@ -64,9 +64,9 @@ _KEY = re.compile(r"""^["']?([A-Za-z_]\w*)["']?[ \t]*:""", re.MULTILINE)
 _NODE = re.compile(r"^/\S+\r?\n  (?:Subscribers|Publishers):", re.MULTILINE)
 _FORMAT = re.compile(r'"format": ?"rosprivacy\.([a-z]+)/')
 _PACKED: Mapping[bytes, Callable[[bytes], bytes]] = {
-    b"\x1f\x8b": lambda data: zlib.decompressobj(31).decompress(data, MOST),
-    b"BZh": lambda data: bz2.BZ2Decompressor().decompress(data, MOST),
-    b"\xfd7zXZ\0": lambda data: lzma.LZMADecompressor(memlimit=2**27).decompress(data, MOST),
+    b"\x1f\x8b": lambda data: zlib.decompressobj(31).decompress(data, BOUND),
+    b"BZh": lambda data: bz2.BZ2Decompressor().decompress(data, BOUND),
+    b"\xfd7zXZ\0": lambda data: lzma.LZMADecompressor(memlimit=2**27).decompress(data, BOUND),
 }
 
 
@@ -78,7 +78,7 @@ def kind_of(data: bytes) -> FileKind | None:
     >>> kind_of(b"<!-- a template -->\n<policy version='0.2.0'>").name, kind_of(b"labels: 1\n").name
     ('an SROS 2 policy', 'a label file')
     """
-    data = _unpacked(data[:MOST])
+    data = _unpacked(data[:BOUND])
     if is_signed(data):
         return PERMISSIONS
     text = _text(data)
@@ -98,7 +98,7 @@ def kind_of_file(name: str) -> FileKind | None:
     OSError, ValueError
         If it cannot be read.
     """
-    return kind_of(beginning(name, MOST, passed_over=True))
+    return kind_of(beginning(name, BOUND, passed_over=True))
 
 
 def is_signed(data: bytes) -> bool:

@@ -92,18 +92,18 @@ class FileReader:
             found = f"{what} format {shown(version.text or version.kind)!r}"
             self.problem(version.line, found, f"this reads '{key}: 1'")
 
-    def entries_of(self, value: Value, known: tuple[str, ...]) -> Iterable[tuple[str, int, Value]]:
+    def entries_of(self, value: Value, keys: tuple[str, ...]) -> Iterable[tuple[str, int, Value]]:
         """Return the entries of a map, those with unknown keys reported."""
         for key, line, child in value.entries:
-            if key in known:
+            if key in keys:
                 yield key, line, child
             else:
-                hint = did_you_mean([*map(repr, nearest(key, known))], f"one of {', '.join(known)}")
+                hint = did_you_mean([*map(repr, nearest(key, keys))], f"one of {', '.join(keys)}")
                 self.problem(line, f"unknown key {shown(key)!r}", hint)
 
-    def values_of(self, value: Value, known: tuple[str, ...]) -> dict[str, Value]:
+    def values_of(self, value: Value, keys: tuple[str, ...]) -> dict[str, Value]:
         """Return the values of a map by key; see ``entries_of``."""
-        return {key: child for key, _, child in self.entries_of(value, known)}
+        return {key: child for key, _, child in self.entries_of(value, keys)}
 
     def category_of_name(self, vocabulary: Vocabulary, written: str, line: int) -> str:
         """Return the kind of data of a name; empty, and a problem with the nearest names, if there is none (S11)."""

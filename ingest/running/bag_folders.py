@@ -64,7 +64,7 @@ def read_metadata(file: str) -> Metadata:
         distro=_text(said, "ros_distro"),
         compression=f"{packed[0]} ({packed[1].lower()})" if all(packed) else packed[0],
         gaps=tuple(gaps),
-        beside=tuple(_custom(said)),
+        extras=tuple(_custom(said)),
     )
     names = said.get("relative_file_paths")
     return Metadata(recorded, tuple(sorted({item.text for item in names.items if item.text})) if names else ())
@@ -79,9 +79,9 @@ def _topic(row: Value) -> BagTopic | None:
     return BagTopic(name, (kind,) if kind else (), (digest,) if digest else (), _count(row.get("message_count")))
 
 
-def _custom(said: Value) -> Iterator[str]:
+def _custom(value: Value) -> Iterator[str]:
     """Free text of the person who recorded."""
-    custom = said.get("custom_data")
+    custom = value.get("custom_data")
     for key, _, _ in custom.entries if custom else ():
         yield f"custom data {shown(key)!r}"
 
@@ -91,9 +91,9 @@ def _text(value: Value, key: str) -> str:
     return found.text if found and found.kind in ("text", "number") else ""
 
 
-def _number(said: Value, key: str) -> int | None:
+def _number(value: Value, key: str) -> int | None:
     """A time: a map of one number, ``nanoseconds`` or ``nanoseconds_since_epoch``."""
-    found = said.get(key)
+    found = value.get(key)
     return _count(found.entries[0][2]) if found and len(found.entries) == 1 else None
 
 
@@ -154,12 +154,22 @@ def _ending(name: str) -> str:
     return Path(path.stem).suffix if path.suffix in PACKED else path.suffix
 
 
-def _bag(path: str, said: Recorded, files: Iterable[str], gaps: Sequence[str] = (), notes: Sequence[str] = ()) -> Bag:
+def _bag(
+    path: str, recorded: Recorded, files: Iterable[str], gaps: Sequence[str] = (), notes: Sequence[str] = ()
+) -> Bag:
     there = sorted(file for file in files if Path(file).is_file())
     size = sum(Path(file).stat().st_size for file in there)
-    all_gaps = (*said.gaps, *gaps)
-    facts = (said.start, said.end, said.distro, said.compression, all_gaps, said.beside, tuple(notes))
-    return Bag(path, said.storage, said.topics, tuple(there), size, *facts)
+    all_gaps = (*recorded.gaps, *gaps)
+    facts = (
+        recorded.start,
+        recorded.end,
+        recorded.distro,
+        recorded.compression,
+        all_gaps,
+        recorded.extras,
+        tuple(notes),
+    )
+    return Bag(path, recorded.storage, recorded.topics, tuple(there), size, *facts)
 
 
 def _folder(folder: str, metadata: str = "") -> Bag:
@@ -190,11 +200,11 @@ def _folder(folder: str, metadata: str = "") -> Bag:
             if not leaves(path, root):
                 named[os.path.realpath(path)] = path
     files = sorted(named.values())
-    more = [_beside(path, gaps, notes) for path in files]
+    more = [_from_file(path, gaps, notes) for path in files]
     return _bag(metadata or folder, _compared(said.recorded, [one for one in more if one], gaps), files, gaps, notes)
 
 
-def _beside(path: str, gaps: list[str], notes: list[str]) -> Recorded | None:
+def _from_file(path: str, gaps: list[str], notes: list[str]) -> Recorded | None:
     """What a file of a recording says by itself; ``metadata.yaml`` alone tells of one that cannot be looked into."""
     name = shown(Path(path).name)
     if path.lower().endswith(PACKED):
@@ -222,7 +232,7 @@ def _compared(metadata: Recorded, files: Sequence[Recorded], gaps: list[str]) ->
     for topic in metadata.topics:
         if topic.messages is not None and counted.get(topic.name, 0) > topic.messages:
             gaps.append(f"{NAME} counts fewer messages of {shown(topic.name)} than its files")
-    beside = tuple(sorted({*metadata.beside, *(what for file in files for what in file.beside)}))
+    beside = tuple(sorted({*metadata.extras, *(what for file in files for what in file.extras)}))
     packed = metadata.compression or ", ".join(sorted({file.compression for file in files if file.compression}))
     topics = united((*metadata.topics, *left_out))
     return Recorded(

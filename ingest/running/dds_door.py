@@ -70,12 +70,12 @@ class DdsDoor:
         with joined(self.domain, configuration(self.domain, self.peers, self.interface)) as readers:
             since, graph = self.clock(), DdsGraph()
 
-            def seen(at_the_end: bool) -> Observation:  # noqa: FBT001 - as ``polled`` calls it
+            def observation_of(at_the_end: bool) -> Observation:  # noqa: FBT001 - as ``polled`` calls it
                 now = self.clock()
                 patience = "" if at_the_end else moment(datetime.fromisoformat(now) - timedelta(seconds=PATIENCE))
                 return observation(graph, since, now, self.domain, patience)
 
-            yield from polled(lambda: readers.take(graph, self.clock()), seen, PACE, seconds, self.wait)
+            yield from polled(lambda: readers.take(graph, self.clock()), observation_of, PACE, seconds, self.wait)
 
 
 def configuration(domain: int, peers: tuple[str, ...], interface: str) -> str:

@@ -41,7 +41,9 @@ GID_BYTES = (16, 24)
 MOST_SAMPLES = 10_000
 FATAL_AND_ERROR = 3
 """Of Cyclone's own messages on standard error; what was read with the wrong length is a warning for each sample."""
-_KEPT = Qos(Policy.Reliability.Reliable(duration(seconds=1)), Policy.Durability.TransientLocal, Policy.History.KeepAll)
+_LATE_JOINER_QOS = Qos(
+    Policy.Reliability.Reliable(duration(seconds=1)), Policy.Durability.TransientLocal, Policy.History.KeepAll
+)
 
 
 def participant_entities(gid_bytes: int) -> Any:
@@ -142,7 +144,7 @@ class Readers:
             channel = ros_channel(one.topic, one.writes) if one.type == DDS_TYPE and one.writes else None
             if channel and channel[1] not in self.declarations:
                 topic = Topic(self.participant, one.topic, PersonalDataProcessor)
-                self.declarations[channel[1]] = DataReader(self.participant, topic, qos=_KEPT)
+                self.declarations[channel[1]] = DataReader(self.participant, topic, qos=_LATE_JOINER_QOS)
         for name, reader in self.declarations.items():
             for sample in reader.take(N=MOST_SAMPLES):
                 if sample.sample_info.valid_data:
@@ -174,14 +176,16 @@ def joined(domain: int, settings: str) -> Iterator[Readers]:
         load_cyclonedds().dds_set_log_mask(FATAL_AND_ERROR)
         configured = Domain(domain, settings)
         participant = DomainParticipant(domain)
-        topics = [Topic(participant, NODES_TOPIC, participant_entities(length), qos=_KEPT) for length in GID_BYTES]
+        topics = [
+            Topic(participant, NODES_TOPIC, participant_entities(length), qos=_LATE_JOINER_QOS) for length in GID_BYTES
+        ]
         yield Readers(
             participant,
             participant.guid.bytes[:PREFIX],
             BuiltinDataReader(participant, BuiltinTopicDcpsParticipant),
             BuiltinDataReader(participant, BuiltinTopicDcpsPublication),
             BuiltinDataReader(participant, BuiltinTopicDcpsSubscription),
-            tuple(DataReader(participant, topic, qos=_KEPT) for topic in topics),
+            tuple(DataReader(participant, topic, qos=_LATE_JOINER_QOS) for topic in topics),
         )
         del participant, configured
     except DDSException as error:

@@ -60,20 +60,20 @@ class Door(Protocol):
 
 
 def seen_by(
-    door: Door, seconds: float | None, told: Callable[[Observation | None, Observation], None] = lambda *_: None
+    door: Door, seconds: float | None, notify: Callable[[Observation | None, Observation], None] = lambda *_: None
 ) -> Observation | None:
     """Return all that a door has seen.
 
     Parameters
     ----------
-    told
+    notify
         Called with what was there before (None at first) and what is there now.
     """
     whole: Observation | None = None
     before: Observation | None = None
     for now in door.looks(seconds):
         whole = now if whole is None else continued(whole, now)
-        told(before, now)
+        notify(before, now)
         before = now
     return whole
 
@@ -95,12 +95,12 @@ class Pace:
 
 
 def polled(
-    take: Callable[[], bool], seen: Callable[[bool], Observation], pace: Pace, seconds: float | None, wait: Wait
+    take: Callable[[], bool], observation: Callable[[bool], Observation], pace: Pace, seconds: float | None, wait: Wait
 ) -> Iterator[Observation]:
     """Tell what is there, each time that it has changed and been quiet for a moment, and at the end.
 
-    ``take`` takes what is new and returns whether anything is; ``seen`` says what is there, and is told whether it is
-    the end, at which nothing is waited for any more; without ``seconds``, ``wait`` says when that is.
+    ``take`` takes what is new and returns whether anything is; ``observation`` says what is there, and is told whether
+    it is the end, at which nothing is waited for any more; without ``seconds``, ``wait`` says when that is.
     """
     end = None if seconds is None else time.monotonic() + seconds
     changed, told = -inf, len(pace.told_after)
@@ -109,10 +109,10 @@ def polled(
             changed, told = time.monotonic(), 0
         elif told < len(pace.told_after) and time.monotonic() - changed > pace.told_after[told]:
             told += 1
-            yield seen(False)
+            yield observation(False)
         if wait(POLL):
             break
-    last = seen(True)
+    last = observation(True)
     late = time.monotonic() - changed < pace.settled
     yield replace(last, gaps={**last.gaps, STILL_CHANGING: 1}) if late else last
 
@@ -125,16 +125,16 @@ class Stop:
     """
 
     def __init__(self) -> None:
-        self._asked = threading.Event()
+        self._stop_requested = threading.Event()
 
     def wait(self, seconds: float) -> bool:
         """Wait a moment; return whether somebody has asked to stop."""
-        return self._asked.wait(seconds)
+        return self._stop_requested.wait(seconds)
 
     @contextmanager
     def heard(self) -> Iterator[None]:
         """Note signals, and do nothing else on them; in the main thread."""
-        before = {one: signal.signal(one, lambda *_: self._asked.set()) for one in SIGNALS}
+        before = {one: signal.signal(one, lambda *_: self._stop_requested.set()) for one in SIGNALS}
         try:
             yield
         finally:

@@ -83,7 +83,7 @@ def usage(granted: Iterable[Policy], observed: Iterable[Policy], view: str = Vie
         ``declared``: a node may do what its own profile says; ``enforced``: what any profile of its enclave says.
     """
     granted = tuple(granted)
-    seen = [grant for policy in observed for grant in policy.grants if grant.seen]
+    seen = [grant for policy in observed for grant in policy.grants if grant.observation]
     rights = _Rights(granted, view)
     not_granted = tuple(sorted(filter(None, map(rights.missing, seen)), key=lambda use: _key(use.grant)))
     used: dict[str, set[tuple[bool, str]]] = defaultdict(set)
@@ -91,7 +91,7 @@ def usage(granted: Iterable[Policy], observed: Iterable[Policy], view: str = Vie
         used[node] = set()
     for grant in seen:
         used[plain_name(grant.node)[0]].update((end.writes, end.dds) for end in _ends(grant))
-    lines = [grant for policy in granted for grant in policy.grants if grant.allow and rights.left(grant)]
+    lines = [grant for policy in granted for grant in policy.grants if grant.allow and rights.is_effective(grant)]
     unused, never = [], defaultdict(int)
     for node in sorted({profile.node for policy in granted for profile in policy.profiles}):
         if plain_name(node)[0] not in used:
@@ -113,10 +113,10 @@ def usage(granted: Iterable[Policy], observed: Iterable[Policy], view: str = Vie
     )
 
 
-def _lacks_hidden(seen: Iterable[Grant]) -> bool:
+def _lacks_hidden(observation: Iterable[Grant]) -> bool:
     """Whether an observation may have left out hidden names: only texts tell of it, and they have none."""
-    doors = {door for grant in seen if grant.seen for door in grant.seen.by}
-    return doors <= {DOOR} and not any(map(_is_hidden, seen))
+    doors = {door for grant in observation if grant.observation for door in grant.observation.by}
+    return doors <= {DOOR} and not any(map(_is_hidden, observation))
 
 
 def _is_hidden(grant: Grant) -> bool:
@@ -173,12 +173,12 @@ class _Rights:
                 else:
                     self.allowed[node, end.writes, end.dds].append(grant)
 
-    def missing(self, seen: Grant) -> Use | None:
+    def missing(self, use: Grant) -> Use | None:
         """What is not granted of a use; None if all of it is."""
-        node = plain_name(seen.node)[0]
+        node = plain_name(use.node)[0]
         if node not in self.homes:
-            return Use(seen, NO_PROFILE)
-        lacking = [end for end in _ends(seen) if not self._granted(node, end)]
+            return Use(use, NO_PROFILE)
+        lacking = [end for end in _ends(use) if not self._granted(node, end)]
         if not lacking:
             return None
         lines = {
@@ -187,9 +187,9 @@ class _Rights:
             for policy, enclave in self.homes[node]
             for line in self._denials(policy, enclave, end)
         }
-        return Use(seen, DENIED if lines else NOT_GRANTED, tuple(sorted(lines, key=_key)))
+        return Use(use, DENIED if lines else NOT_GRANTED, tuple(sorted(lines, key=_key)))
 
-    def left(self, line: Grant) -> bool:
+    def is_effective(self, line: Grant) -> bool:
         """Whether DENYs leave anything of an ALLOW line."""
         return any(not any(self._denials(line.policy, line.enclave, end)) for end in _ends(line))
 
@@ -202,7 +202,7 @@ class _Rights:
         return (line for dds, line in self.denied.get((policy, enclave, end.writes), ()) if covers(dds, end.dds))
 
 
-def _deniable(policies: Iterable[Policy], unused: Iterable[Grant], seen: Iterable[Grant]) -> tuple[Grant, ...]:
+def _deniable(policies: Iterable[Policy], unused: Iterable[Grant], uses: Iterable[Grant]) -> tuple[Grant, ...]:
     """Unused lines of which a DENY, which holds for the whole enclave, meets no line that may be in use.
 
     The largest set of lines of which each meets, in its policy, enclave and direction, only others of the set; and
@@ -222,16 +222,16 @@ def _deniable(policies: Iterable[Policy], unused: Iterable[Grant], seen: Iterabl
                     if is_pattern(end.dds):
                         patterns[policy.file, grant.enclave, end.writes].append((end.dds, grant))
     does: dict[tuple[str, bool], set[str]] = defaultdict(set)
-    for grant in seen:
+    for grant in uses:
         for end in _ends(grant):
             does[plain_name(grant.node)[0], end.writes].add(end.dds)
-    chosen = {grant for grant in chosen if not grant.dead and not _taken(grant, members, does)}
+    chosen = {grant for grant in chosen if not grant.dead and not _denies_use(grant, members, does)}
     while out := {grant for grant in chosen if any(line not in chosen for line in _met(grant, kept, patterns))}:
         chosen -= out
     return tuple(sorted(chosen, key=_key))
 
 
-def _taken(
+def _denies_use(
     grant: Grant, members: Mapping[tuple[str, str], set[str]], does: Mapping[tuple[str, bool], set[str]]
 ) -> bool:
     """Whether a DENY of a line would take away what a node of its enclave was seen to do."""
@@ -244,15 +244,15 @@ def _taken(
 
 
 def _met(
-    grant: Grant, kept: Mapping[Place, list[Grant]], patterns: Mapping[tuple[str, str, bool], list[tuple[str, Grant]]]
+    grant: Grant, uses: Mapping[Place, list[Grant]], patterns: Mapping[tuple[str, str, bool], list[tuple[str, Grant]]]
 ) -> Iterator[Grant]:
     """The lines of its enclave that a DENY of a line would touch."""
     for end in _ends(grant):
         at = grant.policy, grant.enclave, end.writes
-        yield from kept.get((*at, end.dds), ())
+        yield from uses.get((*at, end.dds), ())
         yield from (line for dds, line in patterns.get(at, ()) if overlaps(dds, end.dds))
         if is_pattern(end.dds):
-            near = ((dds, lines) for (*where, dds), lines in kept.items() if tuple(where) == at)
+            near = ((dds, lines) for (*where, dds), lines in uses.items() if tuple(where) == at)
             yield from (line for dds, lines in near if overlaps(dds, end.dds) for line in lines)
 
 

@@ -46,7 +46,7 @@ def read_mcap(file: str) -> Recorded:
             summary = _summary(stream)
         except (McapError, struct.error, ValueError, OverflowError, OSError):
             summary = None
-        if summary is not None and (recorded := _told(summary)):
+        if summary is not None and (recorded := _summary_topics(summary)):
             return recorded
         return _followed(stream)
 
@@ -56,10 +56,10 @@ def _summary(stream: BoundedStream) -> Summary | None:
     if stream.read(len(MAGIC)) != MAGIC:
         return None
     stream.seek(0)
-    return SeekingReader(cast("IO[bytes]", stream), record_size_limit=stream.left).get_summary()
+    return SeekingReader(cast("IO[bytes]", stream), record_size_limit=stream.remaining).get_summary()
 
 
-def _told(summary: Summary) -> Recorded | None:
+def _summary_topics(summary: Summary) -> Recorded | None:
     """What a summary says; None where it does not say how many channels there are, or lacks some of them."""
     statistics = summary.statistics
     named = {number for chunk in summary.chunk_indexes for number in chunk.message_index_offsets}
@@ -84,7 +84,7 @@ def _told(summary: Summary) -> Recorded | None:
     compression = f"{', '.join(map(shown, packed))} (chunks)" if packed else ""
     start, end = map(moment, span)
     found = tuple(sorted(set(beside)))
-    return Recorded("mcap", united(topics), start, end, compression=compression, beside=found)
+    return Recorded("mcap", united(topics), start, end, compression=compression, extras=found)
 
 
 def _topic(channel: Channel, schemas: dict[int, Schema], count: int | None) -> BagTopic:
@@ -100,7 +100,7 @@ class _Found:
     channels: dict[int, Channel] = field(default_factory=dict)
     schemas: dict[int, Schema] = field(default_factory=dict)
     compression: set[str] = field(default_factory=set)
-    beside: set[str] = field(default_factory=set)
+    extras: set[str] = field(default_factory=set)
     times: list[int] = field(default_factory=list)
     records: int = 0
     unpacked: int = 0
@@ -132,36 +132,36 @@ def _followed(stream: BoundedStream) -> Recorded:
     span = (min(found.times), max(found.times)) if found.times and found.ended else (0, 0)
     packed = f"{', '.join(sorted(found.compression))} (chunks)" if found.compression else ""
     start, end = map(moment, span)
-    beside = tuple(sorted(found.beside))
-    return Recorded("mcap", topics, start, end, compression=packed, gaps=tuple(gaps), beside=beside)
+    beside = tuple(sorted(found.extras))
+    return Recorded("mcap", topics, start, end, compression=packed, gaps=tuple(gaps), extras=beside)
 
 
-def _follow(stream: BoundedStream, found: _Found) -> None:
-    while not found.ended:
+def _follow(stream: BoundedStream, content: _Found) -> None:
+    while not content.ended:
         code, length = HEAD.unpack(stream.read(HEAD.size))
         start = stream.tell()
-        found.count()
+        content.count()
         if code == 0:
             raise EndedError("no record begins with 0")
         if code in (Opcode.CHANNEL, Opcode.SCHEMA):
-            _keep(code, stream.read(length), found)
+            _keep(code, stream.read(length), content)
         elif code == Opcode.CHUNK:
-            _chunk(stream, length, found)
+            _chunk(stream, length, content)
         elif code == Opcode.ATTACHMENT:
-            found.beside.add("an attachment")
+            content.extras.add("an attachment")
         elif code == Opcode.METADATA and _string(stream.read(length)) not in CONTENT:
-            found.beside.add("a metadata record")
+            content.extras.add("a metadata record")
         stream.skip(length - (stream.tell() - start))
-        found.ended = code == Opcode.FOOTER and stream.read(len(MAGIC)) == MAGIC
+        content.ended = code == Opcode.FOOTER and stream.read(len(MAGIC)) == MAGIC
 
 
-def _keep(code: int, data: bytes, found: _Found) -> None:
+def _keep(code: int, data: bytes, content: _Found) -> None:
     if code == Opcode.CHANNEL:
         channel = Channel.read(ReadDataStream(BytesIO(data)))
-        found.channels[channel.id] = channel
+        content.channels[channel.id] = channel
     elif code == Opcode.SCHEMA:
         schema = Schema.read(ReadDataStream(BytesIO(data)))
-        found.schemas[schema.id] = schema
+        content.schemas[schema.id] = schema
 
 
 def _string(data: bytes) -> str:
@@ -169,34 +169,34 @@ def _string(data: bytes) -> str:
     return data[4 : 4 + size].decode("utf-8", "replace")
 
 
-def _chunk(stream: BoundedStream, length: int, found: _Found) -> None:
+def _chunk(stream: BoundedStream, length: int, content: _Found) -> None:
     """Unpack a chunk, and look for the topics in it; messages are passed over."""
     if length > stream.size - stream.tell():
         raise EndedError("the file ends within a chunk")
     chunk = Chunk.read(ReadDataStream(cast("IO[bytes]", stream)))
-    found.times += [chunk.message_start_time, chunk.message_end_time]
+    content.times += [chunk.message_start_time, chunk.message_end_time]
     if chunk.compression:
-        found.compression.add(shown(chunk.compression))
+        content.compression.add(shown(chunk.compression))
     try:
-        data = _unpacked(chunk.compression, chunk.data, MOST_UNPACKED - found.unpacked)
-        found.unpacked += len(data)
-        for code, record in _records(data, found):
-            _keep(code, record, found)
+        data = _unpacked(chunk.compression, chunk.data, MOST_UNPACKED - content.unpacked)
+        content.unpacked += len(data)
+        for code, record in _records(data, content):
+            _keep(code, record, content)
     except TooMuchError:
         raise
     except ImportError:
-        found.unread.add(
+        content.unread.add(
             f"a chunk with the compression {shown(chunk.compression)!r}, for which no library is installed"
         )
     except Exception as error:  # noqa: BLE001 - the libraries raise their own kinds for what is damaged
-        found.unread.add(f"a chunk that cannot be unpacked ({shown(type(error).__name__)})")
+        content.unread.add(f"a chunk that cannot be unpacked ({shown(type(error).__name__)})")
 
 
-def _records(data: bytes, found: _Found) -> Iterator[tuple[int, bytes]]:
+def _records(data: bytes, content: _Found) -> Iterator[tuple[int, bytes]]:
     """The records of a chunk that name topics and types."""
     at = 0
     while at < len(data):
-        found.count()
+        content.count()
         code, length = HEAD.unpack_from(data, at)
         at += HEAD.size
         if length > len(data) - at:
@@ -206,7 +206,7 @@ def _records(data: bytes, found: _Found) -> Iterator[tuple[int, bytes]]:
         at += length
 
 
-def _unpacked(compression: str, data: bytes, most: int) -> bytes:
+def _unpacked(compression: str, data: bytes, limit: int) -> bytes:
     """A chunk's records, no more than so many bytes whatever the chunk says of itself."""
     unpacked: Any
     if not compression:
@@ -214,13 +214,13 @@ def _unpacked(compression: str, data: bytes, most: int) -> bytes:
     elif compression == "zstd":
         import zstandard  # noqa: PLC0415 - an extra
 
-        unpacked = zstandard.ZstdDecompressor().stream_reader(data).read(most + 1)
+        unpacked = zstandard.ZstdDecompressor().stream_reader(data).read(limit + 1)
     elif compression == "lz4":
         import lz4.frame  # noqa: PLC0415 - an extra
 
-        unpacked = lz4.frame.LZ4FrameDecompressor().decompress(data, max_length=most + 1)
+        unpacked = lz4.frame.LZ4FrameDecompressor().decompress(data, max_length=limit + 1)
     else:
         raise ImportError(compression)
-    if len(unpacked) > most:
+    if len(unpacked) > limit:
         raise TooMuchError("a chunk that is too large")
     return bytes(unpacked)

@@ -92,7 +92,7 @@ def read_node_info(text: str, at: str, name: str = "text", *, whole: bool = True
         raise InputErrors(reader.problems[: MOST_PROBLEMS if reader.nodes else 1])
     reader.ended(whole=whole)
     return Observation(
-        (DOOR,), reader.seen, tuple(reader.nodes), tuple(reader.endpoints), (), reader.gaps, tuple(reader.remarks)
+        (DOOR,), reader.span, tuple(reader.nodes), tuple(reader.endpoints), (), reader.gaps, tuple(reader.remarks)
     )
 
 
@@ -101,7 +101,7 @@ class _Reader:
     """Goes through the lines once."""
 
     file: str
-    seen: Span
+    span: Span
     node: str = ""
     role: str = ""
     begun: bool = False  # whether a section of the node has come since its name
@@ -123,7 +123,7 @@ class _Reader:
         if line.startswith("/"):
             self.node, self.role, self.begun = line, "", False
             self.names[line] += 1
-            self.nodes.append(ObservedNode(line, self.seen))
+            self.nodes.append(ObservedNode(line, self.span))
         elif line.startswith(" "):
             self._of_node(number, line)
         elif line:
@@ -176,7 +176,7 @@ class _Reader:
     def _endpoints(self, name: str, types: str) -> Iterator[ObservedEndpoint]:
         """One for each type; two types of one channel are two facts."""
         for kind in [part.strip() for part in types.split(",")]:
-            yield ObservedEndpoint(self.node, self.role, name, self.seen, kind)
+            yield ObservedEndpoint(self.node, self.role, name, self.span, kind)
 
     def _gap(self, gap: str, number: int, remark: str) -> None:
         if number > 0:
@@ -324,7 +324,7 @@ class Ros2Program:
             )
         except subprocess.TimeoutExpired:
             raise MiddlewareError(
-                f"{_told(command)}: no answer in {self.patience:g} seconds; is ROS running?"
+                f"{_notes(command)}: no answer in {self.patience:g} seconds; is ROS running?"
             ) from None
         except OSError as error:
             raise ObservationError(
@@ -333,7 +333,7 @@ class Ros2Program:
         out, said = (data[:LONGEST_ANSWER].decode("utf-8", "replace") for data in (done.stdout, done.stderr))
         if done.returncode and not may_fail:
             why = next((line for line in reversed(said.split("\n")) if line.strip()), "it does not say why")
-            raise MiddlewareError(f"{_told(command)}: failed: {shown(why.strip())}; run it by hand")
+            raise MiddlewareError(f"{_notes(command)}: failed: {shown(why.strip())}; run it by hand")
         return ("" if done.returncode else out), said
 
 
@@ -341,7 +341,7 @@ def _argument(word: str) -> bool:
     return is_name(word) or word in (*LIST, *INFO)
 
 
-def _told(command: Sequence[str]) -> str:
+def _notes(command: Sequence[str]) -> str:
     return shown(" ".join(("ros2", *command[1:])))
 
 

@@ -72,7 +72,7 @@ class Declared:
 
     topic: str
     node: str
-    called: str
+    label: str
     purpose: str
     path: str
 
@@ -90,7 +90,7 @@ class ObservedNode:
     """
 
     name: str
-    seen: Span
+    span: Span
     enclave: str = ""
 
 
@@ -119,7 +119,7 @@ class ObservedEndpoint:
     node: str
     role: str
     name: str
-    seen: Span
+    span: Span
     type: str = ""
     hash: str = ""
     key: str = ""
@@ -164,7 +164,7 @@ class Observation:
     ----------
     doors
         By which it was seen, sorted: ``text``, ``zenoh``, ``dds``.
-    seen
+    span
         From when to when somebody looked.
     nodes, endpoints
         In any order; ``added_up`` sorts them.
@@ -181,7 +181,7 @@ class Observation:
     """
 
     doors: tuple[str, ...]
-    seen: Span
+    span: Span
     nodes: tuple[ObservedNode, ...] = ()
     endpoints: tuple[ObservedEndpoint, ...] = ()
     domains: tuple[int, ...] = ()
@@ -216,10 +216,10 @@ def added_up(observations: Iterable[Observation]) -> Observation:
     several = tuple(observations)
     if not several:
         raise ValueError("no observation")
-    seen = several[0].seen
+    seen = several[0].span
     gaps: dict[str, int] = {}
     for one in several:
-        seen = seen.with_(one.seen)
+        seen = seen.with_(one.span)
         for gap, number in one.gaps.items():
             gaps[gap] = max(number, gaps.get(gap, 0))
     return Observation(
@@ -248,7 +248,7 @@ def _nodes(nodes: Iterable[ObservedNode]) -> Iterator[ObservedNode]:
     found: dict[tuple[str, str], Span] = {}
     for node in nodes:
         key = node.name, node.enclave
-        found[key] = found[key].with_(node.seen) if key in found else node.seen
+        found[key] = found[key].with_(node.span) if key in found else node.span
     told = {name for name, enclave in found if enclave}
     for name, enclave in sorted(found):
         if enclave and (name, "") in found and len([one for one, e in found if one == name and e]) == 1:
@@ -267,5 +267,5 @@ def _endpoints(endpoints: Iterable[tuple[ObservedEndpoint, tuple[str, ...]]]) ->
             continue
         known = found.setdefault(endpoint.identity, endpoint)
         by = {*known.doors, *(endpoint.doors or doors)}
-        found[endpoint.identity] = replace(known, seen=known.seen.with_(endpoint.seen), doors=tuple(sorted(by)))
+        found[endpoint.identity] = replace(known, span=known.span.with_(endpoint.span), doors=tuple(sorted(by)))
     yield from (found[identity] for identity in sorted(found))

@@ -118,8 +118,8 @@ def policy_xml(ready: Prepared) -> bytes:
     grants: dict[str, Grants] = defaultdict(dict)
     for one in ready.observation.endpoints:
         key = one.kind, one.role, one.name
-        seen, doors = grants[one.node].get(key, (one.seen, ()))
-        grants[one.node][key] = seen.with_(one.seen), tuple(sorted({*doors, *one.doors}))
+        seen, doors = grants[one.node].get(key, (one.span, ()))
+        grants[one.node][key] = seen.with_(one.span), tuple(sorted({*doors, *one.doors}))
     root = etree.Element("policy", version="0.2.0")
     enclaves = etree.SubElement(root, "enclaves")
     for path, nodes in ready.enclaves.items():
@@ -145,7 +145,7 @@ def _profile(profiles: etree._Element, node: str, grants: Grants) -> None:
 def _metadata(profiles: etree._Element, ready: Prepared, path: str, grants: Mapping[str, Grants]) -> None:
     """What is known of an enclave's grants beside that they are used."""
     whole, nodes = ready.observation, ready.enclaves[path]
-    said = {"version": VERSION, "by": " ".join(whole.doors), "from": whole.seen.first, "to": whole.seen.last}
+    said = {"version": VERSION, "by": " ".join(whole.doors), "from": whole.span.first, "to": whole.span.last}
     if whole.domains:
         said["domain"] = " ".join(map(str, whole.domains))
     if whole.gaps:
@@ -175,7 +175,7 @@ def types_yaml(observation: Observation) -> str:
     for endpoint in observation.endpoints:
         if endpoint.type and (endpoint.role, endpoint.name, endpoint.node) not in unknown:
             entries[USERS[endpoint.role][0]][endpoint.name][endpoint.type, endpoint.hash].append(endpoint)
-    seen, doors = observation.seen, _flow(CommentedSeq(observation.doors))
+    seen, doors = observation.span, _flow(CommentedSeq(observation.doors))
     document = CommentedMap(types=1, observed=_flow(CommentedMap({"from": seen.first, "to": seen.last, "by": doors})))
     for section, channels in entries.items():
         if channels:
@@ -206,8 +206,8 @@ def _entry(name: str, digest: str, users: list[ObservedEndpoint]) -> CommentedMa
     for part in dict.fromkeys(part for _, part in USERS.values()):
         if part in by_part:
             entry[part] = _flow(CommentedSeq(sorted(by_part[part])))
-    entry["first"] = min(user.seen.first for user in users)
-    entry["last"] = max(user.seen.last for user in users)
+    entry["first"] = min(user.span.first for user in users)
+    entry["last"] = max(user.span.last for user in users)
     return _flow(entry)
 
 
@@ -244,7 +244,7 @@ class EarlierFiles:
 def _read(file: str, types_file: str) -> Observation:
     policy = read_policy(file)
     made = {element: path for path, element in _observations(file)}
-    unseen = [grant for grant in policy.grants if grant.seen is None]
+    unseen = [grant for grant in policy.grants if grant.observation is None]
     problems: list[InputError] = [
         ObservationError(g.place.file, g.place.line, f"no observation says that {shown(g.name)} was seen", INSTEAD)
         for g in unseen
@@ -289,29 +289,29 @@ def _nodes(policy: Policy, made_up: Collection[str], whole: Observation) -> Iter
     """The nodes, from their first use to the last; one that used nothing, as long as was looked."""
     spans: dict[tuple[str, str], Span] = {}
     for grant in policy.grants:
-        if grant.seen:
-            key, span = (grant.enclave, grant.node), Span(grant.seen.first, grant.seen.last)
+        if grant.observation:
+            key, span = (grant.enclave, grant.node), Span(grant.observation.first, grant.observation.last)
             spans[key] = spans[key].with_(span) if key in spans else span
     for profile in policy.profiles:
         path, node = profile.enclave, profile.node
         if not profile.participant:
             told = "" if path in made_up and path == node else path
-            yield ObservedNode(node, spans.get((path, node), whole.seen), told)
+            yield ObservedNode(node, spans.get((path, node), whole.span), told)
 
 
 def _endpoints(policy: Policy, types: Types) -> Iterator[ObservedEndpoint]:
     """Each grant as often as types were seen for it; the type is not known where the file of types has none."""
     strangers = {profile.node: profile.participant for profile in policy.profiles if profile.participant}
     for grant in policy.grants:
-        if grant.seen is None:
+        if grant.observation is None:
             continue
-        seen, known_as = Span(grant.seen.first, grant.seen.last), strangers.get(grant.node, grant.node)
+        seen, known_as = Span(grant.observation.first, grant.observation.last), strangers.get(grant.node, grant.node)
         node = "" if grant.node in strangers else grant.node
         participant = known_as.removeprefix("participant_") if grant.node in strangers else ""
         side = 0 if grant.role in FIRST_SIDE else 1
         for type_, digest in sorted(types.get((grant.kind, grant.name, side, known_as), {("", "")})):
             yield ObservedEndpoint(
-                node, grant.role, grant.name, seen, type_, digest, participant=participant, doors=grant.seen.by
+                node, grant.role, grant.name, seen, type_, digest, participant=participant, doors=grant.observation.by
             )
 
 

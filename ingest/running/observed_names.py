@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 NODES_TOPIC = "ros_discovery_info"
 _LEGS = {"rt": "", "rq": "Request", "rr": "Reply"}
 _SERVICE_PART = re.compile(r"_(?:Request|Response)\Z")
-TOLD = 20  # lines about names; more are counted
+SHOWN_AT_MOST = 20  # lines about names; more are counted
 _NAME = re.compile(r"(/[A-Za-z_][A-Za-z0-9_]*)+", re.ASCII)
 _TYPE = re.compile(r"[A-Za-z][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*){1,4}", re.ASCII)
 _HASH = re.compile(r"RIHS[0-9]{2}_[0-9a-f]{64}", re.ASCII)
@@ -133,9 +133,9 @@ def with_good_names(observation: Observation) -> Observation:
     if not lines:
         return observation
     distinct = sorted(set(lines))
-    more = [f"{len(distinct) - TOLD} more names like these"] if len(distinct) > TOLD else []
+    more = [f"{len(distinct) - SHOWN_AT_MOST} more names like these"] if len(distinct) > SHOWN_AT_MOST else []
     gaps = {**observation.gaps, **({REFUSED: observation.gaps.get(REFUSED, 0) + lost} if lost else {})}
-    remarks = (*observation.remarks, *distinct[:TOLD], *more)
+    remarks = (*observation.remarks, *distinct[:SHOWN_AT_MOST], *more)
     return replace(observation, nodes=nodes, endpoints=endpoints, gaps=gaps, remarks=remarks)
 
 
@@ -149,18 +149,18 @@ def _node(node: ObservedNode, lines: list[str]) -> ObservedNode | None:
     return node
 
 
-def _endpoint(one: ObservedEndpoint, lines: list[str]) -> ObservedEndpoint | None:
-    if one.node and not is_name(one.node):
-        lines.append(f"left out: no ROS node can be called {shown(repr(one.node))}")
+def _endpoint(endpoint: ObservedEndpoint, lines: list[str]) -> ObservedEndpoint | None:
+    if endpoint.node and not is_name(endpoint.node):
+        lines.append(f"left out: no ROS node can be called {shown(repr(endpoint.node))}")
         return None
-    if not is_name(one.name):
-        who = one.node or one.participant or "an endpoint of no node"
-        lines.append(f"left out: {shown(who)}: no {ROLES[one.role]} can be called {shown(repr(one.name))}")
+    if not is_name(endpoint.name):
+        who = endpoint.node or endpoint.participant or "an endpoint of no node"
+        lines.append(f"left out: {shown(who)}: no {ROLES[endpoint.role]} can be called {shown(repr(endpoint.name))}")
         return None
-    if one.type and not is_type(one.type):
-        lines.append(f"{one.name}: {shown(repr(one.type))} is no type; taken as not known")
-        return replace(one, type="", hash="")
-    return one if not one.hash or _HASH.fullmatch(one.hash) else replace(one, hash="")
+    if endpoint.type and not is_type(endpoint.type):
+        lines.append(f"{endpoint.name}: {shown(repr(endpoint.type))} is no type; taken as not known")
+        return replace(endpoint, type="", hash="")
+    return endpoint if not endpoint.hash or _HASH.fullmatch(endpoint.hash) else replace(endpoint, hash="")
 
 
 def whole_actions(endpoints: Iterable[ObservedEndpoint]) -> tuple[ObservedEndpoint, ...]:
@@ -182,11 +182,11 @@ def whole_actions(endpoints: Iterable[ObservedEndpoint]) -> tuple[ObservedEndpoi
     for (node, participant, role, name), several in parts.items():
         goals = [one for one in several if one.name.endswith(f"/{GOAL}")]
         if goals:
-            seen = several[0].seen
+            seen = several[0].span
             for one in several:
-                seen = seen.with_(one.seen)
+                seen = seen.with_(one.span)
             kept += [
-                replace(goal, role=role, name=name, type=action_type(goal.type), hash="", seen=seen) for goal in goals
+                replace(goal, role=role, name=name, type=action_type(goal.type), hash="", span=seen) for goal in goals
             ]
         elif (node, participant, role, name) not in whole:
             kept += several
@@ -241,7 +241,7 @@ def with_folded_names(observation: Observation) -> tuple[Observation, tuple[Fold
 def _foldable(observation: Observation) -> Iterator[Folded]:
     lives: dict[str, Span] = {}
     for node in observation.nodes:
-        lives[node.name] = lives[node.name].with_(node.seen) if node.name in lives else node.seen
+        lives[node.name] = lives[node.name].with_(node.span) if node.name in lives else node.span
     groups: dict[str, set[str]] = defaultdict(set)
     rules: dict[str, str] = {}
     for name in lives:

@@ -45,10 +45,10 @@ class BoundedStream:
         Bytes that may still be read.
     """
 
-    def __init__(self, file: BinaryIO, most: int) -> None:
+    def __init__(self, file: BinaryIO, limit: int) -> None:
         self._file = file
         self.size = os.fstat(file.fileno()).st_size
-        self.left = most
+        self.remaining = limit
 
     def read(self, size: int = -1) -> bytes:
         """Read exactly so many bytes.
@@ -60,9 +60,9 @@ class BoundedStream:
         """
         if size < 0 or size > self.size - self._file.tell():
             raise EndedError("the file ends within a record")
-        if size > self.left:
+        if size > self.remaining:
             raise TooMuchError("more than is read of a bag")
-        self.left -= size
+        self.remaining -= size
         return self._file.read(size)
 
     def skip(self, size: int) -> None:
@@ -81,7 +81,7 @@ class BoundedStream:
 
 
 @contextmanager
-def bounded_stream(file: str, most: int = MOST_READ) -> Iterator[BoundedStream]:
+def bounded_stream(file: str, limit: int = MOST_READ) -> Iterator[BoundedStream]:
     """Open a regular file, and note that it is read; ``BagError`` if it is none, or the system refuses it."""
     path = Path(file)
     try:
@@ -90,7 +90,7 @@ def bounded_stream(file: str, most: int = MOST_READ) -> Iterator[BoundedStream]:
         if not path.is_file():
             raise BagError(file, 0, "not a regular file", "name a regular file")
         with path.open("rb") as opened:
-            yield BoundedStream(noted(opened, file), most)
+            yield BoundedStream(noted(opened, file), limit)
     except OSError as error:
         raise BagError(file, 0, f"cannot be read: {reason(error)}", "check the path and its permissions") from None
 
@@ -106,7 +106,7 @@ class Recorded:
     distro: str = ""
     compression: str = ""
     gaps: tuple[str, ...] = ()
-    beside: tuple[str, ...] = ()
+    extras: tuple[str, ...] = ()
 
 
 def united(topics: Iterable[BagTopic]) -> tuple[BagTopic, ...]:
@@ -118,14 +118,14 @@ def united(topics: Iterable[BagTopic]) -> tuple[BagTopic, ...]:
     by_name: dict[str, list[BagTopic]] = defaultdict(list)
     for topic in topics:
         by_name[topic.name].append(topic)
-    return tuple(_one(name, same) for name, same in sorted(by_name.items()))
+    return tuple(_merged_topic(name, same) for name, same in sorted(by_name.items()))
 
 
-def _one(name: str, same: list[BagTopic]) -> BagTopic:
-    types = tuple(sorted({kind for topic in same for kind in topic.types}))
-    hashes = tuple(sorted({digest for topic in same for digest in topic.hashes}))
-    counts = [topic.messages for topic in same if topic.messages is not None]
-    return BagTopic(name, types, hashes, sum(counts) if len(counts) == len(same) else None)
+def _merged_topic(name: str, topics: list[BagTopic]) -> BagTopic:
+    types = tuple(sorted({kind for topic in topics for kind in topic.types}))
+    hashes = tuple(sorted({digest for topic in topics for digest in topic.hashes}))
+    counts = [topic.messages for topic in topics if topic.messages is not None]
+    return BagTopic(name, types, hashes, sum(counts) if len(counts) == len(topics) else None)
 
 
 def moment(nanoseconds: int) -> int | None:

@@ -112,10 +112,10 @@ class ZenohDoor:
                 said.update(_read(messages, self.domain))
                 return some
 
-            def seen(_: bool) -> Observation:  # noqa: FBT001 - as ``polled`` calls it
+            def observation_of(_: bool) -> Observation:  # noqa: FBT001 - as ``polled`` calls it
                 return observation(tokens, since, self.clock(), self.domain, said)
 
-            yield from polled(take, seen, PACE, seconds, self.wait)
+            yield from polled(take, observation_of, PACE, seconds, self.wait)
             heard.undeclare()
             watched.undeclare()
 
@@ -228,19 +228,19 @@ def observation(
     return Observation((DOOR,), seen, tuple(nodes), tuple(endpoints), (domain,), gaps, tuple(remarks), said)
 
 
-def _read_token(key: str, seen: Span) -> tuple[ObservedNode, ObservedEndpoint | None] | None:
+def _read_token(key: str, span: Span) -> tuple[ObservedNode, ObservedEndpoint | None] | None:
     parts = key.split("/")
     if len(parts) < NODE_PARTS or parts[0] != ROOT:
         return None
     kind, enclave, namespace, name = parts[5], _plain(parts[6]), _plain(parts[7]), _plain(parts[8])
-    node = ObservedNode(f"{namespace.rstrip('/')}/{name}", seen, enclave if enclave != "/" else "")
+    node = ObservedNode(f"{namespace.rstrip('/')}/{name}", span, enclave if enclave != "/" else "")
     if kind == NODE:
         return node, None
     if kind not in ROLES or len(parts) < ENDPOINT_PARTS:
         return None
     type_ = ros_type(parts[10])
     digest = parts[11] if type_ and parts[11].startswith("RIHS") else ""
-    return node, ObservedEndpoint(node.name, ROLES[kind], _plain(parts[9]), seen, type_, digest, key, "", (DOOR,))
+    return node, ObservedEndpoint(node.name, ROLES[kind], _plain(parts[9]), span, type_, digest, key, "", (DOOR,))
 
 
 def _plain(part: str) -> str:

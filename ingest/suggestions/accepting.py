@@ -23,7 +23,7 @@ from rosprivacy.analysis.errors import InputErrors, LabelError, shown
 from rosprivacy.analysis.model import Confidence
 from rosprivacy.analysis.suggesting.weighing import surer
 from rosprivacy.analysis.text import blanked, counted
-from rosprivacy.analysis.written_names import literal, meant
+from rosprivacy.analysis.written_names import bare_name, literal
 from rosprivacy.ingest.labels.entries import SECTIONS
 from rosprivacy.ingest.labels.label_file import parse_labels
 from rosprivacy.ingest.labels.label_writer import NewLine, add_line, facts_of
@@ -228,7 +228,7 @@ def _against(before: Iterable[Entry], comment: NewLabel, vocabulary: Vocabulary)
     """Why one that hides is refused: a line, by a glob too, says that such data come in or go out there (rule S7)."""
     (value,) = comment.said.values()
     for entry in before if comment.hides else ():
-        meant_too = set(SECTIONS[comment.section]) & set(entry.kinds) and covered(entry.name, [meant(comment.name)])
+        meant_too = set(SECTIONS[comment.section]) & set(entry.kinds) and covered(entry.name, [bare_name(comment.name)])
         for one in entry.statements if meant_too else ():
             if one.role in BRINGS_OR_LETS_OUT and (not one.categories or overlap(value, one.categories, vocabulary)):
                 return f"is a {one.role} of such data already, by line {entry.place.line}"

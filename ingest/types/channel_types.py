@@ -73,12 +73,14 @@ class _Called:
 
     def __init__(self, graph: FlowGraph, written: Written) -> None:
         nodes = [element for element in graph.elements if not element.is_channel]
-        self._here = {written.get(node, node).name: node.name for node in nodes}
-        self._taken = set(self._here.values())
+        self._by_leg = {written.get(node, node).name: node.name for node in nodes}
+        self._name_owners = set(self._by_leg.values())
 
     def names(self, written: Iterable[str]) -> tuple[str, ...]:
         """The names of nodes; without those of others that are called there as one of the graph is called here."""
-        known = [self._here.get(name, name) for name in written if name in self._here or name not in self._taken]
+        known = [
+            self._by_leg.get(name, name) for name in written if name in self._by_leg or name not in self._name_owners
+        ]
         return tuple(sorted(set(known)))
 
 
@@ -90,8 +92,8 @@ def _vertices(graph: FlowGraph, written: Written) -> Mapping[tuple[str, str], li
     return at
 
 
-def _at_leg(one: SeenType, element: Element, file: str, called: _Called) -> MessageType:
-    first, second = map(called.names, one.ends)  # writers and readers, or servers and clients
+def _at_leg(seen_type: SeenType, element: Element, file: str, names: _Called) -> MessageType:
+    first, second = map(names.names, seen_type.ends)  # writers and readers, or servers and clients
     writers, readers = (second, first) if element.leg == "request" else (first, second)
-    place = Place(file, one.line)
-    return MessageType(one.type, place, False, one.hash, writers, readers, one.first, one.last)
+    place = Place(file, seen_type.line)
+    return MessageType(seen_type.type, place, False, seen_type.hash, writers, readers, seen_type.first, seen_type.last)

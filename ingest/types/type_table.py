@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 PARTS = ("type_table", "version", "assumes", "cannot", "hashes", "suggests")
 LIMIT_KEYS = ("types", "leg", "kinds", "why", "source")
 RULE_KEYS = ("types", "leg", "kinds", "confidence", "why", "source")
-NEEDED = ("types", "kinds", "why", "source")
+REQUIRED_KEYS = ("types", "kinds", "why", "source")
 LEGS = {"topic": ("",), "service": ("request", "response"), "action": ("request", "response")}
 HINT = "write certain, likely or may"
 Key = tuple[str, str]  # name of a type, leg
@@ -110,7 +110,7 @@ def read_table(file: str, vocabulary: Vocabulary, bounds: Bounds = BOUNDS) -> Ty
     return TypeTable(TypeLimits(file, hashlib.sha256(data).hexdigest(), limits, hashes), suggestions)
 
 
-def excluded(vocabulary: Vocabulary, named: frozenset[str]) -> frozenset[str]:
+def excluded(vocabulary: Vocabulary, kinds: frozenset[str]) -> frozenset[str]:
     """Return the kinds that a type cannot carry which cannot carry those that are named.
 
     >>> from rosprivacy.ontology.vocabulary import load
@@ -122,7 +122,7 @@ def excluded(vocabulary: Vocabulary, named: frozenset[str]) -> frozenset[str]:
 
     def holds(name: str) -> bool:
         if name not in known:
-            known[name] = name in named  # also while what is broader is looked at
+            known[name] = name in kinds  # also while what is broader is looked at
             category = categories[name]
             if not known[name] and category.broader:
                 known[name] = _follows(category, [holds(up) for up in category.broader], vocabulary)
@@ -149,18 +149,18 @@ class _Entry:
         (name of a type, leg as written, line).
     kinds
         Names of categories.
-    said
+    entries
         All that it says, by key.
     """
 
     line: int
     types: tuple[tuple[str, str, int], ...]
     kinds: tuple[str, ...]
-    said: Mapping[str, Value]
+    entries: Mapping[str, Value]
 
     def text(self, key: str) -> str:
         """Return what it says under a key; empty for nothing."""
-        return self.said[key].text if key in self.said else ""
+        return self.entries[key].text if key in self.entries else ""
 
 
 @dataclass
@@ -208,7 +208,7 @@ class _Reader(FileReader):
             Whether a type with two legs may stand without one.
         """
         said = self.values_of(item, keys)
-        for key in NEEDED:
+        for key in REQUIRED_KEYS:
             if key not in said:
                 self.problem(item.line, f"an entry without {key}", "write {types: […], kinds: […], why: …, source: …}")
         if not {"types", "kinds"} <= said.keys():
@@ -267,10 +267,10 @@ class _Reader(FileReader):
         written = entry.text("confidence")
         if written in tuple(Confidence):
             if not entry.kinds:
-                self.problem(entry.said["confidence"].line, "a confidence, and no kind", "remove it, or name a kind")
+                self.problem(entry.entries["confidence"].line, "a confidence, and no kind", "remove it, or name a kind")
             return Confidence(written)
-        if "confidence" in entry.said:
-            self.problem(entry.said["confidence"].line, f"confidence {shown(written)!r}", HINT)
+        if "confidence" in entry.entries:
+            self.problem(entry.entries["confidence"].line, f"confidence {shown(written)!r}", HINT)
         elif entry.kinds:
             self.problem(entry.line, "a suggestion without confidence", HINT)
         return None

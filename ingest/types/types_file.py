@@ -102,7 +102,7 @@ def as_dict(types: TypesFile) -> dict[str, Any]:
     observed = {"from": types.observed.start, "to": types.observed.end, "by": list(types.observed.by)}
     saved: dict[str, Any] = {"file": types.file, "sha256": types.sha256, "observed": _filled(observed)}
     for section, kind in KINDS.items():
-        saved[section] = {c.name: [_seen(one, section) for one in c.types] for c in types.channels if c.kind == kind}
+        saved[section] = {c.name: [_span(one, section) for one in c.types] for c in types.channels if c.kind == kind}
     return saved
 
 
@@ -124,10 +124,10 @@ def from_dict(saved: Mapping[str, Any]) -> TypesFile:
     return TypesFile(saved["file"], saved["sha256"], observed, tuple(channels))
 
 
-def _seen(one: SeenType, section: str) -> dict[str, Any]:
-    ends = {name: list(nodes) for name, nodes in zip(ENDS[section], one.ends, strict=True)}
-    more = _filled({"hash": one.hash, "first": one.first, "last": one.last, **ends})
-    return {"type": one.type, "line": one.line, **more}
+def _span(seen_type: SeenType, section: str) -> dict[str, Any]:
+    ends = {name: list(nodes) for name, nodes in zip(ENDS[section], seen_type.ends, strict=True)}
+    more = _filled({"hash": seen_type.hash, "first": seen_type.first, "last": seen_type.last, **ends})
+    return {"type": seen_type.type, "line": seen_type.line, **more}
 
 
 def _of_saved(saved: Mapping[str, Any], section: str) -> SeenType:
@@ -189,8 +189,8 @@ class _Reader(FileReader):
         text = self._text(said["type"], "type")
         return SeenType(text, self._hash(said), (first, second), begun, ended, item.line) if text else None
 
-    def _hash(self, said: Mapping[str, Value]) -> str:
-        return self._text(said["hash"], "hash") if "hash" in said else ""
+    def _hash(self, entries: Mapping[str, Value]) -> str:
+        return self._text(entries["hash"], "hash") if "hash" in entries else ""
 
     def _nodes(self, value: Value, what: str) -> tuple[str, ...]:
         return tuple(sorted({name for item in self.list_of(value, what) if (name := self._text(item, what))}))

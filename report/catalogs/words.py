@@ -101,14 +101,14 @@ class Words:
         places = {name: part for name, part in cited.groupdict().items() if part}
         return self(f"cite.{list(places)[-1]}", **places)
 
-    def count(self, number: int, thing: str, **values: Any) -> str:
+    def count(self, number: int, noun: str, **values: Any) -> str:
         """Return how many of a thing there are; its key ends in ``_one`` or ``_other``. In French, none is as one.
 
         >>> Words("en").count(1, "robot"), Words("de").count(2, "robot"), Words("fr").count(0, "robot")
         ('1 robot', '2 Roboter', '0 robot')
         """
         one = number == 1 or (number == 0 and self.language == "fr")
-        return self(f"{thing}_{'one' if one else 'other'}", n=number, **values)
+        return self(f"{noun}_{'one' if one else 'other'}", n=number, **values)
 
     def pair(self, name: str, value: str) -> str:
         """Return what something is, after its name.
@@ -122,15 +122,15 @@ class Words:
         """Return texts in a row."""
         return ", ".join(texts)
 
-    def first(self, texts: Sequence[str], most: int) -> tuple[str, ...]:
+    def first(self, texts: Sequence[str], limit: int) -> tuple[str, ...]:
         """Return the first of some texts, and how many more there are.
 
         >>> Words("en").first(["/a", "/b", "/c"], 2), Words("en").first(["/a", "/b"], 2)
         (('/a', '/b', 'and 1 more'), ('/a', '/b'))
         """
-        return (*texts[:most], *([self("more", n=len(texts) - most)] if len(texts) > most else ()))
+        return (*texts[:limit], *([self("more", n=len(texts) - limit)] if len(texts) > limit else ()))
 
-    def known(self, key: str, otherwise: str) -> str:
+    def of_value(self, key: str, otherwise: str) -> str:
         """Return the word for a value of the contract, or the value itself if there is none yet."""
         return table(self.language).get(key, otherwise)
 
@@ -140,7 +140,7 @@ class Words:
         >>> Words("en").kind({"robot": "", "kind": "service", "name": "/add", "leg": "request"})
         'service, request'
         """
-        parts = [self.known(f"kind.{element['kind']}", element["kind"])]
+        parts = [self.of_value(f"kind.{element['kind']}", element["kind"])]
         parts += [self(f"leg.{element['leg']}")] if element.get("leg") else []
         parts += [self("wildcard")] if element.get("pattern") else []
         return self.row(parts)
@@ -178,8 +178,8 @@ def _reason(key: str, values: Mapping[str, str], words: Words, title: Callable[[
     }
     written = {place: writers.get(place, str)(printable(value)) for place, value in values.items()}
     if "recipients" in written:  # whom a decision covers: what the list of countries says, in English
-        otherwise = words.known("adequacy.other", written["recipients"])
-        written["recipients"] = words.known(f"adequacy.{written['country']}", otherwise)
+        otherwise = words.of_value("adequacy.other", written["recipients"])
+        written["recipients"] = words.of_value(f"adequacy.{written['country']}", otherwise)
     return words(f"reason.{key}", **written)
 
 

@@ -54,7 +54,7 @@ class Known:
         Whose data of each kind get where, and are there at all.
     hierarchy
         Of the categories.
-    told
+    words
         The words of the reader.
     processed
         What is stated of purposes and legal bases where data begin and end.
@@ -66,7 +66,7 @@ class Known:
     accepted: Mapping[str, str]
     ways: tuple[Ways, ...]
     hierarchy: Hierarchy
-    told: Told
+    words: Told
     processed: tuple[Processed, ...] = ()
 
     def of(self, element: Element, what: str) -> str:
@@ -82,22 +82,22 @@ class Known:
         """Return the storages that personal data get to."""
         return _storages(carried.element for carried in self.analysis.carried)
 
-    def kept(self, element: Element, category: str) -> str:
+    def retention_of(self, element: Element, category: str) -> str:
         """Return how long an element keeps a category, with its backups; empty where nobody states it (rule S9)."""
         facts = self.analysis.outside.get(element)
         stated = retention_of(facts, category, self.hierarchy) if facts else []
-        return self._kept(", ".join(self.told.words.duration(str(one)) for one in stated), element)
+        return self._retention(", ".join(self.words.words.duration(str(one)) for one in stated), element)
 
     def kept_in_all(self, element: Element) -> str:
         """Return how long an element keeps what, as stated; empty where nobody states it."""
         facts = self.analysis.outside.get(element)
-        words, stated = self.told.words, facts.retention if facts else ()
+        words, stated = self.words.words, facts.retention if facts else ()
         said = [(category, words.duration(str(one))) for category, one in stated]
-        rows = [words.pair(self.told.data(category), one) if category else one for category, one in said]
-        return self._kept(", ".join(rows), element)
+        rows = [words.pair(self.words.data(category), one) if category else one for category, one in said]
+        return self._retention(", ".join(rows), element)
 
-    def _kept(self, duration: str, element: Element) -> str:
-        facts, words = self.analysis.outside.get(element), self.told.words
+    def _retention(self, duration: str, element: Element) -> str:
+        facts, words = self.analysis.outside.get(element), self.words.words
         if not duration or not facts or not facts.backups:
             return plain(duration)
         if facts.backups is True:
@@ -109,37 +109,37 @@ class Known:
         return [finding for kind in self.kinds for finding in kind.findings]
 
 
-def data(known: Known) -> Html:
+def data(facts: Known) -> Html:
     """Return the answer to 121: the data, where they come from, who can get them, how long they are kept."""
-    return joined(*(part for kind in known.kinds for part in _data_of(kind, known))) or nothing(known)
+    return joined(*(part for kind in facts.kinds for part in _data_of(kind, facts))) or nothing(facts)
 
 
-def nothing(known: Known) -> Html:
+def nothing(facts: Known) -> Html:
     """Return what is said where no data were followed."""
-    return paragraph(known.told("cnil.nothing"))
+    return paragraph(facts.words("cnil.nothing"))
 
 
-def _data_of(kind: Kind, known: Known) -> Iterator[Html]:
-    category, told = kind.category, known.told
+def _data_of(kind: Kind, facts: Known) -> Iterator[Html]:
+    category, told = kind.category, facts.words
     name = joined(_title(kind, told), Html(" ("), escaped(category.name), Html(")"))
     yield paragraph(told.pair(strong(name), told.prose(category.text("definition", told.words.language))))
     stored = [
-        f"{told.name(element)} ({known.kept(element, category.name) or told('cnil.kept.unstated')})"
-        for element in known.storages_of(category.name)
+        f"{told.name(element)} ({facts.retention_of(element, category.name) or told('cnil.kept.unstated')})"
+        for element in facts.storages_of(category.name)
     ]
-    of_kind = [way for way in known.ways if way.element is None and way.category == category.name]
+    of_kind = [way for way in facts.ways if way.element is None and way.category == category.name]
     persons = [group for way in of_kind for group in way.persons]
     unnamed = not of_kind or any(way.unnamed for way in of_kind)
     yield bullets(
         [
             *told.lines("cnil.brought", kind.sources),
-            *(told.line("cnil.made", _made(element, of, told)) for element, of in kind.made),
+            *(told.line("cnil.made", _derivations(element, of, told)) for element, of in kind.made),
             *_law(kind, told),
             told.line("cnil.recipients", _recipients(kind, told)),
-            told.line("cnil.kept", told.some(stored) or told("cnil.kept.none")),
-            *([told.line("cnil.persons", told.some(persons))] if persons else []),
-            *purposes_of(known.processed, category.name, told),
-            told(_open_of(list(purposes_of(known.processed, category.name, told)), unnamed=unnamed)),
+            told.line("cnil.kept", told.names_shown(stored) or told("cnil.kept.none")),
+            *([told.line("cnil.persons", told.names_shown(persons))] if persons else []),
+            *purposes_of(facts.processed, category.name, told),
+            told(_open_of(list(purposes_of(facts.processed, category.name, told)), unnamed=unnamed)),
         ]
     )
 
@@ -151,59 +151,64 @@ def _open_of(purposes: list[Html], *, unnamed: bool) -> str:
     return "cnil.persons.open" if unnamed else "cnil.purpose.open"
 
 
-def life_cycle(known: Known) -> Html:
+def life_cycle(facts: Known) -> Html:
     """Return the answer to 122: from source to recipient, with the shortest path of each finding."""
-    told = known.told
-    parts = [part for kind in known.kinds for part in _life_of(kind, told)]
-    findings = known.findings()
+    told = facts.words
+    parts = [part for kind in facts.kinds for part in _life_of(kind, told)]
+    findings = facts.findings()
     if findings:
         parts.append(paragraph(strong(told("cnil.shortest"))))
-        parts.append(told.rows([_way(finding, known) for finding in findings[:SHOWN]], len(findings)))
+        parts.append(told.rows([_way(finding, facts) for finding in findings[:SHOWN]], len(findings)))
     parts.append(paragraph(told("cnil.beyond")))
-    return joined(*parts) if known.kinds else nothing(known)
+    return joined(*parts) if facts.kinds else nothing(facts)
 
 
-def _life_of(kind: Kind, told: Told) -> Iterator[Html]:
-    yield paragraph(strong(_title(kind, told)))
+def _life_of(kind: Kind, words: Told) -> Iterator[Html]:
+    yield paragraph(strong(_title(kind, words)))
     users = [element for element in kind.reached if not element.is_channel]
-    channels = told.count(len(kind.reached) - len(users), "cnil.channel")
-    elements = told.count(len(users), "element")
+    channels = words.count(len(kind.reached) - len(users), "cnil.channel")
+    elements = words.count(len(users), "element")
     yield bullets(
         [
-            *told.lines("cnil.collection", kind.sources),
-            *(told.line("cnil.made", _made(element, of, told)) for element, of in kind.made),
-            told.line("cnil.use", told("cnil.use.of", elements=elements, channels=channels, names=told.names(users))),
-            *(told.line("cnil.cleaning", _cleaning(cleaning, told)) for cleaning in kind.cleaned),
-            *told.lines("cnil.storage", _storages(kind.reached)),
-            told.line("cnil.to", _recipients(kind, told)),
-            *told.lines("cnil.unreviewed", kind.open),
+            *words.lines("cnil.collection", kind.sources),
+            *(words.line("cnil.made", _derivations(element, of, words)) for element, of in kind.made),
+            words.line(
+                "cnil.use", words("cnil.use.of", elements=elements, channels=channels, names=words.names(users))
+            ),
+            *(words.line("cnil.cleaning", _cleaning(cleaning, words)) for cleaning in kind.cleaned),
+            *words.lines("cnil.storage", _storages(kind.reached)),
+            words.line("cnil.to", _recipients(kind, words)),
+            *words.lines("cnil.unreviewed", kind.open),
         ]
     )
 
 
-def _title(kind: Kind, told: Told) -> Html:
-    return escaped(kind.category.text("title", told.words.language))
+def _title(kind: Kind, words: Told) -> Html:
+    return escaped(kind.category.text("title", words.words.language))
 
 
-def supports(known: Known) -> Html:
+def supports(facts: Known) -> Html:
     """Return the answer to 123: what carries the data, by its kind."""
-    told = known.told
+    told = facts.words
     carries: dict[str, dict[str, Carried]] = {}
-    for carried in known.analysis.carried:
+    for carried in facts.analysis.carried:
         carries.setdefault(carried.element.kind, {})[told.name(carried.element)] = carried
     parts = []
     for kind in (kind for kind in KINDS if kind in carries):
-        rows = [told.pair(escaped(name), _held(carried, told)) for name, carried in list(carries[kind].items())[:NAMES]]
+        rows = [
+            told.pair(escaped(name), _storages_of(carried, told))
+            for name, carried in list(carries[kind].items())[:NAMES]
+        ]
         parts.append(paragraph(strong(told.count(len(carries[kind]), f"cnil.kind.{kind}"))))
         parts.append(told.rows(rows, len(carries[kind])))
     parts.append(paragraph(told("cnil.paper")))
-    return joined(*parts) if carries else nothing(known)
+    return joined(*parts) if carries else nothing(facts)
 
 
-def minimisation(known: Known) -> Html:
+def minimisation(facts: Known) -> Html:
     """Return the answer to 213: who gets which kind; whether each needs it is a person's question."""
-    told, parts = known.told, []
-    for kind in known.kinds:
+    told, parts = facts.words, []
+    for kind in facts.kinds:
         users = [e for e in kind.reached if not e.is_channel and e not in kind.sources]
         rows = [
             *told.lines("cnil.they", users),
@@ -213,18 +218,20 @@ def minimisation(known: Known) -> Html:
         ]
         get = told("cnil.get", elements=told.count(len(users), "element"))
         parts += [paragraph(told.pair(strong(_title(kind, told)), get)), bullets(rows)]
-    return joined(*parts) or nothing(known)
+    return joined(*parts) or nothing(facts)
 
 
-def retention(known: Known) -> Html:
+def retention(facts: Known) -> Html:
     """Return the answer to 215: how long each storage keeps what gets there."""
-    told = known.told
-    stored = [carried for carried in known.analysis.carried if carried.element.kind == "storage"]
+    told = facts.words
+    stored = [carried for carried in facts.analysis.carried if carried.element.kind == "storage"]
     rows = [
         told.pair(
             escaped(told.name(carried.element)),
             joined(
-                _held(carried, told), Html("; "), _stated("cnil.retention", known.kept_in_all(carried.element), told)
+                _storages_of(carried, told),
+                Html("; "),
+                _stated("cnil.retention", facts.kept_in_all(carried.element), told),
             ),
         )
         for carried in stored[:SHOWN]
@@ -233,34 +240,34 @@ def retention(known: Known) -> Html:
     return joined(told.rows(rows, len(stored)), why) if rows else paragraph(told("cnil.no.storage"))
 
 
-def processors(known: Known) -> Html:
+def processors(facts: Known) -> Html:
     """Return the answer to 226: who processes on behalf of the controller, as people stated it; empty if nobody did."""
-    reached = [carried.element for carried in known.analysis.carried]
-    named = [element for element in reached if known.of(element, "role") == PROCESSOR]
-    told = known.told
-    rows = [told.pair(escaped(told.name(element)), _named_processor(element, known)) for element in named[:SHOWN]]
+    reached = [carried.element for carried in facts.analysis.carried]
+    named = [element for element in reached if facts.of(element, "role") == PROCESSOR]
+    told = facts.words
+    rows = [told.pair(escaped(told.name(element)), _named_processor(element, facts)) for element in named[:SHOWN]]
     return told.rows(rows, len(named)) if rows else Html("")
 
 
-def _named_processor(element: Element, known: Known) -> Html:
-    told = known.told
-    who = known.of(element, "operator") or told("cnil.processor.unnamed")
-    where = f" ({known.of(element, 'country')})" if known.of(element, "country") else ""
-    contract = known.of(element, "contract")
+def _named_processor(element: Element, facts: Known) -> Html:
+    told = facts.words
+    who = facts.of(element, "operator") or told("cnil.processor.unnamed")
+    where = f" ({facts.of(element, 'country')})" if facts.of(element, "country") else ""
+    contract = facts.of(element, "contract")
     on = told.line("cnil.contract.stated", escaped(contract)) if contract else told("cnil.contract")
     return joined(told("cnil.processor", who=escaped(f"{who}{where}")), Html("; "), on)
 
 
-def transfers(known: Known) -> Html:
+def transfers(facts: Known) -> Html:
     """Return the answer to 227: where each recipient is, and on which basis data goes there."""
-    told = known.told
-    leaks = [finding.leak for finding in known.findings()]
-    outside = [c.element for c in known.analysis.carried if c.element.kind in ("external-system", "storage")]
+    told = facts.words
+    leaks = [finding.leak for finding in facts.findings()]
+    outside = [c.element for c in facts.analysis.carried if c.element.kind in ("external-system", "storage")]
     recipients = {element.identity: element for element in (*leaks, *outside)}
     rows = [
         told.pair(
             escaped(told.name(element)),
-            joined(_stated("cnil.country", known.of(element, "country"), told), _basis(element, known)),
+            joined(_stated("cnil.country", facts.of(element, "country"), told), _basis(element, facts)),
         )
         for element in list(recipients.values())[:SHOWN]
     ]
@@ -269,34 +276,34 @@ def transfers(known: Known) -> Html:
 
 def _basis(element: Element, known: Known) -> Html:
     """On what data leaves the EEA there; that it does not leave it is no transfer of chapter V."""
-    facts, told = known.analysis.outside.get(element), known.told
+    facts, told = known.analysis.outside.get(element), known.words
     if facts and facts.area == INSIDE:
         return joined(Html(", "), told("cnil.inside"))
     if facts and facts.area == ADEQUATE and not facts.basis:
         return joined(Html(", "), told("cnil.adequate"))
     basis = facts.transfer if facts else ""
     in_words = (
-        basis if told.words.language == "en" and basis != NO_BASIS else told.words.known(f"transfer.{basis}", basis)
+        basis if told.words.language == "en" and basis != NO_BASIS else told.words.of_value(f"transfer.{basis}", basis)
     )
     return joined(Html("; "), _stated("cnil.basis", in_words, told))
 
 
-def threats(known: Known) -> list[str]:
+def threats(about: Known) -> list[str]:
     """Return the answer to 322: the paths to assess, and what nobody has reviewed. Neither text nor HTML can harm."""
-    findings, told = known.findings(), known.told
-    said = [_threat(finding, known) for finding in findings[:THREATS]]
+    findings, told = about.findings(), about.words
+    said = [_threat(finding, about) for finding in findings[:THREATS]]
     if len(findings) > THREATS:
         said.append(told.bare("cnil.threats.more", n=len(findings) - THREATS))
-    if known.analysis.open:
-        unreviewed = count_elements(question.element for question in known.analysis.open).elements
+    if about.analysis.open:
+        unreviewed = count_elements(question.element for question in about.analysis.open).elements
         said.append(told.bare("cnil.threat.open", elements=told.count(unreviewed, "element")))
-    open_to_all = [element for element in known.storages() if known.of(element, "encrypted") == "no"]
+    open_to_all = [element for element in about.storages() if about.of(element, "encrypted") == "no"]
     said += [told.bare("cnil.threat.unencrypted", element=told.name(element)) for element in open_to_all[:THREATS]]
     return said
 
 
-def _threat(finding: Finding, known: Known) -> str:
-    told = known.told
+def _threat(finding: Finding, facts: Known) -> str:
+    told = facts.words
     data = told.data(finding.category, pseudonymised=finding.pseudonymised)
     ends = {"source": told.name(finding.source), "leak": told.name(finding.leak)}
     of, by = making(finding)
@@ -306,7 +313,7 @@ def _threat(finding: Finding, known: Known) -> str:
     else:
         what = told.bare("cnil.threat", data=data, **ends)
     why = f"; {harmless(plain(reason_text(finding.why, told.words, told.data)))}" if finding.why else ""
-    accepted = known.accepted.get(finding.id)
+    accepted = facts.accepted.get(finding.id)
     decided = f", {told.bare('cnil.accepted', why=accepted)}" if accepted else ""
     return f"{what}{why} ({told.bare('cnil.threat.id', id=finding.id)}{decided})"
 
@@ -315,63 +322,63 @@ def _storages(elements: Iterable[Element]) -> list[Element]:
     return [element for element in elements if element.kind == "storage"]
 
 
-def _made(element: Element, of: str, told: Told) -> Html:
-    return told("cnil.makes", element=escaped(told.name(element)), of=escaped(told.data(of)))
+def _derivations(element: Element, of: str, words: Told) -> Html:
+    return words("cnil.makes", element=escaped(words.name(element)), of=escaped(words.data(of)))
 
 
-def _held(carried: Carried, told: Told) -> Html:
-    hidden = (told.data(name, pseudonymised=True) for name in carried.pseudonymised)
-    return told.some([*map(told.data, carried.categories), *hidden])
+def _storages_of(carried: Carried, words: Told) -> Html:
+    hidden = (words.data(name, pseudonymised=True) for name in carried.pseudonymised)
+    return words.names_shown([*map(words.data, carried.categories), *hidden])
 
 
-def _cleaning(cleaning: Cleaning, told: Told) -> Html:
-    still = f" ({told('cnil.still')})" if cleaning.method == "pseudonymise" else ""
-    taken = "" if cleaning.stated else f", {told('cnil.taken')}"
-    return told.pair(
-        escaped(told.name(cleaning.element)), Html(f"{told(f'cnil.method.{cleaning.method}')}{still}{taken}")
+def _cleaning(cleaning: Cleaning, words: Told) -> Html:
+    still = f" ({words('cnil.still')})" if cleaning.method == "pseudonymise" else ""
+    taken = "" if cleaning.stated else f", {words('cnil.taken')}"
+    return words.pair(
+        escaped(words.name(cleaning.element)), Html(f"{words(f'cnil.method.{cleaning.method}')}{still}{taken}")
     )
 
 
-def _law(kind: Kind, told: Told) -> Iterator[Html]:
+def _law(kind: Kind, words: Told) -> Iterator[Html]:
     """What a person has to look up; of what such data may only reveal, the names."""
-    language = told.words.language
+    language = words.words.language
     for legal in kind.law:
         if legal.verdict != MAY_REVEAL:
-            verdict = told(f"cnil.verdict.{legal.verdict}")
+            verdict = words(f"cnil.verdict.{legal.verdict}")
             condition = legal.text("condition", language)
-            in_full = told.pair(verdict, told.prose(condition)) if condition else verdict
-            as_of = told("cnil.law.as.of", date=escaped(told.words.date(legal.as_of)))
-            yield told.line("cnil.law", Html(f"{escaped(legal.text('name', language))} ({in_full}), {as_of}"))
+            in_full = words.pair(verdict, words.prose(condition)) if condition else verdict
+            as_of = words("cnil.law.as.of", date=escaped(words.words.date(legal.as_of)))
+            yield words.line("cnil.law", Html(f"{escaped(legal.text('name', language))} ({in_full}), {as_of}"))
     revealed = list(dict.fromkeys(legal.text("name", language) for legal in kind.law if legal.verdict == MAY_REVEAL))
     if revealed:
-        yield told.line("cnil.reveals", told.some(revealed))
+        yield words.line("cnil.reveals", words.names_shown(revealed))
     if kind.category.article9 == "no":
-        yield told.line("cnil.no.article9", told.prose(kind.category.text("reason", language)))
+        yield words.line("cnil.no.article9", words.prose(kind.category.text("reason", language)))
     if kind.category.article9 == "unknown":
-        yield told("cnil.unknown.article9")
+        yield words("cnil.unknown.article9")
 
 
-def _recipients(kind: Kind, told: Told) -> Html:
+def _recipients(kind: Kind, words: Told) -> Html:
     outside = [finding for finding in kind.findings if finding.kind != STORED]
-    hidden = f" ({told('cell.hidden')})"
-    names = [told.name(f.leak) + (hidden if f.pseudonymised else "") for f in outside]
-    found = told.some(list(dict.fromkeys(names))) or told("cnil.none.found")
+    hidden = f" ({words('cell.hidden')})"
+    names = [words.name(f.leak) + (hidden if f.pseudonymised else "") for f in outside]
+    found = words.names_shown(list(dict.fromkeys(names))) or words("cnil.none.found")
     if not kind.open:
         return found
-    return joined(found, Html("; "), told("cnil.not.reviewed", elements=told.count(len(kind.open), "element")))
+    return joined(found, Html("; "), words("cnil.not.reviewed", elements=words.count(len(kind.open), "element")))
 
 
-def _way(finding: Finding, known: Known) -> Html:
-    told = known.told
+def _way(finding: Finding, facts: Known) -> Html:
+    told = facts.words
     names = [escaped(told.name(element)) for element in finding.witness]
     left_out = len(names) - NAMES
     if left_out > 0:
         names = [*names[: NAMES // 2], told("cnil.way.more", n=left_out), *names[-(NAMES // 2) :]]
-    accepted = known.accepted.get(finding.id)
+    accepted = facts.accepted.get(finding.id)
     decided = Html(f" ({told('cnil.accepted', why=prose(accepted))})") if accepted else Html("")
     data = escaped(told.data(finding.category, pseudonymised=finding.pseudonymised))
     return joined(told.pair(data, Html(" → ".join(names))), decided)
 
 
-def _stated(key: str, value: str, told: Told) -> Html:
-    return told.line(key, escaped(value) if value else told("not.stated"))
+def _stated(key: str, value: str, words: Told) -> Html:
+    return words.line(key, escaped(value) if value else words("not.stated"))

@@ -20,48 +20,48 @@ if TYPE_CHECKING:
     Rows = Iterable[Processed]
 
 
-def responsible(rows: Rows, told: Told) -> Html:
+def responsible(rows: Rows, words: Told) -> Html:
     """Return the answer to 112: who is responsible, and the data-protection officers."""
     controllers = dict.fromkeys(one for row in rows for one in row.controllers)
     officers = dict.fromkeys(one for row in rows for one in row.officers)
-    said = [told.pair(told("cnil.controller"), escaped(one)) for one in controllers]
-    said += [told.pair(told("cnil.officer"), escaped(one)) for one in officers]
-    return joined(bullets(said), paragraph(told("cnil.responsible.open"))) if said else Html("")
+    said = [words.pair(words("cnil.controller"), escaped(one)) for one in controllers]
+    said += [words.pair(words("cnil.officer"), escaped(one)) for one in officers]
+    return joined(bullets(said), paragraph(words("cnil.responsible.open"))) if said else Html("")
 
 
-def purposes(rows: Rows, kinds: Iterable[Kind], told: Told) -> Html:
+def purposes(rows: Rows, kinds: Iterable[Kind], words: Told) -> Html:
     """Return the answer to 211: what each kind of data is processed for, and where."""
-    return _by_kind(rows, kinds, told, lambda row: _stated(row, row.purposes, PURPOSE, told, str))
+    return _by_kind(rows, kinds, words, lambda row: _stated(row, row.purposes, PURPOSE, words, str))
 
 
-def bases(rows: Rows, kinds: Iterable[Kind], told: Told) -> Html:
+def bases(rows: Rows, kinds: Iterable[Kind], words: Told) -> Html:
     """Return the answer to 212: on which basis each kind of data is processed, and where; no word that it fits."""
-    said = _by_kind(rows, kinds, told, lambda row: _stated(row, row.bases, BASIS, told, told.words.basis))
-    return joined(said, paragraph(told("cnil.bases.open"))) if said else said
+    said = _by_kind(rows, kinds, words, lambda row: _stated(row, row.bases, BASIS, words, words.words.basis))
+    return joined(said, paragraph(words("cnil.bases.open"))) if said else said
 
 
-def _by_kind(rows: Rows, kinds: Iterable[Kind], told: Told, said: Callable[[Processed], Html]) -> Html:
+def _by_kind(rows: Rows, kinds: Iterable[Kind], words: Told, statement: Callable[[Processed], Html]) -> Html:
     parts = []
     for kind in kinds:
-        here = [(row, said(row)) for row in rows if row.category == kind.category.name]
-        lines = [told.pair(escaped(told.name(row.element)), text) for row, text in here if text]
+        here = [(row, statement(row)) for row in rows if row.category == kind.category.name]
+        lines = [words.pair(escaped(words.name(row.element)), text) for row, text in here if text]
         if lines:
-            title = kind.category.text("title", told.words.language)
+            title = kind.category.text("title", words.words.language)
             parts += [paragraph(strong(escaped(title))), bullets(lines)]
     return joined(*parts)
 
 
-def _stated(row: Processed, texts: Iterable[str], what: str, told: Told, say: Callable[[str], str]) -> Html:
+def _stated(row: Processed, texts: Iterable[str], what: str, words: Told, say: Callable[[str], str]) -> Html:
     """What is stated of one end, and whether more is to be completed; empty where nothing is."""
     stated = [escaped(say(one)) for one in texts]
-    more = [told("record.open")] if stated and what in row.missing else []
+    more = [words("record.open")] if stated and what in row.missing else []
     return Html("; ".join([*stated, *more]))
 
 
-def purposes_of(rows: Rows, category: str, told: Told) -> Iterator[Html]:
+def purposes_of(rows: Rows, category: str, words: Told) -> Iterator[Html]:
     """Yield what a kind of data is processed for, in one line for the answer to 121."""
     here = [row for row in rows if row.category == category]
     texts = dict.fromkeys(one for row in here for one in row.purposes)
     if texts:
-        more = [told("record.open")] if any(PURPOSE in row.missing for row in here) else []
-        yield told.line("cnil.purposes", Html("; ".join([*map(escaped, texts), *more])))
+        more = [words("record.open")] if any(PURPOSE in row.missing for row in here) else []
+        yield words.line("cnil.purposes", Html("; ".join([*map(escaped, texts), *more])))

@@ -106,10 +106,10 @@ def _of_shown_robots(analysis: Analysis, view: FleetView) -> Analysis:
     graph = analysis.graph
     beside = {v for v, element in enumerate(graph.elements) if element.robot in view.likeness.second}
 
-    def kept(flows: Any) -> Any:
+    def is_shown(flows: Any) -> Any:
         return tuple(flow for flow in flows if flow.source not in beside and flow.target not in beside)
 
-    return replace(analysis, graph=replace(graph, flows=kept(graph.flows), denied=kept(graph.denied)))
+    return replace(analysis, graph=replace(graph, flows=is_shown(graph.flows), denied=is_shown(graph.denied)))
 
 
 def _accepted(answer: Answer, words: Words) -> dict[str, str]:
@@ -124,23 +124,23 @@ def _why(decision: Decision, words: Words) -> str:
     return f"{decision.reason} ({said})" if said else decision.reason
 
 
-def _fleet(view: FleetView, told: Told) -> Html:
+def _fleet(view: FleetView, words: Told) -> Html:
     """What a reader has to know who sees the robots that are shown only."""
     members = view.likeness.members
-    robots = told.count(sum(map(len, members.values())), "robot")
+    robots = words.count(sum(map(len, members.values())), "robot")
     alike = {robot: len(some) for robot, some in members.items() if len(some) > 1}
     if not alike:
-        return told("cnil.fleet", robots=robots)
-    rows = [told("cnil.fleet.for", robot=escaped(robot), n=number) for robot, number in alike.items()]
-    more = [told("more", n=len(rows) - NAMES)] if len(rows) > NAMES else []
-    return told("cnil.fleet.alike", robots=robots, rows=Html(", ".join([*rows[:NAMES], *more])))
+        return words("cnil.fleet", robots=robots)
+    rows = [words("cnil.fleet.for", robot=escaped(robot), n=number) for robot, number in alike.items()]
+    more = [words("more", n=len(rows) - NAMES)] if len(rows) > NAMES else []
+    return words("cnil.fleet.alike", robots=robots, rows=Html(", ".join([*rows[:NAMES], *more])))
 
 
-def _pia(assumptions: Mapping[str, Any], created: str, told: Told) -> dict[str, Any]:
+def _pia(assumptions: Mapping[str, Any], created: str, words: Told) -> dict[str, Any]:
     """The record itself. Names are empty texts, not null: the tool sorts by them."""
     files = [entry["file"] for entry in assumptions.get("fleet") or assumptions.get("policies") or ()]
-    named = shown(files[0]) if files else told("cnil.database")
-    more = f" {told('more', n=len(files) - 1)}" if len(files) > 1 else ""
+    named = shown(files[0]) if files else words("cnil.database")
+    more = f" {words('more', n=len(files) - 1)}" if len(files) > 1 else ""
     return {
         "name": f"rosprivacy: {named}{more}",
         "category": "",
@@ -166,60 +166,60 @@ def _pia(assumptions: Mapping[str, Any], created: str, told: Told) -> dict[str, 
     }
 
 
-def _measures(known: Known) -> Iterator[tuple[str, Html]]:
+def _measures(facts: Known) -> Iterator[tuple[str, Html]]:
     """(title, content) of what the graph shows to protect data; titles are at most 120 characters."""
-    graph, told = known.analysis.graph, known.told
+    graph, told = facts.analysis.graph, facts.words
     if graph.profiles:
         yield told.bare("cnil.title.access"), paragraph(_access(graph, told), Html(" "), told("cnil.governance"))
     if graph.denied:
         pairs = sorted({(graph.elements[f.source].name, graph.elements[f.target].name) for f in graph.denied})
         ends = [told("entry.from.to", source=escaped(source), leak=escaped(target)) for source, target in pairs]
         yield told.bare("cnil.title.denied"), _rows(ends, told)
-    cleaned = [cleaning for kind in known.kinds for cleaning in kind.cleaned]
+    cleaned = [cleaning for kind in facts.kinds for cleaning in kind.cleaned]
     for method in METHODS:
-        done = [_done(cleaning, told) for cleaning in cleaned if cleaning.method == method]
+        done = [_measures_stated(cleaning, told) for cleaning in cleaned if cleaning.method == method]
         if done:
             still = [] if method.ends else [paragraph(told("cnil.recital26"))]
             yield told.bare(f"cnil.title.{method}"), joined(_rows(done, told), *still)
-    encrypted = [element.name for element in known.storages() if known.of(element, "encrypted") == "yes"]
+    encrypted = [element.name for element in facts.storages() if facts.of(element, "encrypted") == "yes"]
     if encrypted:
         rows = [told.pair(escaped(name), told("cnil.encrypted")) for name in encrypted]
         yield told.bare("cnil.title.encrypted"), _rows(rows, told)
 
 
-def _access(graph: FlowGraph, told: Told) -> Html:
-    return told(
+def _access(graph: FlowGraph, words: Told) -> Html:
+    return words(
         "cnil.access.enforced" if graph.view == View.enforced else "cnil.access.declared",
-        enclaves=told.count(len({profile.enclave for profile in graph.profiles}), "enclave"),
-        profiles=told.count(len({(profile.enclave, profile.node) for profile in graph.profiles}), "cnil.profile"),
-        flows=told.count(len(graph.flows), "cnil.connection"),
+        enclaves=words.count(len({profile.enclave for profile in graph.profiles}), "enclave"),
+        profiles=words.count(len({(profile.enclave, profile.node) for profile in graph.profiles}), "cnil.profile"),
+        flows=words.count(len(graph.flows), "cnil.connection"),
     )
 
 
-def _done(cleaning: Cleaning, told: Told) -> Html:
-    how = Html("" if cleaning.stated else f" ({told('cnil.no.method')})")
-    return joined(told.pair(escaped(cleaning.element.name), escaped(told.data(cleaning.category))), how)
+def _measures_stated(cleaning: Cleaning, words: Told) -> Html:
+    how = Html("" if cleaning.stated else f" ({words('cnil.no.method')})")
+    return joined(words.pair(escaped(cleaning.element.name), escaped(words.data(cleaning.category))), how)
 
 
-def _rows(rows: list[Html], told: Told) -> Html:
-    return told.rows(rows[:NAMES], len(rows))
+def _rows(rows: list[Html], words: Told) -> Html:
+    return words.rows(rows[:NAMES], len(rows))
 
 
-def _note(analysis: Analysis, assumptions: Mapping[str, Any], about: str, sentence: str, told: Told) -> Html:
+def _note(analysis: Analysis, assumptions: Mapping[str, Any], about: str, sentence: str, words: Told) -> Html:
     """Whose word this is, and the answer that it rests on."""
-    said = told(
+    said = words(
         "cnil.note",
         program=escaped(f"rosprivacy {assumptions.get('rosprivacy', '')}".strip()),
         view=Html(analysis.graph.view),
         verdict=escaped(plain(sentence)),
-        elements=told.count(count_elements(question.element for question in analysis.open).elements, "element"),
+        elements=words.count(count_elements(question.element for question in analysis.open).elements, "element"),
         more=Html(f" {about}." if about else ""),
     )
     return Html(f"<p><em>{said}</em></p>")
 
 
-def _read(assumptions: Mapping[str, Any], told: Told) -> Html:
+def _read(assumptions: Mapping[str, Any], words: Told) -> Html:
     """Which files it rests on (rule S12)."""
     files = [entry for kind in ("fleet", "policies", "labels") for entry in assumptions.get(kind) or ()]
     rows = [escaped(f"{entry['file'][-120:]} (sha256 {entry['sha256'][:12]})") for entry in files]
-    return joined(paragraph(told("cnil.rests")), _rows(rows, told)) if files else Html("")
+    return joined(paragraph(words("cnil.rests")), _rows(rows, words)) if files else Html("")

@@ -38,17 +38,17 @@ class Told:
         said = {place: harmless(value) if isinstance(value, str) else value for place, value in values.items()}
         return harmless(plain(self.words(key, **said)))
 
-    def count(self, number: int, thing: str) -> Html:
+    def count(self, number: int, noun: str) -> Html:
         """Return how many of a thing there are."""
-        return Html(self.words.count(number, thing))
+        return Html(self.words.count(number, noun))
 
-    def line(self, key: str, said: Html) -> Html:
+    def line(self, key: str, text: Html) -> Html:
         """Return one line of a list: what it is about, and what is said of it."""
-        return self.pair(self(key), said)
+        return self.pair(self(key), text)
 
-    def pair(self, what: Html, said: Html) -> Html:
+    def pair(self, what: Html, text: Html) -> Html:
         """Return what something is, after its name."""
-        return Html(self.words.pair(what, said))
+        return Html(self.words.pair(what, text))
 
     def lines(self, key: str, elements: Collection[Element]) -> list[Html]:
         """Return one line of names, none without them."""
@@ -61,13 +61,13 @@ class Told:
 
     def kind(self, kind: str) -> str:
         """Return what a kind of elements is called; English keeps the word of label files."""
-        return kind if self.words.language == "en" else self.words.known(f"kind.{kind}", kind)
+        return kind if self.words.language == "en" else self.words.of_value(f"kind.{kind}", kind)
 
     def names(self, elements: Collection[Element]) -> Html:
         """Return elements in a row."""
-        return self.some([self.name(element) for element in elements]) if elements else self("none")
+        return self.names_shown([self.name(element) for element in elements]) if elements else self("none")
 
-    def some(self, names: Collection[str]) -> Html:
+    def names_shown(self, names: Collection[str]) -> Html:
         """Return names in a row, and how many more there are than the most that are named."""
         row = ", ".join(escaped(name) for name in islice(names, NAMES))
         more = len(names) - NAMES

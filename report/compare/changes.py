@@ -14,14 +14,14 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.text import printable
 from rosprivacy.report.compare.identity import Identity
-from rosprivacy.report.compare.matching import paired, same
+from rosprivacy.report.compare.matching import comparable, paired
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from rosprivacy.report.compare.matching import Key
 
-ASKED = (
+QUESTION_KEYS = (
     "view", "categories_asked", "data_types_asked", "identity_factors_asked", "article9_only", "article9_level",
     "standard_channels", "type_limits", "ontologies", "law_as_of", "rosprivacy",
 )  # fmt: skip
@@ -111,7 +111,7 @@ def _findings(document: Mapping[str, Any], identity: Identity) -> dict[Key, Mapp
 
 def _different(old: Mapping[str, Any], new: Mapping[str, Any], were: Identity, are: Identity) -> Iterator[str]:
     """What differs for a reader; lines that moved in a file are no change, nor are names that are made up."""
-    if same(list(map(were.element, old["witness"]))) != same(list(map(are.element, new["witness"]))):
+    if comparable(list(map(were.element, old["witness"]))) != comparable(list(map(are.element, new["witness"]))):
         yield "witness"
     told = [what for what in COMPARED if what != "disjoint_paths" or (old.get(what) and new.get(what))]
     yield from (what for what in told if (old.get(what) or False) != (new.get(what) or False))
@@ -136,7 +136,7 @@ def _robots(finding: Mapping[str, Any], identity: Identity) -> Any:
 
 
 def _at(element: Mapping[str, Any] | None, identity: Identity) -> Any:
-    return same(identity.element(element)) if element else None
+    return comparable(identity.element(element)) if element else None
 
 
 def _open(document: Mapping[str, Any], identity: Identity) -> dict[Key, Mapping[str, Any]]:
@@ -145,7 +145,7 @@ def _open(document: Mapping[str, Any], identity: Identity) -> dict[Key, Mapping[
 
 def scope(before: Mapping[str, Any], now: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
     """Yield what was asked or assumed otherwise, before and now: what is gone may only not have been asked for."""
-    for what in (what for what in ASKED if what in before and what in now):
+    for what in (what for what in QUESTION_KEYS if what in before and what in now):
         old, new = before[what], now[what]
         if _compared(old) != _compared(new):
             yield what, _shown(old), _shown(new)

@@ -17,7 +17,7 @@ SAME, NOT_KNOWN = (
     "what is deployed is what the policy says",
     "undetermined: no right differs, but more may be allowed than is compared here; the warnings say where",
 )
-SAID = {"policy": "only the policy says", "deployed": "only what is deployed says"}
+SIDE_TEXTS = {"policy": "only the policy says", "deployed": "only what is deployed says"}
 
 
 def deployment_lines(document: CheckDocument) -> Iterator[str]:
@@ -33,7 +33,7 @@ def deployment_lines(document: CheckDocument) -> Iterator[str]:
     for enclave, of_enclave in groupby(found, key=lambda entry: entry["enclave"]):
         yield f"enclave {shown(enclave)}"
         for side, entries in groupby(of_enclave, key=lambda entry: entry["only_in"]):
-            yield f"   {SAID[side]}"
+            yield f"   {SIDE_TEXTS[side]}"
             yield from (f"      {_line(entry)}" for entry in entries)
     yield from (one["message"] for one in document["losses"])
     for said in document["diagnostics"]:

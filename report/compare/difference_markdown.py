@@ -47,8 +47,8 @@ def _lines(document: Mapping[str, Any]) -> Iterator[str]:
         yield from _listed(heading, rows, state)
     if not any(findings.values()):
         yield "\nNo path to assess is new, gone or changed."
-    yield from _named("Newly in doubt", [title("doubts", row) for row in (document["doubts"] or {}).get("new", ())])
-    yield from _named("Newly not reviewed", [title("elements", row) for row in _opened(document)])
+    yield from _name("Newly in doubt", [title("doubts", row) for row in (document["doubts"] or {}).get("new", ())])
+    yield from _name("Newly not reviewed", [title("elements", row) for row in _opened(document)])
     yield ""
     yield " ".join(_counted(document))
     yield ""
@@ -69,7 +69,7 @@ def _listed(title: str, rows: Sequence[Mapping[str, Any]], state: str) -> Iterat
         yield f"- and {len(rows) - SHOWN} more"
 
 
-def _named(title: str, names: Sequence[str]) -> Iterator[str]:
+def _name(title: str, names: Sequence[str]) -> Iterator[str]:
     if names:
         yield f"\n**{title}: {len(names)}**\n"
         yield from (f"- {code(name)}" for name in names[:SHOWN])
@@ -100,7 +100,7 @@ def _counted(document: Mapping[str, Any]) -> Iterator[str]:
             yield f"{section.capitalize()}: {counts}."
 
 
-def code(text: str, most: int = LONGEST) -> str:
+def code(text: str, limit: int = LONGEST) -> str:
     """Return text as code that cannot end early: printable, short, with no backtick in it.
 
     >>> code("a`b")
@@ -108,4 +108,4 @@ def code(text: str, most: int = LONGEST) -> str:
     """
     plain = blanked(text, "?").replace("`", "'")
     plain = re.sub(r"\s+", " ", plain).strip() or "?"
-    return f"`{plain[:most]}{'…' if len(plain) > most else ''}`"
+    return f"`{plain[:limit]}{'…' if len(plain) > limit else ''}`"

@@ -51,12 +51,12 @@ def read_earlier(file: str) -> Earlier:
     return Earlier(document_of(data, file, HINT), file, hashlib.sha256(data).hexdigest())
 
 
-def document_of(data: bytes, file: str, again: str) -> Mapping[str, Any]:
+def document_of(data: bytes, file: str, remedy: str) -> Mapping[str, Any]:
     """Return the document that some bytes are, if they are one.
 
     Parameters
     ----------
-    again
+    remedy
         How to get one: the hint.
 
     Raises
@@ -64,27 +64,27 @@ def document_of(data: bytes, file: str, again: str) -> Mapping[str, Any]:
     InputError
         As ``read_earlier``.
     """
-    document: dict[str, Any] = parsed(data, lambda *said: InputError(file, *said), again)
+    document: dict[str, Any] = parsed(data, lambda *said: InputError(file, *said), remedy)
     said = document.get("format") if isinstance(document, dict) else None
     if said != FORMAT:
         if isinstance(said, str) and said.startswith("rosprivacy.analysis/"):
             raise InputError(file, 0, f"is of the format {shown(said)}, and this version reads {FORMAT}", NEWER)
-        raise InputError(file, 0, f"is not a document of the format {FORMAT}", again)
+        raise InputError(file, 0, f"is not a document of the format {FORMAT}", remedy)
     wrong = problems(document)
     if wrong:
         more = f" ({len(wrong) - 1} more)" if len(wrong) > 1 else ""
-        raise InputError(file, 0, f"damaged or changed: {wrong[0]}{more}", again)
+        raise InputError(file, 0, f"damaged or changed: {wrong[0]}{more}", remedy)
     for category in document["categories"]:
         category.setdefault("translations", {})
     return document
 
 
-def bytes_of(file: str, again: str) -> bytes:
+def bytes_of(file: str, remedy: str) -> bytes:
     """Return what stands in a file that the program wrote before.
 
     Parameters
     ----------
-    again
+    remedy
         How to get such a file: the hint.
 
     Raises
@@ -95,13 +95,13 @@ def bytes_of(file: str, again: str) -> bytes:
     try:
         path = Path(file)
         if not path.is_file():
-            raise InputError(file, 0, "is not a file" if path.exists() else "not found", again)
+            raise InputError(file, 0, "is not a file" if path.exists() else "not found", remedy)
         if path.stat().st_size > LARGEST:
-            raise InputError(file, 0, f"{path.stat().st_size / 2**20:.0f} MB are too large", again)
+            raise InputError(file, 0, f"{path.stat().st_size / 2**20:.0f} MB are too large", remedy)
         with path.open("rb") as opened:
             return noted(opened, file).read()
     except (OSError, ValueError) as error:
-        raise InputError(file, 0, f"cannot be read: {reason(error)}", again) from None
+        raise InputError(file, 0, f"cannot be read: {reason(error)}", remedy) from None
 
 
 def problems(document: Any) -> list[str]:

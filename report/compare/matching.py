@@ -103,7 +103,7 @@ def compare(before: Mapping[Key, Record], after: Mapping[Key, Record]) -> Change
     changed = [
         Change(theirs, before[ours], after[theirs])
         for ours, theirs in pairs.both
-        if same(before[ours]) != same(after[theirs])
+        if comparable(before[ours]) != comparable(after[theirs])
     ]
     return Changes(
         tuple(Change(key, None, after[key]) for key in pairs.new),
@@ -116,10 +116,10 @@ def _plain(key: Iterable[str]) -> Key:
     return tuple(map(normalised, key))
 
 
-def same(value: Any) -> Any:
+def comparable(value: Any) -> Any:
     """Return a record with normalised names in it, to be compared with others."""
     if isinstance(value, str):
         return normalised(value)
     if isinstance(value, dict):
-        return {key: same(inside) for key, inside in value.items()}
-    return [same(inside) for inside in value] if isinstance(value, (list, tuple)) else value
+        return {key: comparable(inside) for key, inside in value.items()}
+    return [comparable(inside) for inside in value] if isinstance(value, (list, tuple)) else value

@@ -72,7 +72,7 @@ def snapshot(document: Mapping[str, Any], policies: Iterable[Policy] | None) -> 
     return Snapshot(
         document["verdict"],
         {(robot,): {"model": g["model"]} for g in (fleet["alike"] if fleet else ()) for robot in g["robots"]},
-        None if policies is None else _grants(policies, named=bool(fleet)),
+        None if policies is None else _grants(policies, by_name=bool(fleet)),
         _elements(document, identity),
         _findings(document, identity),
         dict(_lines(document, identity)),
@@ -83,11 +83,11 @@ def snapshot(document: Mapping[str, Any], policies: Iterable[Policy] | None) -> 
     )
 
 
-def _grants(policies: Iterable[Policy], *, named: bool) -> Facts:
+def _grants(policies: Iterable[Policy], *, by_name: bool) -> Facts:
     rules: dict[Key, set[str]] = defaultdict(set)
     for policy in policies:
         for g in policy.grants:
-            key = (policy.file if named else "", g.enclave, g.node, g.role, g.kind, g.name)
+            key = (policy.file if by_name else "", g.enclave, g.node, g.role, g.kind, g.name)
             rules[key].add("ALLOW" if g.allow else "dead DENY" if g.dead else "DENY")
     return {key: {"rule": " and ".join(sorted(found))} for key, found in rules.items()}
 

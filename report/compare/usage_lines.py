@@ -44,7 +44,7 @@ def _lines(
         yield f"{mark}{show(_what(row))}: {WHY[row['why']]}{denied}; last seen {row['seen']['last']}"
     yield head(f"what is granted to nodes that ran, and was never seen: {len(unused):,}")
     for row in unused:
-        yield f"{mark}{show(_what(row))}: {show(_place(row))}{_kept(row, document)}"
+        yield f"{mark}{show(_what(row))}: {show(_place(row))}{_reason_not_in_patch(row, document)}"
     never = document["never_seen"]
     yield head(f"nodes with a profile that were never seen, of which nothing is proposed: {len(never):,}")
     for row in never:
@@ -58,7 +58,7 @@ def _lines(
         yield f"{mark}no patch: {document['why_no_patch']}"
 
 
-def _kept(row: Mapping[str, Any], document: Mapping[str, Any]) -> str:
+def _reason_not_in_patch(row: Mapping[str, Any], document: Mapping[str, Any]) -> str:
     """Why a line is not in the patch."""
     if row.get("hidden"):
         return "; a text without `ros2 node info --include-hidden` has no hidden names: it is not in the patch"

@@ -23,11 +23,11 @@ def closed(document: type[Type]) -> type[Type]:
     return document
 
 
-def without_keys_of(other: type) -> Any:
+def without_keys_of(extended: type) -> Any:
     """Mark an object that has the keys of another one, too, which are described in the document of that."""
 
     def marked(document: type[Type]) -> type[Type]:
-        document.__elsewhere__ = other  # type: ignore[attr-defined]
+        document.__elsewhere__ = extended  # type: ignore[attr-defined]
         return document
 
     return marked

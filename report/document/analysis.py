@@ -224,7 +224,7 @@ def _sanitizers(analysis: Analysis, categories: Mapping[str, Category]) -> list[
             "reached": cleaning.reached,
             "leaves": list(cleaning.leaves),
             "leaves_pseudonymised": list(cleaning.pseudonymised),
-            "beside": [element_dict(element) for element in cleaning.beside],
+            "beside": [element_dict(element) for element in cleaning.neighbours],
             "cleaning_beside": [element_dict(element) for element in cleaning.cleaning_beside],
             "places": place_entries(cleaning.places),
             "recognises": list(recognising.get(cleaning.element, ())),
@@ -236,7 +236,12 @@ def _sanitizers(analysis: Analysis, categories: Mapping[str, Category]) -> list[
 def _derivations(analysis: Analysis) -> list[DerivationEntry]:
     """Who makes one kind of another."""
     return [
-        {"element": element_dict(making.element), "from": making.made_of, "to": making.made, "reached": making.reached}
+        {
+            "element": element_dict(making.element),
+            "from": making.made_of,
+            "to": making.target,
+            "reached": making.reached,
+        }
         for making in makings(analysis.spread, analysis.emitted)
     ]
 

@@ -104,7 +104,7 @@ def _deviant(deviant: Deviant) -> DeviantEntry:
     return {
         "robots": list(deviant.robots),
         "model": deviant.model,
-        "more": _shares(deviant.more),
+        "more": _shares(deviant.additional),
         "fewer": _shares(deviant.fewer),
         "more_open": [element_dict(element) for element in deviant.more_open],
         "fewer_open": [element_dict(element) for element in deviant.fewer_open],

@@ -28,7 +28,7 @@ ANSWERING = (REVIEW, "mundane", "sanitizer")  # what takes the question away whe
 WORD_OF_A_LABEL = ("mundane", "only", "never", "sanitizer", ABSENT)
 
 
-def ledger_rows(taken: Collection[TakenAway]) -> list[LedgerRow]:
+def ledger_rows(ledger: Collection[TakenAway]) -> list[LedgerRow]:
     """Return what was taken away on the data's side."""
     return [
         {
@@ -44,13 +44,13 @@ def ledger_rows(taken: Collection[TakenAway]) -> list[LedgerRow]:
             "perhaps": row.perhaps,
             "note": row.note,
         }
-        for row in taken
+        for row in ledger
     ]
 
 
-def counts_of(taken: Collection[TakenAway]) -> dict[str, int]:
+def counts_of(ledger: Collection[TakenAway]) -> dict[str, int]:
     """Return how many there are of each kind, those that there are."""
-    numbers = {by: sum(row.by == by for row in taken) for by in BY}
+    numbers = {by: sum(row.by == by for row in ledger) for by in BY}
     return {by: number for by, number in numbers.items() if number}
 
 

@@ -86,10 +86,10 @@ def mitigation_document(
 def _proposal(proposal: Proposal, critical: set[Element]) -> ProposalEntry:
     leaks = {finding.leak for finding in proposal.removed}
 
-    def element(one: Element) -> MarkedElement:
-        leak: Marks = {"leak": True} if one in leaks else {}
-        time_critical: Marks = {"time_critical": True} if one in critical else {}
-        return {**element_dict(one), **leak, **time_critical}
+    def element(shown: Element) -> MarkedElement:
+        leak: Marks = {"leak": True} if shown in leaks else {}
+        time_critical: Marks = {"time_critical": True} if shown in critical else {}
+        return {**element_dict(shown), **leak, **time_critical}
 
     return {
         "categories": list(proposal.categories),
@@ -102,7 +102,7 @@ def _proposal(proposal: Proposal, critical: set[Element]) -> ProposalEntry:
                 "reason": kept.reason,
                 "way": [element_dict(one) for one in kept.path],
             }
-            for kept in proposal.kept
+            for kept in proposal.remaining
         ],
         "steps": [_step(step, element) for step in proposal.steps],
         "statements": [_statement(f) for f in _findings(proposal) if f.kind != DISCLOSURE],
@@ -117,7 +117,7 @@ def _proposal(proposal: Proposal, critical: set[Element]) -> ProposalEntry:
 
 
 def _findings(proposal: Proposal) -> tuple[Finding, ...]:
-    return (*proposal.removed, *(kept.finding for kept in proposal.kept))
+    return (*proposal.removed, *(kept.finding for kept in proposal.remaining))
 
 
 def _statement(finding: Finding) -> StatementEntry:
@@ -172,17 +172,17 @@ def _grant(grant: Grant) -> ChangedGrant:
     }  # fmt: skip
 
 
-def _affected(less: Affected, element: Callable[[Element], MarkedElement]) -> AffectedEntry:
+def _affected(affected: Affected, element: Callable[[Element], MarkedElement]) -> AffectedEntry:
     return {
-        "element": element(less.element),
-        "filtered": [{"from": _named(at), "categories": list(names)} for at, names in less.filtered],
-        "unread": [_named(at) for at in less.unread],
-        "unwritten": [_named(at) for at in less.unwritten],
-        "narrowed": [_named(at) for at in less.narrowed],
+        "element": element(affected.element),
+        "filtered": [{"from": _named_element(at), "categories": list(names)} for at, names in affected.filtered],
+        "unread": [_named_element(at) for at in affected.unread],
+        "unwritten": [_named_element(at) for at in affected.unwritten],
+        "narrowed": [_named_element(at) for at in affected.narrowed],
     }
 
 
-def _named(at: Shown) -> NamedElement:
+def _named_element(at: Shown) -> NamedElement:
     robot, kind, name, leg = at
     named: NamedElement = {"robot": robot, "kind": kind, "name": name}
     if leg:

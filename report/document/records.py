@@ -60,8 +60,12 @@ def grant_entry(grant: Grant) -> GrantEntry:
         "enclave": grant.enclave,
         "profile": grant.node,
     }
-    if grant.seen:
-        line["seen"] = {"by": list(grant.seen.by), "first": grant.seen.first, "last": grant.seen.last}
+    if grant.observation:
+        line["seen"] = {
+            "by": list(grant.observation.by),
+            "first": grant.observation.first,
+            "last": grant.observation.last,
+        }
     return line
 
 
@@ -72,7 +76,7 @@ def finding_entry(finding: Finding, contexts: Contexts) -> FindingEntry:
     reason: FindingMore = {}
     if finding.why:
         reason = {"reason": finding.reason, "because": {"key": finding.why.key, "values": dict(finding.why.values)}}
-    plain: FindingMore = {"beside_pseudonymised": True} if finding.beside else {}
+    plain: FindingMore = {"beside_pseudonymised": True} if finding.plain_also else {}
     shown: FindingEntry = {
         "id": finding.id,
         "kind": finding.kind,

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.contexts import article9_in, revealed
-from rosprivacy.analysis.non_ros import TAKEN, limited, not_stated
+from rosprivacy.analysis.non_ros import DEFAULT_ROLES, limited, not_stated
 from rosprivacy.report.document.records import element_dict
 
 if TYPE_CHECKING:
@@ -166,7 +166,7 @@ def inventory(analysis: Analysis, hierarchy: Hierarchy) -> list[NonRosEntry]:
 
 def taken_by_kind(analysis: Analysis) -> dict[str, str]:
     """Return what each kind that there is does unless a label says otherwise."""
-    return {kind: TAKEN[kind] for kind in sorted({e.kind for e in analysis.outside} & set(TAKEN))}
+    return {kind: DEFAULT_ROLES[kind] for kind in sorted({e.kind for e in analysis.outside} & set(DEFAULT_ROLES))}
 
 
 def without_backups(analysis: Analysis) -> list[Element]:
@@ -221,7 +221,7 @@ def _not_known(element: Element, facts: NonRosFacts, holds: tuple[str, ...], hie
     return entry
 
 
-def with_processing(made: AnalysisDocument, answer: Answer) -> AnalysisDocument:
+def with_processing(document: AnalysisDocument, answer: Answer) -> AnalysisDocument:
     """Return a document with what is stated of processing; of robots that are alike of one."""
     not_shown = answer.fleet.likeness.second if answer.fleet else ()
     stated: list[ProcessingEntry] = []
@@ -235,10 +235,10 @@ def with_processing(made: AnalysisDocument, answer: Answer) -> AnalysisDocument:
             stated.append(_stated(processing))
             stated[-1]["element"] = element_dict(element)
     if stated:
-        made["processing"] = stated
+        document["processing"] = stated
     if by_kind := [_processed(row) for row in answer.processed]:
-        made["processed_for"] = by_kind
-    return made
+        document["processed_for"] = by_kind
+    return document
 
 
 def _stated(stated: Processing) -> ProcessingEntry:
@@ -306,8 +306,13 @@ def _closed(finding: Finding) -> ClosedEntry:
     }
 
 
-def _type(seen: MessageType) -> TypeEntry:
-    entry: TypeEntry = {"type": seen.name, "stated": seen.stated, "file": seen.place.file, "line": seen.place.line}
-    nodes = {"writers": list(seen.writers), "readers": list(seen.readers)}
-    entry.update(_present(hash=seen.hash, **nodes, first=seen.first, last=seen.last))
+def _type(message_type: MessageType) -> TypeEntry:
+    entry: TypeEntry = {
+        "type": message_type.name,
+        "stated": message_type.stated,
+        "file": message_type.place.file,
+        "line": message_type.place.line,
+    }
+    nodes = {"writers": list(message_type.writers), "readers": list(message_type.readers)}
+    entry.update(_present(hash=message_type.hash, **nodes, first=message_type.first, last=message_type.last))
     return entry

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from lxml.etree import _Element
 
 
-def word_document(text: str, title: str, language: str, made: str) -> bytes:
+def word_document(text: str, title: str, language: str, html: str) -> bytes:
     """Return a report as the bytes of a ``.docx``.
 
     Parameters
@@ -50,7 +50,7 @@ def word_document(text: str, title: str, language: str, made: str) -> bytes:
     b'PK'
     """
     document = docx.Document()
-    laid_out(document, title, language, made)
+    laid_out(document, title, language, html)
     tree = SyntaxTreeNode(MarkdownIt("commonmark").enable("table").parse(text))
     for block in tree.children:
         _write(block, document)
@@ -135,7 +135,7 @@ CODE, BODY = "Consolas", "Calibri"
 SPELLING = {"en": "en-GB", "de": "de-DE", "fr": "fr-FR"}  # Word checks no spelling of a language without a country
 
 
-def laid_out(document: Document, title: str, language: str, made: str) -> None:
+def laid_out(document: Document, title: str, language: str, html: str) -> None:
     """Set the paper (A4, lying, for the tables), the fonts, the language and the properties of an empty document."""
     section = document.sections[0]
     section.orientation = WD_ORIENT.LANDSCAPE
@@ -150,7 +150,7 @@ def laid_out(document: Document, title: str, language: str, made: str) -> None:
     known = document.core_properties
     known.title, known.author, known.last_modified_by, known.comments = title[:255], "rosprivacy", "rosprivacy", ""
     known.language, known.revision = language, 1
-    known.created = known.modified = datetime.fromisoformat(made)
+    known.created = known.modified = datetime.fromisoformat(html)
 
 
 def repeated_on_each_page(row: _Row) -> None:

@@ -21,12 +21,12 @@ from rosprivacy.analysis.non_ros import ADEQUATE, INSIDE, PARTLY, THIRD
 from rosprivacy.analysis.text import fit
 from rosprivacy.report.catalogs.words import Words
 from rosprivacy.report.element_counts import count_rows
-from rosprivacy.report.naming import key, name, whole
+from rosprivacy.report.naming import key, name, without_leg
 from rosprivacy.report.page import purposes
 from rosprivacy.report.page.entries_of_robots import grouped
 from rosprivacy.report.page.index import Index
 from rosprivacy.report.page.kinds import provision
-from rosprivacy.report.page.non_ros import kept, states_retention
+from rosprivacy.report.page.non_ros import retention_text, states_retention
 from rosprivacy.report.page.tables import OUTSIDE
 from rosprivacy.report.spreadsheet import as_csv
 from rosprivacy.report.verdict import verdict_sentence
@@ -126,7 +126,7 @@ def _entry(category: str, group: Sequence[Mapping[str, Any]], facts: _Facts) -> 
     law = [provision(legal, category, index) for legal in known["law"]]
     rows = facts.processed(category, group)
     persons, unnamed = index.persons(category, group)
-    kept_for, unlimited = _kept(category, group, index)
+    kept_for, unlimited = _retention(category, group, index)
     values = {
         "activity": "",
         "controller": purposes.controllers(rows, index) or words("record.open"),
@@ -136,10 +136,10 @@ def _entry(category: str, group: Sequence[Mapping[str, Any]], facts: _Facts) -> 
         "provisions": "; ".join(words.pair(p.name, p.condition) if p.condition else p.name for p in law),
         "subjects": words.row([*persons, *([words("record.open")] if unnamed else [])]),
         "exit": words.row(index.names(group)) if group else words("record.norecipient"),
-        "recipient": _told(stated, _recipient, index),
-        "country": _told(stated, _country, index),
+        "recipient": _statement(stated, _recipient, index),
+        "country": _statement(stated, _country, index),
         "form": _form(category, group, index),
-        "transfer": _told(stated, partial(_transfer, rows), index),
+        "transfer": _statement(stated, partial(_transfer, rows), index),
         "basis": purposes.bases(rows, _bases(findings), index),
         "retention": "; ".join([*kept_for, *([words("record.open")] if unlimited else [])]),
         "measures": "; ".join(_measures(category, group, facts)) or words("record.open"),
@@ -162,13 +162,15 @@ def _not_stated(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
         yield "b"
 
 
-def _told(stated: Sequence[Mapping[str, Any]], said: Callable[[Mapping[str, Any], Index], str], index: Index) -> str:
-    return index.words.row(dict.fromkeys(filter(None, (said(row, index) for row in stated))))
+def _statement(
+    stated: Sequence[Mapping[str, Any]], statement: Callable[[Mapping[str, Any], Index], str], index: Index
+) -> str:
+    return index.words.row(dict.fromkeys(filter(None, (statement(row, index) for row in stated))))
 
 
 def _recipient(row: Mapping[str, Any], index: Index) -> str:
     """Who operates it and as what, as people stated it."""
-    role = index.words.known(f"recipient.{row['recipient']}", row["recipient"]) if row.get("recipient") else ""
+    role = index.words.of_value(f"recipient.{row['recipient']}", row["recipient"]) if row.get("recipient") else ""
     return ", ".join(part for part in (fit(row.get("operator", "")), role, fit(row.get("contract", ""))) if part)
 
 
@@ -184,7 +186,7 @@ def _transfer(rows: Sequence[Mapping[str, Any]], row: Mapping[str, Any], index: 
     stated = "" if area == ADEQUATE and stated == NO_BASIS else stated
     articles = {basis for said in rows for basis in said["legal_bases"] if transfer_of(basis) == stated}
     exact = f"transfer.{stated}.{'.'.join(articles)}"  # of clauses of one point of Article 46(2): there are two
-    basis = words.known(exact, words.known(f"transfer.{stated}", stated)) if stated else ""
+    basis = words.of_value(exact, words.of_value(f"transfer.{stated}", stated)) if stated else ""
     if not area or area == INSIDE:
         return basis if not area else ""
     if area in ABROAD and not basis:
@@ -212,14 +214,14 @@ def _form(category: str, group: Sequence[Mapping[str, Any]], index: Index) -> st
     return index.words("record.hidden" if hidden else "record.as.is")
 
 
-def _kept(category: str, group: Sequence[Mapping[str, Any]], index: Index) -> tuple[list[str], bool]:
+def _retention(category: str, group: Sequence[Mapping[str, Any]], index: Index) -> tuple[list[str], bool]:
     """How long the row's own places keep the kind, backups too; and whether more is to be completed."""
     words, lasting = index.words, dict[str, None]()
     unlimited = not group
     for element in group:
         row = index.outside.get(key(element), {})
         if states_retention(row, category, index):
-            lasting[words("record.kept", element=name(element), duration=kept(row, category, index))] = None
+            lasting[words("record.kept", element=name(element), duration=retention_text(row, category, index))] = None
             unlimited |= row.get("backups") is True
         else:
             unlimited = True
@@ -235,7 +237,7 @@ def _measures(category: str, group: Sequence[Mapping[str, Any]], facts: _Facts) 
     if index.document["enclaves"]:
         yield words("record.measure.enclaves", enclaves=facts.enclaves)
     rows = index.protections(category, group)
-    for same in grouped(rows, lambda row: (whole(row["element"])[1:], *(str(row[of]) for of in PROTECTION))):
+    for same in grouped(rows, lambda row: (without_leg(row["element"])[1:], *(str(row[of]) for of in PROTECTION))):
         row = same[0]
         method = words(f"method.{row['method']}" if row["stated"] else "method.unstated")
         names = words.row(index.names([one["element"] for one in same]))

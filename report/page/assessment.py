@@ -88,8 +88,8 @@ def assessment(
     """
     used: set[str] = set()
 
-    def field(key: str, label: str, also: Iterable[str] = ()) -> Field:
-        known = [name for name in (key, *also) if name in answers.texts]
+    def field(key: str, label: str, additional: Iterable[str] = ()) -> Field:
+        known = [name for name in (key, *additional) if name in answers.texts]
         used.update(known)
         text = "\n".join(dict.fromkeys(answers.texts[name] for name in known))
         return Field(key, words(label), text, stated.get(key.removeprefix("sign."), ""))

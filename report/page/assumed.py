@@ -56,7 +56,7 @@ def assumed(index: Index) -> Iterator[str]:
         yield words("assumption.types", names=words.row(_type(kind, index) for kind in said["data_types_asked"]))
     if factors := said.get("identity_factors_asked"):
         yield words(
-            "assumption.factors", names=words.row(words.known(f"factor.{factor}", fit(factor)) for factor in factors)
+            "assumption.factors", names=words.row(words.of_value(f"factor.{factor}", fit(factor)) for factor in factors)
         )
     if said.get("article9_only"):
         yield words(f"assumption.article9.{said.get('article9_level', MAY_REVEAL)}")
@@ -154,7 +154,7 @@ def _types(index: Index) -> Iterator[str]:
 
 
 def _type(kind: str, index: Index) -> str:
-    return index.words.known(f"type.{kind}", fit(kind))
+    return index.words.of_value(f"type.{kind}", fit(kind))
 
 
 def _outside(index: Index) -> Iterator[str]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.text import fit
 from rosprivacy.report.naming import line, name
-from rosprivacy.report.page.finding_entries import NAMED, hops_of, sentence_of
+from rosprivacy.report.page.finding_entries import SHOWN_AT_MOST, hops_of, sentence_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rosprivacy.report.page.finding_entries import Hop
     from rosprivacy.report.page.index import Index
 
-MOST = 200  # that are told one by one
+BOUND = 200  # that are told one by one
 NAMED_OPEN = 12  # elements in the sentence of what is open
 
 
@@ -53,13 +53,13 @@ class Beyond:
 
 def beyond_entries(index: Index) -> tuple[Beyond, ...]:
     """Return what the enforced view adds, as many as are told one by one; nothing where nobody asked."""
-    return tuple(_entry(added, index) for added in _added(index)[:MOST])
+    return tuple(_entry(added, index) for added in _added(index)[:BOUND])
 
 
 def beyond_said(index: Index) -> tuple[str, ...]:
     """Return what is to be known of all of it: how much there is, and how many are not told one by one."""
     words, number = index.words, len(_added(index))
-    left = number - MOST
+    left = number - BOUND
     elements = [name(element) for element in index.document.get("enforced", {}).get("open", ())]
     names = words.row(words.first(elements, NAMED_OPEN))
     return (
@@ -100,7 +100,7 @@ def _why(added: Mapping[str, Any], index: Index) -> Iterator[str]:
     if opened := added.get("opened_by"):
         yield words("beyond.opened", lines=words.row(map(line, opened)))
     if robots := added.get("robots"):
-        named = f" ({_row(robots, index)})" if len(robots) <= NAMED else ""
+        named = f" ({_row(robots, index)})" if len(robots) <= SHOWN_AT_MOST else ""
         yield words("beyond.robots", n=len(robots), all=words.count(len(index.robots()), "of_robots"), names=named)
 
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from rosprivacy.report.page.finding_entries import Entry
     from rosprivacy.report.page.index import Index
 
-NAMED = 6  # elements that get less
+SHOWN_AT_MOST = 6  # elements that get less
 SHOWN = 20  # steps; the others are told by their number
 
 
@@ -102,7 +102,7 @@ def proposal_told(last: Mapping[str, Any], steps: list[Any], index: Index) -> It
     yield words("closing.proven", verdict=words(f"code.{last['verdict_then']}"))
     less = list(dict.fromkeys(name(row["element"]) for row in last["affected"]))
     if less:
-        yield words("closing.less", names=words.row(words.first(less, NAMED)))
+        yield words("closing.less", names=words.row(words.first(less, SHOWN_AT_MOST)))
 
 
 def _protect(last: Mapping[str, Any], index: Index) -> Iterator[str]:
@@ -110,7 +110,7 @@ def _protect(last: Mapping[str, Any], index: Index) -> Iterator[str]:
     for row in last.get("protect", ()):
         channels = list(dict.fromkeys(map(name, row["channels"])))
         ended = index.words.count(len(row["findings"]), "way")
-        named = index.words.row(index.words.first(channels, NAMED))
+        named = index.words.row(index.words.first(channels, SHOWN_AT_MOST))
         yield index.words(f"closing.protect.{row['cause']}", place=line(row), channels=named, removed=ended)
 
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from rosprivacy.report.page.index import Index
 
 PERSONAL = {"CommunicationContent", "CommunicationMetadata", "Household", "Location", "Voice"}  # WP 248, criterion 4
-NAMED = 6
+SHOWN_AT_MOST = 6
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +37,7 @@ def criteria(index: Index) -> tuple[Criterion, ...]:
 
 
 def _row(texts: list[str], index: Index) -> str:
-    return index.words.row(index.words.first(texts, NAMED))
+    return index.words.row(index.words.first(texts, SHOWN_AT_MOST))
 
 
 def _makes(index: Index) -> str:

@@ -53,16 +53,16 @@ def orphans(index: Index) -> tuple[Decision, ...]:
     return tuple(_decision(entry, (), index) for entry in said if entry["state"] == ORPHANED)
 
 
-def _decision(said: Mapping[str, Any], findings: Iterable[Mapping[str, Any]], index: Index) -> Decision:
-    words, what = index.words, said["choice"]
-    rows = [(words(f"decision.{key}"), _value(said[key], key, index)) for key in FIELDS if said[key]]
-    flags = (*_changed(said, index), *(_flags(said, findings, index) if what == ACCEPT else ()))
-    return Decision(words.known(f"decision.{what}", what), tuple(rows), flags)
+def _decision(decision: Mapping[str, Any], findings: Iterable[Mapping[str, Any]], index: Index) -> Decision:
+    words, what = index.words, decision["choice"]
+    rows = [(words(f"decision.{key}"), _value(decision[key], key, index)) for key in FIELDS if decision[key]]
+    flags = (*_changed(decision, index), *(_flags(decision, findings, index) if what == ACCEPT else ()))
+    return Decision(words.of_value(f"decision.{what}", what), tuple(rows), flags)
 
 
-def _changed(said: Mapping[str, Any], index: Index) -> Iterator[str]:
+def _changed(decision: Mapping[str, Any], index: Index) -> Iterator[str]:
     """What is not as it was when it was decided."""
-    for change in said.get("changed", ()):
+    for change in decision.get("changed", ()):
         yield index.words(
             f"decision.changed.{change['what']}", before=printable(change["before"]), now=printable(change["now"])
         )
@@ -71,17 +71,17 @@ def _changed(said: Mapping[str, Any], index: Index) -> Iterator[str]:
 def _value(value: Any, key: str, index: Index) -> str:
     words, text = index.words, printable(str(value))
     if key == "state":
-        return words.known(f"decision.state.{value}", text)
+        return words.of_value(f"decision.state.{value}", text)
     if key == "legal_basis":
         return "; ".join(words.basis(printable(str(part))) for part in value)
     return words.date(text) if key in DATES else text
 
 
-def _flags(said: Mapping[str, Any], findings: Iterable[Mapping[str, Any]], index: Index) -> Iterator[str]:
+def _flags(decision: Mapping[str, Any], findings: Iterable[Mapping[str, Any]], index: Index) -> Iterator[str]:
     """What an acceptance lacks: a legal basis, a ground for special categories, one of chapter V."""
     held = list(findings)
     law = {f["category"]: tuple(_provisions(f["category"], held)) for f in held}
-    for gap in gaps(said["legal_basis"], [(f["kind"], f["category"]) for f in held], law):
+    for gap in gaps(decision["legal_basis"], [(f["kind"], f["category"]) for f in held], law):
         provision = index.provision(gap.category, gap.provision)
         yield index.words(f"decision.gap.{gap.lack.name.lower()}", data=index.data(gap.category), provision=provision)
 

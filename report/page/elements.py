@@ -67,15 +67,15 @@ def items(index: Index) -> tuple[Item, ...]:
                 said.setdefault(element, {}).setdefault(role, []).append(category)
     open_at = {element for element, _ in index.unreviewed}
 
-    def same(row: Mapping[str, Any]) -> Any:
+    def merge_key(row: Mapping[str, Any]) -> Any:
         at = key(row["element"])
         roles = tuple((role, tuple(names)) for role, names in said.get(at, {}).items())
         return at[1:], tuple(row["categories"]), tuple(row["pseudonymised"]), roles, at in open_at
 
-    return tuple(_item(group, said, open_at, index) for group in grouped(index.document["carries"], same))
+    return tuple(_item(group, said, open_at, index) for group in grouped(index.document["carries"], merge_key))
 
 
-def _item(group: list[Mapping[str, Any]], said: Mapping[Any, Any], open_at: set[Any], index: Index) -> Item:
+def _item(group: list[Mapping[str, Any]], entry: Mapping[Any, Any], open_at: set[Any], index: Index) -> Item:
     row, words = group[0], index.words
     element, at = row["element"], key(row["element"])
     hidden = [index.data(category, pseudonymised=True) for category in row["pseudonymised"]]
@@ -84,19 +84,19 @@ def _item(group: list[Mapping[str, Any]], said: Mapping[Any, Any], open_at: set[
         name=name(element) if robots == 1 else fit(element["name"]),
         kind=words.kind(element),
         robots=robots,
-        data=words.row([*(_held(at, category, index) for category in row["categories"]), *hidden]),
-        said=tuple(words(f"role.{role}", data=index.all_data(c)) for role, c in said.get(at, {}).items()),
+        data=words.row([*(_category_held(at, category, index) for category in row["categories"]), *hidden]),
+        said=tuple(words(f"role.{role}", data=index.all_data(c)) for role, c in entry.get(at, {}).items()),
         reviewed=at not in open_at,
     )
 
 
-def _held(at: Key, category: str, index: Index) -> str:
+def _category_held(at: Key, category: str, index: Index) -> str:
     """A kind of data that gets there; and that it is said to be cleaned there, where it is."""
     data = index.data(category)
     return index.words("inventory.cleaned", data=data) if (at, category) in index.cleaned else data
 
 
-def rest(index: Index) -> tuple[tuple[str, tuple[str, ...]], ...]:
+def unreached_names(index: Index) -> tuple[tuple[str, tuple[str, ...]], ...]:
     """Return the names of the elements that no data gets to, by kind."""
     groups = grouped(index.document["unreached"], lambda element: element["kind"])
     return tuple((index.words.kind({"kind": some[0]["kind"]}), index.names(some)) for some in groups)

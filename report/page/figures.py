@@ -75,7 +75,7 @@ def figures(
     entries = [entry for entry in report.entries if entry.told and entry.id in findings]
     words = report.words
     titles = {kind.name: kind.title for kind in report.kinds}
-    say = Phrases.told(words, titles)
+    say = Phrases.of_report(words, titles)
     labels = {entry.id: words("entry.picture", way=entry.brief) for entry in entries}
     wishes = Wishes(say=say, labels=labels)
     if aliases is not None:

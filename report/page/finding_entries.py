@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 LINES = 4  # policy lines shown of one step
-NAMED = 3  # robots of one form that are named beside their number
+SHOWN_AT_MOST = 3  # robots of one form that are named beside their number
 
 
 @dataclass(frozen=True, slots=True)
@@ -216,7 +216,7 @@ def _spread(finding: Mapping[str, Any], robots: tuple[str, ...], index: Index) -
     if pattern["across"]:
         yield words("entry.fleet.across", n=pattern["findings"])
     for some, form in _forms(pattern, index):
-        names = f" ({words.row(map(fit, some))})" if len(some) <= NAMED else ""
+        names = f" ({words.row(map(fit, some))})" if len(some) <= SHOWN_AT_MOST else ""
         yield words.pair(f"{words.count(len(some), 'robot')}{names}", f"{form}.")
 
 
@@ -298,7 +298,7 @@ def hops_of(finding: Mapping[str, Any], index: Index) -> Iterator[Hop]:
         last = number == len(steps)
         here = [category for category, _ in data[max(number - 1, 0) : number or 1]]
         here = list(dict.fromkeys([*here, *([finding["category"]] if last else [])]))
-        notes, is_open = _said(element, here, index)
+        notes, is_open = _label_texts(element, here, index)
         end = "leak" if last else "source" if number == 0 else ""
         if last:
             yield Hop(name(element), index.words.kind(element), notes, is_open, end)
@@ -320,13 +320,13 @@ def hops_of(finding: Mapping[str, Any], index: Index) -> Iterator[Hop]:
         )
 
 
-def _said(element: Mapping[str, Any], here: Collection[str], index: Index) -> tuple[tuple[str, ...], bool]:
+def _label_texts(element: Mapping[str, Any], categories: Collection[str], index: Index) -> tuple[tuple[str, ...], bool]:
     notes = [
         index.words(f"role.{role}", data=index.data(category))
-        for category in here
+        for category in categories
         for role in index.roles.get((key(element), category), ())
     ]
-    return tuple(notes), any((key(element), category) in index.unreviewed for category in here)
+    return tuple(notes), any((key(element), category) in index.unreviewed for category in categories)
 
 
 def _lines(step: Mapping[str, Any], index: Index) -> Iterator[Line]:
@@ -335,19 +335,19 @@ def _lines(step: Mapping[str, Any], index: Index) -> Iterator[Line]:
         yield Line(line(grant), of if grant["enclave"] or grant["profile"] else "")
 
 
-MOST = 2_000  # paths that one page tells one by one, some 8 MB
+BOUND = 2_000  # paths that one page tells one by one, some 8 MB
 
 
-def share(numbers: Iterable[int], most: int = MOST) -> int:
-    """Return how many of each kind are told at most, so that the page tells ``most``: what a kind lacks, others get.
+def share(numbers: Iterable[int], bound: int = BOUND) -> int:
+    """Return how many of each kind are told at most, so that the page tells ``bound``: what a kind lacks, others get.
 
     >>> share([5, 400, 3000], 1000), share([5, 400], 1000)
     (595, 400)
     """
     counts = sorted(numbers)
     for position, number in enumerate(counts):
-        each = most // (len(counts) - position)
+        each = bound // (len(counts) - position)
         if number > each:
             return max(each, 1)
-        most -= number
+        bound -= number
     return counts[-1] if counts else 0

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.text import fit
 from rosprivacy.report.looked_at import looked_at
-from rosprivacy.report.naming import key, text, whole
+from rosprivacy.report.naming import key, text, without_leg
 from rosprivacy.report.page.entries_of_robots import names_of
 
 if TYPE_CHECKING:
@@ -88,11 +88,11 @@ class Index:
     def ways(self) -> dict[tuple[Key | None, str], Mapping[str, Any]]:
         """(element or nowhere in particular, category) -> whose data get there, and what protects them on the way."""
         rows = self.document.get("ways", ())
-        return {(whole(row["element"]) if "element" in row else None, row["category"]): row for row in rows}
+        return {(without_leg(row["element"]) if "element" in row else None, row["category"]): row for row in rows}
 
     def persons(self, category: str, places: Collection[Mapping[str, Any]]) -> tuple[list[str], bool]:
         """Return whose data of a kind get to one of some places, or are anywhere; and whether some are not named."""
-        keys: list[Key | None] = [whole(element) for element in places] or [None]
+        keys: list[Key | None] = [without_leg(element) for element in places] or [None]
         rows = [self.ways.get((place, category), {"subjects": (), "subjects_missing": True}) for place in keys]
         groups = {fit(group) for row in rows for group in row["subjects"]}
         return sorted(groups), any(row["subjects_missing"] for row in rows)
@@ -117,14 +117,14 @@ class Index:
         """Element, its legs together -> which kinds of data get there as they are, and which pseudonymised."""
         found: dict[Key, dict[str, set[str]]] = {}
         for row in self.document["carries"]:
-            here = found.setdefault(whole(row["element"]), {"categories": set(), "pseudonymised": set()})
+            here = found.setdefault(without_leg(row["element"]), {"categories": set(), "pseudonymised": set()})
             for form, kinds in here.items():
                 kinds.update(row[form])
         return found
 
     def pseudonymised(self, element: Mapping[str, Any], category: str) -> bool:
         """Return whether a kind of data gets to an element pseudonymised only."""
-        here = self.carried.get(whole(element), {"categories": set(), "pseudonymised": set()})
+        here = self.carried.get(without_leg(element), {"categories": set(), "pseudonymised": set()})
         plain = any(category in self.upwards(kind) for kind in here["categories"])
         return category in here["pseudonymised"] and not plain
 
@@ -154,12 +154,12 @@ class Index:
         title = (known and text(known, "title", self.words.language)) or fit(category)
         return self.words("entry.data", data=title) if pseudonymised else title
 
-    def provision(self, category: str, named: str) -> str:
+    def provision(self, category: str, name: str) -> str:
         """Return what a provision that is stated of a kind of data is called; its name where it is not known."""
         known = self.categories.get(category, {})
         stated = (*known.get("law", ()), *known.get("in_context", ()))
-        legal = next((legal for legal in stated if legal["provision"] == named), None)
-        return text(legal, "provision", self.words.language) if legal else fit(named)
+        legal = next((legal for legal in stated if legal["provision"] == name), None)
+        return text(legal, "provision", self.words.language) if legal else fit(name)
 
     def upwards(self, category: str) -> list[str]:
         """Return a kind of data and all broader ones, the nearest first."""

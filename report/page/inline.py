@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from rosprivacy.report.pictures.picture import Picture
 
 
-MOST = 16  # boxes, unless the shortest path itself is longer
+BOUND = 16  # boxes, unless the shortest path itself is longer
 SECONDS = 60.0  # a picture; it takes some hundredths of one
 INSTEAD = "try again when the machine has less to do, or take a report without pictures: --format markdown"
 WIDEST = 680.0  # points; what is wider is drawn downwards
@@ -57,7 +57,7 @@ class Wishes:
         What is done to each picture before it is drawn, such as replacing names.
     """
 
-    most: int = MOST
+    most: int = BOUND
     say: Phrases | None = None
     labels: Mapping[str, str] = field(default_factory=dict)
     change: Callable[[Picture], Picture] = _as_it_is
@@ -69,12 +69,12 @@ class Inline:
 
     Attributes
     ----------
-    whole
+    all_paths
         Whether every path of the finding is in it, not the shorter ones only.
     """
 
     svg: Markup
-    whole: bool
+    all_paths: bool
 
 
 def picture_of(analysis: Analysis, finding: Finding, wishes: Wishes | None = None) -> Inline | None:
@@ -105,7 +105,7 @@ def pictures_of(
         for finding in findings:
             whole = folded(views.of(finding, PER_BOX * wishes.most))
             picture = bounded(whole, wishes.most)
-            yield _drawn(graphviz, picture, wishes, finding, whole=_is_whole(picture, whole))
+            yield _drawn(graphviz, picture, wishes, finding, all_paths=_is_whole(picture, whole))
 
 
 def picture_of_all(analysis: Analysis, findings: Sequence[Finding], wishes: Wishes) -> Inline | None:
@@ -118,15 +118,15 @@ def picture_of_all(analysis: Analysis, findings: Sequence[Finding], wishes: Wish
     """
     picture = folded(overview(analysis, findings, wishes.say))
     with Graphviz() as graphviz:
-        return _drawn(graphviz, picture, wishes, findings[0], whole=True)
+        return _drawn(graphviz, picture, wishes, findings[0], all_paths=True)
 
 
-def _is_whole(picture: Picture, whole: Picture) -> bool:
-    cut = any(is_cut(note, whole.words) for note in whole.notes)
-    return not cut and (len(picture.boxes), len(picture.lines)) == (len(whole.boxes), len(whole.lines))
+def _is_whole(picture: Picture, complete: Picture) -> bool:
+    cut = any(is_cut(note, complete.words) for note in complete.notes)
+    return not cut and (len(picture.boxes), len(picture.lines)) == (len(complete.boxes), len(complete.lines))
 
 
-def _drawn(graphviz: Graphviz, picture: Picture, wishes: Wishes, finding: Finding, *, whole: bool) -> Inline | None:
+def _drawn(graphviz: Graphviz, picture: Picture, wishes: Wishes, finding: Finding, *, all_paths: bool) -> Inline | None:
     for wanted in (picture, bounded(picture, 1)):
         if way_of(wanted).engine != ORDERED:
             continue
@@ -138,7 +138,7 @@ def _drawn(graphviz: Graphviz, picture: Picture, wishes: Wishes, finding: Findin
         except DrawingError:
             continue
         label = wishes.labels.get(finding.id) or alt_text(changed)
-        return Inline(page_svg(data, changed, label), whole and wanted is picture)
+        return Inline(page_svg(data, changed, label), all_paths and wanted is picture)
     return None
 
 

@@ -127,9 +127,9 @@ def _kind(category: Mapping[str, Any], index: Index, entries: tuple[Entry, ...])
         title=index.data(of),
         iri=fit(as_published(category["iri"])),
         definition=text(category, "definition", language),
-        types=tuple(index.words.known(f"type.{kind}", fit(kind)) for kind in category["data_types"]),
+        types=tuple(index.words.of_value(f"type.{kind}", fit(kind)) for kind in category["data_types"]),
         factors=tuple(
-            index.words.known(f"factor.{factor}", fit(factor)) for factor in category.get("identity_factors", ())
+            index.words.of_value(f"factor.{factor}", fit(factor)) for factor in category.get("identity_factors", ())
         ),
         gdpr=text(category, "gdpr", language),
         article9=category["article9"],

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.model import MAY_REVEAL
 from rosprivacy.analysis.text import fit
-from rosprivacy.report.looked_at import KNOWN, countries_of_use, of_every_system
+from rosprivacy.report.looked_at import LANGUAGE_COUNTRIES, countries_of_use, of_every_system
 from rosprivacy.report.naming import text
 
 if TYPE_CHECKING:
@@ -34,17 +34,17 @@ class LookAt:
 
 def of_kind(category: str, index: Index) -> tuple[LookAt, ...]:
     """Return the provisions that a kind of data points at."""
-    return tuple(_told((row for row in index.looked_at if category in row["categories"]), index))
+    return tuple(_provision_text((row for row in index.looked_at if category in row["categories"]), index))
 
 
 def further(index: Index) -> tuple[tuple[str, tuple[LookAt, ...]], ...]:
     """Return what contexts and every system point at: (who calls for it, provisions)."""
     rows, words = index.looked_at, index.words
-    found = [(words("look.system"), tuple(_told(of_every_system(rows), index)))]
+    found = [(words("look.system"), tuple(_provision_text(of_every_system(rows), index)))]
     for context in index.document.get("contexts", ()):
         called = (row for row in rows if context["name"] in row["contexts"])
         heading = words("look.context", context=text(context, "title", words.language))
-        found.append((heading, tuple(_told(called, index))))
+        found.append((heading, tuple(_provision_text(called, index))))
     return tuple((heading, several) for heading, several in found if several)
 
 
@@ -54,14 +54,17 @@ def at_work(index: Index) -> tuple[LookAt, ...]:
     def is_about_work(row: Mapping[str, Any]) -> bool:
         return WORKPLACE in row["contexts"] or (row["categories"] and row["provision"].startswith(ABOUT_WORK))
 
-    return tuple(_told(filter(is_about_work, index.looked_at), index))
+    return tuple(_provision_text(filter(is_about_work, index.looked_at), index))
 
 
 def national(index: Index) -> tuple[str, ...]:
     """Return whose national law is to be looked at, and how much of it is known here; never that of the language."""
     words, countries = index.words, countries_of_use(index.document)
-    known = words.row(KNOWN)
-    told = [words(f"look.national.{'some' if one in KNOWN else 'none'}", country=one, known=known) for one in countries]
+    known = words.row(LANGUAGE_COUNTRIES)
+    told = [
+        words(f"look.national.{'some' if one in LANGUAGE_COUNTRIES else 'none'}", country=one, known=known)
+        for one in countries
+    ]
     return tuple(told) or (words("look.national.unstated", known=known),)
 
 
@@ -92,7 +95,7 @@ def revealed(finding: Mapping[str, Any], index: Index) -> Iterator[str]:
             )
 
 
-def _told(rows: Iterable[Mapping[str, Any]], index: Index) -> Iterator[LookAt]:
+def _provision_text(rows: Iterable[Mapping[str, Any]], index: Index) -> Iterator[LookAt]:
     words, language = index.words, index.words.language
     for row in rows:
         dates = [words("law.as.of", date=words.date(row["as_of"]))]

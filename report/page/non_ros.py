@@ -72,8 +72,8 @@ def _outside(row: Mapping[str, Any], index: Index) -> Outside:
         encrypted="" if "encrypted" not in row else words("yes" if row["encrypted"] else "no"),
         country=country(row, index),
         operator=fit(row.get("operator", "")),
-        recipient=words.known(f"recipient.{row['recipient']}", row["recipient"]) if row.get("recipient") else "",
-        transfer=words.known(f"transfer.{row['transfer']}", row["transfer"]) if row.get("transfer") else "",
+        recipient=words.of_value(f"recipient.{row['recipient']}", row["recipient"]) if row.get("recipient") else "",
+        transfer=words.of_value(f"transfer.{row['transfer']}", row["transfer"]) if row.get("transfer") else "",
         contract=fit(row.get("contract", "")),
         warnings=tuple(warnings),
         place=f"{fit(row['file'])}:{row['line']}" if row.get("file") else "",
@@ -102,7 +102,7 @@ def states_retention(row: Mapping[str, Any], category: str, index: Index) -> boo
     return any(kind in row.get("retention", ()) for kind in (*index.upwards(category), EVERY))
 
 
-def kept(row: Mapping[str, Any], category: str, index: Index) -> str:
+def retention_text(row: Mapping[str, Any], category: str, index: Index) -> str:
     """Return how long a storage keeps one kind of data, as stated of it or of the nearest broader one; with backups."""
     words, stated = index.words, row["retention"]
     nearest = next((kind for kind in index.upwards(category) if kind in stated), EVERY)

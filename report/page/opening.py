@@ -25,9 +25,9 @@ if TYPE_CHECKING:
     from rosprivacy.report.page.finding_entries import Entry
     from rosprivacy.report.page.index import Index
 
-MOST = 12  # rows; the others are told by their number
+BOUND = 12  # rows; the others are told by their number
 PLACES = 3  # groups of places that the first sentence names
-NAMED = 3  # elements in one row
+SHOWN_AT_MOST = 3  # elements in one row
 VALID = "valid"
 TO_DECIDE = ("open", "decided")  # states of entries
 
@@ -109,8 +109,8 @@ def opening(index: Index, flows: Iterable[ToDecide], verdict: str, means: str, d
         _can(rows, index),
         *([words.count(len(rows) - waiting, "opening.decided")] if 0 < waiting < len(rows) else []),
     ]
-    more = words("opening.more", n=len(rows) - MOST) if len(rows) > MOST else ""
-    return Opening(headline, (*said, *_unreviewed(index), *doubts), tuple(rows[:MOST]), len(rows), more)
+    more = words("opening.more", n=len(rows) - BOUND) if len(rows) > BOUND else ""
+    return Opening(headline, (*said, *_unreviewed(index), *doubts), tuple(rows[:BOUND]), len(rows), more)
 
 
 def flows(index: Index, entries: Iterable[Entry]) -> list[ToDecide]:
@@ -135,7 +135,7 @@ def _can(rows: Sequence[ToDecide], index: Index) -> str:
     for leak, kinds in data.items():
         places.setdefault(words.row(kinds), []).append(leak)
     first = islice(places.items(), PLACES)
-    said = [words("opening.can", data=kinds, leak=_some(leaks, index)) for kinds, leaks in first]
+    said = [words("opening.can", data=kinds, leak=_names_shown(leaks, index)) for kinds, leaks in first]
     rest = sum(len(leaks) for leaks in islice(places.values(), PLACES, None))
     said += [words.count(rest, "opening.places")] if rest else []
     sentence = "; ".join(said)
@@ -151,11 +151,11 @@ def _unreviewed(index: Index) -> Iterator[str]:
 def _first_to_review(index: Index) -> Iterator[str]:
     first = [row["element"] for row in index.document["open"] if row["frontier"]]
     if first:
-        yield index.words("opening.review", names=_some(index.names(first), index))
+        yield index.words("opening.review", names=_names_shown(index.names(first), index))
 
 
-def _some(names: Sequence[str], index: Index) -> str:
-    return index.words.row(index.words.first(names, NAMED))
+def _names_shown(names: Sequence[str], index: Index) -> str:
+    return index.words.row(index.words.first(names, SHOWN_AT_MOST))
 
 
 def _row(group: Sequence[Entry], index: Index) -> ToDecide:
@@ -163,15 +163,15 @@ def _row(group: Sequence[Entry], index: Index) -> ToDecide:
     first, entry = findings[0], group[0]
     many = len(entry.robots) > 1
 
-    def called(element: Mapping[str, Any]) -> str:
+    def name_of(element: Mapping[str, Any]) -> str:
         return _name(element, index, many=many)
 
     return ToDecide(
         waits=any(_waits(finding, index) for finding in findings),
         data=entry.data,
-        what=data_made(first, entry.data, index.words, index.data, called),
-        source=called(first["source"]),
-        leak=called(first["leak"]),
+        what=data_made(first, entry.data, index.words, index.data, name_of),
+        source=name_of(first["source"]),
+        leak=name_of(first["leak"]),
         article9=entry.article9,
         kinds=tuple(index.words(f"finding.{finding['kind']}") for finding in findings),
         spread=entry.spread,
@@ -188,10 +188,10 @@ def _name(element: Mapping[str, Any], index: Index, *, many: bool) -> str:
 def _waits(finding: Mapping[str, Any], index: Index) -> bool:
     """Whether nobody has decided about it, or the decision is over, about something else now, or about some robots."""
     said = finding.get("decision")
-    return not said or said["state"] != VALID or bool(said.get("changed") or _only(finding, index))
+    return not said or said["state"] != VALID or bool(said.get("changed") or _robots_decided(finding, index))
 
 
-def _only(finding: Mapping[str, Any], index: Index) -> str:
+def _robots_decided(finding: Mapping[str, Any], index: Index) -> str:
     """Return the robots that a decision names, where the finding stands for more."""
     said, pattern = finding.get("decision"), index.patterns.get(finding["id"], {})
     robots = pattern.get("robots", ())
@@ -202,7 +202,7 @@ def _only(finding: Mapping[str, Any], index: Index) -> str:
     target: Mapping[str, Any] = next((d["target"] for d in decisions if (d["file"], d["line"]) == place), {})
     listed = target.get("from_robots") or target.get("robots", ())
     if listed and (pattern["across"] or not set(robots) <= set(listed)):
-        return _some([fit(one) for one in listed], index)
+        return _names_shown([fit(one) for one in listed], index)
     return fit(target.get("robot", ""))
 
 
@@ -253,12 +253,12 @@ def _state(finding: Mapping[str, Any], index: Index) -> str:
     words, said = index.words, finding.get("decision")
     if not said:
         return words("state.open")
-    decided = words.known(f"decision.{said['choice']}", printable(said["choice"]))
-    if only := _only(finding, index):
+    decided = words.of_value(f"decision.{said['choice']}", printable(said["choice"]))
+    if only := _robots_decided(finding, index):
         decided = words("opening.only", decided=decided, robot=only)
     if said.get("changed"):
         decided = words("opening.changed", decided=decided)
-    state = words.known(f"decision.state.{said['state']}", printable(said["state"]))
+    state = words.of_value(f"decision.state.{said['state']}", printable(said["state"]))
     return decided if said["state"] == VALID else f"{decided}; {state}"
 
 
@@ -266,6 +266,6 @@ def _recipient(leak: Mapping[str, Any], index: Index) -> str:
     """Who stands behind the place that data get to, as far as it is stated."""
     words, row = index.words, index.outside.get(key(leak), {})
     said = [printable(row["operator"])] if row.get("operator") else []
-    said += [words.known(f"recipient.{row['recipient']}", row["recipient"])] if row.get("recipient") else []
+    said += [words.of_value(f"recipient.{row['recipient']}", row["recipient"])] if row.get("recipient") else []
     said += [country(row, index)] if row.get("country") else []
     return words.row(said) or words("not.stated")

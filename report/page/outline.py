@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.model import SPECIAL
 from rosprivacy.analysis.text import fit
 from rosprivacy.report.catalogs.words import Words
-from rosprivacy.report.compare.changes import ASKED, Changes, changes
+from rosprivacy.report.compare.changes import QUESTION_KEYS, Changes, changes
 from rosprivacy.report.document.ledger import by_globs
 from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.finding_order import REVEALS, strength
@@ -51,7 +51,7 @@ SECTIONS = (
     DECIDE, "closing", "hangs", "changes", "fleet", "findings", "beyond", "doubts", "questions", "tables", "rights",
     "outside", "sanitizers", "types", "risks", "criteria", "sign", "kinds", "assumptions", "inventory", "method",
 )  # fmt: skip
-NAMED = 3  # robots or policies in the title
+SHOWN_AT_MOST = 3  # robots or policies in the title
 PARAGRAPHS = 10  # of the method note
 EXPLAINED = ("profile", "enclave", "label", "wildcard", "request")  # before they first come, beside the view
 
@@ -169,7 +169,7 @@ def outline(
     language: str,
     *,
     title: str = "",
-    made: str = "",
+    date: str = "",
     earlier: Earlier | None = None,
     redacted: bool = False,
     proposals: Mapping[str, Any] | str = "graph",
@@ -183,7 +183,7 @@ def outline(
         ``en``, ``de`` or ``fr``.
     title
         Of the system; by default the names of its policy files.
-    made
+    date
         The date that the report tells, ``YYYY-MM-DD``; empty for none.
     redacted
         Whether names were replaced in the documents; the report then says so.
@@ -217,7 +217,7 @@ def outline(
     return Outline(
         words=words,
         title=fit(title) if title else _title(index),
-        made=words.date(made),
+        made=words.date(date),
         version=document["assumptions"]["rosprivacy"],
         law=_law(document["assumptions"], words),
         redacted=redacted,
@@ -273,7 +273,7 @@ def outline(
         if document["denied_flows"]
         else "",
         items=elements.items(index),
-        rest=elements.rest(index),
+        rest=elements.unreached_names(index),
         enclaves=elements.enclaves(index),
     )
 
@@ -287,7 +287,7 @@ def _title(index: Index) -> str:
 
 def title_of(names: Sequence[str], words: Words) -> str:
     """Return what a report is called by the names of its robots or policies; empty without any."""
-    return words.row(words.first([fit(name) for name in names], NAMED))
+    return words.row(words.first([fit(name) for name in names], SHOWN_AT_MOST))
 
 
 def _law(assumptions: Mapping[str, Any], words: Words) -> str:
@@ -304,7 +304,7 @@ def _told_of(verdict: str, index: Index) -> str:
     return words(f"verdict.{verdict}.means", open=words.count(count_rows(index.document["open"]).elements, "element"))
 
 
-def _means(index: Index, sections: list[str], left: int) -> Iterator[str]:
+def _means(index: Index, sections: list[str], remaining: int) -> Iterator[str]:
     """What else is to be known of the result: what to ask of each path, and which are not to be decided now."""
     words = index.words
     if index.to_assess:
@@ -315,8 +315,8 @@ def _means(index: Index, sections: list[str], left: int) -> Iterator[str]:
     accepted = sum(bool(finding.get("accepted")) for finding in index.findings)
     if accepted:
         yield words("verdict.accepted", ways=words.count(accepted, "way"), section=sections.index("findings") + 1)
-    if left:
-        yield words.count(left, "entry.left")
+    if remaining:
+        yield words.count(remaining, "entry.left")
     yield words("not.legal")
 
 
@@ -392,7 +392,7 @@ def _scope(differ: Changes, words: Words) -> Iterator[str]:
         "all": words("entry.all"),
     }
     for what, before, now in differ.scope:
-        assert what in ASKED
+        assert what in QUESTION_KEYS
         yield words(f"changes.scope.{what}", before=plain.get(before, before), now=plain.get(now, now))
 
 
@@ -411,10 +411,10 @@ def closed(index: Index) -> tuple[Closed, ...]:
     """Return the rows that closed a path; older documents have none."""
     rows = [row for row in index.document.get("taken_away", ()) if row["leak"] or row["open"] or row["perhaps"]]
     rows.sort(key=lambda row: row["leak"] is None)
-    return tuple(_closed(group, index) for group in grouped(rows, _same))
+    return tuple(_closed(group, index) for group in grouped(rows, _normalised))
 
 
-def _same(row: Mapping[str, Any]) -> Any:
+def _normalised(row: Mapping[str, Any]) -> Any:
     ends = [(row[end] or {}).get("name", "") for end in ("element", "to", "leak", "open")]
     places = tuple((place["file"], place["line"]) for place in row["places"])
     return row["by"], tuple(ends), tuple(row["categories"]), places, row["note"]

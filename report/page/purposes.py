@@ -35,14 +35,16 @@ def processed(index: Index) -> tuple[Row, ...]:
     rows = []
     for category in index.categories:
         here = [row for (_, of), row in index.processed_for.items() if of == category]
-        for group in grouped(here, lambda row: (row["element"]["kind"], row["element"]["name"], str(_said(row)))):
+        for group in grouped(
+            here, lambda row: (row["element"]["kind"], row["element"]["name"], str(_stated_purposes(row)))
+        ):
             names = index.words.row(index.names([row["element"] for row in group]))
             texts = purposes(group, index), bases(group, (), index), controllers(group, index)
             rows.append(Row(index.data(category), names, *texts))
     return tuple(rows)
 
 
-def _said(row: Mapping[str, Any]) -> list[Any]:
+def _stated_purposes(row: Mapping[str, Any]) -> list[Any]:
     return [row[key] for key in ("purposes", "legal_bases", "controllers", "officers", "missing")]
 
 
@@ -57,24 +59,24 @@ def signed(index: Index) -> dict[str, str]:
     return {field: said for field, said in found.items() if rows and said}
 
 
-def _by_kind(index: Index, said: Callable[[Sequence[Mapping[str, Any]], Index], str]) -> str:
+def _by_kind(index: Index, statement: Callable[[Sequence[Mapping[str, Any]], Index], str]) -> str:
     rows = {
         category: [row for (_, of), row in index.processed_for.items() if of == category]
         for category in index.categories
     }
     return "; ".join(
-        index.words.pair(index.data(category), said(some, index)) for category, some in rows.items() if some
+        index.words.pair(index.data(category), statement(some, index)) for category, some in rows.items() if some
     )
 
 
 def purposes(rows: Sequence[Mapping[str, Any]], index: Index) -> str:
     """Return purposes; also that some are to be completed."""
-    return _told(rows, "purposes", PURPOSE, fit, index)
+    return _with_pending(rows, "purposes", PURPOSE, fit, index)
 
 
-def bases(rows: Sequence[Mapping[str, Any]], more: Iterable[str], index: Index) -> str:
+def bases(rows: Sequence[Mapping[str, Any]], decided: Iterable[str], index: Index) -> str:
     """Return legal bases, those that decisions record too; also that some are to be completed."""
-    return _told(rows, "legal_bases", BASIS, index.words.basis, index, more)
+    return _with_pending(rows, "legal_bases", BASIS, index.words.basis, index, decided)
 
 
 def _bases(rows: Sequence[Mapping[str, Any]], index: Index) -> str:
@@ -88,10 +90,10 @@ def controllers(rows: Iterable[Mapping[str, Any]], index: Index) -> str:
     return "; ".join([*who, *(index.words("record.dpo", name=one) for one in officers)])
 
 
-def _told(
-    rows: Sequence[Mapping[str, Any]], key: str, what: str, told: Callable[[str], str], index: Index,
-    more: Iterable[str] = (),
+def _with_pending(
+    rows: Sequence[Mapping[str, Any]], key: str, what: str, text_of: Callable[[str], str], index: Index,
+    decided: Iterable[str] = (),
 ) -> str:  # fmt: skip
-    stated = dict.fromkeys([*(one for row in rows for one in row[key]), *more])
+    stated = dict.fromkeys([*(one for row in rows for one in row[key]), *decided])
     lacking = not stated or any(what in row["missing"] for row in rows)
-    return "; ".join([*map(told, stated), *([index.words("record.open")] if lacking else [])])
+    return "; ".join([*map(text_of, stated), *([index.words("record.open")] if lacking else [])])

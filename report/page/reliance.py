@@ -53,20 +53,20 @@ def hanging(index: Index) -> tuple[Hanging, ...] | None:
 
 def _hanging(row: Mapping[str, Any], index: Index) -> Hanging:
     words = index.words
-    ends = (_some(index.names(row[end]), index) for end in ("elements", "to") if row[end])
+    ends = (_names_shown(index.names(row[end]), index) for end in ("elements", "to") if row[end])
     return Hanging(
         where=" → ".join(words.row(names) for names in ends),
         line=f"{fit(row['file'])}:{row['line']}",
-        said=_said(row, index),
+        said=_statement(row, index),
         by=fit(row["author"]),
         why=fit(row["why"]),
-        findings=_some(list(_findings(row, index)), index),
-        questions=_some(list(_questions(row, index)), index),
+        findings=_names_shown(list(_findings(row, index)), index),
+        questions=_names_shown(list(_questions(row, index)), index),
         shipped=row["shipped"],
     )
 
 
-def _said(row: Mapping[str, Any], index: Index) -> str:
+def _statement(row: Mapping[str, Any], index: Index) -> str:
     words = index.words
     role = "absent" if row["method"] == "absent" else row["role"]
     said = words(f"reliance.{role}")
@@ -94,6 +94,6 @@ def _questions(row: Mapping[str, Any], index: Index) -> Iterator[str]:
         yield f"{index.words.row(index.names([one['element']]))} ({index.all_data(one['categories'])})"
 
 
-def _some(texts: Sequence[str], index: Index) -> tuple[str, ...]:
+def _names_shown(texts: Sequence[str], index: Index) -> tuple[str, ...]:
     distinct = tuple(dict.fromkeys(texts))  # the legs of a service have one name
     return index.words.first(distinct, FEW)

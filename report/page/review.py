@@ -95,7 +95,7 @@ def _names(rows: Iterable[Mapping[str, Any]], index: Index) -> str:
 def _questions(rows: Sequence[Mapping[str, Any]], index: Index) -> list[Question]:
     words, brings = index.words, sources_of(index.document)
 
-    def same(row: Mapping[str, Any]) -> Any:
+    def merge_key(row: Mapping[str, Any]) -> Any:
         e, before = row["element"], row.get("through") or {"kind": "", "name": ""}
         facts = (tuple(row["categories"]), row["distance"], tuple(row.get("missing", ())))
         behind = (before["kind"], before["name"], row.get("closes"), row.get("leaks"))
@@ -116,5 +116,5 @@ def _questions(rows: Sequence[Mapping[str, Any]], index: Index) -> list[Question
             ),
             brings=index.all_data(brings.get(key(group[0]["element"]), ())),
         )
-        for group in grouped(rows, same)
+        for group in grouped(rows, merge_key)
     ]

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.text import fit
 from rosprivacy.report.naming import key
-from rosprivacy.report.page.non_ros import STORAGE, country, kept
+from rosprivacy.report.page.non_ros import STORAGE, country, retention_text
 from rosprivacy.report.page.tables import OUTSIDE
 
 if TYPE_CHECKING:
@@ -85,7 +85,7 @@ def _kinds(group: str | None, members: set[Key], index: Index) -> dict[Key, dict
 
 def _place(element: Mapping[str, Any], kinds: Mapping[str, bool], index: Index) -> Place:
     words, row = index.words, index.outside.get(key(element), {})
-    durations = {category: kept(row, category, index) if row.get("retention") else "" for category in kinds}
+    durations = {category: retention_text(row, category, index) if row.get("retention") else "" for category in kinds}
     stated = {duration for duration in durations.values() if duration}
     if not stated:
         said = words("rights.unknown")

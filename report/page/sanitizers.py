@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.legal import PROHIBITED
 from rosprivacy.analysis.model import SPECIAL
-from rosprivacy.report.naming import key, whole
+from rosprivacy.report.naming import key, without_leg
 from rosprivacy.report.page.entries_of_robots import grouped, without_robots
 from rosprivacy.report.page.index import state
 
@@ -75,11 +75,11 @@ def cleanings(index: Index, entries: Iterable[Entry]) -> tuple[Cleaning, ...]:
     """Return what sanitizers do."""
     past = _Past(index, entries)
 
-    def same(row: Mapping[str, Any]) -> Any:
+    def merge_key(row: Mapping[str, Any]) -> Any:
         lists = (tuple(row["leaves"]), tuple(row["leaves_pseudonymised"]), without_robots(row["beside"]))
         return row["element"]["kind"], row["element"]["name"], row["method"], row["stated"], lists
 
-    return tuple(_cleaning(group, past, index) for group in grouped(index.document["sanitizers"], same))
+    return tuple(_cleaning(group, past, index) for group in grouped(index.document["sanitizers"], merge_key))
 
 
 class _Past:
@@ -93,7 +93,7 @@ class _Past:
                 if state(finding) == "open" and not finding["pseudonymised"]:
                     place = entry.anchor, entry.number
                     self._paths[entry.category][place] += 1
-                    for element in {whole(element) for element in finding["witness"]}:
+                    for element in {without_leg(element) for element in finding["witness"]}:
                         self._through[entry.category, element].append((finding["id"], place))
 
     def of(self, elements: set[Key], categories: Iterable[str]) -> tuple[list[tuple[str, int]], int]:
@@ -118,7 +118,7 @@ def _cleaning(group: list[Mapping[str, Any]], past: _Past, index: Index) -> Clea
     leaves += [index.data(category, pseudonymised=True) for category in row["leaves_pseudonymised"]]
     recognising = {key(r["element"]) for r in index.document["sanitizers"] if r.get("recognises")}
     too = _cleaning_too(group)
-    first, number = past.of({whole(r["element"]) for r in group}, reached)
+    first, number = past.of({without_leg(r["element"]) for r in group}, reached)
     return Cleaning(
         name=words.row(index.names([r["element"] for r in group])),
         kinds=index.all_data(reached),
@@ -161,7 +161,7 @@ def makings(index: Index) -> tuple[Making, ...]:
     )
 
 
-def _recognises(made: Mapping[str, Any]) -> bool:
+def _recognises(entry: Mapping[str, Any]) -> bool:
     """Whether persons are recognised or judged by such data, as ``recognises`` has it of a category."""
-    special = any(legal["verdict"] in SPECIAL for legal in made.get("law", ()))
-    return special or any(at.startswith(PROHIBITED) for at in made.get("look_at", ()))
+    special = any(legal["verdict"] in SPECIAL for legal in entry.get("law", ()))
+    return special or any(at.startswith(PROHIBITED) for at in entry.get("look_at", ()))

@@ -45,17 +45,17 @@ def typed(index: Index) -> tuple[Typed, ...]:
     limits = index.document["assumptions"].get("type_limits_reached", ())
     closed = {key(row["element"]): row["categories"] for row in limits}
 
-    def there(row: Mapping[str, Any]) -> tuple[str, str]:
+    def channel_of(row: Mapping[str, Any]) -> tuple[str, str]:
         at = key(row["element"])
         return _data(carries.get(at, {}), index), index.all_data(closed.get(at, ()))
 
-    def same(row: Mapping[str, Any]) -> Any:
+    def merge_key(row: Mapping[str, Any]) -> Any:
         types = tuple((one["type"], one["file"], one["line"]) for one in row["types"])
-        return key(row["element"])[1:], there(row), types
+        return key(row["element"])[1:], channel_of(row), types
 
     with_data = {*carries, *closed}
     rows = [row for row in index.document.get("types", ()) if key(row["element"]) in with_data]
-    return tuple(_typed(some, there(some[0]), index) for some in grouped(rows, same))
+    return tuple(_typed(some, channel_of(some[0]), index) for some in grouped(rows, merge_key))
 
 
 def _data(row: Mapping[str, Any], index: Index) -> str:
@@ -63,19 +63,19 @@ def _data(row: Mapping[str, Any], index: Index) -> str:
     return index.words.row([*map(index.data, row.get("categories", ())), *hidden])
 
 
-def _typed(some: list[Mapping[str, Any]], there: tuple[str, str], index: Index) -> Typed:
+def _typed(entries: list[Mapping[str, Any]], channel: tuple[str, str], index: Index) -> Typed:
     return Typed(
-        index.words.row(index.names([row["element"] for row in some])),
-        index.words.kind(some[0]["element"]),
-        tuple((fit(one["type"]), _origin(one, index)) for one in some[0]["types"]),
-        *there,
+        index.words.row(index.names([row["element"] for row in entries])),
+        index.words.kind(entries[0]["element"]),
+        tuple((fit(one["type"]), _origin(one, index)) for one in entries[0]["types"]),
+        *channel,
     )
 
 
-def _origin(one: Mapping[str, Any], index: Index) -> str:
+def _origin(type_entry: Mapping[str, Any], index: Index) -> str:
     observed = {entry["file"] for entry in index.document["assumptions"].get("types", ())}
-    how = "stated" if one["stated"] else "observed" if one["file"] in observed else "recorded"
-    return index.words(f"channel_type.{how}", place=f"{fit(one['file'])}:{one['line']}")
+    how = "stated" if type_entry["stated"] else "observed" if type_entry["file"] in observed else "recorded"
+    return index.words(f"channel_type.{how}", place=f"{fit(type_entry['file'])}:{type_entry['line']}")
 
 
 def only_by_types(index: Index) -> tuple[tuple[str, str], ...]:

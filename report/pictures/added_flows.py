@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from rosprivacy.report.pictures.phrases import Phrases
     from rosprivacy.report.pictures.picture import Box, Key, Line, Picture
 
-MOST = 16  # boxes of the paths of one finding, unless the shortest is longer
+BOUND = 16  # boxes of the paths of one finding, unless the shortest is longer
 
 
 def marking(answer: Answer) -> Callable[[Picture], Picture]:
@@ -55,7 +55,7 @@ def with_added(answer: Answer, say: Phrases, draw: Callable[[Collection[Key]], P
     if not enforced or not enforced.added:
         return draw(())
     marked, views = marking(answer), FindingViews(enforced.answer.analysis, say)
-    more = [marked(views.of(one.finding, PER_BOX * MOST)) for one in enforced.added]
+    more = [marked(views.of(one.finding, PER_BOX * BOUND)) for one in enforced.added]
     added: dict[Key, Box] = {box.key: box for each in more for box in each.boxes}
     picture = draw(added)
     boxes = {**(added if picture.view == PRIVACY else {}), **{box.key: box for box in picture.boxes}}
@@ -67,13 +67,13 @@ def with_added(answer: Answer, say: Phrases, draw: Callable[[Collection[Key]], P
     return replace(picture, boxes=sorted_boxes(boxes.values()), lines=lines, core=core).noted(note)
 
 
-def _new(lines: Iterable[Line], there: Collection[tuple[Key, Key]], view: str) -> Iterable[Line]:
+def _new(lines: Iterable[Line], present: Collection[tuple[Key, Key]], view: str) -> Iterable[Line]:
     for line in lines:
         if line.look == BEYOND:
             yield line
-        elif view == PRIVACY and (line.source, line.target) not in there:
+        elif view == PRIVACY and (line.source, line.target) not in present:
             yield replace(line, look=ONWARD)
 
 
-def _witness(one: Added) -> Iterable[Key]:
-    return (element.identity for element in one.finding.witness)
+def _witness(added: Added) -> Iterable[Key]:
+    return (element.identity for element in added.finding.witness)

@@ -87,7 +87,9 @@ def _drawn(picture: Picture) -> Iterator[str]:
     yield from (f"  {_box(picture, box)}" for box in picture.boxes if not box.group)
     if picture.view == PRIVACY:
         yield from _sides(picture)
-    yield from (f"  {_line(picture, line, number, both=both)}" for number, (line, both) in enumerate(paired(picture)))
+    yield from (
+        f"  {_line(picture, line, number, two_way=both)}" for number, (line, both) in enumerate(paired(picture))
+    )
 
 
 def _sides(picture: Picture) -> Iterator[str]:
@@ -177,12 +179,12 @@ def _box(picture: Picture, box: Box) -> str:
     return f"{picture.keys[box.key]} [{', '.join(attributes)}];"
 
 
-def _line(picture: Picture, line: Line, number: int, *, both: bool) -> str:
+def _line(picture: Picture, line: Line, number: int, *, two_way: bool) -> str:
     look = LINE_LOOKS[line.look]
     attributes = [
         *line_style(look, dashed=line.pseudonymised),
-        *(["dir=both"] if both else []),
-        *([f"arrowtail={look.head}"] if both and look.head != "normal" else []),
+        *(["dir=both"] if two_way else []),
+        *([f"arrowtail={look.head}"] if two_way and look.head != "normal" else []),
         *([f"weight={STRAIGHT}"] if line.look == SHORTEST else []),
         f"id=e{number}",
         f"tooltip={quoted(line_hover(picture, line))}",
@@ -192,7 +194,7 @@ def _line(picture: Picture, line: Line, number: int, *, both: bool) -> str:
         return f"{source} -> {target} [{style}];"
     # In parts that Graphviz packs, labels of lines are lost; so the words are a box without an outline.
     words = f"w{number} [label={quoted(shortened(line.words, LONGEST_WORD))}, {ON_A_LINE}, id=w{number}];"
-    before = style.replace("dir=both", "dir=back") if both else f"{style}, dir=none"
+    before = style.replace("dir=both", "dir=back") if two_way else f"{style}, dir=none"
     return f"{words} {source} -> w{number} [{before}]; w{number} -> {target} [{style.replace(', dir=both', '')}];"
 
 
@@ -273,8 +275,8 @@ def _sample(entry: Entry, number: int) -> dict[str, str]:
     }
 
 
-def _rows(samples: Sequence[tuple[str, str]], most: int) -> Iterable[Sequence[tuple[str, str]]]:
-    return (samples[at : at + most] for at in range(0, len(samples), most))
+def _rows(samples: Sequence[tuple[str, str]], limit: int) -> Iterable[Sequence[tuple[str, str]]]:
+    return (samples[at : at + limit] for at in range(0, len(samples), limit))
 
 
 def _joints(row: Sequence[tuple[str, str]]) -> Iterable[tuple[str, str]]:

@@ -53,7 +53,7 @@ def represented(picture: Picture, likeness: Likeness) -> Picture:
     for box in picture.boxes:
         now = replace(box, key=moved(box.key))
         old = boxes.get(now.key)
-        boxes[now.key] = _both(old, now) if old else now
+        boxes[now.key] = _merged(old, now) if old else now
     lines: dict[tuple[Key, Key, str], Line] = {}
     for line in picture.lines:
         source, target = moved(line.source), moved(line.target)
@@ -74,25 +74,25 @@ def represented(picture: Picture, likeness: Likeness) -> Picture:
     return made.noted(note) if standing else made
 
 
-def _both(one: Box, other: Box) -> Box:
-    look = one.look if one.look == other.look else min(one.look, other.look, key=ROLES.index)
-    words = tuple(dict.fromkeys((*one.words, *other.words)))
-    return replace(one, look=look, words=words, open=one.open or other.open)
+def _merged(first: Box, second: Box) -> Box:
+    look = first.look if first.look == second.look else min(first.look, second.look, key=ROLES.index)
+    words = tuple(dict.fromkeys((*first.words, *second.words)))
+    return replace(first, look=look, words=words, open=first.open or second.open)
 
 
-def _joined(one: Line, other: Line) -> Line:
+def _joined(first: Line, second: Line) -> Line:
     """What leads to a leak hides what leads to none."""
-    lengths = [line.length for line in (one, other) if line.length]
+    lengths = [line.length for line in (first, second) if line.length]
     return replace(
-        one,
-        look=max(one.look, other.look, key=WAYS.index) if one.look != other.look else one.look,
-        roles=_all(one.roles, other.roles),
-        carries=_all(one.carries, other.carries),
-        pseudonymised=one.pseudonymised and other.pseudonymised,
-        places=tuple(sorted({*one.places, *other.places}, key=lambda place: (place.file, place.line))),
+        first,
+        look=max(first.look, second.look, key=WAYS.index) if first.look != second.look else first.look,
+        roles=_all(first.roles, second.roles),
+        carries=_all(first.carries, second.carries),
+        pseudonymised=first.pseudonymised and second.pseudonymised,
+        places=tuple(sorted({*first.places, *second.places}, key=lambda place: (place.file, place.line))),
         length=min(lengths, default=0),
     )
 
 
-def _all(some: Iterable[str], more: Iterable[str]) -> tuple[str, ...]:
-    return tuple(sorted({*some, *more}))
+def _all(texts: Iterable[str], additional: Iterable[str]) -> tuple[str, ...]:
+    return tuple(sorted({*texts, *additional}))

@@ -60,7 +60,7 @@ class Lines:
         told = tuple(sorted(places, key=_place))
         self.lines[source, target, look] = Line(source, target, look, roles, kinds, hidden, told, length)
 
-    def made(self) -> tuple[Line, ...]:
+    def drawn_lines(self) -> tuple[Line, ...]:
         """The lines; data that goes to a leak hides data that goes the same line to none, and this what ends there."""
         ranks = {CLEANED: 0, DATA: 1, WAY: 2, SHORTEST: 3}
         best: dict[tuple[Key, Key, str], Line] = {}
@@ -74,13 +74,13 @@ class Lines:
         return sorted_lines(best.values())
 
 
-def _with(line: Line, other: Line) -> Line:
+def _with(line: Line, addition: Line) -> Line:
     """A line with what else goes along it."""
     return replace(
         line,
-        roles=tuple(sorted({*line.roles, *other.roles})),
-        carries=tuple(sorted({*line.carries, *other.carries})),
-        places=tuple(sorted({*line.places, *other.places}, key=_place)),
+        roles=tuple(sorted({*line.roles, *addition.roles})),
+        carries=tuple(sorted({*line.carries, *addition.carries})),
+        places=tuple(sorted({*line.places, *addition.places}, key=_place)),
     )
 
 

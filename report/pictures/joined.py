@@ -79,7 +79,7 @@ class Joined:
     def after(self, key: Key, bits: int) -> list[Key]:
         """Return the elements that some bits go to from one, sorted."""
         ends = {there for vertex in self._vertices.get(key, ()) for there, along in self._from(vertex) if along & bits}
-        return self._others(key, ends)
+        return self._remaining(key, ends)
 
     def before(self, key: Key, bits: int) -> list[Key]:
         """Return the elements that some bits come from to one, sorted; O(flows)."""
@@ -91,11 +91,11 @@ class Joined:
                 found.add(source)
         for source, meetings in self._net.meetings.items():
             sent = self._spread.sent.get(source, 0) & bits
-            if any(sent & self._spread.taken(there) for one in meetings for there in own.intersection(one.read)):
+            if any(sent & self._spread.absorbed(there) for one in meetings for there in own.intersection(one.read)):
                 found.add(source)
-        return self._others(key, found)
+        return self._remaining(key, found)
 
-    def beside(self, key: Key) -> list[Key]:
+    def neighbours(self, key: Key) -> list[Key]:
         """Return the elements that policies join one to, whether data goes there or not, sorted; O(flows)."""
         elements = self.analysis.graph.elements
         ends = {end for flow in self.granted(key) for end in (flow.source, flow.target)}
@@ -128,9 +128,9 @@ class Joined:
         for index, target, passing in net.flows.get(vertex, ()):
             yield target, (sent | spread.flow_emits.get(index, 0)) & passing
         for meeting in net.meetings.get(vertex, ()):
-            yield from ((there, sent & spread.taken(there)) for there in meeting.read)
+            yield from ((there, sent & spread.absorbed(there)) for there in meeting.read)
 
-    def _others(self, key: Key, vertices: Iterable[int]) -> list[Key]:
+    def _remaining(self, key: Key, vertices: Iterable[int]) -> list[Key]:
         elements = self.analysis.graph.elements
         return sorted({elements[vertex].identity for vertex in vertices} - {key})
 
@@ -178,31 +178,35 @@ class Choice:
         return steps
 
 
-def choose(joined: Joined, focus: Key | None, wanted: Sequence[str], most: int, way: Witness | None = None) -> Choice:
+def choose(
+    joined: Joined, focus: Key | None, categories: Sequence[str], limit: int, way: Witness | None = None
+) -> Choice:
     """Return what matters, seen from an element.
 
     Parameters
     ----------
-    wanted
+    categories
         Names of the emitted categories that are shown.
-    most
+    limit
         Boxes.
     way
         A path to the element that is in hand itself; None for the shortest ones.
     """
     asked = [kind for one in joined.analysis.open if one.element.identity == focus for kind in one.categories]
-    kinds = [kind for kind in wanted if kind in asked] or wanted
+    kinds = [kind for kind in categories if kind in asked] or categories
     paths = [way] if way else joined.paths(focus, kinds)[: 1 + OTHER_PATHS] if focus else []
-    every = [finding for finding in joined.analysis.findings if not finding.dismissed and finding.category in wanted]
+    every = [
+        finding for finding in joined.analysis.findings if not finding.dismissed and finding.category in categories
+    ]
     every.sort(key=lambda finding: (not finding.stands, focus not in core([finding]), len(finding.steps)))
     taken = _on(focus, paths)
     findings: list[Finding] = []
     for finding in every:
         more = taken | core([finding])
-        if not findings or len(more) <= min(OF_PATHS, most):
+        if not findings or len(more) <= min(OF_PATHS, limit):
             findings.append(finding)
             taken = more
-    near = _near(joined, focus, wanted) if focus else () if findings else _first(joined, wanted, most)
+    near = _near(joined, focus, categories) if focus else () if findings else _first(joined, categories, limit)
     others = [key for key in dict.fromkeys(near) if key not in taken]
     return Choice(focus, paths, findings, len(every) - len(findings), others[:LOOKED_AT])
 
@@ -211,25 +215,25 @@ def _on(focus: Key | None, paths: Iterable[Witness]) -> set[Key]:
     return {element.identity for path in paths for element in path.elements} | ({focus} if focus else set())
 
 
-def _near(joined: Joined, focus: Key, wanted: Iterable[str]) -> Iterator[Key]:
+def _near(joined: Joined, focus: Key, categories: Iterable[str]) -> Iterator[Key]:
     """What an element sends to, what sends to it, and who has that then; where no data gets, all it is joined to."""
-    bits = sum(map(joined.analysis.spread.both, wanted))
+    bits = sum(map(joined.analysis.spread.forms_of, categories))
     after, before = joined.after(focus, bits), joined.before(focus, bits)
     if not after and not before:
-        yield from joined.beside(focus)
+        yield from joined.neighbours(focus)
     yield from after
     yield from before
     behind = (there for key in after for there in joined.after(key, bits))
     yield from islice(behind, max(0, BEHIND - len(after) - len(before)))
 
 
-def _first(joined: Joined, wanted: Iterable[str], most: int) -> Collection[Key]:
+def _first(joined: Joined, categories: Iterable[str], limit: int) -> Collection[Key]:
     """The sources, and where their data goes first."""
     spread, elements = joined.analysis.spread, joined.analysis.graph.elements
-    bits = sum(map(spread.both, wanted))
+    bits = sum(map(spread.forms_of, categories))
     found = dict.fromkeys(elements[v].identity for v in sorted(spread.facts) if spread.begins(v) & bits)
     waiting = deque(found)
-    while waiting and len(found) < most:
+    while waiting and len(found) < limit:
         new = [key for key in joined.after(waiting.popleft(), bits) if key not in found]
         found.update(dict.fromkeys(new))
         waiting.extend(new)

@@ -29,7 +29,7 @@ SECONDS = 45.0
 DIRECTIONS = ("LR", "TB")
 ORDERED = "dot"  # the engine that knows a direction
 PAGE = (1100, 1400)  # points: what can be read without moving it to the side
-LESS = "--finding, --around, --most and --fold draw less"
+REMEDY = "--finding, --around, --most and --fold draw less"
 INSTEAD = "draw less (--around, --finding, --fold, --most), give it more with --seconds, or take --format dot"
 DOTS_PER_INCH = 144
 LARGEST_INCHES = 50  # of a PNG: 7,200 dots a side, 200 MB while it is drawn
@@ -93,7 +93,7 @@ def drawn(
     direction: str = "LR",
     seconds: float = SECONDS,
     ways: tuple[Way, ...] = WAYS,
-    less: str = LESS,
+    remedy: str = REMEDY,
     instead: str = INSTEAD,
 ) -> Drawn:
     """Draw a picture.
@@ -116,7 +116,7 @@ def drawn(
     """
     end = time.monotonic() + seconds
     way = way_of(picture, ways)
-    note = (f"Laid out by Graphviz's {way.engine}, since it is large: {way.words}; {less}",) if way.words else ()
+    note = (f"Laid out by Graphviz's {way.engine}, since it is large: {way.words}; {remedy}",) if way.words else ()
     noted = picture.noted(*note)
     with Graphviz() as graphviz:
 

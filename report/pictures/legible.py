@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from rosprivacy.report.pictures.picture import Picture
 
 
-def legible(picture: Picture, most: int = LEGIBLE) -> tuple[Picture, tuple[str, ...]]:
+def legible(picture: Picture, limit: int = LEGIBLE) -> tuple[Picture, tuple[str, ...]]:
     """Return a picture of no more boxes than people read, where that can be.
 
     First channels with the same ends are one box. Then, of the privacy view, the longer paths to leaks are left out,
@@ -27,14 +27,14 @@ def legible(picture: Picture, most: int = LEGIBLE) -> tuple[Picture, tuple[str, 
     -------
     The picture, and the notes that it has beside those of the whole one.
     """
-    if len(picture.boxes) <= most:
+    if len(picture.boxes) <= limit:
         return picture, ()
     small = folded(picture)
-    if len(small.boxes) > most:
+    if len(small.boxes) > limit:
         if picture.view != PRIVACY:
             small = without_loose_ends(small)
         elif picture.core:
-            small = bounded(small, most)
+            small = bounded(small, limit)
     if (small.boxes, small.lines) == (picture.boxes, picture.lines):
         return picture, ()
     drawn = {(box.robot, box.kind, name) for box in small.boxes for name in box.names}

@@ -228,7 +228,7 @@ def without_places(scene: Scene, why: str) -> str:
     height = 2 * SIZE * (len(lines) + 1)
     root = _root(scene, str(WIDTH), str(height), f"0 0 {WIDTH} {height}")
     for number, line in enumerate(lines, 1):
-        text = _said(root, TEXT, line)
+        text = _label_texts(root, TEXT, line)
         text.set("x", str(WIDTH // 2))
         text.set("y", str(2 * SIZE * number))
     return etree.tostring(root, encoding="unicode")
@@ -254,8 +254,8 @@ def _root(scene: Scene, width: str, height: str, view: str) -> etree._Element:
     }
     for name, value in said.items():
         root.set(name, value)
-    _said(root, TITLE, scene.picture.title).set("id", "picture-title")
-    _said(root, DESCRIPTION, alt_text(scene.picture)).set("id", "picture-description")
+    _label_texts(root, TITLE, scene.picture.title).set("id", "picture-title")
+    _label_texts(root, DESCRIPTION, alt_text(scene.picture)).set("id", "picture-description")
     return root
 
 
@@ -285,11 +285,11 @@ def _box(sheet: etree._Element, drawn: etree._Element, scene: Scene, box: Box, l
         group.set("aria-label", tip)
     if box.key == scene.focus:
         group.set("aria-current", "true")
-    _said(group, TITLE, tip)
+    _label_texts(group, TITLE, tip)
     group.extend(_shapes(drawn))
     places, said = list(drawn.findall(TEXT)), texts(scene, box)
     for place, text in zip(places[len(places) - len(said) :], said, strict=True):
-        written = _said(group, TEXT, text.text)
+        written = _label_texts(group, TEXT, text.text)
         written.set("class", "name" if text.is_name else "word")
         written.set("x", str(place.get("x")))
         written.set("y", str(place.get("y")))
@@ -299,11 +299,11 @@ def _line(sheet: etree._Element, drawn: etree._Element, scene: Scene, line: Line
     classes = ["line", f"look-{line.look}", *(["hidden"] if line.pseudonymised else [])]
     group, step = etree.SubElement(sheet, GROUP), is_step(line)
     group.set("class", " ".join([*classes, *(["step"] if step else [])]))
-    _said(group, TITLE, line_hover(scene.picture, replace(line, words="") if step else line))
+    _label_texts(group, TITLE, line_hover(scene.picture, replace(line, words="") if step else line))
     group.extend(_shapes(drawn))
     place = drawn.find(TEXT)
     if line.words and not step and place is not None:
-        written = _said(group, TEXT, caption(line).text)
+        written = _label_texts(group, TEXT, caption(line).text)
         written.set("class", "word")
         written.set("x", str(place.get("x")))
         written.set("y", str(place.get("y")))
@@ -331,11 +331,11 @@ def _badge(sheet: etree._Element, drawn: etree._Element, number: str) -> None:
     group.set("class", "number")
     group.set("aria-hidden", "true")  # the list of steps says it
     etree.SubElement(group, CIRCLE, cx=f"{x:g}", cy=f"{y:.2f}", r=str(BADGE))
-    _said(group, TEXT, number).set("x", f"{x:g}")
+    _label_texts(group, TEXT, number).set("x", f"{x:g}")
     group[-1].set("y", f"{y + SIZE * BASELINE:.2f}")
 
 
-def _said(parent: etree._Element, tag: str, text: str) -> etree._Element:
+def _label_texts(parent: etree._Element, tag: str, text: str) -> etree._Element:
     element = etree.SubElement(parent, tag)
     element.text = printable(text)
     return element

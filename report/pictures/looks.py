@@ -117,7 +117,7 @@ DRAWN_ROLES = {
 ALLOWED, MATCHES, DENIED = "allowed", "matches", "denied"
 CLEANED, DATA, WAY, SHORTEST, OTHER = "cleaned", "data", "way", "shortest", "other"
 BEYOND, ONWARD = "beyond", "onward"
-ASKED = "asked"
+QUESTIONED = "asked"
 LINE_LOOKS = {
     ALLOWED: Look("allowed, in the direction of the data", INK),
     MATCHES: Look("the wildcard covers it", INK, style="dotted"),
@@ -128,7 +128,7 @@ LINE_LOOKS = {
     SHORTEST: Look("on the shortest path to a leak", RED, width=4.5),
     BEYOND: Look("beyond the node's own profile: only its enclave allows it", PURPLE, 3.0, "dashed", head="vee"),
     ONWARD: Look("data can go here only then", PURPLE, width=1.5),
-    ASKED: Look("how data gets to what is asked about, step by step", BLUE, width=3.0),
+    QUESTIONED: Look("how data gets to what is asked about, step by step", BLUE, width=3.0),
     OTHER: Look("relationship of this type, no flow", QUIET, head="vee"),
 }
 

@@ -46,7 +46,7 @@ def mermaid(picture: Picture, *, direction: str = "LR") -> str:
         rows.append("  end")
     rows += [f"  {_box(picture, box)}" for box in picture.boxes if not box.group]
     lines = list(paired(picture))
-    rows += [f"  {picture.keys[a.source]} {_arrow(a, both=both)} {picture.keys[a.target]}" for a, both in lines]
+    rows += [f"  {picture.keys[a.source]} {_arrow(a, two_way=both)} {picture.keys[a.target]}" for a, both in lines]
     rows += [f"  linkStyle {n} {_stroke(a)}" for n, (a, _) in enumerate(lines)]
     rows += [f"  {row}" for row in _legend(picture, len(lines))]
     rows += [f"  {row}" for row in _classes(picture)]
@@ -83,12 +83,12 @@ def _class(look: str) -> str:
     return "Look" + "".join(part.capitalize() for part in look.split("-"))
 
 
-def _arrow(line: Line, *, both: bool) -> str:
+def _arrow(line: Line, *, two_way: bool) -> str:
     look = LINE_LOOKS[line.look]
     dashed = line.pseudonymised or look.style != "solid"
     body = "-.-" if dashed else "==" if look.width > 1 else "--"
     head = "x" if look.head == "tee" else ">"
-    tail = ("x" if head == "x" else "<") if both else ""
+    tail = ("x" if head == "x" else "<") if two_way else ""
     return f"{tail}{body}{head}"
 
 
@@ -120,7 +120,7 @@ def _legend(picture: Picture, drawn: int) -> Iterator[str]:
     if any(line.pseudonymised for line in picture.lines):
         rows.append((replace(samples[0], pseudonymised=True), picture.say("picture.dashed")))
     for number, (sample, words) in enumerate(rows):
-        yield f'  s{number}((" ")) {_arrow(sample, both=False)} t{number}["{label(words)}"]'
+        yield f'  s{number}((" ")) {_arrow(sample, two_way=False)} t{number}["{label(words)}"]'
     yield "end"
     for number, (sample, _) in enumerate(rows):
         yield f"linkStyle {drawn + number} {_stroke(sample)}"

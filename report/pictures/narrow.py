@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 SHORTEST_ID = 4  # characters of a finding's id
 
 
-def the_finding(analysis: Analysis, wanted: str) -> Finding:
+def the_finding(analysis: Analysis, prefix: str) -> Finding:
     """Return the finding whose id begins so.
 
     Raises
@@ -33,13 +33,13 @@ def the_finding(analysis: Analysis, wanted: str) -> Finding:
     DrawingError
         If there is none, or more than one.
     """
-    found = [finding for finding in analysis.findings if len(wanted) >= SHORTEST_ID and finding.id.startswith(wanted)]
+    found = [finding for finding in analysis.findings if len(prefix) >= SHORTEST_ID and finding.id.startswith(prefix)]
     if len(found) == 1:
         return found[0]
     what = f"{len(found)} findings begin with" if found else "there is no finding"
     names = [f"{finding.id} ({finding.category})" for finding in (found or analysis.findings)[:5]]
     hint = f"such as {', '.join(names)}" if names else "rosprivacy analyze lists them"
-    raise DrawingError(f"--finding: {what} {shown(wanted)!r}; give the number in brackets of the report, {hint}")
+    raise DrawingError(f"--finding: {what} {shown(prefix)!r}; give the number in brackets of the report, {hint}")
 
 
 def of_robot(picture: Picture, robot: str) -> Picture:
@@ -56,7 +56,7 @@ def of_robot(picture: Picture, robot: str) -> Picture:
         raise DrawingError(f"--robot: there is no robot {shown(robot)!r}; {_nearest(robot, robots)}")
     joined = {line.target for line in picture.lines if line.source in own}
     joined |= {line.source for line in picture.lines if line.target in own}
-    return picture.kept(own | joined, _part(picture, own | joined, picture.say("picture.part.robot", robot=robot)))
+    return picture.part(own | joined, _part(picture, own | joined, picture.say("picture.part.robot", robot=robot)))
 
 
 def around(picture: Picture, names: Iterable[str], steps: int) -> Picture:
@@ -83,7 +83,7 @@ def around(picture: Picture, names: Iterable[str], steps: int) -> Picture:
         raise DrawingError("\n".join(f"--around: {what} {shown(n)!r}; {_nearest(n, by_name)}" for n in missing))
     kept = within(picture, {key for name in names for key in by_name[name]}, steps)
     what = picture.say("picture.part.within", steps=picture.count(steps, "step"), names=", ".join(names))
-    return picture.kept(kept, _part(picture, kept, what))
+    return picture.part(kept, _part(picture, kept, what))
 
 
 def carrying(picture: Picture, analysis: Analysis) -> Picture:
@@ -91,7 +91,7 @@ def carrying(picture: Picture, analysis: Analysis) -> Picture:
     carried = {one.element.identity for one in analysis.carried}
     kept = {box.key for box in picture.boxes if box.key in carried}
     kinds = ", ".join(analysis.emitted) or picture.say("picture.empty")
-    return picture.kept(kept, _part(picture, kept, picture.say("picture.part.carries", kinds=kinds)))
+    return picture.part(kept, _part(picture, kept, picture.say("picture.part.carries", kinds=kinds)))
 
 
 def within(picture: Picture, starts: Collection[Key], steps: int) -> set[Key]:
@@ -110,8 +110,8 @@ def within(picture: Picture, starts: Collection[Key], steps: int) -> set[Key]:
     return kept
 
 
-def _part(picture: Picture, kept: Collection[Key], what: str) -> str:
-    return picture.say("picture.part", what=what, n=len(kept), elements=picture.count(len(picture.boxes), "element"))
+def _part(picture: Picture, keys: Collection[Key], what: str) -> str:
+    return picture.say("picture.part", what=what, n=len(keys), elements=picture.count(len(picture.boxes), "element"))
 
 
 def _nearest(name: str, names: Iterable[str]) -> str:
@@ -119,10 +119,10 @@ def _nearest(name: str, names: Iterable[str]) -> str:
     return did_you_mean(nearest(name, every, FEW), f"there are {counted(len(every), 'name')}")
 
 
-def _as_one(some: Sequence[Box]) -> Box:
+def _as_one(boxes: Sequence[Box]) -> Box:
     """Boxes that are drawn as one, with the names and the message types of all."""
-    types = tuple(sorted({name for box in some for name in box.types}))
-    return replace(some[0], names=tuple(n for box in some for n in box.names), types=types)
+    types = tuple(sorted({name for box in boxes for name in box.types}))
+    return replace(boxes[0], names=tuple(n for box in boxes for n in box.names), types=types)
 
 
 def folded(picture: Picture, apart: Collection[Key] = ()) -> Picture:
@@ -178,14 +178,17 @@ def without_loose_ends(picture: Picture) -> Picture:
     if not loose:
         return picture
     names = sum(len(box.names) for box in picture.boxes if box.key in loose)
-    return picture.kept(
+    return picture.part(
         {box.key for box in picture.boxes} - loose,
         picture.count(names, "picture.loose"),
     )
 
 
 def grouped(
-    picture: Picture, by: str, profiles: Iterable[Profile], own: Mapping[str, Iterable[Profile]] | None = None
+    picture: Picture,
+    by: str,
+    profiles: Iterable[Profile],
+    profiles_by_robot: Mapping[str, Iterable[Profile]] | None = None,
 ) -> Picture:
     """Return the picture with its boxes in groups; a channel is in a group if all that it is joined to are.
 
@@ -195,10 +198,10 @@ def grouped(
         ``enclave``, ``namespace`` or ``robot``.
     profiles
         Of the whole graph.
-    own
+    profiles_by_robot
         Robot -> its profiles, where there are several robots; what has none is no robot.
     """
-    group_of = _namers(profiles, own or {}, picture)[by]
+    group_of = _namers(profiles, profiles_by_robot or {}, picture)[by]
     names = {box.key: group_of(box) for box in picture.boxes if by == "robot" or not box.is_channel}
     if by != "robot":
         ends: dict[Key, set[str]] = defaultdict(set)
@@ -212,19 +215,19 @@ def grouped(
 
 
 def _namers(
-    profiles: Iterable[Profile], own: Mapping[str, Iterable[Profile]], picture: Picture
+    profiles: Iterable[Profile], profiles_by_robot: Mapping[str, Iterable[Profile]], picture: Picture
 ) -> Mapping[str, Callable[[Box], str]]:
     enclaves: dict[tuple[str, str], set[str]] = defaultdict(set)
-    for name, some in (own or {"": profiles}).items():
+    for name, some in (profiles_by_robot or {"": profiles}).items():
         for profile in some:
             enclaves[name, profile.node].add(profile.enclave)
 
     def robot(box: Box) -> str:
-        named = box.robot and (not own or box.robot in own)
+        named = box.robot and (not profiles_by_robot or box.robot in profiles_by_robot)
         return picture.say("picture.robot", robot=box.robot) if named else box.robot
 
     def enclave(box: Box) -> str:
-        at = box.robot if own else ""
+        at = box.robot if profiles_by_robot else ""
         found = sorted(enclaves.get((at, box.key[2]), ())) if box.kind == "node" else []
         if not found:
             return ""

@@ -35,12 +35,12 @@ def overview(analysis: Analysis, findings: Sequence[Finding], say: Phrases | Non
     boxes = {box.key: box for box in reached.boxes(core(findings))}
     lines = data_lines(reached, boxes, flows, dict.fromkeys(flows, 1), pairs(findings))
     words = tuple(in_words(finding) for finding in findings)
-    return Picture(PRIVACY, "", sorted_boxes(boxes.values()), lines.made(), (), words, core(findings))
+    return Picture(PRIVACY, "", sorted_boxes(boxes.values()), lines.drawn_lines(), (), words, core(findings))
 
 
-def drawable(findings: Sequence[Finding], most: int) -> int:
+def drawable(findings: Sequence[Finding], limit: int) -> int:
     """Return how many findings, from the first on, have no more elements together than asked for; one at least."""
     count = min(len(findings), 1)
-    while count < len(findings) and len(core(findings[: count + 1])) <= most:
+    while count < len(findings) and len(core(findings[: count + 1])) <= limit:
         count += 1
     return count

@@ -158,7 +158,7 @@ class Pictures(Closing):
 
     def __init__(self, say: Phrases | None = None, seconds: float = SECONDS) -> None:
         self._say, self._drawing, self._lock = say or Phrases(), Drawing(seconds), Lock()
-        self._seen: Scenes | None = None
+        self._reached: Scenes | None = None
 
     def close(self) -> None:
         """End the process of Graphviz; the next picture starts another."""
@@ -197,9 +197,9 @@ class Pictures(Closing):
             As of ``Scenes.of``.
         """
         with self._lock:
-            if self._seen is None or self._seen.analysis is not analysis:
-                self._seen = Scenes(analysis, self._say, why)
-            scene = (self._seen.whole if everything else self._seen.of)(focus, kinds, way=way)
+            if self._reached is None or self._reached.analysis is not analysis:
+                self._reached = Scenes(analysis, self._say, why)
+            scene = (self._reached.whole_system if everything else self._reached.of)(focus, kinds, way=way)
         picture = scene.picture
         return Shown(self._drawing.svg(scene, links, room), legend(scene), picture.title, picture.notes, picture.ways)
 

@@ -46,23 +46,23 @@ class Phrases:
     words: Words = IN_ENGLISH
 
     @classmethod
-    def told(cls, words: Words, titles: Mapping[str, str]) -> Phrases:
+    def of_report(cls, words: Words, titles: Mapping[str, str]) -> Phrases:
         """Return the words of a report, in its language."""
         return cls({name: plain(words.places(f"phrase.{name}")) for name in TEXTS}, titles, words)
 
-    def of(self, key: str, categories: Iterable[str], most: int, **more: str) -> str:
+    def of(self, key: str, categories: Iterable[str], limit: int, **suffix: str) -> str:
         """Return what is said of some categories."""
-        return self.texts[key].format(names=self.listed(categories, most), **more)
+        return self.texts[key].format(names=self.listed(categories, limit), **suffix)
 
-    def listed(self, categories: Iterable[str], most: int) -> str:
+    def listed(self, categories: Iterable[str], limit: int) -> str:
         """Return what some categories are called, and how many more there are.
 
         >>> Phrases().listed(["Video", "Voice", "Location"], 2)
         'Video, Voice and 1 more'
         """
         every = [self.title(category) for category in categories]
-        names = ", ".join(every[:most])
-        return self.texts["more"].format(names=names, n=len(every) - most) if len(every) > most else names
+        names = ", ".join(every[:limit])
+        return self.texts["more"].format(names=names, n=len(every) - limit) if len(every) > limit else names
 
     def title(self, category: str) -> str:
         """Return what a category is called."""

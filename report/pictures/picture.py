@@ -161,11 +161,11 @@ class Picture:
         """Return a sentence in the picture's language, with plain spaces."""
         return plain(self.words(key, **values))
 
-    def count(self, number: int, thing: str) -> str:
+    def count(self, number: int, noun: str) -> str:
         """Return how many of a thing there are, in the picture's language."""
-        return plain(self.words.count(number, thing))
+        return plain(self.words.count(number, noun))
 
-    def kept(self, keys: Collection[Key], note: str = "") -> Picture:
+    def part(self, keys: Collection[Key], note: str = "") -> Picture:
         """Return the picture of some boxes and the lines between them."""
         boxes = tuple(box for box in self.boxes if box.key in keys)
         lines = tuple(line for line in self.lines if line.source in keys and line.target in keys)

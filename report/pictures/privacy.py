@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.pictures.picture import Key
 
-MOST = 4  # categories that are named on a box
+BOUND = 4  # categories that are named on a box
 
 
 def ends_of(analysis: Analysis) -> dict[int, dict[str, int]]:
@@ -34,7 +34,7 @@ def ends_of(analysis: Analysis) -> dict[int, dict[str, int]]:
     number = {element: vertex for vertex, element in enumerate(analysis.graph.elements)}
     ends: dict[int, dict[str, int]] = defaultdict(lambda: defaultdict(int))
     for finding in others:
-        ends[number[finding.leak]][finding.kind] |= analysis.spread.both(finding.category)
+        ends[number[finding.leak]][finding.kind] |= analysis.spread.forms_of(finding.category)
     return {vertex: dict(sorted(kinds.items())) for vertex, kinds in ends.items()}
 
 
@@ -64,12 +64,14 @@ class Reached:
     def __init__(
         self, analysis: Analysis, categories: Collection[str] | None = None, say: Phrases | None = None
     ) -> None:
-        self.analysis, self.graph, self._found = analysis, analysis.graph, analysis.spread
+        self.analysis, self.graph, self._results = analysis, analysis.graph, analysis.spread
         self._say = say or Phrases()
-        found = self._found
+        found = self._results
         wanted = analysis.emitted if categories is None else sorted(categories)
-        self._mask = sum(found.both(category) for category in wanted)
-        if categories is not None and any(found.categories.index(category) in found.made for category in wanted):
+        self._mask = sum(found.forms_of(category) for category in wanted)
+        if categories is not None and any(
+            found.categories.index(category) in found.made_categories for category in wanted
+        ):
             self._mask = found.all_bits
         self._several = len(found.names(self._mask)) > 1
         self._of = by_identity(found)
@@ -80,7 +82,7 @@ class Reached:
 
     def sources(self) -> bool:
         """Whether any data was followed."""
-        return any(self._found.begins(vertex) & self._mask for vertex in self._found.facts)
+        return any(self._results.begins(vertex) & self._mask for vertex in self._results.facts)
 
     def boxes(self, keys: Collection[Key] | None = None) -> Iterator[Box]:
         """What data gets to and does not end at without leaving or getting out; of some elements, or of all."""
@@ -102,8 +104,8 @@ class Reached:
         """What data does not go on from."""
         first, arrives = self.graph.elements[vertices[0]], 0
         for vertex in vertices:
-            arrives |= self._found.arrives.get(vertex, 0) & self._mask
-        words = self._said(vertices, arrives)[1][:MOST]
+            arrives |= self._results.arrives.get(vertex, 0) & self._mask
+        words = self._label_texts(vertices, arrives)[1][:BOUND]
         types = self._types.get(first, ())
         look = END if arrives else UNTOUCHED
         return Box(key, (key[2],), look, tuple(words), pattern=first.pattern, types=types)
@@ -113,21 +115,21 @@ class Reached:
         return bool(self._open.get(key)) or any(self._goes_on(vertex) for vertex in vertices)
 
     def _goes_on(self, vertex: int) -> int:
-        found = self._found
+        found = self._results
         ends = found.leaks.get(vertex, 0) | self._ends.get(vertex, 0)
         here = found.leaves.get(vertex, 0) | (ends & found.present(vertex))
         return here & self._mask
 
     def along(self, index: int) -> tuple[tuple[str, ...], bool]:
         """Return what goes along a flow and does not just end there, and whether all of it is pseudonymised."""
-        found, target = self._found, self.graph.flows[index].target
+        found, target = self._results, self.graph.flows[index].target
         bits = found.along(index) & self._mask
         if bits:
             taken = found.keeps.get(target, found.all_bits) | found.leaks.get(target, 0) | self._ends.get(target, 0)
             for before, _ in found.derives.get(target, ()):
                 taken |= 1 << before
             for category in self._open.get(self.graph.elements[target].identity, ()):
-                taken |= found.both(category)
+                taken |= found.forms_of(category)
             bits &= taken
         plain, hidden = found.planes(bits)
         return found.names(bits), bool(hidden) and not plain
@@ -146,29 +148,31 @@ class Reached:
         return {index: kinds for index, kinds in found.items() if kinds}
 
     def _cleaned_along(self, index: int) -> tuple[str, ...]:
-        facts = self._found.facts.get(self.graph.flows[index].target)
+        facts = self._results.facts.get(self.graph.flows[index].target)
         if not facts or self.along(index)[0]:
             return ()
-        arriving = self._found.names(self._found.along(index) & self._mask)
+        arriving = self._results.names(self._results.along(index) & self._mask)
         return tuple(category for category in arriving if category in facts and "sanitizer" in facts[category].roles)
 
-    def left_out(self, words: Words, beside: Collection[str] = (), also: Collection[Key] = ()) -> tuple[str, ...]:
+    def left_out(
+        self, words: Words, robots_not_shown: Collection[str] = (), drawn: Collection[Key] = ()
+    ) -> tuple[str, ...]:
         """Say what is not there: what ends the data, and what it does not get to.
 
         Parameters
         ----------
         words
             Of the reader's language.
-        beside
+        robots_not_shown
             Robots that do not count, see ``views.privacy_view``.
-        also
+        drawn
             What is drawn all the same.
         """
         ended, apart = [], 0
         for key, vertices in self._of.items():
-            if key[0] in beside or key in also or self._drawn(key, vertices):
+            if key[0] in robots_not_shown or key in drawn or self._drawn(key, vertices):
                 continue
-            if key[1] not in CHANNELS and any(self._found.arrives.get(vertex, 0) & self._mask for vertex in vertices):
+            if key[1] not in CHANNELS and any(self._results.arrives.get(vertex, 0) & self._mask for vertex in vertices):
                 ended.append(key[2])
             else:
                 apart += 1
@@ -184,13 +188,13 @@ class Reached:
     def _box(self, key: Key, vertices: Sequence[int]) -> Box:
         bits = {"present": 0, "begins": 0, "leaks": 0, "arrives": 0, "ends": 0}
         for vertex in vertices:
-            present = self._found.present(vertex) & self._mask
+            present = self._results.present(vertex) & self._mask
             bits["present"] |= present
-            bits["begins"] |= self._found.begins(vertex) & self._mask
-            bits["leaks"] |= self._found.leaks.get(vertex, 0) & present
+            bits["begins"] |= self._results.begins(vertex) & self._mask
+            bits["leaks"] |= self._results.leaks.get(vertex, 0) & present
             bits["ends"] |= self._ends.get(vertex, 0) & present
-            bits["arrives"] |= self._found.arrives.get(vertex, 0) & self._mask
-        made, cleaned = self._said(vertices, bits["present"])
+            bits["arrives"] |= self._results.arrives.get(vertex, 0) & self._mask
+        made, cleaned = self._label_texts(vertices, bits["present"])
         open_for = self._open.get(key, frozenset())
         roles = [
             (LEAK, bits["leaks"] | bits["ends"]),
@@ -202,49 +206,49 @@ class Reached:
         ]
         look = next(role for role, holds in roles if holds)
         words = self._words(key, bits, made, cleaned, vertices)
-        if open_for and set(self._found.names(bits["present"])) != open_for:
-            words.append(self._say.of("unreviewed", sorted(open_for), MOST))
+        if open_for and set(self._results.names(bits["present"])) != open_for:
+            words.append(self._say.of("unreviewed", sorted(open_for), BOUND))
         first = self.graph.elements[vertices[0]]
         types = self._types.get(first, ())
         return Box(key, (key[2],), look, tuple(words), bool(open_for), pattern=first.pattern, types=types)
 
-    def _said(self, vertices: Sequence[int], present: int) -> tuple[list[str], list[str]]:
+    def _label_texts(self, vertices: Sequence[int], present: int) -> tuple[list[str], list[str]]:
         """What labels say that is made of what is here, and how it is cleaned, in words."""
         made: dict[str, None] = {}
         cleaned: dict[str, None] = {}
         for vertex in vertices:
-            for category in self._found.names(present):
-                fact = self._found.facts.get(vertex, {}).get(category)
+            for category in self._results.names(present):
+                fact = self._results.facts.get(vertex, {}).get(category)
                 if fact is None or self.graph.elements[vertex].is_channel:
                     continue
                 made.update(dict.fromkeys(self._makes(category, to) for to in fact.derives if to != category))
                 if fact.pseudonymises:
-                    cleaned[self._say.of("pseudonymises", [category], MOST)] = None
+                    cleaned[self._say.of("pseudonymises", [category], BOUND)] = None
                 elif not fact.passes:
-                    cleaned[self._say.of("cleans", [category], MOST)] = None
+                    cleaned[self._say.of("cleans", [category], BOUND)] = None
         return list(made), list(cleaned)
 
     def _makes(self, category: str, to: str) -> str:
-        return self._say.of("makes", [category], MOST, to=self._say.title(to))
+        return self._say.of("makes", [category], BOUND, to=self._say.title(to))
 
     def _words(
-        self, key: Key, bits: dict[str, int], made: list[str], cleaned: list[str], vertices: Sequence[int]
+        self, key: Key, bits: dict[str, int], results: list[str], cleaned: list[str], vertices: Sequence[int]
     ) -> list[str]:
-        found, say = self._found, self._say
+        found, say = self._results, self._say
         if key[1] in CHANNELS:
             plain, hidden = found.planes(bits["present"])
             names = list(plain if self._several else ())
-            names += [say.of("hidden", [c], MOST) for c in hidden if c not in plain]
-            return [say.listed(names, MOST)] if names else []
+            names += [say.of("hidden", [c], BOUND) for c in hidden if c not in plain]
+            return [say.listed(names, BOUND)] if names else []
         words = []
-        own = self._own(vertices, bits["begins"])
+        own = self._own_sources(vertices, bits["begins"])
         if own:
-            words.append(say.of("source", own, MOST))
+            words.append(say.of("source", own, BOUND))
         if bits["leaks"]:
-            words.append(say.of("leak", found.names(bits["leaks"]), MOST))
+            words.append(say.of("leak", found.names(bits["leaks"]), BOUND))
         for kind, ending in self._ending_at(vertices).items():
-            words.append(say.of(kind, found.names(ending & bits["present"]), MOST))
-        return [*words, *made[:MOST], *cleaned[:MOST]]
+            words.append(say.of(kind, found.names(ending & bits["present"]), BOUND))
+        return [*words, *results[:BOUND], *cleaned[:BOUND]]
 
     def _ending_at(self, vertices: Sequence[int]) -> dict[str, int]:
         """Of one element: kind of a finding that ends there -> bits."""
@@ -255,7 +259,7 @@ class Reached:
                     ending[kind] |= bits & self._mask
         return dict(sorted(ending.items()))
 
-    def _own(self, vertices: Sequence[int], begins: int) -> list[str]:
+    def _own_sources(self, vertices: Sequence[int], begins: int) -> list[str]:
         """What labels call it a source of; what it makes of its own data begins here too."""
-        said = [self._found.facts.get(vertex, {}) for vertex in vertices]
-        return [c for c in self._found.names(begins) if any(c in facts and facts[c].emits for facts in said)]
+        said = [self._results.facts.get(vertex, {}) for vertex in vertices]
+        return [c for c in self._results.names(begins) if any(c in facts and facts[c].emits for facts in said)]

@@ -30,7 +30,7 @@ from rosprivacy.report.pictures.looks import (
 )
 from rosprivacy.report.pictures.phrases import Phrases
 from rosprivacy.report.pictures.picture import PRIVACY, RECORD, ROS, Box, Line, Picture, sorted_boxes, sorted_lines
-from rosprivacy.report.pictures.privacy import MOST
+from rosprivacy.report.pictures.privacy import BOUND
 from rosprivacy.report.stored import flow_said, record_kind, record_name
 
 if TYPE_CHECKING:
@@ -157,7 +157,7 @@ def _carrying(
     assert element
 
     def of(name: str) -> list[str]:
-        return sorted({category for node in nodes for category in _named(node, name, kinds)})
+        return sorted({category for node in nodes for category in _categories_named(node, name, kinds)})
 
     begins, leaks, cleans, stops, unknown = map(of, ("begins", "leaks", "sanitizes", "stops", "open"))
     ended = [category for category in cleans if category in stops]
@@ -173,14 +173,14 @@ def _carrying(
         REVIEWED: True,
     }
     said = {"source": begins, "leak": leaks, "pseudonymises": hidden, "cleans": ended, "unreviewed": unknown}
-    words = [say.of(text, categories, MOST) for text, categories in said.items() if categories]
+    words = [say.of(text, categories, BOUND) for text, categories in said.items() if categories]
     if made and not begins:
-        words.append(say.words("picture.makes", names=say.listed((label[: -len("Source")] for label in made), MOST)))
+        words.append(say.words("picture.makes", names=say.listed((label[: -len("Source")] for label in made), BOUND)))
     look = next(role for role, holds in roles.items() if holds)
     return Box(key, (key[2],), look, tuple(words), bool(unknown), pattern=element["pattern"])
 
 
-def _named(node: Node, name: str, kinds: Iterable[str]) -> list[str]:
+def _categories_named(node: Node, name: str, kinds: Iterable[str]) -> list[str]:
     """Which categories a list of an element names, of those that are drawn."""
     drawn = {_written(kind) for kind in kinds}
     listed = node.properties.get(name, ())
@@ -189,7 +189,7 @@ def _named(node: Node, name: str, kinds: Iterable[str]) -> list[str]:
 
 def _role(node: Node, name: str, suffix: str, kinds: Iterable[str]) -> bool:
     """Whether an element has a role for a kind: by its list; an ``Intake`` has labels only."""
-    return bool(_named(node, name, kinds) if name in node.properties else _labelled(node, suffix, kinds))
+    return bool(_categories_named(node, name, kinds) if name in node.properties else _labelled(node, suffix, kinds))
 
 
 def _labelled(node: Node, suffix: str, kinds: Iterable[str]) -> list[str]:
@@ -202,11 +202,11 @@ def _written(name: str) -> str:
     return name.replace("_", "").upper()
 
 
-def _merged(one: Line, other: Line) -> Line:
-    places = sorted({*one.places, *other.places}, key=lambda place: (place.file, place.line))
+def _merged(first: Line, second: Line) -> Line:
+    places = sorted({*first.places, *second.places}, key=lambda place: (place.file, place.line))
     return replace(
-        one,
-        roles=tuple(sorted({*one.roles, *other.roles})),
-        carries=tuple(sorted({*one.carries, *other.carries})),
+        first,
+        roles=tuple(sorted({*first.roles, *second.roles})),
+        carries=tuple(sorted({*first.carries, *second.carries})),
         places=tuple(places),
     )

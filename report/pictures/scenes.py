@@ -17,12 +17,12 @@ from rosprivacy.report.pictures.flow_lines import Lines, add_cleaned, ends_of_fl
 from rosprivacy.report.pictures.joined import Joined, choose
 from rosprivacy.report.pictures.looks import (
     ALLOWED,
-    ASKED,
     CLEANED,
     DATA,
     LEAK,
     MATCHES,
     OPEN,
+    QUESTIONED,
     REVIEWED,
     SOURCE,
     UNTOUCHED,
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     from rosprivacy.report.pictures.joined import Choice
     from rosprivacy.report.pictures.picture import Key, Line
 
-TOLD = {
+LOOKS_OF_ROLES = {
     UNTOUCHED: "picture.explore.element",
     LEAK: "exit",
     SOURCE: "picture.source",
@@ -75,7 +75,7 @@ class Folded:
     channels: int
 
 
-def folded_by_place(joined: Joined, alone: Collection[Key], bits: int, most: int, words: Words) -> Folded:
+def folded_by_place(joined: Joined, alone: Collection[Key], bits: int, limit: int, words: Words) -> Folded:
     """Return the groups of all elements but some.
 
     Parameters
@@ -84,7 +84,7 @@ def folded_by_place(joined: Joined, alone: Collection[Key], bits: int, most: int
         Elements that stay by themselves.
     bits
         The data that lines are drawn for.
-    most
+    limit
         Groups; one at least.
 
     Notes
@@ -94,7 +94,7 @@ def folded_by_place(joined: Joined, alone: Collection[Key], bits: int, most: int
     places = _places(joined, alone)
     every = [place for place in places.values() if place]
     deepest = max(map(len, every), default=0)
-    fitting = (depth for depth in range(deepest, -1, -1) if len({place[:depth] for place in every}) <= most)
+    fitting = (depth for depth in range(deepest, -1, -1) if len({place[:depth] for place in every}) <= limit)
     depth = next(fitting, 0)
     members: dict[Key, list[Key]] = defaultdict(list)
     for key, place in places.items():
@@ -145,7 +145,7 @@ def _box(joined: Joined, key: Key, members: Collection[Key], bits: int, unjudged
         UNTOUCHED: len(members),
     }
     look = next(role for role, number in counts.items() if number)
-    said = [words.count(counts[role], told) for role, told in TOLD.items() if counts[role]]
+    said = [words.count(counts[role], told) for role, told in LOOKS_OF_ROLES.items() if counts[role]]
     return Box(key, (key[2],), look, tuple(map(plain, said)), open=bool(unjudged))
 
 
@@ -157,7 +157,7 @@ def _lines(joined: Joined, box_of: Mapping[Key, Key], bits: int) -> Iterator[Lin
         for there in joined.after(key, bits):
             for end in (box_of[there],) if there in box_of else readers.of(there):
                 lines.add(box, end, DATA, "", ())
-    yield from lines.made()
+    yield from lines.drawn_lines()
 
 
 class _Readers:
@@ -165,10 +165,10 @@ class _Readers:
 
     def __init__(self, joined: Joined, box_of: Mapping[Key, Key], bits: int) -> None:
         self._joined, self._box_of, self._bits = joined, box_of, bits
-        self._known: dict[Key, frozenset[Key]] = {}
+        self._readers: dict[Key, frozenset[Key]] = {}
 
     def of(self, channel: Key) -> frozenset[Key]:
-        if channel not in self._known:
+        if channel not in self._readers:
             found: set[Key] = set()
             seen, waiting = {channel}, [channel]
             while waiting:
@@ -178,12 +178,12 @@ class _Readers:
                     elif there not in seen:
                         seen.add(there)
                         waiting.append(there)
-            self._known[channel] = frozenset(found)
-        return self._known[channel]
+            self._readers[channel] = frozenset(found)
+        return self._readers[channel]
 
 
-MOST = 30  # boxes
-WHOLE = 150  # boxes of a whole system
+BOUND = 30  # boxes
+WHOLE_BOUND = 150  # boxes of a whole system
 
 
 @dataclass(frozen=True, slots=True)
@@ -232,7 +232,7 @@ class Scenes:
         self,
         focus: Key | None = None,
         kinds: Collection[str] | None = None,
-        most: int = MOST,
+        limit: int = BOUND,
         way: Witness | None = None,
     ) -> Scene:
         """Return what matters of the system, seen from an element.
@@ -243,7 +243,7 @@ class Scenes:
             The element in hand, by its identity; one that is not there is taken as None. None for the paths to leaks.
         kinds
             Names of emitted categories that are shown; None for all.
-        most
+        limit
             Boxes. There are more only if the paths to the element and the first path to a leak need them.
         way
             A path to the element that is in hand itself; None for the shortest ones.
@@ -253,7 +253,7 @@ class Scenes:
         O(flows) for the first picture of an analysis; then what the flows of the chosen elements take.
         """
         wanted = tuple(name for name in self.analysis.emitted if kinds is None or name in kinds)
-        choice = choose(self._joined, focus if focus and focus in self._joined else None, wanted, most, way)
+        choice = choose(self._joined, focus if focus and focus in self._joined else None, wanted, limit, way)
         reached = self._reached_by(wanted)
         boxes = {box.key: box for box in reached.every_box(sorted({*choice.core, *choice.near}))}
         picture = Picture(
@@ -265,13 +265,13 @@ class Scenes:
             core=frozenset(choice.core),
             words=self._say.words,
         )
-        return Scene(self._bounded(picture, choice, most), choice.focus)
+        return Scene(self._bounded(picture, choice, limit), choice.focus)
 
-    def whole(
+    def whole_system(
         self,
         focus: Key | None = None,
         kinds: Collection[str] | None = None,
-        most: int = WHOLE,
+        limit: int = WHOLE_BOUND,
         way: Witness | None = None,
     ) -> Scene:
         """Return the whole system; where that is more than some boxes, nodes that stand together are one.
@@ -284,15 +284,15 @@ class Scenes:
             As of ``of``.
         """
         wanted = tuple(name for name in self.analysis.emitted if kinds is None or name in kinds)
-        choice = choose(self._joined, focus if focus and focus in self._joined else None, wanted, most, way)
+        choice = choose(self._joined, focus if focus and focus in self._joined else None, wanted, limit, way)
         reached, words = self._reached_by(wanted), self._say.words
         every, standard = self._joined.elements()
         alone, notes = every | choice.core, list[str]()
         groups: tuple[Box, ...] = ()
         between: tuple[Line, ...] = ()
-        if len(every) > most:
-            bits = sum(map(self.analysis.spread.both, wanted))
-            folded = folded_by_place(self._joined, choice.core, bits, max(1, most - len(choice.core)), words)
+        if len(every) > limit:
+            bits = sum(map(self.analysis.spread.forms_of, wanted))
+            folded = folded_by_place(self._joined, choice.core, bits, max(1, limit - len(choice.core)), words)
             alone, groups, between = choice.core | folded.single, folded.boxes, folded.lines
             notes.append(words.count(folded.channels, "picture.explore.lines"))
         boxes = {box.key: box for box in (*groups, *reached.every_box(sorted(alone)))}
@@ -308,17 +308,17 @@ class Scenes:
 
     def _listed(self, kinds: Iterable[str]) -> str:
         words = self._say.words
-        return listed(map(self._say.title, kinds), most=4, words=words) or words("picture.empty")
+        return listed(map(self._say.title, kinds), limit=4, words=words) or words("picture.empty")
 
     def _ways(self, choice: Choice) -> tuple[str, ...]:
         return tuple(in_words(finding, self._say) for finding in choice.findings)
 
-    def _reached_by(self, wanted: tuple[str, ...]) -> Reached:
-        if wanted not in self._reached:
-            self._reached[wanted] = Reached(
-                self.analysis, None if wanted == self.analysis.emitted else wanted, self._say
+    def _reached_by(self, categories: tuple[str, ...]) -> Reached:
+        if categories not in self._reached:
+            self._reached[categories] = Reached(
+                self.analysis, None if categories == self.analysis.emitted else categories, self._say
             )
-        return self._reached[wanted]
+        return self._reached[categories]
 
     def _lines(self, reached: Reached, boxes: Collection[Key], choice: Choice) -> tuple[Line, ...]:
         """What goes between the boxes; the steps to the element in hand are numbered."""
@@ -331,11 +331,11 @@ class Scenes:
             for flow in self._joined.granted(choice.focus):
                 ends = ends_of_flow(self.analysis, flow)
                 lines.add(*ends, ALLOWED, flow.role, flow.grants)
-        return sorted_lines(_stepwise(lines.made(), choice.steps()))
+        return sorted_lines(_stepwise(lines.drawn_lines(), choice.steps()))
 
-    def _title(self, choice: Choice, wanted: Iterable[str]) -> str:
+    def _title(self, choice: Choice, categories: Iterable[str]) -> str:
         arriving = sorted({(path.steps[-1].category if path.steps else "") for path in choice.paths} - {""})
-        what = self._listed(arriving or wanted)
+        what = self._listed(arriving or categories)
         key = "leaks" if choice.findings else "data"
         if choice.focus:
             begins = bool(choice.paths) and not choice.paths[0].steps
@@ -343,14 +343,14 @@ class Scenes:
         name = shortened(choice.focus[2], 60) if choice.focus else ""
         return plain(self._say.words(f"picture.explore.{key}", what=what, name=name))
 
-    def _bounded(self, picture: Picture, choice: Choice, most: int) -> Picture:
+    def _bounded(self, picture: Picture, choice: Choice, limit: int) -> Picture:
         """The picture with no more boxes than asked for, and with what is not drawn of the system."""
         small, inside = folded(picture, choice.core), choice.core
         place = {key: number for number, key in enumerate(choice.near)}
         near = sorted((box for box in small.boxes if box.key not in inside), key=lambda box: place[box.key])
-        room = max(0, most - len(inside))
+        room = max(0, limit - len(inside))
         small = replace(small, lines=sorted_lines(_dotted(small.lines)))
-        small = small.kept(inside | {box.key for box in near[:room]})
+        small = small.part(inside | {box.key for box in near[:room]})
         drawn = {(box.robot, box.kind, name) for box in small.boxes for name in box.names}
         undrawn, standard = (len(some - drawn) for some in self._joined.elements())
         joined = sum(len(box.names) for box in near[room:])
@@ -370,7 +370,7 @@ def _stepwise(lines: Iterable[Line], steps: Mapping[tuple[Key, Key], int]) -> It
         if number is None or line.look == ALLOWED:
             yield line
         else:
-            look = ASKED if line.look in (DATA, CLEANED) else line.look
+            look = QUESTIONED if line.look in (DATA, CLEANED) else line.look
             yield replace(line, look=look, words=str(number) if number else "")
 
 

@@ -47,7 +47,7 @@ def ros_view(
     words: Words = IN_ENGLISH,
     *,
     standard: bool = False,
-    beside: Collection[str] = (),
+    robots_not_shown: Collection[str] = (),
 ) -> Picture:
     """Return the whole system: every element and every grant.
 
@@ -59,7 +59,7 @@ def ros_view(
         Of the reader's language.
     standard
         Whether to draw the standard ROS channels too (rule S13).
-    beside
+    robots_not_shown
         Robots that stand beside others like them (``fleet_view.represented`` draws one for both): none of them counts.
     """
     graph = analysis.graph
@@ -84,11 +84,11 @@ def ros_view(
     for key in boxes.keys() & covered.keys():
         if boxes[key].pattern:
             boxes[key] = replace(boxes[key], words=(words.count(len(covered[key] - {key}), "picture.covers"),))
-    kinds = _inventory([key for key in boxes if key[0] not in beside], words)
+    kinds = _inventory([key for key in boxes if key[0] not in robots_not_shown], words)
     title = plain(words("picture.ros", view=str(graph.view), kinds=kinds))
-    hidden = {key for key in hidden if key[0] not in beside}
+    hidden = {key for key in hidden if key[0] not in robots_not_shown}
     notes = _left_out(hidden, undrawn, words, robots=len({element.robot for element in graph.elements}))
-    return Picture(ROS, title, sorted_boxes(boxes.values()), lines.made(), notes, words=words)
+    return Picture(ROS, title, sorted_boxes(boxes.values()), lines.drawn_lines(), notes, words=words)
 
 
 def _deny(lines: Lines, grant: Grant, graph: FlowGraph, hidden: Collection[Key]) -> bool:
@@ -121,17 +121,17 @@ def _left_out(hidden: Collection[Key], undrawn: int, words: Words, *, robots: in
 
 
 def privacy_view(
-    analysis: Analysis, beside: Collection[str] = (), say: Phrases | None = None, also: Collection[Key] = ()
+    analysis: Analysis, robots_not_shown: Collection[str] = (), say: Phrases | None = None, drawn: Collection[Key] = ()
 ) -> Picture:
     """Return what some category reaches, with the paths to leaks marked.
 
     Parameters
     ----------
-    beside
+    robots_not_shown
         As in ``ros_view``.
     say
         The words, and what kinds of data are called.
-    also
+    drawn
         What the caller draws beside it: it is not told as left out.
 
     Notes
@@ -150,14 +150,17 @@ def privacy_view(
         for flow, length in found.items():
             lengths[flow] = min(length, lengths.get(flow, length))
     lines = data_lines(reached, boxes, range(len(one_by_one(analysis.graph.flows))), lengths, pairs(open_findings))
-    what = listed(map(say.title, analysis.emitted), most=6, words=words)
-    unreviewed = count_elements(q.element for q in analysis.open if q.element.robot not in beside).elements
+    what = listed(map(say.title, analysis.emitted), limit=6, words=words)
+    unreviewed = count_elements(q.element for q in analysis.open if q.element.robot not in robots_not_shown).elements
     findings, elements = words.count(len(open_findings), "terminal.finding"), words.count(unreviewed, "element")
     title = words("picture.privacy", what=what, view=str(analysis.graph.view), verdict=_verdict(analysis, words))
-    notes = (words("picture.count", findings=findings, elements=elements), *reached.left_out(words, beside, also))
+    notes = (
+        words("picture.count", findings=findings, elements=elements),
+        *reached.left_out(words, robots_not_shown, drawn),
+    )
     shown = tuple(in_words(finding, say) for finding in open_findings)
     boxes_drawn, told = sorted_boxes(boxes.values()), tuple(map(plain, notes))
-    return Picture(PRIVACY, plain(title), boxes_drawn, lines.made(), told, shown, core(open_findings), words)
+    return Picture(PRIVACY, plain(title), boxes_drawn, lines.drawn_lines(), told, shown, core(open_findings), words)
 
 
 def _verdict(analysis: Analysis, words: Words) -> str:
@@ -171,7 +174,7 @@ def _ways_to_all(analysis: Analysis, net: Net, findings: Iterable[Finding]) -> I
     ends: dict[str, dict[int, int]] = {}
     for finding in findings:
         if finding.kind != DISCLOSURE:
-            both = analysis.spread.both(finding.category)
+            both = analysis.spread.forms_of(finding.category)
             ends.setdefault(finding.category, {})[number[finding.leak]] = both
     for category in sorted({finding.category for finding in findings if finding.kind == DISCLOSURE}):
         yield flows_to_leaks(net, category).flows
@@ -215,7 +218,7 @@ class FindingViews:
         source, leak = self._number[finding.source], self._number[finding.leak]
         found = FlowsToLeaks({})
         if finding.steps:
-            ends = None if finding.kind == DISCLOSURE else {leak: self._analysis.spread.both(category)}
+            ends = None if finding.kind == DISCLOSURE else {leak: self._analysis.spread.forms_of(category)}
             past = finding.dismissed or ends is not None
             found = flows_to_leaks(
                 self._net, category, sources=[source], leaks=[leak], past_leaks=past, ends=ends, about=about
@@ -239,7 +242,7 @@ class FindingViews:
         ways = (in_words(finding, self._say),)
         told = tuple(map(plain, notes))
         ordered = sorted_boxes(boxes.values())
-        return Picture(PRIVACY, plain(title), ordered, lines.made(), told, ways, core([finding]), words)
+        return Picture(PRIVACY, plain(title), ordered, lines.drawn_lines(), told, ways, core([finding]), words)
 
     def _title(self, finding: Finding) -> str:
         """How its data can get there; what is made on the way, its source never has."""
@@ -265,18 +268,18 @@ def finding_view(analysis: Analysis, finding: Finding, about: int | None = None,
     return FindingViews(analysis, say).of(finding, about)
 
 
-def bounded(picture: Picture, most: int) -> Picture:
+def bounded(picture: Picture, limit: int) -> Picture:
     """Return the privacy view with the shorter paths to leaks only, so that it has no more boxes than asked for.
 
     The shortest path of each finding is always there; what was left out is said.
     """
-    if len(picture.boxes) <= most:
+    if len(picture.boxes) <= limit:
         return picture
     lines = [line for line in picture.lines if line.look == SHORTEST]
     what = picture.say("picture.shortest")
     for length in sorted({line.length for line in picture.lines if line.length}):
         longer = [line for line in picture.lines if 0 < line.length <= length or line.look == SHORTEST]
-        if len(_joined(longer) | picture.core) > most:
+        if len(_joined(longer) | picture.core) > limit:
             break
         lines, what = longer, picture.say("picture.up.to", steps=picture.count(length, "step"))
     kept = _joined(lines) | picture.core
@@ -287,7 +290,7 @@ def bounded(picture: Picture, most: int) -> Picture:
     known = left and len(notes) == len(picture.notes)
     undrawn = picture.count(left, "element") if known else picture.say("picture.what.is")
     note = picture.say("picture.beside", what=undrawn, paths=what)
-    return replace(picture, notes=notes, lines=tuple(lines)).kept(kept, note)
+    return replace(picture, notes=notes, lines=tuple(lines)).part(kept, note)
 
 
 def _joined(lines: Iterable[Line]) -> set[Key]:

@@ -44,15 +44,15 @@ def _cut(part: str, width: int) -> Iterator[str]:
     yield part
 
 
-def listed(names: Iterable[str], most: int = 3, longest: int = 60, words: Words = IN_ENGLISH) -> str:
+def listed(names: Iterable[str], limit: int = 3, longest: int = 60, words: Words = IN_ENGLISH) -> str:
     """Return some names, and how many more there are.
 
     >>> listed(["a", "b", "c", "d", "e"])
     'a, b, c and 2 more'
     """
     every = [shortened(name, longest) for name in names]
-    more = words("terminal.more", n=len(every) - most) if len(every) > most else ""
-    return ", ".join(every[:most]) + more
+    more = words("terminal.more", n=len(every) - limit) if len(every) > limit else ""
+    return ", ".join(every[:limit]) + more
 
 
 def sentences(texts: Sequence[str]) -> str:

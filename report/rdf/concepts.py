@@ -63,7 +63,7 @@ def provision_triples(provisions: Iterable[Legal | Pointer]) -> Iterator[Triple]
         if (subject, RDF.type, INSIDE.LegalProvision) in shipped:
             named |= {URIRef(str(up)) for up in shipped.transitive_objects(subject, INSIDE.partOf)}
         else:  # of a vocabulary that is not the shipped one
-            yield from _told(legal)
+            yield from _text(legal)
     for subject in named:
         iri, parts = foreign(subject), [foreign(str(up)) for up in shipped.objects(subject, INSIDE.partOf)]
         yield from about(
@@ -78,7 +78,7 @@ def provision_triples(provisions: Iterable[Legal | Pointer]) -> Iterator[Triple]
         )
 
 
-def _told(legal: Legal | Pointer) -> list[Triple]:
+def _text(legal: Legal | Pointer) -> list[Triple]:
     return about(
         foreign(legal.iri),
         (RDF.type, [RP.LegalProvision]),

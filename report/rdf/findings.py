@@ -226,12 +226,12 @@ class _Findings:
                     (RP.arrivesPseudonymised, [Literal(step.pseudonymised)]),
                     (RP.allowedBy, [self.things.line(grant) for grant in step.grants]),
                 )
-            yield from self._said(hop, element, here)
+            yield from self._label_notes(hop, element, here)
 
-    def _said(self, hop: URIRef, element: Element, here: set[str]) -> Iterator[Triple]:
+    def _label_notes(self, hop: URIRef, element: Element, categories: set[str]) -> Iterator[Triple]:
         """What labels say of an element about the data that is there, or that they say nothing."""
         said = self.analysis.roles.get(element, {})
-        for name in here:
+        for name in categories:
             category = self.things.categories([name])
             yield from about(hop, *((ROLES[role], category) for role in said.get(name, ()) if role in ROLES))
             if (element.shown_as, name) in self.unreviewed:

@@ -174,9 +174,9 @@ class Processes:
             yield from about(recipient, (RDFS.label, [text(label)]), (RP.at, [at]))
             yield from self._country(recipient, leak)
         if leak.kind == "storage":
-            yield from self._kept(iri, finding)
+            yield from self._retention(iri, finding)
 
-    def _kept(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:
+    def _retention(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:
         """How long a storage keeps the category, and its backups after that: a condition of its own (rule S9)."""
         leak, facts = finding.leak, self.answer.shown.outside.get(finding.leak)
         of = () if facts is None or _alike_for_all(facts) else (finding.category,)

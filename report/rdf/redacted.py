@@ -41,12 +41,12 @@ PARTS = {
     "controller": ("controller",), "officer": ("officer",), "subject": ("persons",), "purpose": ("purpose",),
 }  # fmt: skip
 NAMELESS = ("finding", "process", "run", "analysis", "tool", "country")  # ids, hashes, versions, numbers
-KEPT = {
+SAFE_PREDICATES = {
     RP.id, RP.kind, RP.leg, RP.by, RP.outcome, RP.view, RP.severity, RP.sha256, RP.readAs, RP.version, RP.verdict,
     RP.condition, RP.context, RP.country, RP.operatorRole, RP.transferBasis, RP.encrypted, RP.retention,
     RP.statedLegalBasis, RP.notStated, RDFS.comment, DPV.hasDuration, PROV.generatedAtTime, PROV.endedAtTime,
 }  # fmt: skip
-NAMED = {
+NAME_PREDICATES = {
     RP.robot: "robot", RP.onRobot: "robot", RP.file: "file", RP.enclave: "enclave", RP.profile: "node",
     RP.operator: "operator", RP.aboutPersons: "persons",
 }  # fmt: skip
@@ -122,27 +122,27 @@ class _Redaction:
             return [self.change("thing", part) for part in parts]
         if PARTS[kind] == (ELEMENT,):
             robot, of, name, *more = parts
-            return [self._one("robot", robot), of, self._one(of, name), *more]
-        return [self._one(what, part) for what, part in zip(PARTS[kind], parts, strict=True)]
+            return [self._value("robot", robot), of, self._value(of, name), *more]
+        return [self._value(what, part) for what, part in zip(PARTS[kind], parts, strict=True)]
 
-    def _one(self, what: str, name: str) -> str:
+    def _value(self, what: str, name: str) -> str:
         return name if not (what and name) or (what == "file" and name.startswith(OURS)) else self.change(what, name)
 
     def _literal(self, subject: URIRef, predicate: Node, value: Literal) -> Literal:
         if predicate == RDFS.label:
             return Literal(self._label(subject, value), lang=value.language)
-        if predicate in KEPT or value.datatype is not None:  # a number, a date or a duration names nobody
+        if predicate in SAFE_PREDICATES or value.datatype is not None:  # a number, a date or a duration names nobody
             return value
-        if predicate in NAMED:
-            return text(self._one(NAMED[predicate], str(value)))  # type: ignore[index]
+        if predicate in NAME_PREDICATES:
+            return text(self._value(NAME_PREDICATES[predicate], str(value)))  # type: ignore[index]
         if predicate == RP.name:
-            return value if (subject, RP.value, None) in self.whole else text(self._called(subject))
+            return value if (subject, RP.value, None) in self.whole else text(self._replacement(subject))
         return self._assumed(str(self.whole.value(subject, RP.name))) if predicate == RP.value else text(LEFT_OUT)
 
-    def _called(self, element: Node | None) -> str:
+    def _replacement(self, element: Node | None) -> str:
         """What stands for the name of an element."""
         kind, name = self.whole.value(element, RP.kind), self.whole.value(element, RP.name)
-        return self._one(str(kind), str(name))
+        return self._value(str(kind), str(name))
 
     def _assumed(self, name: str) -> Literal:
         value = self.assumptions[name]
@@ -156,7 +156,7 @@ class _Redaction:
             return self._label_at(kind, at, str(label))
         if kind == "finding" or (kind == "process" and len(parts) == 1):
             finding = URIRef(f"{self.base}finding:{parts[0]}")
-            source, leak = (self._called(self.whole.value(finding, end)) for end in (RP.dataSource, RP.leak))
+            source, leak = (self._replacement(self.whole.value(finding, end)) for end in (RP.dataSource, RP.leak))
             ends = f"{local_name(str(self.whole.value(finding, RP.category)))}: {source} -> {leak}"
             return ends if kind == "finding" else f"possible: {ends}"
         if kind in ("controller", "officer", "subject"):
@@ -164,10 +164,10 @@ class _Redaction:
         return str(label) if kind in ("tool", "process") else LEFT_OUT  # of a process: its data
 
     def _label_at(self, kind: str, at: Node, label: str) -> str:
-        name, alias = shown(str(self.whole.value(at, RP.name))), self._called(at)
+        name, alias = shown(str(self.whole.value(at, RP.name))), self._replacement(at)
         if kind == "storage-duration":
             return alias + label.removeprefix(name) if label.startswith(f"{name} ") else LEFT_OUT
         if kind == "process":
             return f"pseudonymisation at {alias}"
         operator = self.whole.value(at, RP.operator)
-        return self._one("operator", str(operator)) if operator else f"whoever receives what {alias} lets out"
+        return self._value("operator", str(operator)) if operator else f"whoever receives what {alias} lets out"

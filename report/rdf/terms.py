@@ -103,9 +103,9 @@ def duration(value: str) -> Literal:
     return Literal(value, datatype=XSD.duration, normalize=False) if _DURATION.fullmatch(value) else text(value)
 
 
-def about(subject: Node, *said: tuple[Node, Iterable[Node]]) -> list[Triple]:
+def about(subject: Node, *objects: tuple[Node, Iterable[Node]]) -> list[Triple]:
     """Return what is said of a subject: one triple for each value of each predicate."""
-    return [(subject, predicate, value) for predicate, values in said for value in values]
+    return [(subject, predicate, value) for predicate, values in objects for value in values]
 
 
 def listed(items: Sequence[Node]) -> tuple[Node, list[Triple]]:

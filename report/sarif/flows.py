@@ -38,16 +38,16 @@ def text(name: str) -> str:
     return _neutral(shown(name))
 
 
-def prose(said: str) -> str:
+def prose(text: str) -> str:
     """Return a longer text for a message, as ``text`` does a name."""
-    return _neutral(one_line(said))
+    return _neutral(one_line(text))
 
 
-def _neutral(said: str) -> str:
-    return said.replace("{", "{{").replace("}", "}}").replace("](", "] (")
+def _neutral(text: str) -> str:
+    return text.replace("{", "{{").replace("}", "}}").replace("](", "] (")
 
 
-def named(element: Element) -> str:
+def element_name(element: Element) -> str:
     """Return an element's name for a message: with its robot, and its kind where it is no node."""
     leg = f"{element.leg} of " if element.leg else ""
     kind = "" if element.is_node else f"{leg}{element.kind} "
@@ -75,7 +75,7 @@ def flows_between(analysis: Analysis) -> dict[Pair, Flow]:
 
 def further_paths(finding: Finding) -> int:
     """Return how many paths of a finding are known beside its witness."""
-    return len(_others(finding))
+    return len(_other_elements(finding))
 
 
 def flows_of(
@@ -83,7 +83,7 @@ def flows_of(
 ) -> list[dict[str, Any]]:
     """Return the ``codeFlows`` of a finding: the witness, then further paths up to a bound, one ``threadFlow`` each."""
     paths: list[Sequence[Step]] = [finding.steps]
-    paths += [_steps(path, between) for path in _others(finding)[: MAX_FLOWS - 1]]
+    paths += [_steps(path, between) for path in _other_elements(finding)[: MAX_FLOWS - 1]]
     start = _start(finding, places)
     return [
         {
@@ -98,7 +98,7 @@ def _about(number: int) -> str:
     return "A shortest path." if number == 0 else "Another path."
 
 
-def _others(finding: Finding) -> list[tuple[Element, ...]]:
+def _other_elements(finding: Finding) -> list[tuple[Element, ...]]:
     return [path for path in finding.paths if path != finding.witness]
 
 
@@ -118,9 +118,9 @@ def _start(finding: Finding, places: Places) -> Place:
 
 def _locations(finding: Finding, steps: Sequence[Step], start: Place, physical: Physical) -> list[dict[str, Any]]:
     """One location per element: the source, then what each step leads to, at the line that allows the step."""
-    begins = f"{named(finding.source)} is a source of {_data(steps[0]) if steps else text(finding.category)}."
+    begins = f"{element_name(finding.source)} is a source of {_data(steps[0]) if steps else text(finding.category)}."
     if not steps:
-        begins = f"{named(finding.source)} is a source and a leak of {text(finding.category)}."
+        begins = f"{element_name(finding.source)} is a source and a leak of {text(finding.category)}."
     found: list[tuple[Element, str, Place]] = [(finding.source, begins, start)]
     for step in steps:
         place = next(iter(of_step(step)), found[-1][2])  # a wildcard covers: the line before holds the wildcard
@@ -150,7 +150,7 @@ def _data(step: Step) -> str:
 
 def _hop(step: Step) -> str:
     """One step as a sentence, with the profile that may do it."""
-    source, target, data = named(step.source), named(step.target), _data(step)
+    source, target, data = element_name(step.source), element_name(step.target), _data(step)
     if step.role == "matches":
         return f"{source} and {target} overlap, by a wildcard."
     if step.target.is_channel:

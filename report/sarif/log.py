@@ -102,7 +102,10 @@ def _log(answer: Answer, root: Path) -> dict[str, Any]:
     if answer.enforced:
         all_results = chain(all_results, added_results(answer.enforced, made.rules[BEYOND_PROFILE.id], files))
     results = list(_within(islice(all_results, MAX_RESULTS)))
-    notices = [*_about(answer, results, verdict_sentence(facts)), *_said((*diagnostics, *analysis.diagnostics), files)]
+    notices = [
+        *_about(answer, results, verdict_sentence(facts)),
+        *_reading_notes((*diagnostics, *analysis.diagnostics), files),
+    ]
     driver = {
         "name": "rosprivacy",
         "version": str(assumptions.get("rosprivacy", "")),
@@ -125,7 +128,7 @@ def _log(answer: Answer, root: Path) -> dict[str, Any]:
             "view": analysis.graph.view,
             "unreviewedElements": _unreviewed(analysis).elements,
             "standardChannels": analysis.standard_channels,
-            "assumptions": _whole(assumptions),
+            "assumptions": _without_half_characters(assumptions),
         },
     }
     return {"$schema": SCHEMA, "version": "2.1.0", "runs": [run]}
@@ -190,7 +193,7 @@ def _about(answer: Answer, results: Sequence[Mapping[str, Any]], sentence: str) 
     analysis, added = answer.shown, answer.enforced.added if answer.enforced else ()
     count = _unreviewed(analysis)
     are = "is" if count.elements == 1 else "are"
-    unreviewed = f"{counted(count.elements, 'element')} that data reaches {are} not reviewed{count.more}"
+    unreviewed = f"{counted(count.elements, 'element')} that data reaches {are} not reviewed{count.remark}"
     yield _notice("note" if not analysis.open else "warning", "verdict", f"{sentence}; {unreviewed}. {NO_VERDICT}")
     findings = [*analysis.findings, *(one.finding for one in added)]
     left_out = len(findings) + len(to_review(analysis)) + len(answer.doubts) - len(results)
@@ -205,7 +208,7 @@ def _about(answer: Answer, results: Sequence[Mapping[str, Any]], sentence: str) 
         yield _notice("note", "bound", f"{bounded} findings have more paths than were looked for (--max-paths).")
 
 
-def _said(diagnostics: Sequence[Diagnostic], files: Files) -> Iterator[dict[str, Any]]:
+def _reading_notes(diagnostics: Sequence[Diagnostic], files: Files) -> Iterator[dict[str, Any]]:
     """What the inputs were read with."""
     for diagnostic in diagnostics[:MAX_NOTIFICATIONS]:
         notice = _notice(LEVELS[diagnostic.severity], "input", prose(diagnostic.message))
@@ -221,13 +224,13 @@ def _notice(level: str, name: str, message: str) -> dict[str, Any]:
     return {"level": level, "descriptor": {"id": name}, "message": {"text": message}}
 
 
-def _whole(value: Any) -> Any:
+def _without_half_characters(value: Any) -> Any:
     """Return plain data without half characters (of a file name that is no UTF-8), which some readers refuse."""
     if isinstance(value, str):
         return utf8(value)
     if isinstance(value, dict):
-        return {_whole(key): _whole(part) for key, part in value.items()}
-    return [_whole(part) for part in value] if isinstance(value, list | tuple) else value
+        return {_without_half_characters(key): _without_half_characters(part) for key, part in value.items()}
+    return [_without_half_characters(part) for part in value] if isinstance(value, list | tuple) else value
 
 
 def _with_robots(log: dict[str, Any], view: FleetView, counts: Counts) -> dict[str, Any]:

@@ -17,7 +17,7 @@ from rosprivacy.analysis.policy_lines import in_a_file
 from rosprivacy.report.made_of import making
 from rosprivacy.report.places import NOWHERE, Places, of_step, to_review
 from rosprivacy.report.sarif.artifacts import uri_of
-from rosprivacy.report.sarif.flows import flows_between, flows_of, logical, named, prose, text
+from rosprivacy.report.sarif.flows import element_name, flows_between, flows_of, logical, prose, text
 from rosprivacy.report.sarif.rules import (
     BEYOND_PROFILE,
     NO_LEAK,
@@ -163,9 +163,11 @@ class Results:
         element, rule = question.element, UNREVIEWED
         kinds = ", ".join(text(name) for name in question.categories)
         unknown = "whether it may carry that" if element.is_channel else "what it does with that"
-        what = f"{named(element)} gets {kinds}, and no label says {unknown}."
+        what = f"{element_name(element)} gets {kinds}, and no label says {unknown}."
         if question.missing:
-            what = f"{named(element)} gets {kinds}, and {' and '.join(MISSING[name] for name in question.missing)}"
+            what = (
+                f"{element_name(element)} gets {kinds}, and {' and '.join(MISSING[name] for name in question.missing)}"
+            )
             what = what if what.endswith("?") else f"{what}."
         digest = hashlib.sha256("\0".join(("unreviewed", *element.shown_as)).encode()).hexdigest()[:16]
         return {
@@ -217,11 +219,11 @@ class Results:
         said: list[tuple[Place | None, str]] = [
             (
                 self.places.of_role(finding.source, "source", begins),
-                f"{named(finding.source)} is labelled source here.",
+                f"{element_name(finding.source)} is labelled source here.",
             ),
             (
                 self.places.of_role(finding.leak, "leak", finding.category),
-                f"{named(finding.leak)} is labelled leak here.",
+                f"{element_name(finding.leak)} is labelled leak here.",
             ),
         ]
         said += [(where, "The governance leaves the channel open here.") for where in _governed(finding)]
@@ -247,10 +249,10 @@ def _fingerprints(digest: str) -> dict[str, str]:
 
 def _message(finding: Finding, law: Sequence[Legal], turned: Element | None, place: Place) -> str:
     """What a viewer shows; some show the first sentence only."""
-    category, source, leak = text(finding.category), named(finding.source), named(finding.leak)
+    category, source, leak = text(finding.category), element_name(finding.source), element_name(finding.leak)
     of, by = making(finding)
     said = [f"{category} can get from {source} to {leak}: a path to assess."]
-    if made := ", ".join(map(named, by)):
+    if made := ", ".join(map(element_name, by)):
         said = [f"{category}, made of {text(of)} of {source} at {made}, can get to {leak}: a path to assess."]
     if len(finding.witness) == 1:
         said = [f"{source} brings {category} in and lets it out itself: a path to assess."]
@@ -259,9 +261,9 @@ def _message(finding: Finding, law: Sequence[Legal], turned: Element | None, pla
     if finding.pseudonymised:
         said.append("It arrives pseudonymised, which is still personal data.")
     if turned is not None:
-        said.append(f"{named(turned)} makes such data of other data.")
+        said.append(f"{element_name(turned)} makes such data of other data.")
     if finding.dismissed:
-        through = ", ".join(named(element) for element in finding.through)
+        through = ", ".join(element_name(element) for element in finding.through)
         said.append(f"Every path there goes through {through}, which has a finding of its own.")
     if (number := finding.number_of_paths or 1) > 1:
         said.append(f"{number} paths share no step.")
@@ -330,28 +332,28 @@ def added_results(enforced: Enforced, rule: int, files: Files) -> Iterator[dict[
         }
 
 
-def _beyond(one: Added) -> Iterator[str]:
-    finding = one.finding
-    ends = f"from {named(finding.source)} to {named(finding.leak)}"
-    if one.beyond:
+def _beyond(added: Added) -> Iterator[str]:
+    finding = added.finding
+    ends = f"from {element_name(finding.source)} to {element_name(finding.leak)}"
+    if added.beyond:
         yield f"Only if a node goes beyond its own profile: {text(finding.category)} can get {ends}."
     else:
         yield f"Only if a channel carries what its type cannot hold: {text(finding.category)} can get {ends}."
-    if one.plain:
+    if added.plain:
         yield "The declared view has it, too, but pseudonymised only: this is about the plain data."
-    if one.robots:
-        yield f"On {len(one.robots):,} {'robot' if len(one.robots) == 1 else 'robots'} of the fleet."
-    if one.enclaves:
-        yield f"Nodes share enclave {_row(one.enclaves)}."
-    if one.opened:
-        yield f"Permissions are not asked there: {_row(map(str, one.opened))}."
-    if one.split:
-        yield f"Gone if {_row(one.split)} is split into an enclave for each node."
-    if one.move:
-        yield f"Gone if only {text(one.move[1])} is moved from {text(one.move[0])} to an enclave of its own."
-    if one.deny:
-        lines = "; ".join(f"a DENY to {line.role} {text(line.name)} in {text(line.enclave)}" for line in one.deny)
-        lost = "; ".join(f"{text(node[2])} {role} {text(channel[2])}" for node, role, channel in one.loses)
+    if added.robots:
+        yield f"On {len(added.robots):,} {'robot' if len(added.robots) == 1 else 'robots'} of the fleet."
+    if added.enclaves:
+        yield f"Nodes share enclave {_row(added.enclaves)}."
+    if added.opened:
+        yield f"Permissions are not asked there: {_row(map(str, added.opened))}."
+    if added.split:
+        yield f"Gone if {_row(added.split)} is split into an enclave for each node."
+    if added.move:
+        yield f"Gone if only {text(added.move[1])} is moved from {text(added.move[0])} to an enclave of its own."
+    if added.deny:
+        lines = "; ".join(f"a DENY to {line.role} {text(line.name)} in {text(line.enclave)}" for line in added.deny)
+        lost = "; ".join(f"{text(node[2])} {role} {text(channel[2])}" for node, role, channel in added.loses)
         yield f"Gone with {lines}, with which profiles would lose what they allow: {lost}."
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import ASSUMED, MERGED
-from rosprivacy.report.called_alike import legs, named
+from rosprivacy.report.called_alike import legs, names_shown
 from rosprivacy.report.catalogs.words import IN_ENGLISH, Words
 from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import shown_name
@@ -97,7 +97,7 @@ def _lines(report: Mapping[str, Any], words: Words, *, verbose: bool, quiet: boo
     yield from enforced_lines(report, words)
     yield from review_lines(report, words, verbose=verbose)
     yield from doubt_lines(report, most, words)
-    yield from denied_lines(report, words, most=most)
+    yield from denied_lines(report, words, limit=most)
     yield from reliance_lines(report, words, verbose=verbose)
     if verbose:
         yield from ledger_lines(report, words)
@@ -141,17 +141,17 @@ def _findings(report: Mapping[str, Any], words: Words, *, verbose: bool) -> Iter
     yield from law_lines(report, report["findings"], words)
 
 
-def _assumed(report: Mapping[str, Any], words: Words, most: int | None) -> Iterator[Line]:
+def _assumed(report: Mapping[str, Any], words: Words, limit: int | None) -> Iterator[Line]:
     assumptions = report["assumptions"]
     yield "", ""
     yield words("terminal.assumed"), "bold"
     view = report["view"]
     yield f"   {words(f'terminal.view.{view}')}", ""
     yield from ((f"   {line}", "yellow") for line in observed_lines(report, words))
-    yield from standard_lines(report, most, words)
-    yield from type_lines(report, most, words)
+    yield from standard_lines(report, limit, words)
+    yield from type_lines(report, limit, words)
     yield from taken_away_lines(report, words)
-    yield from hanging_lines(report, most, words)
+    yield from hanging_lines(report, limit, words)
     yield from glob_warnings(report, words)
     if "database" in assumptions:
         robots = words.count(assumptions["database"]["robots"], "robot")
@@ -167,7 +167,7 @@ def _assumed(report: Mapping[str, Any], words: Words, most: int | None) -> Itera
             f"   {words('terminal.file.decisions', file=shown(taken['file']), sha=taken['sha256'][:12], date=date)}",
             "",
         )
-    yield from _asked(report, words)
+    yield from _question(report, words)
     yield from _files(assumptions["ontologies"], "ontologies", words)
     yield f"   {words('terminal.law', date=words.date(assumptions['law_as_of']))}", ""
     yield from _assumed_outside(report, words)
@@ -181,7 +181,7 @@ def _assumed(report: Mapping[str, Any], words: Words, most: int | None) -> Itera
     yield f"   {words('terminal.word')}", "dim"
 
 
-def _asked(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
+def _question(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
     """What the answer is restricted to (rule S11)."""
     assumed = report["assumptions"]
     if assumed["categories_asked"] != ALL:
@@ -193,7 +193,7 @@ def _asked(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
     if assumed["article9_only"]:
         yield f"   {words('terminal.only.known', what=asked_level(assumed, words))}", ""
     for category, kinds in assumed.get("may_be_asked", {}).items():
-        yield f"   {words('terminal.also', kind=category, kinds=named(kinds, words))}", ""
+        yield f"   {words('terminal.also', kind=category, kinds=names_shown(kinds, words))}", ""
 
 
 def _files(files: Iterable[Mapping[str, Any]], role: str, words: Words) -> Iterator[Line]:
@@ -205,7 +205,7 @@ def _assumed_outside(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
     """What was taken of elements outside ROS (rule S9)."""
     assumptions = report["assumptions"]
     for kind, role in assumptions["taken_by_kind"].items():
-        yield f"   {words(f'terminal.taken.{role}', kind=words.known(f'terminal.kind.of.{kind}', kind))}", ""
+        yield f"   {words(f'terminal.taken.{role}', kind=words.of_value(f'terminal.kind.of.{kind}', kind))}", ""
     if "countries_as_of" in assumptions:
         yield f"   {words('terminal.countries', date=words.date(assumptions['countries_as_of']))}", ""
     for row in report["outside"]:

@@ -73,7 +73,7 @@ def tree(vocabulary: Vocabulary, top: str, language: str = "en") -> str:
     def lines(name: str, first: str, rest: str) -> Iterator[str]:
         again = name in done and below[name]
         done.add(name)
-        yield first + _entry(vocabulary.categories[name], language, again=bool(again))
+        yield first + _entry(vocabulary.categories[name], language, repeated=bool(again))
         children = [] if again else sorted(below[name])
         for number, child in enumerate(children, 1):
             last = number == len(children)
@@ -82,14 +82,14 @@ def tree(vocabulary: Vocabulary, top: str, language: str = "en") -> str:
     return "".join(f"{line}\n" for line in lines(top, "", ""))
 
 
-def _entry(category: Category, language: str, *, again: bool) -> str:
+def _entry(category: Category, language: str, *, repeated: bool) -> str:
     words = WORDS[language]
     verdicts = [(words["article9"], category.article9)] if category.article9 != "no" else []
     verdicts += [(words["article10"], legal.verdict) for legal in category.law if legal.name == ARTICLE_10]
     factors = f"  [{', '.join(category.identity_factors)}]" if category.identity_factors else ""
     notes = factors + "".join(f"  [{article}: {words[verdict]}]" for article, verdict in verdicts)
     return f"{category.name}  {shown(category.text('title', language))}{notes}" + (
-        f"  ({words['above']})" if again else ""
+        f"  ({words['above']})" if repeated else ""
     )
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import CHANNELS, UNPROTECTED
 from rosprivacy.analysis.text import blanked
-from rosprivacy.report.called_alike import kind_in, named
+from rosprivacy.report.called_alike import kind_in, names_shown
 from rosprivacy.report.catalogs.words import IN_ENGLISH, Words, finding_reason, spaced
 from rosprivacy.report.finding_order import in_order
 from rosprivacy.report.looked_at import looked_at
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from rosprivacy.report.text.line_parts import Line
 
 MANY = 5  # findings; of more a list of one line each comes first
-NAMED = 4  # kinds of data in one line
+SHOWN_AT_MOST = 4  # kinds of data in one line
 NARROWER = "⊇ "  # how the ontology writes, in other languages than English: if the data are of one of these kinds
 VERBS = {  # (role, whether data goes into a channel) -> what is between the two
     ("publish", True): "publish",
@@ -44,7 +44,7 @@ VERBS = {  # (role, whether data goes into a channel) -> what is between the two
 
 def verb(role: str, *, into_channel: bool, words: Words) -> str:
     """Return what is between two elements, as a flow's role says it; the role itself if it has no word."""
-    return words.known(f"terminal.verb.{VERBS.get((role, into_channel), role)}", role)
+    return words.of_value(f"terminal.verb.{VERBS.get((role, into_channel), role)}", role)
 
 
 def overview(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
@@ -76,13 +76,13 @@ def details(
     report: Mapping[str, Any],
     findings: Sequence[Mapping[str, Any]],
     words: Words = IN_ENGLISH,
-    more: Callable[[Mapping[str, Any]], Iterable[Line]] = lambda _: (),
+    detail_lines: Callable[[Mapping[str, Any]], Iterable[Line]] = lambda _: (),
 ) -> Iterator[Line]:
     """Return the findings hop by hop.
 
     Parameters
     ----------
-    more
+    detail_lines
         What is told below each.
     """
     roles = {(key(said["element"]), said["category"]): said["roles"] for said in report["roles"]}
@@ -104,7 +104,7 @@ def details(
         yield from _paths(finding, words)
         if finding["special_from"]:
             yield f"   {words('terminal.special', element=shown_name(finding['special_from']))}", ""
-        yield from more(finding)
+        yield from detail_lines(finding)
 
 
 def _reason(finding: Mapping[str, Any], words: Words) -> str:
@@ -120,13 +120,13 @@ def enforced_lines(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
     yield "", ""
     yield words("terminal.enforced", findings=words.count(len(added), "terminal.finding")), "bold"
     if elements := [shown_name(element) for element in report["enforced"].get("open", ())]:
-        yield words.count(len(elements), "terminal.enforced.unreviewed", names=named(elements, words)), ""
+        yield words.count(len(elements), "terminal.enforced.unreviewed", names=names_shown(elements, words)), ""
     by_id = {entry["finding"]["id"]: entry for entry in added}
 
-    def more(finding: Mapping[str, Any]) -> Iterator[Line]:
+    def additional(finding: Mapping[str, Any]) -> Iterator[Line]:
         yield from ((f"   {text}", "") for text in _added(report, by_id[finding["id"]], words))
 
-    yield from details(report, [entry["finding"] for entry in added], words, more)
+    yield from details(report, [entry["finding"] for entry in added], words, additional)
 
 
 def _added(report: Mapping[str, Any], entry: Mapping[str, Any], words: Words) -> Iterator[str]:
@@ -137,7 +137,7 @@ def _added(report: Mapping[str, Any], entry: Mapping[str, Any], words: Words) ->
         yield words("terminal.enforced.types")
     if robots := entry.get("robots"):
         everybody = words.count(report["fleet"]["robots"], "of_robots")
-        yield words("terminal.enforced.on", n=str(len(robots)), robots=everybody, names=named(robots, words))
+        yield words("terminal.enforced.on", n=str(len(robots)), robots=everybody, names=names_shown(robots, words))
     if opened := entry.get("opened_by"):
         yield words("terminal.enforced.opened", lines=", ".join(map(place, opened)))
     if not entry["enclaves"]:
@@ -321,7 +321,7 @@ def _paths(finding: Mapping[str, Any], words: Words) -> Iterator[Line]:
 def _may_be_asked(report: Mapping[str, Any], category: str, words: Words) -> str:
     """Which of the kinds asked for data of another may be, with a space before; empty for what is asked for."""
     kinds = report["assumptions"].get("may_be_asked", {}).get(category)
-    return words("terminal.may.be", kinds=named(kinds, words)) if kinds else ""
+    return words("terminal.may.be", kinds=names_shown(kinds, words)) if kinds else ""
 
 
 def _by_line(findings: Iterable[Mapping[str, Any]]) -> list[list[Mapping[str, Any]]]:
@@ -335,7 +335,7 @@ def _by_line(findings: Iterable[Mapping[str, Any]]) -> list[list[Mapping[str, An
 
 def _group_line(group: Sequence[Mapping[str, Any]], reason: str, words: Words) -> str:
     """What findings have in common that one line stands behind, for one reason."""
-    kinds = words.row(words.first(list(dict.fromkeys(finding["category"] for finding in group)), NAMED))
+    kinds = words.row(words.first(list(dict.fromkeys(finding["category"] for finding in group)), SHOWN_AT_MOST))
     channels = {key(finding["leak"]) for finding in group}
     counts = [words.count(len(group), "terminal.finding"), words.count(len(channels), "terminal.channel")]
     return f"{words(f'terminal.kind.{UNPROTECTED}', data=kinds)}, {', '.join(counts)}; {reason}"
@@ -361,7 +361,7 @@ def _decision(finding: Mapping[str, Any], words: Words) -> Iterator[Line]:
     if decision["reason"]:
         yield f"      {shown(decision['reason'])}", style
     for change in decision.get("changed", ()):
-        what = words.known(f"terminal.changed.{change['what']}", change["what"].replace("_", " "))
+        what = words.of_value(f"terminal.changed.{change['what']}", change["what"].replace("_", " "))
         before, now = shown(change["before"]), shown(change["now"])
         yield f"      {words('terminal.changed', what=what, before=before, now=now)}", "yellow"
 

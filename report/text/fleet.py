@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.report.called_alike import both, named
+from rosprivacy.report.called_alike import joined_by_and, names_shown
 from rosprivacy.report.robots import forms_in_words
 
 if TYPE_CHECKING:
@@ -32,14 +32,17 @@ def fleet_lines(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
     titles = {p["id"]: titles[p["finding"]] for p in fleet["patterns"]}
     for deviant in fleet["deviants"]:
         yield "", ""
-        yield words("terminal.deviant", robots=named(deviant["robots"], words), model=deviant["model"]), "bold yellow"
+        yield (
+            words("terminal.deviant", robots=names_shown(deviant["robots"], words), model=deviant["model"]),
+            "bold yellow",
+        )
         for key in ("more", "fewer"):
             for share in deviant[key]:
                 what = f"{_form(share, words)}{shown(titles[share['pattern']])}"
                 yield f"   {words(f'terminal.fleet.{key}', what=what)}", ""
         for key in ("more_open", "fewer_open"):
             if deviant[key]:
-                names = named([element["name"] for element in deviant[key]], words)
+                names = names_shown([element["name"] for element in deviant[key]], words)
                 yield f"   {words(f'terminal.fleet.{key}', what=names)}", ""
 
 
@@ -49,7 +52,7 @@ def on_robots(report: Mapping[str, Any], finding: Mapping[str, Any], words: Word
         if pattern["finding"] == finding["id"] and pattern["robots"]:
             parts = [f"{words.count(len(robots), 'robot')} {form}" for robots, form in _forms(pattern, words)]
             yield (
-                both(parts, words)
+                joined_by_and(parts, words)
                 if parts
                 else words("terminal.on", robots=words.count(len(pattern["robots"]), "of_robots"))
             )
@@ -67,13 +70,13 @@ def robots_of(report: Mapping[str, Any], finding: Mapping[str, Any], words: Word
         n=str(len(pattern["robots"])),
         robots=words.count(fleet["robots"], "of_robots"),
         across=words("terminal.across", n=pattern["findings"]) if pattern["across"] else "",
-        names="" if forms else f": {named(pattern['robots'], words)}",
+        names="" if forms else f": {names_shown(pattern['robots'], words)}",
         id=pattern["id"],
     )
     yield f"   {on}", ""
     for robots, form in forms:
         count = words.count(len(robots), "robot")
-        yield f"   {words.pair(count, words.pair(form, named(robots, words)))}", ""
+        yield f"   {words.pair(count, words.pair(form, names_shown(robots, words)))}", ""
 
 
 def _forms(pattern: Mapping[str, Any], words: Words) -> list[tuple[Sequence[str], str]]:

@@ -57,7 +57,7 @@ def place(row: Mapping[str, Any]) -> str:
     return f"{shown(row['file'])}:{row['line']}"
 
 
-def listed(texts: Sequence[str], most: int | None, words: Words, separator: str = ", ") -> str:
-    """Return the first of some texts, and how many more ``-v`` shows; all if ``most`` is None."""
-    left_out = len(texts) - most if most is not None else 0
-    return separator.join(texts[:most]) + (words("terminal.more.verbose", n=left_out) if left_out > 0 else "")
+def listed(texts: Sequence[str], limit: int | None, words: Words, separator: str = ", ") -> str:
+    """Return the first of some texts, and how many more ``-v`` shows; all if ``limit`` is None."""
+    left_out = len(texts) - limit if limit is not None else 0
+    return separator.join(texts[:limit]) + (words("terminal.more.verbose", n=left_out) if left_out > 0 else "")

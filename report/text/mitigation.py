@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.report.text.line_parts import Line
 
-LESS = {
+LOST_TEXTS = {
     "unread": "can no longer read",
     "unwritten": "can no longer write to",
     "narrowed": "gets fewer names through",
@@ -81,7 +81,7 @@ def _of_proposal(proposal: Mapping[str, Any]) -> Iterator[Line]:
         for step in steps:
             yield from _of_step(step) if step["kind"] != REVIEW else ()
         yield from _breaks(proposal)
-        stays = f"no open finding of {_these(names)} is left" if not kept else "only what is listed below is left"
+        stays = f"no open finding of {_elements(names)} is left" if not kept else "only what is listed below is left"
         reviews = any(step["kind"] == REVIEW for step in steps)
         this = "this, and if the review finds none" if reviews else "this"
         yield f"   Proven: analysed anew with {this}, {stays}; the verdict is then {proposal['verdict_then']}.", "green"
@@ -92,7 +92,7 @@ def _of_proposal(proposal: Mapping[str, Any]) -> Iterator[Line]:
     yield from _protect(proposal)
     yield from _statements(proposal["statements"])
     for one in kept:
-        yield f"   Stays: {_kept(one)}", "yellow"
+        yield f"   Stays: {_remaining(one)}", "yellow"
 
 
 def _protect(proposal: Mapping[str, Any]) -> Iterator[Line]:
@@ -127,7 +127,7 @@ def _verb(steps: Sequence[Any]) -> str:
     return "removes" if len(steps) == 1 else "remove"
 
 
-def _these(names: Sequence[str]) -> str:
+def _elements(names: Sequence[str]) -> str:
     return names[0] if len(names) == 1 else "these kinds"
 
 
@@ -207,7 +207,7 @@ def _breaks(proposal: Mapping[str, Any]) -> Iterator[Line]:
         yield "   What gets less than today:", ""
     for less in proposal["affected"][:SHOWN]:
         parts = [f"without {', '.join(one['categories'])} from {_of(one['from'])}" for one in less["filtered"]]
-        for key, verb in LESS.items():
+        for key, verb in LOST_TEXTS.items():
             parts += [f"{verb} {_of(one)}" for one in less[key]]
         more = [f"{len(parts) - PARTS} more"] if len(parts) > PARTS else []
         yield f"      {_marked(less['element'])}: {'; '.join([*parts[:PARTS], *more])}", ""
@@ -215,7 +215,7 @@ def _breaks(proposal: Mapping[str, Any]) -> Iterator[Line]:
         yield f"      … and {len(proposal['affected']) - SHOWN} more (--format json has all)", "dim"
 
 
-def _kept(finding: Mapping[str, Any]) -> str:
+def _remaining(finding: Mapping[str, Any]) -> str:
     way = " -> ".join(shown_name(element) for element in finding["way"])
     if finding["reason"] == ITSELF:
         if finding["kind"] in STATED:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import GOES_NOWHERE, NO_LEAK_NAMED
-from rosprivacy.report.called_alike import both, kind_in, legs, named
+from rosprivacy.report.called_alike import joined_by_and, kind_in, legs, names_shown
 from rosprivacy.report.catalogs.words import IN_ENGLISH, Words
 from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import key, label_name, shown_name
@@ -49,7 +49,7 @@ def review_lines(report: Mapping[str, Any], words: Words, *, verbose: bool) -> I
             what = "; ".join((kind_in(question["element"], words), steps, review_text(question, brings, words)))
             yield f"   {label_name(question)}  ({what})", ""
         if not verbose:
-            yield from _more(group, words)
+            yield from _additional(group, words)
 
 
 def review_text(question: Mapping[str, Any], brings: Mapping[Any, Sequence[str]], words: Words = IN_ENGLISH) -> str:
@@ -62,10 +62,10 @@ def review_text(question: Mapping[str, Any], brings: Mapping[Any, Sequence[str]]
     parts += [words("terminal.brings", own=", ".join(own), kinds=kinds)] if own else []
     behind = [words.count(question["closes"], "open_element")] if question.get("closes") else []
     behind += [words.count(question["leaks"], "exit")] if question.get("leaks") else []
-    return "; ".join([*parts, *([words("terminal.only.past", behind=both(behind, words))] if behind else [])])
+    return "; ".join([*parts, *([words("terminal.only.past", behind=joined_by_and(behind, words))] if behind else [])])
 
 
-def _more(group: ReviewGroup, words: Words) -> Iterator[Line]:
+def _additional(group: ReviewGroup, words: Words) -> Iterator[Line]:
     left = len(group.now) - SHOWN
     if left > 0:
         yield f"   {words('terminal.rest', n=left)}", "dim"
@@ -75,8 +75,8 @@ def _more(group: ReviewGroup, words: Words) -> Iterator[Line]:
         yield f"   {words('terminal.infrastructure', n=proposed)}", "dim"
 
 
-def doubt_lines(report: Mapping[str, Any], most: int | None, words: Words) -> Iterator[Line]:
-    """Return a line for each doubt, ``most`` of each sort, with what to do about the sort."""
+def doubt_lines(report: Mapping[str, Any], limit: int | None, words: Words) -> Iterator[Line]:
+    """Return a line for each doubt, ``limit`` of each sort, with what to do about the sort."""
     doubts = report["doubts"]
     if not doubts:
         return
@@ -87,9 +87,9 @@ def doubt_lines(report: Mapping[str, Any], most: int | None, words: Words) -> It
         rank = words(f"doubt.{sort[0]['rank']}")
         remedy = words("doubt.what.to.do", do=words(f"doubt.{name}.do"))
         yield f"   {words(f'doubt.{name}.title')} ({rank}). {remedy}", ""
-        yield from ((f"      {_doubt(doubt, words)}", "yellow") for doubt in sort[:most])
-        if most is not None and len(sort) > most:
-            yield f"      {words('terminal.rest', n=len(sort) - most)}", "dim"
+        yield from ((f"      {_doubt(doubt, words)}", "yellow") for doubt in sort[:limit])
+        if limit is not None and len(sort) > limit:
+            yield f"      {words('terminal.rest', n=len(sort) - limit)}", "dim"
 
 
 def _doubt(doubt: Mapping[str, Any], words: Words) -> str:
@@ -134,7 +134,7 @@ def _step(report: Mapping[str, Any], words: Words) -> str:
         return words("terminal.next.all", source=source, restriction=asked)
     if not followed:
         likely = candidates(report)
-        names = words("terminal.next.candidates", names=named(likely, words)) if likely else ""
+        names = words("terminal.next.candidates", names=names_shown(likely, words)) if likely else ""
         return words("terminal.next.init", source=source, candidates=names)
     if report["open"]:
         first = next_round(report)[0]["element"]

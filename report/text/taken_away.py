@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.report.called_alike import both, opening_text
+from rosprivacy.report.called_alike import joined_by_and, opening_text
 from rosprivacy.report.document.ledger import hanging
 from rosprivacy.report.naming import infrastructure_file, shown_name
 from rosprivacy.report.text.line_parts import listed, place, titled
@@ -25,13 +25,13 @@ WORST = 3  # statements on which something hangs
 FEW = 3  # findings, questions and elements that are named in a line
 
 
-def denied_lines(report: Mapping[str, Any], words: Words, *, most: int | None) -> Iterator[Line]:
-    """Return the denied flows; ``most`` of them, all if None."""
+def denied_lines(report: Mapping[str, Any], words: Words, *, limit: int | None) -> Iterator[Line]:
+    """Return the denied flows; ``limit`` of them, all if None."""
     flows = report["denied"]
     if flows:
-        yield from titled(words("terminal.denied", n=len(flows)), (_denied(flow, words) for flow in flows[:most]))
-    if most is not None and len(flows) > most:
-        yield f"   {words('terminal.rest', n=len(flows) - most)}", "dim"
+        yield from titled(words("terminal.denied", n=len(flows)), (_denied(flow, words) for flow in flows[:limit]))
+    if limit is not None and len(flows) > limit:
+        yield f"   {words('terminal.rest', n=len(flows) - limit)}", "dim"
 
 
 def _denied(flow: Mapping[str, Any], words: Words) -> Line:
@@ -49,7 +49,7 @@ def _ends(row: Mapping[str, Any], start: str = "source", end: str = "target") ->
     return f"{shown_name(row[start])} -> {shown_name(row[end])}"
 
 
-def standard_lines(report: Mapping[str, Any], most: int | None, words: Words) -> Iterator[Line]:
+def standard_lines(report: Mapping[str, Any], limit: int | None, words: Words) -> Iterator[Line]:
     """Return which standard channels were taken as mundane, on which file's word, and what data stops there."""
     assumptions = report["assumptions"]
     taken = assumptions["standard_channels"]
@@ -68,11 +68,11 @@ def standard_lines(report: Mapping[str, Any], most: int | None, words: Words) ->
     unchanged = [shown_name(element) for element in assumptions.get("standard_channels_unchanged", ())]
     for what, names in (("reached", reached), ("keeps", keeping), ("unchanged", unchanged)):
         if names:
-            text = words(f"terminal.standard.{what}", n=len(names), names=listed(names, most, words))
+            text = words(f"terminal.standard.{what}", n=len(names), names=listed(names, limit, words))
             yield f"   {text}", "yellow" if what == "unchanged" else ""
 
 
-def type_lines(report: Mapping[str, Any], most: int | None, words: Words) -> Iterator[Line]:
+def type_lines(report: Mapping[str, Any], limit: int | None, words: Words) -> Iterator[Line]:
     """Return which files of types were read, how many flows types close, and the findings that only these close."""
     assumptions = report["assumptions"]
     for file in assumptions.get("types", ()):
@@ -89,7 +89,7 @@ def type_lines(report: Mapping[str, Any], most: int | None, words: Words) -> Ite
     yield f"   {words('terminal.types.limits', flows=flows, file=shown(limits['file']), sha=limits['sha256'][:12])}", ""
     closed = [f"{row['category']}: {_ends(row, end='leak')}" for row in assumptions.get("closed_by_types", ())]
     if closed:
-        names = listed(closed, most, words, "; ")
+        names = listed(closed, limit, words, "; ")
         yield f"   {words.count(len(closed), 'terminal.types.closed')} {names}", "yellow"
 
 
@@ -125,13 +125,13 @@ def _glob(row: Mapping[str, Any], words: Words) -> str:
     flows = row.get("flows", 0)
     decided = [words.count(row["elements"], "element")] if row["elements"] or not flows else []
     decided += [words.count(flows, "flow")] if flows else []
-    parts = [words("terminal.glob.decides", what=both(decided, words))]
+    parts = [words("terminal.glob.decides", what=joined_by_and(decided, words))]
     parts += [words("terminal.glob.closed", n=row["closed"])] if row["closed"] else []
     if row.get("flows_closed"):
         parts.append(words("terminal.glob.along", flows=words.count(row["flows_closed"], "flow")))
     parts += [words("terminal.glob.reviewed", n=row["reviewed"])] if row["reviewed"] else []
     behind = _leak_and_open(row, words)
-    lies = words("terminal.glob.behind", places=both(behind, words)) if behind else ""
+    lies = words("terminal.glob.behind", places=joined_by_and(behind, words)) if behind else ""
     return words("terminal.glob", place=place(row), says=", ".join(row["says"]), parts=", ".join(parts), behind=lies)
 
 
@@ -153,14 +153,14 @@ def taken_away_lines(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
         yield f"   {words('terminal.closing', n=closing)}", "yellow"
 
 
-def hanging_lines(report: Mapping[str, Any], most: int | None, words: Words) -> Iterator[Line]:
+def hanging_lines(report: Mapping[str, Any], limit: int | None, words: Words) -> Iterator[Line]:
     """Return on which labels it hangs that no leak was found: data gets there and ends on their word (rule S12)."""
     labels = [
         f"{at} ({shown_name(row['element'])} {_row_says(row, words)}{_leak_behind(row, words)})"
         for at, row in hanging(report)
     ]
     if labels:
-        text = words.count(len(labels), "terminal.hanging", labels=listed(labels, most, words))
+        text = words.count(len(labels), "terminal.hanging", labels=listed(labels, limit, words))
         yield f"   {text}", "bold yellow"
 
 
@@ -207,7 +207,9 @@ def _behind(row: Mapping[str, Any], words: Words) -> str:
     if row["by"] == "restriction":
         return words("terminal.reaches", leak=shown_name(row["leak"]))
     places = _leak_and_open(row, words)
-    return words("terminal.without", places=both(places, words)) if places else words("terminal.not.worked.out")
+    return (
+        words("terminal.without", places=joined_by_and(places, words)) if places else words("terminal.not.worked.out")
+    )
 
 
 def reliance_lines(report: Mapping[str, Any], words: Words, *, verbose: bool) -> Iterator[Line]:
@@ -223,14 +225,14 @@ def reliance_lines(report: Mapping[str, Any], words: Words, *, verbose: bool) ->
     worst = [row for row in rows if not row["shipped"] and (row["findings"] or row["perhaps"])]
     listed_rows, most = (rows, None) if verbose else (worst[:WORST], FEW)
     yield from titled(
-        words("terminal.hangs", what=both([words.count(n, key) for n, key in counts if n], words)),
+        words("terminal.hangs", what=joined_by_and([words.count(n, key) for n, key in counts if n], words)),
         ((f"   {_statement(row, most, words)}", "yellow" if row["findings"] else "") for row in listed_rows),
     )
     if len(listed_rows) < len(rows):
         yield f"   {words('terminal.hangs.wrong')}", "dim"
 
 
-def _statement(row: Mapping[str, Any], most: int | None, words: Words) -> str:
+def _statement(row: Mapping[str, Any], limit: int | None, words: Words) -> str:
     ends = (_distinct(map(shown_name, row[end]), FEW, words) for end in ("elements", "to") if row[end])
     return words(
         "terminal.hangs.line",
@@ -239,7 +241,7 @@ def _statement(row: Mapping[str, Any], most: int | None, words: Words) -> str:
         said=_as_written(row) + (words("terminal.by.glob") if row["glob"] else ""),
         by=words("terminal.hangs.by", author=shown(row["author"])) if row["author"] else "",
         why=f" ({shown(row['why'])})" if row["why"] else "",
-        opened=_opened(row, most, words),
+        opened=_opened(row, limit, words),
     )
 
 
@@ -252,14 +254,14 @@ def _as_written(row: Mapping[str, Any]) -> str:
     return f"{role}: [{names}]" if names else role
 
 
-def _opened(row: Mapping[str, Any], most: int | None, words: Words) -> str:
+def _opened(row: Mapping[str, Any], limit: int | None, words: Words) -> str:
     if row["refused"]:
         return words("reliance.refused", why=shown(row["refused"]))
     if row["perhaps"]:
         return words("terminal.not.worked.out")
     questions = (f"{shown_name(of['element'])} ({', '.join(of['categories'])})" for of in row["questions"])
-    parts = [_distinct((_opening(opening, words) for opening in row["findings"]), most, words)]
-    parts += [words("terminal.hangs.asked", elements=_distinct(questions, most, words))] if row["questions"] else []
+    parts = [_distinct((_opening(opening, words) for opening in row["findings"]), limit, words)]
+    parts += [words("terminal.hangs.asked", elements=_distinct(questions, limit, words))] if row["questions"] else []
     return "; ".join(filter(None, parts))
 
 
@@ -269,8 +271,8 @@ def _opening(opening: Mapping[str, Any], words: Words) -> str:
     return opening_text(opening, words.pair(data, _ends(opening, end="leak")), words)
 
 
-def _distinct(texts: Iterable[str], most: int | None, words: Words) -> str:
+def _distinct(texts: Iterable[str], limit: int | None, words: Words) -> str:
     """Return the first of some texts, each once: the legs of a service have one name."""
     distinct = list(dict.fromkeys(texts))
-    left_out = len(distinct) - most if most is not None else 0
-    return words.row(distinct[:most]) + (words("terminal.more", n=left_out) if left_out > 0 else "")
+    left_out = len(distinct) - limit if limit is not None else 0
+    return words.row(distinct[:limit]) + (words("terminal.more", n=left_out) if left_out > 0 else "")

@@ -58,7 +58,7 @@ def answer(system: System, question: Question, *, count_paths: bool = True, befo
     question = in_contexts(question, at_sources.everywhere)
     groups = _groups(system, question) if system.is_fleet else None
     options = Options(
-        categories=question.asked,
+        categories=question.categories_asked,
         paths=question.settings.paths,
         max_paths=question.settings.max_paths,
         count_paths=count_paths or question.decisions is not None,
@@ -96,18 +96,18 @@ def _under_types(system: System, options: Options, under: Analysis) -> Analysis:
     chosen = _closed(system, under) if options.choose else None
     hierarchy = system.vocabulary.hierarchy
     without = analyse(system.graph, system.bound, hierarchy, options._replace(choose=chosen, paths=Paths.witness))
-    gone = chosen.of(without.findings) if chosen else _gone(system, under, without)
-    mask = sum(under.spread.both(category) for category in under.emitted)
+    gone = chosen.of(without.findings) if chosen else _closed_by_limits(system, under, without)
+    mask = sum(under.spread.forms_of(category) for category in under.emitted)
     leak = any(finding.stands for finding in under.findings)
     return replace(
         under,
         open=without.open,
-        verdict=Verdict.of(leak=leak, is_open=bool(without.open), known=not under.lacking),
+        verdict=Verdict.of(leak=leak, is_open=bool(without.open), grounded=not under.lacking),
         closed=ClosedByTypes(*closed(under.spread, mask), gone),
     )
 
 
-def _gone(system: System, under: Analysis, without: Analysis) -> tuple[Finding, ...]:
+def _closed_by_limits(system: System, under: Analysis, without: Analysis) -> tuple[Finding, ...]:
     """What only limits close, where every finding is made; of robots one of each pattern."""
     left = {finding.id for finding in under.findings}
     gone = (one for one in without.findings if one.id not in left and system.likeness.count(one))
@@ -144,8 +144,8 @@ def _counted(system: System, options: Options, analysis: Analysis, view: FleetVi
     chosen: dict[int, set[Chosen]] = defaultdict(set)
     for one in (pattern.finding for pattern in view.patterns if pattern.across):
         category = analysis.spread.categories.index(one.category)
-        chosen[elements[one.source]].add((one.kind, elements[one.leak], category, one.beside))
-    options, net = options._replace(uncounted=None), Net.kept(analysis.spread)
+        chosen[elements[one.source]].add((one.kind, elements[one.leak], category, one.plain_also))
+    options, net = options._replace(uncounted=None), Net.cached(analysis.spread)
     some = chosen_findings(net, system.bound, system.vocabulary.hierarchy, options, chosen)
     counted = {finding.id: finding for finding in some}
     findings = tuple(counted.get(finding.id, finding) for finding in analysis.findings)
@@ -175,12 +175,12 @@ def concluded(
     law = law_of(system.vocabulary, analysis.emitted, at_sources.everywhere)
     analysis = replace(analysis, diagnostics=(*analysis.diagnostics, *lacks(rows, law)))
     listed = doubts(
-        analysis, system.diagnostics, system.likeness.weight, restricted=question.asked is not None,
+        analysis, system.diagnostics, system.likeness.weight, restricted=question.categories_asked is not None,
         by_globs=answered_by_globs(analysis.spread, system.bound, system.vocabulary.hierarchy),
     )  # fmt: skip
-    listed, remarks = doubts_decided(question.decisions, listed, everything=question.asked is None)
+    listed, remarks = doubts_decided(question.decisions, listed, everything=question.categories_asked is None)
     analysis = judged(analysis, listed)
-    joined = joined_to(question.decisions, analysis, law, question.asked, system.likeness, view)
+    joined = joined_to(question.decisions, analysis, law, question.categories_asked, system.likeness, view)
     return Result(
         analysis,
         system.bound,
@@ -198,7 +198,7 @@ def concluded(
         labels=system.labels,
         types=system.types,
         options=options,
-        again=partial(_again, system.under, question) if system.under else None,
+        reanalyse=partial(_reanalyse, system.under, question) if system.under else None,
         closes=_proposed if system.policies else None,
         label_files=system.label_files,
     )
@@ -210,7 +210,7 @@ def _proposed(result: Result) -> Mapping[str, Any] | str:
     return {**document} if isinstance(document := proposed(result), dict) else document
 
 
-def _again(
+def _reanalyse(
     under: Callable[[tuple[str | Labels, ...]], System], question: Question, labels: tuple[str | Labels, ...]
 ) -> Result:
     return answer(under(labels), question)

@@ -17,7 +17,7 @@ from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.kernel.roles import facts
 from rosprivacy.analysis.model import NOTHING_FOLLOWED, Place, by_confidence, unread
 from rosprivacy.analysis.model.recording import JudgedBag, TopicKinds
-from rosprivacy.analysis.written_names import is_glob, meant
+from rosprivacy.analysis.written_names import bare_name, is_glob
 from rosprivacy.assumptions import files_read
 from rosprivacy.ingest.policies.names import covered, covers, is_pattern, recorded_channels
 from rosprivacy.ingest.running.bag_folders import read_bags
@@ -134,21 +134,23 @@ def _judged(bag: Bag, topic: BagTopic, said_of: Callable[[str], Said], table: Ty
     suggested = tuple(sorted((rule for name in topic.types for rule in table.suggested(name)), key=by_confidence))
     if not (said.kinds or said.unknown or said.covered):
         looked_at = bool(topic.types) and all(table.knows(name) for name in topic.types)
-        said = _asked(said, suggested, looked_at=looked_at)
+        said = _questions(said, suggested, looked_at=looked_at)
     return TopicKinds(topic, said.kinds, said.unknown, said.why, suggested)
 
 
-def _asked(said: Said, suggested: Sequence[Suggestion], *, looked_at: bool) -> Said:
+def _questions(statements: Said, suggested: Sequence[Suggestion], *, looked_at: bool) -> Said:
     """What is said of a topic that no person's label names, under the question of its types."""
     whose = (
-        "only the program's own labels say that it carries nothing" if said.shipped else "no label of the topic itself"
+        "only the program's own labels say that it carries nothing"
+        if statements.shipped
+        else "no label of the topic itself"
     )
     kinds = sorted({kind for rule in suggested for kind in rule.kinds})
     if kinds:
-        return replace(said, unknown=f"{whose}, and its type suggests {', '.join(kinds)}", why="")
-    if said.shipped and not looked_at:
-        return replace(said, unknown=f"{whose}, and the table of types does not know its type", why="")
-    return said
+        return replace(statements, unknown=f"{whose}, and its type suggests {', '.join(kinds)}", why="")
+    if statements.shipped and not looked_at:
+        return replace(statements, unknown=f"{whose}, and the table of types does not know its type", why="")
+    return statements
 
 
 def by_system(result: Result) -> Callable[[str], Said]:
@@ -169,14 +171,14 @@ def by_system(result: Result) -> Callable[[str], Said]:
     for flow in graph.flows:
         writers[flow.target].append(flow.source)
 
-    def found(channel: Channel) -> list[int]:
+    def statement_of(channel: Channel) -> list[int]:
         kind, name, leg = channel
         if vertices.get(channel) or is_pattern(name):
             return vertices.get(channel, [])
         return [vertex for vertex in patterns[kind, leg] if covers(graph.elements[vertex].name, name)]
 
     def said_of(topic: str) -> Said:
-        here = [vertex for channel in recorded_channels(topic) for vertex in found(channel)]
+        here = [vertex for channel in recorded_channels(topic) for vertex in statement_of(channel)]
         if not here:
             return Said(unknown="the policies do not name it")
         kinds = {name for vertex in here for name in spread.names(spread.present(vertex))}
@@ -191,9 +193,9 @@ def by_system(result: Result) -> Callable[[str], Said]:
             return Said(unknown=f"grants were not read: {shown(str(unread_files[0]))}")
         return by_writers(here)
 
-    def by_writers(here: Sequence[int]) -> Said:
+    def by_writers(vertices: Sequence[int]) -> Said:
         """A channel to which no data gets: that is known if all that write to it were looked at."""
-        for vertex in here:
+        for vertex in vertices:
             sending = _senders(vertex, writers, analysis)
             if not sending:
                 return Said(unknown="no node of the policies writes to it")
@@ -229,7 +231,7 @@ def by_labels(files: Sequence[Labels], vocabulary: Vocabulary) -> Callable[[str]
     globs = [at for at, entry in enumerate(entries) if is_glob(entry.name)]
     for at, entry in enumerate(entries):
         if not is_glob(entry.name):
-            named[meant(entry.name)].append(at)
+            named[bare_name(entry.name)].append(at)
     decided: dict[tuple[Statement, ...], Said] = {}
 
     def said_of(topic: str) -> Said:
@@ -251,14 +253,16 @@ def _is_about(entry: Entry, channels: Sequence[Channel]) -> bool:
     return any(kind in entry.kinds and covered(entry.name, [name]) for kind, name, _ in channels)
 
 
-def _decided(topic: str, said: Sequence[Statement], vocabulary: Vocabulary) -> Said:
+def _decided(topic: str, statements: Sequence[Statement], vocabulary: Vocabulary) -> Said:
     """What some statements say of a topic; of most topics the same ones speak, or none."""
-    decided = {name: facts(topic, said, name, vocabulary.hierarchy) for name in sorted(vocabulary.categories)}
+    decided = {name: facts(topic, statements, name, vocabulary.hierarchy) for name in sorted(vocabulary.categories)}
     passing = [name for name, fact in decided.items() if fact.passes]
     if not passing:
-        own = [statement for statement in said if not statement.shipped]
-        shipped = len(own) < len(said) and any(facts(topic, own, name, vocabulary.hierarchy).passes for name in decided)
-        return Said(why=f"{_lines(said)}: it carries no kind of data", covered=not shipped, shipped=shipped)
+        own = [statement for statement in statements if not statement.shipped]
+        shipped = len(own) < len(statements) and any(
+            facts(topic, own, name, vocabulary.hierarchy).passes for name in decided
+        )
+        return Said(why=f"{_lines(statements)}: it carries no kind of data", covered=not shipped, shipped=shipped)
     if len(passing) < len(decided) and (only := {s for fact in decided.values() for s in fact.by_role("only")}):
         stated = {name for statement in only for name in statement.categories}.intersection(passing)
         if stated:
@@ -266,6 +270,8 @@ def _decided(topic: str, said: Sequence[Statement], vocabulary: Vocabulary) -> S
     return Said(unknown="no label says what it carries")
 
 
-def _lines(said: Iterable[Statement]) -> str:
-    places: list[Place] = sorted({statement.place for statement in said}, key=lambda place: (place.file, place.line))
+def _lines(statements: Iterable[Statement]) -> str:
+    places: list[Place] = sorted(
+        {statement.place for statement in statements}, key=lambda place: (place.file, place.line)
+    )
     return ", ".join(shown(str(place)) for place in places)

@@ -65,7 +65,7 @@ def both_views(policies: tuple[str, ...], labels: tuple[str | Labels, ...], sett
     InputErrors
         With every problem of the input, one line each.
     """
-    return _both(settings, lambda question: system_reader(policies, labels, question))
+    return _both_views(settings, lambda question: system_reader(policies, labels, question))
 
 
 def both_views_of_fleet(file: str, settings: Settings) -> Result:
@@ -78,10 +78,10 @@ def both_views_of_fleet(file: str, settings: Settings) -> Result:
     """
     from rosprivacy.reading.fleet_system import fleet_reader  # noqa: PLC0415 - light start
 
-    return _both(settings, lambda question: fleet_reader(file, question))
+    return _both_views(settings, lambda question: fleet_reader(file, question))
 
 
-def _both(settings: Settings, reader: Callable[[Question], Reader]) -> Result:
+def _both_views(settings: Settings, reader: Callable[[Question], Reader]) -> Result:
     of_record = question_of(replace(settings, view=View.declared.value))
     question = question_of(replace(settings, view=View.enforced.value))._replace(every=True)
     declared, enforced = reader(of_record), reader(question)
@@ -145,7 +145,7 @@ class Remedies:
         Tell what a change leaves of findings under the enforced view.
     declared
         Reads the policies with a change.
-    known
+    granted
         The flows that profiles allow.
     enclaves
         The nodes of each enclave.
@@ -157,7 +157,7 @@ class Remedies:
 
     trials: Trials
     declared: Callable[[Change], System]
-    known: frozenset[Ends]
+    granted: frozenset[Ends]
     enclaves: Mapping[str, frozenset[str]]
     second: Collection[str]
     hidden: Collection[str] = ()
@@ -167,7 +167,7 @@ class Remedies:
 
     def of(self, findings: Sequence[Finding], robots: tuple[str, ...] = ()) -> Added:
         """Return what ends some findings that differ only in the robot, of which the first is told."""
-        steps = beyond(findings[0], self.known)
+        steps = beyond(findings[0], self.granted)
         shared = self._shared(findings[0])
         enclaves = {path for one in findings for path in enclaves_of(one, self._shared(one))}
         deny = self._deny(findings)
@@ -193,7 +193,7 @@ class Remedies:
 
     def _shared(self, finding: Finding) -> tuple[int, ...]:
         """The steps beyond a profile that an enclave of several nodes allows; others nobody asks permissions for."""
-        steps = ((n, finding.steps[n]) for n in beyond(finding, self.known))
+        steps = ((n, finding.steps[n]) for n in beyond(finding, self.granted))
         return tuple(
             n for n, step in steps
             if all(g.node != _ends(step)[0].name and len(self.enclaves.get(g.enclave, ())) > 1 for g in step.grants)
@@ -207,12 +207,12 @@ class Remedies:
             if more == enclaves:
                 return ()
             enclaves = more
-            left = self._left(Change(split=enclaves), findings)
+            left = self._still_open(Change(split=enclaves), findings)
         return () if left is None else tuple(sorted(enclaves))
 
     def _move(self, finding: Finding, findings: Sequence[Finding]) -> tuple[str, str] | None:
         for enclave, node in dict.fromkeys(self._movable(finding)):
-            if self._left(Change(move=frozenset({(enclave, node)})), findings) == []:
+            if self._still_open(Change(move=frozenset({(enclave, node)})), findings) == []:
                 return enclave, node
         return None
 
@@ -221,7 +221,7 @@ class Remedies:
 
         A session of Zenoh that says who it is stays among those that a list lets in whoever they are.
         """
-        steps = [finding.steps[n] for n in beyond(finding, self.known)]
+        steps = [finding.steps[n] for n in beyond(finding, self.granted)]
         users = [(grant.enclave, _ends(step)[0].name) for step in steps for grant in step.grants]
         holders = [(grant.enclave, grant.node) for step in steps for grant in step.grants]
         for enclave, node in (*users, *sorted(holders)):
@@ -239,15 +239,15 @@ class Remedies:
             if not more:
                 return ()
             lines |= more
-            left = self._left(Change(deny=lines), findings)
+            left = self._still_open(Change(deny=lines), findings)
         return () if left is None else tuple(sorted(lines))
 
     def _next_lines(self, finding: Finding, lines: frozenset[DenyLine]) -> frozenset[DenyLine]:
         """The lines that deny one more step of a path: that which the fewest lines allow."""
-        choices = [frozenset(_lines(finding, n)) - lines for n in beyond(finding, self.known)]
+        choices = [frozenset(_lines(finding, n)) - lines for n in beyond(finding, self.granted)]
         return min((choice for choice in choices if choice), key=lambda c: (len(c), sorted(c)), default=frozenset())
 
-    def _left(self, change: Change, findings: Iterable[Finding]) -> list[Finding] | None:
+    def _still_open(self, change: Change, findings: Iterable[Finding]) -> list[Finding] | None:
         """Those of the findings that still stand after a change; None where too many changes were tried."""
         if change not in self.tried:
             kind = next(n for n, part in enumerate(change) if part)
@@ -255,7 +255,7 @@ class Remedies:
             if self.counts[kind] > TRIED:
                 return None
             self.tried.add(change)
-        left = self.trials.left(change, findings)
+        left = self.trials.still_open(change, findings)
         return [one for one in left if not (one.pseudonymised and one.id in self.hidden)]
 
     def _rights(self, change: Change) -> frozenset[Right]:
@@ -280,16 +280,16 @@ def _lines(finding: Finding, number: int) -> Iterator[DenyLine]:
     """
     step = finding.steps[number]
     grants = [grant for grant in step.grants if not (grant.dead or grant.rank)]
-    if len(grants) != len(step.grants) or any(grant.seen or grant.kind == DDS for grant in grants):
+    if len(grants) != len(step.grants) or any(grant.observation or grant.kind == DDS for grant in grants):
         return
-    channel = _meant(finding, number)
+    channel = _channel_of(finding, number)
     first = {(grant.policy, grant.enclave): grant for grant in reversed(grants)}
     for (policy, enclave), grant in first.items():
         for kind, name in writable(step.role, channel.kind, channel.name):
             yield DenyLine(policy, enclave, grant.node, step.role, kind, name)
 
 
-def _meant(finding: Finding, number: int) -> Element:
+def _channel_of(finding: Finding, number: int) -> Element:
     """The channel of a step; where it is a wildcard, the name that the data goes through, if that is none."""
     channel = _ends(finding.steps[number])[1]
     beside = number + 2 if finding.witness[number + 1] == channel else number - 1
@@ -355,35 +355,35 @@ class Trials:
         if self.system.is_fleet or enclaves & self.wildcards:
             return 1
         spread, elements = self.result.analysis.spread, self.system.graph.elements
-        source, bits = self.vertices[finding.source], spread.both(finding.category)
+        source, bits = self.vertices[finding.source], spread.forms_of(finding.category)
         bits &= spread.emits.get(source, 0)
         return len(
             {
                 (elements[vertex].kind, elements[vertex].name)
                 for vertex in self.leading_to.get(self.vertices[finding.leak], ())
                 if elements[vertex].is_channel
-                and bits & spread.sent.get(vertex, 0) & spread.taken(vertex)
+                and bits & spread.sent.get(vertex, 0) & spread.absorbed(vertex)
                 and source in self.leading_to[vertex]
             }
         )
 
-    def left(self, change: Change, findings: Iterable[Finding]) -> list[Finding]:
+    def still_open(self, change: Change, findings: Iterable[Finding]) -> list[Finding]:
         """Return those of some findings that still stand after a change: all where labels do not fit what it leaves."""
         findings = tuple(findings)
         try:
-            there = self._whole(change) if self.system.is_fleet else self._only(change, findings)
+            there = self._all_findings(change) if self.system.is_fleet else self._listed_only(change, findings)
         except InputErrors:  # such as a flow that a label names: nothing is proven then
             return list(findings)
         return [there[one.id] for one in findings if one.id in there]
 
-    def _whole(self, change: Change) -> Mapping[str, Finding]:
+    def _all_findings(self, change: Change) -> Mapping[str, Finding]:
         """All findings: robots of a fleet are put together first."""
         if change not in self.answers:
             found = answer(self.read(change), self.question).analysis.findings
             self.answers[change] = {one.id: one for one in found if not one.dismissed}
         return self.answers[change]
 
-    def _only(self, change: Change, findings: Sequence[Finding]) -> Mapping[str, Finding]:
+    def _listed_only(self, change: Change, findings: Sequence[Finding]) -> Mapping[str, Finding]:
         if change not in self.nets:
             self.nets[change] = self._net(change)
         net, bound = self.nets[change]
@@ -393,7 +393,7 @@ class Trials:
         for one in findings:
             if {one.source, one.leak} <= vertices.keys():
                 number = categories.index(one.category)
-                chosen[vertices[one.source]].add((one.kind, vertices[one.leak], number, one.beside))
+                chosen[vertices[one.source]].add((one.kind, vertices[one.leak], number, one.plain_also))
         options = self.result.options
         assert options is not None, "an answer that was worked out here"
         options = options._replace(count_paths=False)

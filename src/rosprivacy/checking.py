@@ -110,8 +110,8 @@ def _entry(difference: Difference) -> DifferenceEntry:
     }
 
 
-def _diagnostics(said: Iterable[Diagnostic]) -> Iterable[dict[str, object]]:
-    for one in dict.fromkeys(said):
+def _diagnostics(diagnostics: Iterable[Diagnostic]) -> Iterable[dict[str, object]]:
+    for one in dict.fromkeys(diagnostics):
         yield {"severity": str(one.severity), "message": one.message, "file": one.place.file, "line": one.place.line}
 
 
@@ -154,14 +154,14 @@ def _read(name: str, settings: Settings, graph: bool) -> tuple[Policy, ...]:  # 
     return read_system(() if graph else (name,), settings, read_graphs(settings))[0]
 
 
-def _patched(before: tuple[Policy, ...], after: tuple[Policy, ...], found: Usage, view: str) -> Patch:
+def _patched(before: tuple[Policy, ...], after: tuple[Policy, ...], used: Usage, view: str) -> Patch:
     """The patch, if with it no more is refused of what runs than before."""
-    if not found.to_deny:
+    if not used.to_deny:
         return Patch()
-    changed = usage(with_denied(before, found.to_deny), after, view)
-    if [use.grant for use in changed.not_granted] != [use.grant for use in found.not_granted]:
+    changed = usage(with_denied(before, used.to_deny), after, view)
+    if [use.grant for use in changed.not_granted] != [use.grant for use in used.not_granted]:
         return Patch(why_not="the lines could not be denied without taking away what runs")
-    return patch(before, found.to_deny)
+    return patch(before, used.to_deny)
 
 
 def _grant(grant: Grant) -> dict[str, Any]:
@@ -169,13 +169,13 @@ def _grant(grant: Grant) -> dict[str, Any]:
     return {"node": grant.node, "role": grant.role, "kind": grant.kind, "name": grant.name, **place}
 
 
-def _unused(grant: Grant, found: Usage, made: Patch) -> dict[str, Any]:
-    hidden = {"hidden": True} if grant in found.hidden else {}
-    return {**_grant(grant), "in_patch": bool(made.diff) and grant in found.to_deny, **hidden}
+def _unused(grant: Grant, usage: Usage, patch: Patch) -> dict[str, Any]:
+    hidden = {"hidden": True} if grant in usage.hidden else {}
+    return {**_grant(grant), "in_patch": bool(patch.diff) and grant in usage.to_deny, **hidden}
 
 
 def _use(use: Use) -> dict[str, Any]:
-    seen = use.grant.seen
+    seen = use.grant.observation
     when = {"by": list(seen.by), "first": seen.first, "last": seen.last} if seen else {}
     denied = [{"file": line.place.file, "line": line.place.line} for line in use.lines]
     return {**_grant(use.grant), "why": use.why, "seen": when, **({"denied_by": denied} if denied else {})}

@@ -56,7 +56,7 @@ def joined_to(
     decisions: Decisions | None,
     analysis: Analysis,
     law: Mapping[str, Verdicts],
-    asked: Collection[str] | None,
+    asked_for: Collection[str] | None,
     likeness: Likeness = NO_ROBOTS,
     view: FleetView | None = None,
 ) -> Decided | None:
@@ -75,7 +75,7 @@ def joined_to(
         return in_fleet(Case.of(finding), likeness)
 
     now = about_today(analysis, view)
-    return decided(decisions, analysis.findings, law, everything=asked is None, case_of=case_of, now=now)
+    return decided(decisions, analysis.findings, law, everything=asked_for is None, case_of=case_of, now=now)
 
 
 def doubts_decided(
@@ -121,7 +121,7 @@ def accepts(decisions: Decisions | None, likeness: Likeness = NO_ROBOTS) -> Call
 def in_fleet(case: Case, likeness: Likeness) -> Case:
     """Return a case with its pattern and robots; where it stands for more than itself it has no id of its own."""
     ends = case.source, case.leak
-    pattern = pattern_of(case.kind, case.category, *ends, likeness, beside=case.beside)
+    pattern = pattern_of(case.kind, case.category, *ends, likeness, plain_also=case.plain_also)
     source, leak = (end.robot if likeness.is_robot(end.robot) else "" for end in ends)
     own = case.id if likeness.alone(*ends) else ""
     return case._replace(id=own, pattern=pattern, robots=(source, leak))

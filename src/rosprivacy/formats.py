@@ -127,7 +127,7 @@ def _text(answer: Answer, style: Style) -> str:
     return text_of(document(answer), style)
 
 
-def text_of(told: Mapping[str, Any], style: Style) -> str:
+def text_of(document: Mapping[str, Any], style: Style) -> str:
     """Return a document as text, for a terminal if the style says so."""
     from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.text.analysis import print_report, report_text
@@ -141,9 +141,9 @@ def text_of(told: Mapping[str, Any], style: Style) -> str:
 
         text = StringIO()
         console = Console(file=text, force_terminal=True, highlight=False, emoji=False)
-        print_report(console, told, words, verbose=style.verbose, quiet=style.quiet, width=width)
+        print_report(console, document, words, verbose=style.verbose, quiet=style.quiet, width=width)
         return text.getvalue()
-    return report_text(told, words, verbose=style.verbose, quiet=style.quiet)
+    return report_text(document, words, verbose=style.verbose, quiet=style.quiet)
 
 
 def _json(answer: Answer, _: Style) -> Iterator[str]:
@@ -186,7 +186,7 @@ def _cnil_pia(answer: Answer, style: Style) -> str:
 def _article30(answer: Answer, style: Style) -> str:
     from rosprivacy.report.page.article30 import record
 
-    return record(_told(answer, style)[0], style.language)
+    return record(_rendered_parts(answer, style)[0], style.language)
 
 
 def _markdown(answer: Answer, style: Style) -> str:
@@ -223,12 +223,12 @@ def _outline(answer: Answer, style: Style, proposals: Mapping[str, Any] | str) -
     from rosprivacy.report.page.outline import outline
 
     answers = read_answers(style.assessment) if style.assessment else None
-    told, earlier, proposals, aliases = _told(answer, style, proposals)
+    told, earlier, proposals, aliases = _rendered_parts(answer, style, proposals)
     report = outline(
         told,
         style.language,
         title=style.title or ("" if style.redact else _title(answer, style)),
-        made=today(os.environ),
+        date=today(os.environ),
         earlier=earlier,
         redacted=style.redact,
         proposals=proposals,
@@ -242,10 +242,10 @@ def _title(answer: Answer, style: Style) -> str:
     from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.page.outline import title_of
 
-    return title_of(list(dict.fromkeys(Path(file).name for file in answer.named)), Words(style.language))
+    return title_of(list(dict.fromkeys(Path(file).name for file in answer.named_files)), Words(style.language))
 
 
-def _told(
+def _rendered_parts(
     answer: Answer, style: Style, proposals: Mapping[str, Any] | str = ""
 ) -> tuple[Mapping[str, Any], Earlier | None, Mapping[str, Any] | str, Aliases | None]:
     """The document, the earlier one if there is one, proposals, and what elements are called if names are replaced."""

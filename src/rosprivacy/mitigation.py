@@ -64,7 +64,7 @@ class Mitigation:
     @property
     def complete(self) -> bool:
         """Whether nothing is open, or all that is open is removed by a proposal that is proven."""
-        return all(proposal.proven and not proposal.kept for proposal in self.proposals)
+        return all(proposal.proven and not proposal.remaining for proposal in self.proposals)
 
     def document(self) -> MitigationDocument:
         """Return the JSON document."""

@@ -113,7 +113,7 @@ def types_file(policy: Path) -> Path:
     >>> str(types_file(Path("a/robot.policy.xml"))), str(types_file(Path("robot.xml")))
     ('a/robot.types.yaml', 'robot.types.yaml')
     """
-    return _beside(policy, "types")
+    return _sibling(policy, "types")
 
 
 def declared_file(policy: Path) -> Path:
@@ -123,8 +123,8 @@ def declared_file(policy: Path) -> Path:
     >>> str(declared_file(Path("robot.policy.xml")))
     'robot.declared.labels.yaml'
     """
-    numbered = (_beside(policy, f"declared-{number}.labels") for number in count(2))
-    return next(file for file in chain([_beside(policy, "declared.labels")], numbered) if not file.exists())
+    numbered = (_sibling(policy, f"declared-{number}.labels") for number in count(2))
+    return next(file for file in chain([_sibling(policy, "declared.labels")], numbered) if not file.exists())
 
 
 def keeps_what_is_there(policy: Path) -> None:
@@ -141,7 +141,7 @@ def keeps_what_is_there(policy: Path) -> None:
         raise InputErrors([InputError(str(file), 0, "is there already and would be lost", hint) for file in there])
 
 
-def _beside(policy: Path, what: str) -> Path:
+def _sibling(policy: Path, what: str) -> Path:
     name = policy.name
     for ending in (".policy.xml", ".xml"):
         if name.lower().endswith(ending) and len(name) > len(ending):
@@ -153,10 +153,10 @@ def _beside(policy: Path, what: str) -> Path:
 def observe(
     doors: Iterable[Door],
     seconds: float | None,
-    told: Callable[[Observation | None, Observation], None] = lambda *_: None,
+    notify: Callable[[Observation | None, Observation], None] = lambda *_: None,
 ) -> Observation | None:
     """Look through some doors, one after the other, and return what they have seen together; None if nothing."""
-    seen = [one for door in doors if (one := seen_by(door, seconds, told))]
+    seen = [one for door in doors if (one := seen_by(door, seconds, notify))]
     return added_up(seen) if seen else None
 
 
@@ -165,17 +165,19 @@ def written(observation: Observation) -> Written | None:
     ready = prepared(observation)
     if not ready.enclaves:
         return None
-    labels = declared_labels(observation.declared, observation.seen)
+    labels = declared_labels(observation.declared, observation.span)
     return Written(policy_xml(ready), types_yaml(ready.observation), labels, tuple(_remarks(ready)))
 
 
-def _of_declarations(whole: Observation) -> Iterator[str]:
+def _of_declarations(observation: Observation) -> Iterator[str]:
     """What nodes said of themselves, and where nothing was heard."""
-    heard = {one.topic for one in whole.declared}
-    if whole.declared:
-        told = counted(len(whole.declared), "declaration")
+    heard = {one.topic for one in observation.declared}
+    if observation.declared:
+        told = counted(len(observation.declared), "declaration")
         yield f"{told} of nodes on how they process personal data: their own word, in a label file to review"
-    for name in sorted({one.name for one in whole.endpoints if one.type == TYPE and one.role == "publish"} - heard):
+    for name in sorted(
+        {one.name for one in observation.endpoints if one.type == TYPE and one.role == "publish"} - heard
+    ):
         yield f"{name}: nodes declare there how they process personal data, and none was heard"
 
 
@@ -184,7 +186,7 @@ def _remarks(ready: Prepared) -> Iterator[str]:
     nodes = {node for nodes in ready.enclaves.values() for node in nodes}
     channels = {(one.kind, one.name) for one in whole.endpoints}
     amount = f"{counted(len(nodes), 'node')}, {counted(len(channels), 'channel')}"
-    yield f"{amount}: observed from {whole.seen.first} to {whole.seen.last} by {', '.join(whole.doors)}"
+    yield f"{amount}: observed from {whole.span.first} to {whole.span.last} by {', '.join(whole.doors)}"
     if ready.made_up:
         yield f"enclaves are made up: one per node ({len(ready.made_up):,})"
     yield from whole.remarks
@@ -197,7 +199,7 @@ def _remarks(ready: Prepared) -> Iterator[str]:
     yield "what was not seen proves nothing"
 
 
-def declared_labels(several: Iterable[Declared], seen: Span) -> str:
+def declared_labels(several: Iterable[Declared], span: Span) -> str:
     """Return a label file; empty if nothing that is declared can be said in one."""
     nodes: dict[str, CommentedMap] = {}
     elements: dict[str, CommentedMap] = {}
@@ -206,7 +208,7 @@ def declared_labels(several: Iterable[Declared], seen: Span) -> str:
         if not is_name(one.node):
             continue
         facts = nodes.setdefault(one.node, CommentedMap(source=[ANY_KIND], author=f"{one.node} itself"))
-        called, purpose = _in_one_line(one.called), _in_one_line(one.purpose)
+        called, purpose = _in_one_line(one.label), _in_one_line(one.purpose)
         _say(facts, "note", f"declared on {one.topic}" + (f": {called}" if called else ""))
         if purpose:
             purposes = facts.setdefault("purpose", [])
@@ -221,7 +223,7 @@ def declared_labels(several: Iterable[Declared], seen: Span) -> str:
     if elements:
         document["elements"] = CommentedMap(sorted(elements.items()))
         document["flows"] = [{"from": node, "to": name} for node, name in sorted(flows)]
-    return HEAD.format(type=TYPE, first=seen.first, last=seen.last) + yaml_text(document)
+    return HEAD.format(type=TYPE, first=span.first, last=span.last) + yaml_text(document)
 
 
 def _say(facts: CommentedMap, key: str, text: str) -> None:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, overload
 from rosprivacy.analysis.errors import InputError, shown
 from rosprivacy.analysis.text import fit
 from rosprivacy.analysis.whatif.why_not import why_not
-from rosprivacy.analysis.written_names import A_LITTLE, FEW, did_you_mean, meant, nearest
+from rosprivacy.analysis.written_names import A_LITTLE, FEW, bare_name, did_you_mean, nearest
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 COLUMNS = ("id", "kind", "category", "source", "leak", "pseudonymised", "dismissed", "accepted")
-MOST = 60  # rows that a notebook shows
+BOUND = 60  # rows that a notebook shows
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -82,9 +82,9 @@ class Findings(Sequence["Finding"]):
         head = "".join(f"<th>{column}</th>" for column in columns)
         body = "".join(
             "<tr>" + "".join(f"<td>{escape(_cell(row[column]))}</td>" for column in columns) + "</tr>"
-            for row in rows[:MOST]
+            for row in rows[:BOUND]
         )
-        more = f"<p>{len(rows) - MOST} more findings</p>" if len(rows) > MOST else ""
+        more = f"<p>{len(rows) - BOUND} more findings</p>" if len(rows) > BOUND else ""
         caption = f"<caption>{escape(self.verdict())}</caption>"
         return f"<table>{caption}<thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>{more}"
 
@@ -116,7 +116,7 @@ def to_networkx(analysis: Analysis) -> nx.MultiDiGraph[Element]:
     import networkx as nx  # noqa: PLC0415 - only where it is used
 
     graph, found = analysis.graph, analysis.spread
-    asked = sum(found.both(category) for category in analysis.emitted)
+    asked = sum(found.forms_of(category) for category in analysis.emitted)
     network: nx.MultiDiGraph[Element] = nx.MultiDiGraph(view=graph.view, verdict=str(analysis.verdict))
     for vertex, element in enumerate(graph.elements):
         plain, pseudonymised = found.planes(found.present(vertex) & asked)
@@ -171,16 +171,16 @@ def explained(
         raise InputError(
             "labels", 0, "no label names a source", "say where data comes in: nodes: {/x: {source: [Video]}}"
         )
-    begun = [name for name in found.categories if any(found.begins(v) & found.both(name) for v in ends[0])]
+    begun = [name for name in found.categories if any(found.begins(v) & found.forms_of(name) for v in ends[0])]
     return tuple(why_not(analysis, ends[0], ends[1], name) for name in names or begun or found.categories)
 
 
-def vertices_called(analysis: Analysis, written: str, asked: str = "why-not") -> list[int]:
+def vertices_called(analysis: Analysis, written: str, name: str = "why-not") -> list[int]:
     """Return the vertices that a name means; a node before a channel of the same name.
 
     Parameters
     ----------
-    asked
+    name
         By which a message calls what the name was given to.
 
     Raises
@@ -192,9 +192,9 @@ def vertices_called(analysis: Analysis, written: str, asked: str = "why-not") ->
     elements = analysis.graph.elements
     for vertex, element in enumerate(elements):
         known.setdefault(element.full_name, []).append(vertex)
-    if meant(written) not in known:
+    if bare_name(written) not in known:
         close = nearest(written, known, FEW, A_LITTLE)
         hint = did_you_mean(close, "see the names with rosprivacy labels --init")
-        raise InputError(asked, 0, f"no element is called {shown(written)!r}", hint)
-    found = known[meant(written)]
+        raise InputError(name, 0, f"no element is called {shown(written)!r}", hint)
+    found = known[bare_name(written)]
     return [vertex for vertex in found if not elements[vertex].is_channel] or found

@@ -36,7 +36,7 @@ class Question(NamedTuple):
         As a user named it, with how to read what it is asked of.
     vocabulary
         The words in which it is asked and answered.
-    asked
+    asked_bits
         Emitted categories that the answer is about; None for all.
     decisions
         What people decided; None where nobody decided anything.
@@ -55,7 +55,7 @@ class Question(NamedTuple):
 
     settings: Settings
     vocabulary: Vocabulary
-    asked: frozenset[str] | None
+    categories_asked: frozenset[str] | None
     decisions: Decisions | None
     today: str
     every: bool = False
@@ -104,10 +104,10 @@ def in_contexts(question: Question, contexts: Collection[str]) -> Question:
 
     A filter for Article 9 keeps a kind as soon as one source's context makes it one that may reveal (S11).
     """
-    if question.asked is None or not question.settings.article9 or not contexts:
+    if question.categories_asked is None or not question.settings.article9 or not contexts:
         return question
     asked = asked_for(question.vocabulary, question.settings, contexts)
-    return question._replace(asked=asked, contexts=frozenset(contexts))
+    return question._replace(categories_asked=asked, contexts=frozenset(contexts))
 
 
 def asked_for(vocabulary: Vocabulary, settings: Settings, contexts: Collection[str] = ()) -> frozenset[str] | None:
@@ -116,7 +116,7 @@ def asked_for(vocabulary: Vocabulary, settings: Settings, contexts: Collection[s
     These are what the filters name, narrower kinds, and what is broader than one of them (so all kinds that overlap
     what is asked for): data of these may be of the kind asked for (S7, S11).
     """
-    named = _named(vocabulary, settings, contexts)
+    named = _categories_named(vocabulary, settings, contexts)
     if named is None:
         return None
     return frozenset(named).union(*(vocabulary.hierarchy.broader(name) for name in named))
@@ -126,7 +126,7 @@ def may_be(
     vocabulary: Vocabulary, settings: Settings, emitted: Iterable[str], contexts: Collection[str] = ()
 ) -> dict[str, list[str]]:
     """Return the emitted categories that the answer is about only since they may be what is asked for -> what of it."""
-    named = _named(vocabulary, settings, contexts)
+    named = _categories_named(vocabulary, settings, contexts)
     if named is None:
         return {}
     above = {name: vocabulary.hierarchy.ancestors[name] for name in named}
@@ -136,7 +136,7 @@ def may_be(
     return {name: kinds for name, kinds in found.items() if kinds}
 
 
-def _named(vocabulary: Vocabulary, settings: Settings, contexts: Collection[str]) -> set[str] | None:
+def _categories_named(vocabulary: Vocabulary, settings: Settings, contexts: Collection[str]) -> set[str] | None:
     """What the filters name, with narrower kinds; None where there is no filter."""
     if not (settings.categories or settings.article9 or settings.data_types or settings.identity_factors):
         return None
@@ -161,11 +161,11 @@ def _named(vocabulary: Vocabulary, settings: Settings, contexts: Collection[str]
     return {name for name in asked if _chosen(vocabulary.categories[name], settings, contexts)}
 
 
-def _unknown(named: Iterable[str], known: set[str], option: str, what: str) -> Iterator[OntologyError]:
+def _unknown(filters: Iterable[str], names: set[str], option: str, what: str) -> Iterator[OntologyError]:
     """What a filter names that no category has."""
-    for name in named:
-        if name not in known:
-            hint = f"it is one of: {', '.join(sorted(known))}"
+    for name in filters:
+        if name not in names:
+            hint = f"it is one of: {', '.join(sorted(names))}"
             yield OntologyError(option, 0, f"unknown {what} {shown(name)!r}", hint)
 
 
@@ -184,8 +184,8 @@ def _is_sensitive(category: Category, settings: Settings, contexts: Collection[s
     return not {article9_in(category, contexts), *article10}.isdisjoint(_levels(settings))
 
 
-def _meets(stated: tuple[str, ...], asked: tuple[str, ...]) -> bool:
-    return not asked or not stated or not set(stated).isdisjoint(asked)
+def _meets(stated: tuple[str, ...], filters: tuple[str, ...]) -> bool:
+    return not filters or not stated or not set(stated).isdisjoint(filters)
 
 
 def _levels(settings: Settings) -> tuple[str, ...]:

@@ -47,7 +47,7 @@ class Result(Answer):
         As they were read; none where the system comes from a database.
     options
         What was asked.
-    again
+    reanalyse
         Analyses the same policies, as they were read, under other labels; None of a fleet and of a database.
     closes
         Proposes changes that remove the open findings; None where the policies are not at hand.
@@ -59,7 +59,7 @@ class Result(Answer):
     labels: tuple[Labels, ...] = ()
     types: tuple[TypesFile, ...] = ()
     options: Options = field(default_factory=Options)
-    again: Callable[[tuple[str | Labels, ...]], Result] | None = field(default=None, compare=False)
+    reanalyse: Callable[[tuple[str | Labels, ...]], Result] | None = field(default=None, compare=False)
     closes: Callable[[Result], Mapping[str, Any] | str] | None = field(default=None, compare=False)
     label_files: Mapping[str, tuple[str, ...]] = field(default_factory=dict, compare=False)
 
@@ -88,7 +88,7 @@ class Result(Answer):
         return Findings(self.shown.findings, self.fleet, self._verdict)
 
     @property
-    def named(self) -> tuple[str, ...]:
+    def named_files(self) -> tuple[str, ...]:
         """The policy files that a user named, without what they include; none of a fleet and of a database."""
         return () if self.fleet else tuple(policy.file for policy in self.policies)
 
@@ -211,12 +211,12 @@ class Result(Answer):
         InputErrors
             With every problem of the labels.
         """
-        if self.again is None:
+        if self.reanalyse is None:
             hint = "change what it was read from, and analyse that again"
             raise InputError("labels", 0, "of a fleet or a database labels are not replaced", hint)
-        return self.again(labels)
+        return self.reanalyse(labels)
 
-    def with_entry(self, section: str, name: str, said: object) -> Result:
+    def with_entry(self, section: str, name: str, entry: object) -> Result:
         """Analyse the same policies with one entry in place of all that the label files say of a name.
 
         Parameters
@@ -225,7 +225,7 @@ class Result(Answer):
             ``nodes``, ``channels``, ``topics``, ``services``, ``actions`` or ``elements``.
         name
             As the label files write it: a glob stands for the entry of that glob.
-        said
+        entry
             The entry as in a label file; None to say nothing of it.
 
         Raises
@@ -242,4 +242,4 @@ class Result(Answer):
         """
         from rosprivacy.ingest.labels.edited_entries import with_entry  # noqa: PLC0415 - light start
 
-        return self.with_labels(*with_entry(self.labels, section, name, said, self.vocabulary))
+        return self.with_labels(*with_entry(self.labels, section, name, entry, self.vocabulary))

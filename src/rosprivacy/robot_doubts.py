@@ -79,6 +79,6 @@ def doubts_by_robot(
     return told
 
 
-def breaking(told: Mapping[str, Iterable[Doubt]]) -> list[str]:
+def breaking(doubts_by_robot: Mapping[str, Iterable[Doubt]]) -> list[str]:
     """Return the robots of which a doubt leaves no better verdict than 'undetermined'."""
-    return [name for name, doubts in told.items() if any(doubt.breaks for doubt in doubts)]
+    return [name for name, doubts in doubts_by_robot.items() if any(doubt.breaks for doubt in doubts)]

@@ -45,20 +45,20 @@ class Watch:
     def __init__(self, labels: tuple[str, ...], settings: Settings) -> None:
         self._question = question_of(settings)
         self._labels: list[Labels] = read_label_files(labels, self._question.vocabulary, settings) if labels else []
-        self._whole: Observation | None = None
-        self._told: set[str] = set()
+        self._complete: Observation | None = None
+        self._lines_shown: set[str] = set()
         self._missing: set[str] = set()
 
     def lines(self, before: Observation | None, now: Observation) -> Iterator[str]:
         """Return what changed, and what is found that was not found before."""
-        self._whole = now if self._whole is None else continued(self._whole, now)
-        at = now.seen.last
+        self._complete = now if self._complete is None else continued(self._complete, now)
+        at = now.span.last
         yield from (f"{at} {line}" for line in changed(before, now))
         if self._labels and now:
             yield from (f"{at} {line}" for line in self._findings())
 
     def _findings(self) -> Iterator[str]:
-        made = written(self._whole) if self._whole else None
+        made = written(self._complete) if self._complete else None
         if made is None:
             return
         with tempfile.TemporaryDirectory(prefix="rosprivacy-observe-") as folder:
@@ -71,8 +71,8 @@ class Watch:
             self._missing.add(one)
             yield f"not seen yet: {one}"
         for finding in answer(system, self._question).analysis.findings:
-            if finding.stands and finding.id not in self._told:
-                self._told.add(finding.id)
+            if finding.stands and finding.id not in self._lines_shown:
+                self._lines_shown.add(finding.id)
                 path = " -> ".join(shown(element.name) for element in finding.witness)
                 yield f"! new finding [{finding.id}]: {finding.category}: {path}"
 
@@ -105,6 +105,8 @@ def changed(before: Observation | None, now: Observation) -> Iterator[str]:
         )
 
 
-def _line(one: ObservedEndpoint) -> str:
-    who = one.node or f"participant {one.participant}"
-    return shown(f"{who} {DOES[one.role]} {one.name}") + (f" ({shown(one.type)})" if one.type else "")
+def _line(endpoint: ObservedEndpoint) -> str:
+    who = endpoint.node or f"participant {endpoint.participant}"
+    return shown(f"{who} {DOES[endpoint.role]} {endpoint.name}") + (
+        f" ({shown(endpoint.type)})" if endpoint.type else ""
+    )

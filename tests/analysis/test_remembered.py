@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from rosprivacy.analysis.remembered import About, as_written, changes, told
+from rosprivacy.analysis.remembered import About, as_written, change_text, changes
 
 THEN = About("declared", ("/a", "/b"), 2, frozenset({"r1", "r2"}))
 
@@ -26,7 +26,7 @@ THEN = About("declared", ("/a", "/b"), 2, frozenset({"r1", "r2"}))
 def test_each_thing_that_changes_is_told(now: About, what: str, before: str, today: str) -> None:
     (change,) = changes(THEN, now)
     assert (change.what, change.before, change.now) == (what, before, today)
-    assert told([change]).endswith(" now")
+    assert change_text([change]).endswith(" now")
 
 
 def test_nothing_is_told_where_nothing_changed_or_nothing_is_known() -> None:

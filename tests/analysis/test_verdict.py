@@ -27,7 +27,7 @@ def one_robot(analysis: Analysis, *, unread: bool = False) -> Verdict:
 @pytest.mark.parametrize("known", [False, True])
 def test_a_finding_decides_then_what_is_open_then_what_is_known(*, leak: bool, is_open: bool, known: bool) -> None:
     expected = "leak" if leak else "undetermined" if is_open or not known else "no-leak-found"
-    assert str(Verdict.of(leak=leak, is_open=is_open, known=known)) == expected
+    assert str(Verdict.of(leak=leak, is_open=is_open, grounded=known)) == expected
 
 
 @given(systems(), st.booleans(), st.booleans())

@@ -6,7 +6,7 @@ from rosprivacy.analysis.written_names import LONGEST, did_you_mean, nearest
 
 
 def test_the_likest_name_comes_first() -> None:
-    assert nearest("/camra", ["/cameras", "/camera", "/lidar"], most=2) == ["/camera", "/cameras"]
+    assert nearest("/camra", ["/cameras", "/camera", "/lidar"], bound=2) == ["/camera", "/cameras"]
 
 
 def test_a_name_of_endless_length_is_not_compared() -> None:

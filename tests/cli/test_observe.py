@@ -55,8 +55,10 @@ def test_times_and_doors_come_back_from_the_metadata(cli: Cli, robot: Path) -> N
     observe(cli, robot)
     grants = read_policy(str(robot / "robot.policy.xml")).grants
     assert len(grants) == 3
-    assert {(one.seen.by, one.seen.first, one.seen.last) for one in grants if one.seen} == {(("text",), AT, AT)}
-    assert all(one.seen for one in grants)
+    assert {(one.observation.by, one.observation.first, one.observation.last) for one in grants if one.observation} == {
+        (("text",), AT, AT)
+    }
+    assert all(one.observation for one in grants)
 
 
 def test_the_same_input_gives_the_same_bytes_and_time_stamps_of_files_are_facts(cli: Cli, robot: Path) -> None:

@@ -218,7 +218,7 @@ def test_at_a_terminal_a_key_takes_away_of_one_row(robot: Path, keys: str, kept:
             del picked
             return self.keys.pop(0) if now == question else "s"
 
-        def told(self, remark: str) -> None:
+        def remark(self, remark: str) -> None:
             said.append(remark)
 
     answered: list[str] = []
@@ -245,7 +245,7 @@ def test_what_takes_data_away_is_asked_anew_if_a_finding_became_known_since(robo
             (robot / "l.yaml").write_text(f"{SOURCE}  /customer_bridge: {{leak: [Video]}}\n", "utf-8")
             return self.keys.pop(0)
 
-        def told(self, remark: str) -> None:
+        def remark(self, remark: str) -> None:
             said.append(remark)
 
     def keep(now: Question, key: str) -> tuple[str, ...]:

@@ -57,7 +57,7 @@ class Scripted:
             self.asked.append(question)
         return self.keys.pop(0) if self.keys else QUIT
 
-    def told(self, remark: str) -> None:
+    def remark(self, remark: str) -> None:
         self.remarks.append(remark)
 
 
@@ -118,7 +118,7 @@ class Listing:
         left = [at for at in wanted if at not in picked]
         return ascii_uppercase[left[0]] if left else self.digit
 
-    def told(self, remark: str) -> None:
+    def remark(self, remark: str) -> None:
         self.remarks.append(remark)
 
 
@@ -425,7 +425,7 @@ class Anybody:
             self.next = [*(letters[at] for at in sorted(rows ^ picked)), key]
         return self.next.pop(0)
 
-    def told(self, remark: str) -> None:
+    def remark(self, remark: str) -> None:
         pass
 
 

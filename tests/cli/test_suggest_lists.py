@@ -123,7 +123,7 @@ def test_no_other_number_confirms_it(robot: Path, number: str) -> None:
             del picked
             return self.keys.pop(0) if question.about == LISTED else SKIP
 
-        def told(self, remark: str) -> None:
+        def remark(self, remark: str) -> None:
             told.append(remark)
 
     conversation_in(robot, Mistyping()).run()
@@ -199,7 +199,7 @@ def test_a_leak_that_becomes_known_while_a_list_is_shown_is_not_closed_by_it(rob
             file.write_text(labels_of(TYPES, "  /out: {leak: [Video]}\n"), "utf-8")
             return str(len(question.rows))
 
-        def told(self, remark: str) -> None:
+        def remark(self, remark: str) -> None:
             told.append(remark)
 
     late = Late()
@@ -216,7 +216,7 @@ class Careless:
         del picked
         return str(len(question.rows)) if question.about == LISTED else SKIP
 
-    def told(self, remark: str) -> None:
+    def remark(self, remark: str) -> None:
         raise AssertionError(remark)
 
 
@@ -237,7 +237,7 @@ class Picking:
             return SKIP
         return ascii_uppercase[left[0]] if left else NOTHING
 
-    def told(self, remark: str) -> None:
+    def remark(self, remark: str) -> None:
         self.remarks.append(remark)
 
 

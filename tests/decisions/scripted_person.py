@@ -125,7 +125,7 @@ class ScriptedPerson:
         self.keys += [*key, ENTER] if question.about == LISTED and key.isdigit() else [key]
         return key
 
-    def told(self, remark: str) -> None:
+    def remark(self, remark: str) -> None:
         """Keep what is said."""
         self.remarks.append(remark)
 

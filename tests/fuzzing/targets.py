@@ -203,7 +203,7 @@ def _since() -> Result:
 def _bags() -> None:
     """The folder, and each of its files alone; what one of them is refused for, the whole command is."""
     for bag in read_bags(["bag", "bag/bag_0.mcap", "bag/bag_0.db3"]):
-        assert all(one.isprintable() for one in (*bag.gaps, *bag.beside, *bag.notes)), bag
+        assert all(one.isprintable() for one in (*bag.gaps, *bag.extras, *bag.notes)), bag
         assert bag.messages is None or bag.complete
 
 
@@ -216,7 +216,7 @@ def _observed() -> None:
         return
     Path("seen.policy.xml").write_bytes(made.policy)
     policy = read_policy("seen.policy.xml")
-    assert all(grant.seen for grant in policy.grants)
+    assert all(grant.observation for grant in policy.grants)
     assert all(one.isprintable() for one in made.remarks), made.remarks
 
 

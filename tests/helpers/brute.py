@@ -134,7 +134,7 @@ class Brute:
         said = [*self.said.get(vertex, []), *BY_KIND.get(self.outside.get(vertex, ("",))[0], [])]
         said = [s for s in said if self.nearness(s, category) is not None]
         # S11: what a glob of a pinned file takes away is not there for what nobody has seen; what lets through is
-        said = [s for s in said if s.seen(category) or (s.role in PASSING and not self.closes(s, category))]
+        said = [s for s in said if s.counts_for(category) or (s.role in PASSING and not self.closes(s, category))]
         if vertex not in self.nodes and self.named(vertex, category):
             return [s for s in said if by_a_users_name(s) or not self.closes(s, category)]
         return said
@@ -191,7 +191,7 @@ class Brute:
         return [
             s
             for s in applying
-            if s.seen(category)  # S11: … and what lets through reviews nothing
+            if s.counts_for(category)  # S11: … and what lets through reviews nothing
             and not any(self.opposed(s, t, category) and self.beats(t, s, category) for t in applying)
         ]
 

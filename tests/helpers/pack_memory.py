@@ -157,7 +157,7 @@ class Fleet:
         for flow, some in zip(self.graph.flows, moving(self.analysis), strict=True):
             if kind in names(some.passed):
                 onward.setdefault(flow.source, set()).add(flow.target)
-            if kind in names(some.begun | some.made):
+            if kind in names(some.begun | some.derived):
                 first.setdefault(flow.source, set()).add(flow.target)
         for start, ends in first.items():
             there, new = set[int](), ends

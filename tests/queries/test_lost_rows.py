@@ -68,7 +68,7 @@ def load_robot(driver: Driver, folder: Path, labels: str, text: str = "") -> Non
 
 def ask(driver: Driver, name: str, **given: str) -> list[dict[str, Any]]:
     query = find(name)
-    found = rows_of(driver, query.text, query.values(given), limit=None, timeout=None, asked=query).rows
+    found = rows_of(driver, query.text, query.values(given), limit=None, timeout=None, query=query).rows
     return [dict(zip(found.columns, row, strict=True)) for row in found.rows]
 
 

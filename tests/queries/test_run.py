@@ -33,8 +33,8 @@ def driver(neo4j_server: Connection) -> Iterator[Driver]:
 
 def test_rows_have_a_bound(driver: Driver) -> None:
     text = "UNWIND range(1, 5) AS x RETURN x"
-    assert (run(driver, text, limit=3).rows, run(driver, text, limit=3).more) == (((1,), (2,), (3,)), True)
-    assert (len(run(driver, text, limit=5).rows), run(driver, text, limit=5).more) == (5, False)
+    assert (run(driver, text, limit=3).rows, run(driver, text, limit=3).truncated) == (((1,), (2,), (3,)), True)
+    assert (len(run(driver, text, limit=5).rows), run(driver, text, limit=5).truncated) == (5, False)
     assert len(run(driver, text, limit=None).rows) == 5
 
 

@@ -256,7 +256,7 @@ MUTANTS: dict[str, tuple[Any, str, Callable[..., Any], Said]] = {
     "an operator as the controller": (purposes, "controllers", lambda *_: "operator-cloud", NOTHING),
     "a purpose that is taken as known": (purposes, "purposes", lambda *_: "operation", NOTHING),
     "the country of another element": (article30, "_country", lambda *_: "DE (in the EEA)", EACH),
-    "a time limit of another kind": (article30, "_kept", lambda *_: (["disk: 3 days"], False), EACH),
+    "a time limit of another kind": (article30, "_retention", lambda *_: (["disk: 3 days"], False), EACH),
     "the purposes of all sources": (processed._Rows, "_ways", of_all_sources, EACH),
 }
 

@@ -8,6 +8,6 @@ from rosprivacy.cli.inputs import Inputs, reads_system
 
 
 @reads_system()
-def analyze(inputs: Inputs, asked: Asked, computed: Computed, written: Written) -> None:
+def analyze(inputs: Inputs, question: Asked, computed: Computed, written: Written) -> None:
     """Find where each kind of personal data can get from its sources, and whether it reaches a leak."""
-    answer(inputs, asked, computed, written, written.format or "text", FailOn.undetermined)
+    answer(inputs, question, computed, written, written.format or "text", FailOn.undetermined)

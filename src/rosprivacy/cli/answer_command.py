@@ -14,7 +14,7 @@ import typer
 from rosprivacy.analysis.modes import Article9Level, Paths
 from rosprivacy.cli.exit_code import FailOn, exit_code
 from rosprivacy.cli.inputs import Inputs, refuse
-from rosprivacy.cli.options import ASKED, Engine, HangsOn, Language, Output, ViewOrBoth, ViewOrBothChosen
+from rosprivacy.cli.options import QUESTION_PANEL, Engine, HangsOn, Language, Output, ViewOrBoth, ViewOrBothChosen
 from rosprivacy.cli.output import emit, not_for_a_terminal
 from rosprivacy.formats import FORMATS, Style, in_pieces
 
@@ -48,14 +48,16 @@ class Asked(NamedTuple):
     article9: Annotated[
         bool,
         typer.Option(
-            "--article9", help="Answer for what can fall under Article 9(1) or 10 GDPR only.", rich_help_panel=ASKED
+            "--article9",
+            help="Answer for what can fall under Article 9(1) or 10 GDPR only.",
+            rich_help_panel=QUESTION_PANEL,
         ),
     ] = False
     article9_level: Annotated[
         Article9Level | None,
         typer.Option(
             help="The same, up to this level: always, on a condition too, or also what may reveal such data.",
-            rich_help_panel=ASKED,
+            rich_help_panel=QUESTION_PANEL,
             show_default=False,
         ),
     ] = None
@@ -65,7 +67,7 @@ class Asked(NamedTuple):
             metavar="TYPE",
             show_default=False,
             help="Answer for video, audio, … only; may be repeated.",
-            rich_help_panel=ASKED,
+            rich_help_panel=QUESTION_PANEL,
         ),
     ] = None
     identity_factor: Annotated[
@@ -74,12 +76,15 @@ class Asked(NamedTuple):
             metavar="FACTOR",
             show_default=False,
             help="Answer for data that tell of this factor of Article 4(1) GDPR only: economic, …; may be repeated.",
-            rich_help_panel=ASKED,
+            rich_help_panel=QUESTION_PANEL,
         ),
     ] = None
-    paths: Annotated[Paths, typer.Option(help="Ways to list for each finding.", rich_help_panel=ASKED)] = Paths.witness
+    paths: Annotated[Paths, typer.Option(help="Ways to list for each finding.", rich_help_panel=QUESTION_PANEL)] = (
+        Paths.witness
+    )
     max_paths: Annotated[
-        int, typer.Option(min=1, metavar="N", help="Bound on the listed ways of a finding.", rich_help_panel=ASKED)
+        int,
+        typer.Option(min=1, metavar="N", help="Bound on the listed ways of a finding.", rich_help_panel=QUESTION_PANEL),
     ] = 100
     hangs_on: HangsOn = False
 
@@ -242,7 +247,7 @@ STYLES = {"lang": "language"} | {name: name for name in ("title", "since", "asse
 
 def answer(
     inputs: Inputs,
-    asked: Asked,
+    question: Asked,
     computed: Computed,
     written: Written,
     form: str,
@@ -257,12 +262,12 @@ def answer(
     default
         What the command fails on, where nothing is named.
     """
-    fail_on, per_policy, save_graph = tuple(written.fail_on or (default,)), asked.per_policy, written.save_graph
+    fail_on, per_policy, save_graph = tuple(written.fail_on or (default,)), question.per_policy, written.save_graph
     if FailOn.never in fail_on and len(set(fail_on)) > 1:
         raise typer.BadParameter("--fail-on never stands alone")
-    both = asked.view is ViewOrBoth.both
-    inputs = inputs.viewed(asked.view)
-    settings = asked.settings(inputs.settings)
+    both = question.view is ViewOrBoth.both
+    inputs = inputs.viewed(question.view)
+    settings = question.settings(inputs.settings)
     _check(inputs, computed, save_graph=bool(save_graph), per_policy=per_policy)
     style, known = written.style(form), FORMATS[form]
     if both and (per_policy or computed.engine is Engine.spark or not known.both_views):
@@ -281,7 +286,7 @@ def answer(
 
         result = run_on_spark(inputs.fleet, settings, computed.master, computed.results)
     else:
-        result = inputs.result(settings, both=both)
+        result = inputs.result(settings, both_views=both)
     graphs = {save_graph: _saved_graph(result)} if save_graph else {}
     text = in_pieces(result, form, style)
     if isinstance(text, str) and form != "text":
@@ -299,13 +304,13 @@ def _check(inputs: Inputs, computed: Computed, *, save_graph: bool, per_policy: 
     if inputs.fleet:
         refuse("--fleet", "what the fleet file names", both)
     if computed.engine is Engine.spark:
-        refuse("--engine spark", "a fleet that nobody has decided about", inputs.given("decisions"))
+        refuse("--engine spark", "a fleet that nobody has decided about", inputs.given_options("decisions"))
         if not inputs.fleet:
             raise typer.BadParameter("--engine spark is for fleets: give --fleet too")
     elif computed.master or computed.results:
         raise typer.BadParameter("--master and --results are for --engine spark")
     if per_policy:
-        refuse("--per-policy", "policies by themselves", [*inputs.given("add"), *saved])
+        refuse("--per-policy", "policies by themselves", [*inputs.given_options("add"), *saved])
 
 
 def _saved_graph(result: Result) -> str:
@@ -324,7 +329,7 @@ def _each_alone(
 
     if form not in ("text", "json"):
         raise typer.BadParameter("--per-policy writes text and json")
-    each = answer_each(inputs.named, tuple(inputs.labels or ()), settings)
+    each = answer_each(inputs.required_policies, tuple(inputs.labels or ()), settings)
     emit(per_policy.texts(each, style) if form == "text" else as_text(per_policy.document(each)), output)
     codes = (exit_code(result, fail_on) for _, result in each)
     return int(per_policy.worst_of(codes, per_policy.CODES_WORST_FIRST))

@@ -48,7 +48,7 @@ COMMANDS = {  # name -> its group in help; each stands in the module of its name
 
 
 @cache
-def program(only: str = "") -> typer.Typer:
+def program(command_name: str = "") -> typer.Typer:
     """Return the command line; with one of its commands where that is named, since the others need not be imported."""
     app = typer.Typer(
         name="rosprivacy",
@@ -60,7 +60,7 @@ def program(only: str = "") -> typer.Typer:
     )
     app.callback(invoke_without_command=True)(root)
     for name, panel in COMMANDS.items():
-        if only in ("", name):
+        if command_name in ("", name):
             module = import_module(f"rosprivacy.cli.{name.replace('-', '_')}")
             if name == "db":
                 what = "The private Neo4j: start it, stop it, see where it is."
@@ -96,10 +96,10 @@ def main() -> None:
             _end(confessed(error), OWN_ERROR)
 
 
-def _end(said: str, code: int) -> NoReturn:
+def _end(lines: str, code: int) -> NoReturn:
     """End with some lines on standard error; that nobody reads them makes no other code."""
     try:
-        print(said, file=sys.stderr, flush=True)
+        print(lines, file=sys.stderr, flush=True)
     except OSError:
         from rosprivacy.cli.output import silence
 

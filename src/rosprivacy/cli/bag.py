@@ -68,7 +68,11 @@ def bag(
     from rosprivacy.report.json_text import as_text
 
     if not load:
-        refuse("without --load bag", "no server", [*inputs.given("neo4j"), *(["--robot"] if robot is not None else [])])
+        refuse(
+            "without --load bag",
+            "no server",
+            [*inputs.given_options("neo4j"), *(["--robot"] if robot is not None else [])],
+        )
     answer = answer_bags(
         bags, tuple(policy or ()), tuple(inputs.labels or ()), inputs.settings, lambda paths: progress_of(paths, "bags")
     )

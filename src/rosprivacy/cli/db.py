@@ -139,20 +139,20 @@ def _open(page: str) -> None:
         print("There is no desktop to open the page on; open its address yourself", file=sys.stderr)
 
 
-def _described(found: Status) -> str:
+def _described(server: Status) -> str:
     from rosprivacy.private_neo4j.connection import USER
 
-    if found.running:
+    if server.running:
         lines = [
-            f"Neo4j {found.version} is running",
-            f"Bolt:      {found.uri}",
-            f"Browser:   {found.browser}",
+            f"Neo4j {server.version} is running",
+            f"Bolt:      {server.uri}",
+            f"Browser:   {server.browser}",
             f"User name: {USER}",
-            f"Password:  in {found.password_file}",
+            f"Password:  in {server.password_file}",
         ]
     else:
-        lines = [f"Neo4j {found.version} is stopped; start it with: rosprivacy db start"]
-    lines.append(f"Files:     {found.folder}")
+        lines = [f"Neo4j {server.version} is stopped; start it with: rosprivacy db start"]
+    lines.append(f"Files:     {server.folder}")
     if os.environ.get("NEO4J_URI"):
         lines.append("Note:      NEO4J_URI is set, so the other commands use the server that it names")
     return "\n".join(lines)

@@ -39,7 +39,7 @@ OUT_OF_STEP = "the keys are out of step with the questions, and no more are read
 BY_LINE = "takes data away; where no terminal is, a line says it, and no more keys are read"
 
 
-def ask(file: Path, told: Callable[[], Suggested], by: str | None, settings: Settings) -> None:
+def ask(file: Path, progress: Callable[[], Suggested], by: str | None, settings: Settings) -> None:
     """Ask until nothing is left to ask, or the person stops.
 
     Raises
@@ -58,15 +58,15 @@ def ask(file: Path, told: Callable[[], Suggested], by: str | None, settings: Set
     person = _Terminal(label_of)
     brought: list[WrittenLabel] = []  # since the questions were made
 
-    def again() -> None:
-        before, last[:] = tuple(last), [told()]
+    def ask_again() -> None:
+        before, last[:] = tuple(last), [progress()]
         if before and brought:
             for line in limits_on_the_way(before[0].result, last[0].result):
-                person.told(line)
+                person.remark(line)
         brought.clear()
 
     def now() -> tuple[Question, ...]:
-        again()
+        ask_again()
         return asked_now(last[0])
 
     def write(answered: Callable[[str], Written], labels: Iterable[WrittenLabel]) -> tuple[str, ...]:
@@ -87,7 +87,7 @@ def ask(file: Path, told: Callable[[], Suggested], by: str | None, settings: Set
     conversation = Conversation(now, keep, person, lambda rows: closing(rows, last[0].result), typed)
     whole = conversation.run()
     if not whole:
-        again()
+        ask_again()
     verdict, left = last[0].result.analysis.verdict, len(last[0].result.analysis.open)
     end = "nothing is left to ask" if whole else "the same command goes on from here"
     typer.echo(f"{counted(conversation.answers, 'answer')} in {file}; {end}")
@@ -155,7 +155,7 @@ class _Terminal:
         typer.echo(f"{shown(line)!r} is no answer here: {'' if label == TYPED_AS else f'{label}; '}{OUT_OF_STEP}")
         return ""
 
-    def told(self, remark: str) -> None:
+    def remark(self, remark: str) -> None:
         typer.echo(remark)
 
     def _piped(self, key: str, question: Question, picked: frozenset[int]) -> str:

@@ -90,7 +90,7 @@ def diff(
     ends with 1 if something runs that is not granted, and with 4 if nothing such was seen but the observation has gaps.
     """
     if compared_as is As.usage:
-        refuse("diff --as usage", "policies alone", inputs.given("labels"))
+        refuse("diff --as usage", "policies alone", inputs.given_options("labels"))
         _usage(old, new, inputs, format, output, patch)
     if patch:
         raise typer.BadParameter("--patch is for --as usage")

@@ -42,7 +42,7 @@ class FailOn(StrEnum):
     never = "never"
 
 
-GONE = {  # words of earlier versions -> what to write; no alias, since what ends with 0 is another one now
+REMOVED_VALUES = {  # words of earlier versions -> what to write; no alias, since what ends with 0 is another one now
     "off": "write never",
     "todo": "write leak; or leave it out, to fail on undetermined too",
     "all": "leave out --decisions, so that no finding is accepted",

@@ -109,7 +109,7 @@ def _session(inputs: Inputs, journal: Path | None) -> tuple[Session, Opens | Non
             return Session.open_database(driver, inputs.settings), opens
     if inputs.fleet:
         return Session.open_fleet(inputs.fleet, inputs.settings, journal=journal), None
-    return Session.open(inputs.named, tuple(inputs.labels or ()), inputs.settings, journal=journal), None
+    return Session.open(inputs.required_policies, tuple(inputs.labels or ()), inputs.settings, journal=journal), None
 
 
 def _tell(link: str, port: int) -> None:

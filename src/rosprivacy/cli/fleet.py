@@ -50,7 +50,7 @@ def fleet(
 
 
 def _lines(fleet: Fleet, groups: tuple[Alike, ...]) -> Iterator[str]:
-    from rosprivacy.report.called_alike import named
+    from rosprivacy.report.called_alike import names_shown
     from rosprivacy.report.catalogs.words import IN_ENGLISH
 
     kinds = sum(not group.fixed for group in groups)
@@ -59,7 +59,7 @@ def _lines(fleet: Fleet, groups: tuple[Alike, ...]) -> Iterator[str]:
         robot = group.robots[0]
         what = "infrastructure" if group.fixed else f"model {robot.model}" if robot.model else "no model"
         domain = f", domain {robot.domain}" if robot.domain else ""
-        yield f"{named((one.id for one in group.robots), IN_ENGLISH)}  ({len(group.robots):,}; {what}{domain})"
+        yield f"{names_shown((one.id for one in group.robots), IN_ENGLISH)}  ({len(group.robots):,}; {what}{domain})"
         labels = ("labels", robot.labels), ("own labels", robot.own)
         for name, files in (("policies", robot.policies), *labels, ("types", robot.types)):
             if files:

@@ -177,7 +177,7 @@ def graph(
     show = _shown(show, part, everything=everything)
     form = _format(format, output)
     not_for_a_terminal(form.upper() if form is not PictureFormat.mermaid else "a drawing", output)
-    result, own = _drawn_of(inputs.viewed(view), both=view is ViewOrBoth.both)
+    result, own = _drawn_of(inputs.viewed(view), both_views=view is ViewOrBoth.both)
     picture = _view(result, show, part, lang, carried_only=bool(inputs.categories), standard=draw_standard_channels)
     if result.fleet and not finding:
         from rosprivacy.report.pictures.fleet_view import label, represented
@@ -205,25 +205,25 @@ def _shown(show: Shown | None, part: Part, *, everything: bool) -> Shown:
     return show or (Shown.privacy if of_privacy else Shown.ros)
 
 
-def _drawn_of(inputs: Inputs, *, both: bool) -> tuple[Result, dict[str, tuple[Profile, ...]]]:
+def _drawn_of(inputs: Inputs, *, both_views: bool) -> tuple[Result, dict[str, tuple[Profile, ...]]]:
     """The analysis, and of a fleet the profiles of each robot."""
     settings = inputs.settings
     if not inputs.fleet:
-        return inputs.result(settings, both=both), {}
+        return inputs.result(settings, both_views=both_views), {}
     from rosprivacy.answering import answer
     from rosprivacy.question import question_of
     from rosprivacy.reading.fleet_system import fleet_system
 
     question = question_of(settings)
     system = fleet_system(inputs.fleet, question)
-    result = inputs.result(settings, both=True) if both else answer(system, question)
+    result = inputs.result(settings, both_views=True) if both_views else answer(system, question)
     return result, dict(system.placed.profiles)
 
 
-def _format(given: PictureFormat | None, output: Path | None) -> PictureFormat:
+def _format(option: PictureFormat | None, output: Path | None) -> PictureFormat:
     """Of the option, else of the file's name; DOT where there is neither."""
-    if given or output is None:
-        return given or PictureFormat.dot
+    if option or output is None:
+        return option or PictureFormat.dot
     suffix = output.suffix.lower()
     if suffix[1:] in set(PictureFormat):
         return PictureFormat(suffix[1:])
@@ -242,7 +242,7 @@ def _view(
 
     words, kinds = Words(language.value), result.vocabulary.categories
     titles = {name: category.text("title", language.value) for name, category in kinds.items()}
-    say = Phrases() if language is Language.en else Phrases.told(words, titles)
+    say = Phrases() if language is Language.en else Phrases.of_report(words, titles)
     beside = result.fleet.likeness.second if result.fleet else ()
     if show is Shown.privacy:
         if part.finding:
@@ -250,21 +250,23 @@ def _view(
         return with_added(result, say, lambda also: views.privacy_view(result.analysis, beside, say, also))
     denials = [grant for policy in result.policies for grant in policy.grants if not grant.allow]
     picture = with_added(
-        result, say, lambda _: views.ros_view(result.analysis, denials, words, standard=standard, beside=beside)
+        result,
+        say,
+        lambda _: views.ros_view(result.analysis, denials, words, standard=standard, robots_not_shown=beside),
     )
     return narrow.carrying(picture, result.analysis) if carried_only else picture
 
 
-def _finding(result: Result, wanted: str, about: int | None, say: Phrases) -> Picture:
+def _finding(result: Result, id_prefix: str, about: int | None, say: Phrases) -> Picture:
     """One that only the enforced view has is drawn of that view, with what no profile allows marked."""
     from rosprivacy.report.pictures import narrow, views
     from rosprivacy.report.pictures.added_flows import marking
 
     added = [one.finding for one in result.enforced.added] if result.enforced else []
-    if result.enforced and any(finding.id.startswith(wanted) for finding in added):
-        finding = narrow.the_finding(replace(result.analysis, findings=tuple(added)), wanted)
+    if result.enforced and any(finding.id.startswith(id_prefix) for finding in added):
+        finding = narrow.the_finding(replace(result.analysis, findings=tuple(added)), id_prefix)
         return marking(result)(views.finding_view(result.enforced.answer.analysis, finding, about, say))
-    return views.finding_view(result.analysis, narrow.the_finding(result.analysis, wanted), about, say)
+    return views.finding_view(result.analysis, narrow.the_finding(result.analysis, id_prefix), about, say)
 
 
 def _narrowed(picture: Picture, part: Part) -> Picture:
@@ -292,13 +294,13 @@ def _legible(picture: Picture) -> Picture:
 
 
 def _write(
-    picture: Picture, form: PictureFormat, output: Path | None, wanted: Direction | None, seconds: float
+    picture: Picture, form: PictureFormat, output: Path | None, layout_direction: Direction | None, seconds: float
 ) -> None:
-    direction = "TB" if wanted is Direction.down else "LR"
+    direction = "TB" if layout_direction is Direction.down else "LR"
     if form in (PictureFormat.svg, PictureFormat.png):
         from rosprivacy.report.pictures.layout import drawn
 
-        done = drawn(picture, form.value, direction=direction if wanted else "", seconds=seconds)
+        done = drawn(picture, form.value, direction=direction if layout_direction else "", seconds=seconds)
         for said in done.said:
             print(said, file=sys.stderr)
         emit(done.data, output)

@@ -100,22 +100,22 @@ class Inputs(NamedTuple):
         )
 
     @property
-    def named(self) -> tuple[str, ...]:
+    def required_policies(self) -> tuple[str, ...]:
         """The policies that are named; there has to be one, or a saved graph."""
         if not self.policies and not self.add:
             raise typer.BadParameter("name at least one policy: a file, a folder or a glob", param_hint="POLICY")
         return tuple(self.policies or ())
 
-    def given(self, *names: str) -> list[str]:
+    def given_options(self, *names: str) -> list[str]:
         """Return those of some options that a user gave, as they are written."""
         return [WRITTEN[name] for name in names if getattr(self, name) != DEFAULTS[name]]
 
     def check(self) -> None:
         """Refuse options that name a second system beside a first, and how to read files where none is read."""
         if self.from_database:
-            refuse("--from-database", "what is in the database", self.given(*OF_FILES))
+            refuse("--from-database", "what is in the database", self.given_options(*OF_FILES))
         if self.fleet:
-            refuse("--fleet", "what the fleet file names", self.given("policies", "labels", "add", "types"))
+            refuse("--fleet", "what the fleet file names", self.given_options("policies", "labels", "add", "types"))
 
     def viewed(self, view: ViewOrBoth) -> Inputs:
         """Return the same under the view of a command that has one more; with both, the declared one is of record."""
@@ -123,10 +123,10 @@ class Inputs(NamedTuple):
             refuse("--from-database", "what is in the database", ["--view"])
         return self._replace(view=View.enforced if view is ViewOrBoth.enforced else View.declared)
 
-    def result(self, settings: Settings, *, both: bool = False) -> Result:
-        """Read the system and analyse it; with ``both`` under both views (rule S6)."""
-        if both:
-            return self._both(settings)
+    def result(self, settings: Settings, *, both_views: bool = False) -> Result:
+        """Read the system and analyse it; with ``both_views`` under both views (rule S6)."""
+        if both_views:
+            return self._result_of_both(settings)
         if self.from_database:
             from rosprivacy.reading.stored_system import answer_stored
 
@@ -138,14 +138,14 @@ class Inputs(NamedTuple):
             return answer_fleet(self.fleet, settings)
         from rosprivacy.reading.robot_system import answer_robot
 
-        return answer_robot(self.named, tuple(self.labels or ()), settings)
+        return answer_robot(self.required_policies, tuple(self.labels or ()), settings)
 
-    def _both(self, settings: Settings) -> Result:
+    def _result_of_both(self, settings: Settings) -> Result:
         from rosprivacy.both_views import both_views, both_views_of_fleet
 
         if self.fleet:
             return both_views_of_fleet(self.fleet, settings)
-        return both_views(self.named, tuple(self.labels or ()), settings)
+        return both_views(self.required_policies, tuple(self.labels or ()), settings)
 
 
 OF_FILES = (
@@ -195,7 +195,7 @@ def reads_system(
             for name, fields in groups.items():
                 values[name] = kinds[name](**{field.name: values.pop(field.name) for field in fields})
             inputs = values["inputs"]
-            refuse(command.__name__.replace("_", "-"), takes, inputs.given(*without))
+            refuse(command.__name__.replace("_", "-"), takes, inputs.given_options(*without))
             inputs.check()
             command(**values)
 

@@ -74,7 +74,7 @@ def labels(
         refuse("labels --pin", "what it reads, and writes into it", ["--by"] if by else [])
         _pin(inputs, output)
         return
-    refuse("labels", "the policies of one robot, but with --pin", inputs.given("fleet", "types"))
+    refuse("labels", "the policies of one robot, but with --pin", inputs.given_options("fleet", "types"))
     if accept:
         _accept(inputs, accept, by, output)
         return
@@ -82,7 +82,7 @@ def labels(
     if update or next_round:
         _add(inputs, output, update=update)
         return
-    refuse("labels", "label files with --update, --next, --pin and --accept only", inputs.given("labels"))
+    refuse("labels", "label files with --update, --next, --pin and --accept only", inputs.given_options("labels"))
     if init:
         _begin(inputs, output)
     else:
@@ -98,7 +98,7 @@ def _add(inputs: Inputs, output: Path | None, *, update: bool) -> None:
     labels = tuple(inputs.labels or ())
     file = output if output and output != PRINTED else Path(own_file(labels))
     with editing(file):
-        written = (updated if update else next_lines)(inputs.named, labels, inputs.settings)
+        written = (updated if update else next_lines)(inputs.required_policies, labels, inputs.settings)
         for remark in written.remarks:
             typer.echo(remark, err=True)
         if written.added or output:
@@ -114,7 +114,7 @@ def _pin(inputs: Inputs, output: Path | None) -> None:
     if inputs.fleet:
         files = list(pinned_in_fleet(inputs.fleet, inputs.settings))
     else:
-        files = list(pinned(inputs.named, tuple(inputs.labels or ()), inputs.settings))
+        files = list(pinned(inputs.required_policies, tuple(inputs.labels or ()), inputs.settings))
     if output and len(files) != 1:
         raise InputError(
             "--output", 0, f"one file for the pins of {len(files)}", "leave it out, or name one label file"
@@ -167,7 +167,7 @@ def _first(inputs: Inputs, output: Path | None) -> tuple[str, Path | None, dict[
 
     settings = inputs.settings
     vocabulary = load(ontologies=settings.ontologies)
-    system, _ = read_system(inputs.named, settings, read_graphs(settings))
+    system, _ = read_system(inputs.required_policies, settings, read_graphs(settings))
     graph = build(system, settings.view, settings.bounds)
     known = standard_channels(graph, vocabulary, settings), infrastructure_of(graph.elements, vocabulary)
     own = sorted(set(vocabulary.categories) - set(load().categories))

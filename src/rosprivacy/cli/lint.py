@@ -53,7 +53,7 @@ def lint(
     from rosprivacy.version import __version__
 
     found = lint_policies(
-        inputs.named, tuple(map(str, inputs.labels or ())), inputs.settings, select or (), ignore or ()
+        inputs.required_policies, tuple(map(str, inputs.labels or ())), inputs.settings, select or (), ignore or ()
     )
     if format is LintFormat.sarif:
         from rosprivacy.report.lint import lint_sarif

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from rosprivacy.result import Result
     from rosprivacy.settings import Settings
 
-NAMED = 3  # robots in a message
+SHOWN_AT_MOST = 3  # robots in a message
 # Of a file, these tell nothing.
 NO_NAMES = ("", "policy", "policies", "robot", "ros", "sros", "sros2", "permissions")
 
@@ -58,25 +58,25 @@ def load(
     inputs, both = inputs.viewed(view), view is ViewOrBoth.both
     settings = inputs.settings
     if results:
-        other = inputs.given("policies", "labels", "fleet", "add")
+        other = inputs.given_options("policies", "labels", "fleet", "add")
         more = [*(["--robot"] if robot is not None else []), *(["--view"] if both else [])]
         refuse("--results", "what is in the folder", [*other, *more])
         _load_results(results, settings.ontologies, inputs.neo4j)
         return
     if inputs.fleet:
         refuse("--fleet", "the names of the fleet file", ["--robot"] if robot is not None else [])
-        _load_fleet(inputs.fleet, settings, inputs.neo4j, both=both)
+        _load_fleet(inputs.fleet, settings, inputs.neo4j, both_views=both)
         return
     from rosprivacy.reading.robot_system import robot_of
 
     name = database.check_robot_name(name_of(inputs) if robot is None else robot)
-    result = inputs.result(settings, both=both)
+    result = inputs.result(settings, both_views=both)
     rows = robot_of(name, result)
     with driver_of(inputs.neo4j) as driver:
         if robot is None and (others := database.others_there(driver, rows)):
             what = f"the database has a robot {shown(name)} of other policies ({', '.join(map(shown, others))})"
             raise InputError(
-                inputs.named[0], 0, what, f"name this one: --robot NAME; --robot {shown(name)} replaces it"
+                inputs.required_policies[0], 0, what, f"name this one: --robot NAME; --robot {shown(name)} replaces it"
             )
         with _bar(rows.size) as advance:
             done = database.load(driver, [rows], result.vocabulary, advance)
@@ -109,24 +109,30 @@ def _counts(result: Result, rows: RobotRows) -> str:
 
 def name_of(inputs: Inputs) -> str:
     """Return what a robot is called of which nobody says it: as its policy file, where that says which one it is."""
-    file = Path(inputs.named[0])
+    file = Path(inputs.required_policies[0])
     name = re.sub(r"(\.policy)?\.xml$", "", file.name, flags=re.IGNORECASE)
-    if len(inputs.named) > 1 or inputs.add or file.is_dir() or has_magic(str(file)) or name.casefold() in NO_NAMES:
+    if (
+        len(inputs.required_policies) > 1
+        or inputs.add
+        or file.is_dir()
+        or has_magic(str(file))
+        or name.casefold() in NO_NAMES
+    ):
         what = "nothing says what the robot is called in the database, where it would replace one of that name"
-        raise InputError(inputs.named[0], 0, what, "add --robot NAME")
+        raise InputError(inputs.required_policies[0], 0, what, "add --robot NAME")
     return name
 
 
-def _tell_replaced(done: Loaded) -> None:
+def _tell_replaced(loaded: Loaded) -> None:
     """Say which robots took the place of others of the same name."""
-    names = [f"{shown(name)} ({', '.join(map(shown, files))})" for name, files in sorted(done.replaced.items())]
+    names = [f"{shown(name)} ({', '.join(map(shown, files))})" for name, files in sorted(loaded.replaced.items())]
     if names:
-        more = f" and {len(names) - NAMED:,} more" if len(names) > NAMED else ""
+        more = f" and {len(names) - SHOWN_AT_MOST:,} more" if len(names) > SHOWN_AT_MOST else ""
         what = f"in place of {counted(len(names), 'robot')} of the same name and other policies"
-        print(f"warning: {what}: {', '.join(names[:NAMED])}{more}", file=sys.stderr)
+        print(f"warning: {what}: {', '.join(names[:SHOWN_AT_MOST])}{more}", file=sys.stderr)
 
 
-def _load_fleet(file: str, settings: Settings, neo4j: str | None, *, both: bool) -> None:
+def _load_fleet(file: str, settings: Settings, neo4j: str | None, *, both_views: bool) -> None:
     from rosprivacy.answering import answer
     from rosprivacy.ingest.database.fleet_rows import MOST_ACROSS
     from rosprivacy.question import question_of
@@ -135,7 +141,7 @@ def _load_fleet(file: str, settings: Settings, neo4j: str | None, *, both: bool)
     question = question_of(settings)._replace(every=True, most_across=MOST_ACROSS)
     system = fleet_system(file, question)
     result = answer(system, question)
-    if both:
+    if both_views:
         from rosprivacy.both_views import both_views_of_fleet
 
         result = replace(result, enforced=both_views_of_fleet(file, settings).enforced)

@@ -24,11 +24,11 @@ PANEL = "A language model, only if you ask one"
 LONGEST_NAME = 200
 
 
-def _asks(name: str, says: str, metavar: str | None = None, **more: Any) -> Any:
+def _asks(name: str, says: str, metavar: str | None = None, **settings: Any) -> Any:
     """An option that says how a language model is asked."""
-    if metavar and "min" not in more:
-        more["show_default"] = False
-    return typer.Option(name, metavar=metavar, help=says, rich_help_panel=PANEL, **more)
+    if metavar and "min" not in settings:
+        settings["show_default"] = False
+    return typer.Option(name, metavar=metavar, help=says, rich_help_panel=PANEL, **settings)
 
 
 Model = Annotated[
@@ -126,8 +126,8 @@ class ModelOptions(NamedTuple):
         from rosprivacy.labelling.model_interview import Interview
 
         address = address_of(self.url or "", unencrypted=self.unencrypted)
-        server = Server(address, os.environ.get(KEY, "").strip(), self.timeout, _told)
-        interview = Interview(self.asking, server, _told)
+        server = Server(address, os.environ.get(KEY, "").strip(), self.timeout, _progress)
+        interview = Interview(self.asking, server, _progress)
         if self.record:
             _refuse_existing(self.record, output)
         try:
@@ -142,10 +142,10 @@ class ModelOptions(NamedTuple):
 
         record = read_exchanges(file)
         asking = Asking(record.model, record.url, record.masked, sys.maxsize, record.date)  # nothing is sent: no bound
-        return Interview(asking, replayed(file, record), _told, ((file, record.sha256),))
+        return Interview(asking, replayed(file, record), _progress, ((file, record.sha256),))
 
 
-def _told(line: str) -> None:
+def _progress(line: str) -> None:
     from rosprivacy.analysis.text import one_line
 
     typer.echo(one_line(line), err=True)

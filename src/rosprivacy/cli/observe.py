@@ -217,20 +217,20 @@ def _watching(inputs: Inputs) -> Callable[[Observation | None, Observation], Non
 
     watch = Watch(tuple(inputs.labels or ()), inputs.settings)
 
-    def told(before: Observation | None, now: Observation) -> None:
+    def progress(before: Observation | None, now: Observation) -> None:
         for line in watch.lines(before, now):
             print(line, flush=True)
 
-    return told
+    return progress
 
 
-def _write(seen: Observation | None, output: Path | None) -> None:
+def _write(observation: Observation | None, output: Path | None) -> None:
     """The policy and the types, both or none; what there is to say goes to standard error."""
     from rosprivacy.observing import declared_file, types_file, written
 
-    made = written(seen) if seen else None
+    made = written(observation) if observation else None
     if made is None:
-        for remark in seen.remarks if seen else ():
+        for remark in observation.remarks if observation else ():
             print(remark, file=sys.stderr)
         said = "nothing was seen, so nothing is written: nothing runs, it was too short a look, or you may not look"
         print(said, file=sys.stderr)

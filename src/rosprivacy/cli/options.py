@@ -50,7 +50,7 @@ def complete_category(incomplete: str) -> list[str]:
 
 
 READ = "What is read"  # panels of help
-ASKED = "What is asked"
+QUESTION_PANEL = "What is asked"
 
 Policies = Annotated[
     list[str] | None,
@@ -211,7 +211,7 @@ Categories = Annotated[
         autocompletion=complete_category,
         show_default=False,
         help="Answer for this category, narrower, broader and overlapping ones only; may be repeated.",
-        rich_help_panel=ASKED,
+        rich_help_panel=QUESTION_PANEL,
     ),
 ]
 SixLists = Annotated[
@@ -224,13 +224,13 @@ SixLists = Annotated[
     ),
 ]
 ViewChosen = Annotated[
-    View, typer.Option(help="What nodes declare, or what DDS enforces per enclave.", rich_help_panel=ASKED)
+    View, typer.Option(help="What nodes declare, or what DDS enforces per enclave.", rich_help_panel=QUESTION_PANEL)
 ]
 ViewOrBothChosen = Annotated[
     ViewOrBoth,
     typer.Option(
         help="What nodes declare, or what DDS enforces per enclave; both: the first, and what the second adds.",
-        rich_help_panel=ASKED,
+        rich_help_panel=QUESTION_PANEL,
     ),
 ]
 HangsOn = Annotated[
@@ -238,7 +238,7 @@ HangsOn = Annotated[
     typer.Option(
         "--hangs-on",
         help="Of a fleet too: work out what the answer hangs on, statement by statement. Of one robot it always is.",
-        rich_help_panel=ASKED,
+        rich_help_panel=QUESTION_PANEL,
     ),
 ]
 DecisionsFile = Annotated[
@@ -248,7 +248,7 @@ DecisionsFile = Annotated[
         metavar="FILE",
         help="What people have decided about findings.",
         show_default=False,
-        rich_help_panel=ASKED,
+        rich_help_panel=QUESTION_PANEL,
     ),
 ]
 PRINTED = Path("-")  # as a name of an output: standard output

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 def emit(
     text: Text,
     output: Path | None,
-    others: Mapping[Path, str | None] | None = None,
+    other_files: Mapping[Path, str | None] | None = None,
     *,
     edited: Path | None = None,
 ) -> None:
@@ -34,7 +34,7 @@ def emit(
     from rosprivacy.report.atomic import STANDARD_OUTPUT, write_texts
 
     answer = (output, text) if output else (STANDARD_OUTPUT, None)
-    write_texts([*(others or {}).items(), answer], edited=edited)
+    write_texts([*(other_files or {}).items(), answer], edited=edited)
     if not output:
         _print(text)
 

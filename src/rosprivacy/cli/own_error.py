@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 PACKAGE = Path(__file__).resolve().parent.parent
-NAMED = 3  # files that are named
+SHOWN_AT_MOST = 3  # files that are named
 
 
 def confessed(error: BaseException) -> str:
@@ -32,8 +32,8 @@ def confessed(error: BaseException) -> str:
     first = error.__cause__ or error
     what = f"rosprivacy: an error of the program itself, and no answer: {_kind(first)} in {_place(first)}"
     read = [shown(name) for name in names_read() if not _is_ours(Path(name))]
-    more = f" and {counted(len(read) - NAMED, 'more file')}" if len(read) > NAMED else ""
-    inputs = f", and, if you may, what was read: {', '.join(read[:NAMED])}{more}" if read else ""
+    more = f" and {counted(len(read) - SHOWN_AT_MOST, 'more file')}" if len(read) > SHOWN_AT_MOST else ""
+    inputs = f", and, if you may, what was read: {', '.join(read[:SHOWN_AT_MOST])}{more}" if read else ""
     try:
         with tempfile.NamedTemporaryFile(
             "w", prefix="rosprivacy-error-", suffix=".txt", delete=False, encoding="utf-8"

@@ -18,28 +18,30 @@ if TYPE_CHECKING:
 
     from rosprivacy.result import Result
 
-    Each = Sequence[tuple[str, Result]]
+    Results = Sequence[tuple[str, Result]]
 
 FORMAT = "rosprivacy.analyses/1"
 WORST_FIRST = ("leak", "undetermined", "no-leak-found")  # verdicts
 CODES_WORST_FIRST = (1, 4, 0)
 
 
-def texts(each: Each, style: Style) -> str:
+def texts(results: Results, style: Style) -> str:
     """Return the reports one after the other, and a summary; of ``quiet`` the summary alone."""
-    reports = [] if style.quiet else [f"== {shown(file)}\n{written(result, 'text', style)}\n" for file, result in each]
-    worst = worst_of((str(result.analysis.verdict) for _, result in each), WORST_FIRST)
+    reports = (
+        [] if style.quiet else [f"== {shown(file)}\n{written(result, 'text', style)}\n" for file, result in results]
+    )
+    worst = worst_of((str(result.analysis.verdict) for _, result in results), WORST_FIRST)
     what = "what goes from the nodes of one to those of another is not looked at"
-    head = f"{worst}: the worst of {counted(len(each), 'policy', 'policies')}, each alone; {what}"
-    return "".join([*reports, *(f"{line}\n" for line in (*(_row(*one) for one in each), head))])
+    head = f"{worst}: the worst of {counted(len(results), 'policy', 'policies')}, each alone; {what}"
+    return "".join([*reports, *(f"{line}\n" for line in (*(_row(*one) for one in results), head))])
 
 
-def document(each: Each) -> dict[str, Any]:
+def document(results: Results) -> dict[str, Any]:
     """Return the documents of all policies in one."""
     return {
         "format": FORMAT,
-        "verdict": worst_of((str(result.analysis.verdict) for _, result in each), WORST_FIRST),
-        "policies": [{"policy": file, "analysis": result.document()} for file, result in each],
+        "verdict": worst_of((str(result.analysis.verdict) for _, result in results), WORST_FIRST),
+        "policies": [{"policy": file, "analysis": result.document()} for file, result in results],
     }
 
 

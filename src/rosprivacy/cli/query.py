@@ -104,13 +104,13 @@ def query(
     read_by_programs = format in (RowFormat.json, RowFormat.csv)
     most = limit or (None if read_by_programs else LIMIT)
     with driver_of(neo4j) as driver:
-        rows, warning = rows_of(driver, text, parameters, limit=most, timeout=timeout, asked=asked)
+        rows, warning = rows_of(driver, text, parameters, limit=most, timeout=timeout, query=asked)
     emit(answer(rows, format, _title(asked, given, file, text), wide=output is not None), output)
-    if rows.more:
+    if rows.truncated:
         print(f"only the first {most:,} rows are shown; --limit shows more", file=sys.stderr)
     if warning:
         print(f"warning: {warning}", file=sys.stderr)
-    if rows.more and read_by_programs:
+    if rows.truncated and read_by_programs:
         raise typer.Exit(UNDETERMINED)
 
 
@@ -125,22 +125,22 @@ def _listed(queries: Iterable[Query]) -> str:
     return "\n".join([*lines, ""])
 
 
-def _check_drawing(asked: Query | None, output: Path | None) -> None:
+def _check_drawing(query: Query | None, output: Path | None) -> None:
     """Refuse, before anything is asked, what nobody could see or what cannot be drawn."""
     not_for_a_terminal("SVG", output)
-    if asked and not asked.drawable:
-        raise QueryError(not_drawn(asked.name, (column.name for column in asked.columns)))
+    if query and not query.drawable:
+        raise QueryError(not_drawn(query.name, (column.name for column in query.columns)))
 
 
-def _title(asked: Query | None, given: list[str], file: Path | None, text: str) -> str:
+def _title(query: Query | None, parameters: list[str], file: Path | None, text: str) -> str:
     """What a picture is of: the question with its parameters, the file's name, or the Cypher."""
-    said = " ".join([asked.name, *given]) if asked else file.name if file else " ".join(text.split())
+    said = " ".join([query.name, *parameters]) if query else file.name if file else " ".join(text.split())
     return shown(said)
 
 
-def _pairs(given: list[str]) -> dict[str, str]:
+def _pairs(parameters: list[str]) -> dict[str, str]:
     pairs: dict[str, str] = {}
-    for text in given:
+    for text in parameters:
         key, equals, value = text.partition("=")
         if not equals:
             raise QueryError(f"{shown(text)!r} is no parameter; write key=value")

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 WIDEST_TABLE = 400  # in a file or a pipe
 GAP = 2  # between columns
-LESS = "ask for less, or use a lower --limit"
+REMEDY = "ask for less, or use a lower --limit"
 CATEGORIES = """\
 `Biometric` and `CARRIES_BIOMETRIC` stand for every kind of data; rosprivacy categories lists the kinds. Written in
 capitals, words are parted: FaceTemplate has the labels FaceTemplate, FaceTemplateSource, FaceTemplateLeak and
@@ -69,9 +69,9 @@ def _drawing(rows: Rows, title: str) -> bytes:
     if not values:
         raise QueryError(not_drawn(title, rows.columns))
     number = counted(len(rows.rows), "row")
-    said = f"Only the first {number}: there are more, --limit draws more" if rows.more else number
+    said = f"Only the first {number}: there are more, --limit draws more" if rows.truncated else number
     picture = query_view(values, STORED_NAMES, title, (said,))
-    done = drawn(picture, "svg", direction="", less=LESS, instead=f"{LESS}, or take --format json")
+    done = drawn(picture, "svg", direction="", remedy=REMEDY, instead=f"{REMEDY}, or take --format json")
     for note in done.said:
         print(note, file=sys.stderr)
     return done.data

@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 
 
 @reads_system()
-def report(inputs: Inputs, asked: Asked, computed: Computed, written: Written) -> None:
+def report(inputs: Inputs, question: Asked, computed: Computed, written: Written) -> None:
     """Write a report for people: a page that needs no network, a text, a Word document, or rows for the record.
 
     It ends with 0 when the report is written, whatever that says, unless --fail-on is given.
     """
-    answer(inputs, asked, computed, written, written.format or _by_ending(written.output), FailOn.never)
+    answer(inputs, question, computed, written, written.format or _by_ending(written.output), FailOn.never)
 
 
 def _by_ending(output: Path | None) -> str:

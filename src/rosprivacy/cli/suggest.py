@@ -115,7 +115,7 @@ def suggest(
     refuse("suggest", "--by with --ask only", ["--by"] if by and not ask else [])
     if ask and (into is None or output or format is TextOrJson.json or model or replay or dry_run):
         raise typer.BadParameter("--ask needs --into FILE; it takes neither --output, --format json nor a model")
-    stored = inputs.given("fleet", "from_database")
+    stored = inputs.given_options("fleet", "from_database")
     if model or replay:
         refuse("--model" if model else "--replay", "the policies of one robot", stored)
     if into:
@@ -130,20 +130,20 @@ def suggest(
         return
     with options.interview(output) as interview:
 
-        def told() -> Suggested:
+        def progress() -> Suggested:
             return suggested(_result(inputs._replace(labels=list(labels))), inputs.settings, files, interview)
 
         if into:
-            _write(into, told)
+            _write(into, progress)
         else:
-            emit(_answer(told(), format), output)
+            emit(_answer(progress(), format), output)
 
 
-def _answer(found: Suggested, format_: TextOrJson) -> str:
+def _answer(suggested: Suggested, format_: TextOrJson) -> str:
     from rosprivacy.report.json_text import as_text
     from rosprivacy.report.suggest.suggestion_lines import suggestion_lines
 
-    document = found.document()
+    document = suggested.document()
     return (
         as_text(document) if format_ is TextOrJson.json else "".join(f"{line}\n" for line in suggestion_lines(document))
     )
@@ -156,7 +156,7 @@ def _would_be_sent(inputs: Inputs, labels: tuple[str, ...], sources: Sequence[st
     from rosprivacy.reading.robot_system import answer_robot
 
     asking = options.asking
-    basis = basis_of(answer_robot(inputs.named, labels, inputs.settings), sources)
+    basis = basis_of(answer_robot(inputs.required_policies, labels, inputs.settings), sources)
     asked = asked_of(basis, asking, mask_of(basis.result.vocabulary) if asking.masked else None)
     texts = (f"POST {asking.url}\n{one.body.decode('ascii')}\n" for one in asked)
     return "".join(texts) or f"{NOTHING_ASKED}\n"
@@ -180,13 +180,13 @@ def _with_own(labels: tuple[str, ...], into: Path | None) -> tuple[str, ...]:
     return (*labels, str(into))
 
 
-def _write(file: Path, told: Callable[[], Suggested]) -> None:
+def _write(file: Path, progress: Callable[[], Suggested]) -> None:
     """The suggestions into a label file, in place of those that an earlier run has written there."""
     from rosprivacy.labelling.suggested_lines import with_suggestions
     from rosprivacy.report.editing import editing
 
     with editing(file):
-        found = told()
+        found = progress()
         written = with_suggestions(str(file), found)
         emit(written.text, file, edited=file)
     for notice in found.notices:
@@ -199,8 +199,8 @@ def _ask(file: Path, inputs: Inputs, files: UserFiles, by: str | None) -> None:
     from rosprivacy.cli.dialogue import ask
     from rosprivacy.labelling.suggesting import suggest_labels
 
-    def told() -> Suggested:
+    def progress() -> Suggested:
         labels = _with_own(tuple(inputs.labels or ()), file)
-        return suggest_labels(inputs.named, labels, inputs.settings, files)
+        return suggest_labels(inputs.required_policies, labels, inputs.settings, files)
 
-    ask(file, told, by, inputs.settings)
+    ask(file, progress, by, inputs.settings)

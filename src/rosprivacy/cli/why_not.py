@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from rosprivacy.cli.inputs import Inputs, reads_system
-from rosprivacy.cli.options import ASKED, Output, TextOrJson, complete_category
+from rosprivacy.cli.options import QUESTION_PANEL, Output, TextOrJson, complete_category
 from rosprivacy.cli.output import emit
 
 
@@ -29,7 +29,7 @@ def why_not(
             autocompletion=complete_category,
             show_default=False,
             help="Ask about this kind only.",
-            rich_help_panel=ASKED,
+            rich_help_panel=QUESTION_PANEL,
         ),
     ] = None,
     format: Annotated[TextOrJson, typer.Option("--format", "-f", help="Of the answer.")] = TextOrJson.text,  # noqa: A002 - the option's name

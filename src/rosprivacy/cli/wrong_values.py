@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.written_names import did_you_mean, nearest
-from rosprivacy.cli.exit_code import GONE
+from rosprivacy.cli.exit_code import REMOVED_VALUES
 
 if TYPE_CHECKING:
     import typer
@@ -24,7 +24,7 @@ def with_nearest(error: typer.BadParameter) -> typer.BadParameter:
         values, given = re.findall("'([^']*)'", told["values"]), told["given"]
         hint = did_you_mean(nearest(given.casefold(), values), f"one of {', '.join(values)}")
         option = error.param.name if error.param else ""
-        if option == "fail_on" and "undetermined" in values and given in GONE:
-            hint = GONE[given]
+        if option == "fail_on" and "undetermined" in values and given in REMOVED_VALUES:
+            hint = REMOVED_VALUES[given]
         error.message = f"{shown(given)!r} is not one of its values; {hint}"
     return error

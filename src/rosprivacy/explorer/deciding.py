@@ -36,9 +36,9 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.result import Result
 
-    Named = Collection[str] | None  # robots, by id; None for all that are alike
+    RobotNames = Collection[str] | None  # robots, by id; None for all that are alike
 
-LEAST = {"accept": ("reason", "owner")}  # what a person signs
+REQUIRED_FIELDS = {"accept": ("reason", "owner")}  # what a person signs
 ENDS = 2  # robots of one kind that are enough to see what holds between any two
 
 
@@ -98,7 +98,7 @@ class Scope(NamedTuple):
             return self._replace(robots=(source,), to_robots=(leak,))
         return self._replace(robots=tuple(robot for robot in (source, leak) if robot in self.robots)[:1])
 
-    def narrowed(self, robots: Named, to_robots: Named) -> Scope | None:
+    def narrowed(self, robots: RobotNames, to_robots: RobotNames) -> Scope | None:
         """Return the same for some of them, None for all; None if others are named, or none."""
         ends = []
         for named, known in ((robots, self.robots), (to_robots, self.to_robots)):
@@ -113,16 +113,16 @@ def scopes(findings: Iterable[Finding], likeness: Likeness, finding: Finding) ->
     pattern = pattern_id(finding, likeness)
     like = [other for other in findings if (other.kind, other.category) == (finding.kind, finding.category)]
     same = [other for other in like if likeness.count(other) and pattern_id(other, likeness) == pattern]
-    return tuple(_whole(other, likeness) for other in sorted(same, key=lambda other: other.id != finding.id))
+    return tuple(_without_blanks(other, likeness) for other in sorted(same, key=lambda other: other.id != finding.id))
 
 
-def _whole(finding: Finding, likeness: Likeness) -> Scope:
+def _without_blanks(finding: Finding, likeness: Likeness) -> Scope:
     begins, ends = likeness.placed(finding.source.robot), likeness.placed(finding.leak.robot)
     return Scope(finding, begins, ends) if likeness.across(finding) else Scope(finding, begins or ends)
 
 
 def record(
-    file: str | None, result: Result, finding: str, ruling: Ruling, robots: tuple[Named, Named],
+    file: str | None, result: Result, finding: str, ruling: Ruling, robots: tuple[RobotNames, RobotNames],
     judge: Callable[[Decisions], None],
 ) -> None:  # fmt: skip
     """Write a decision about a finding into the decisions file, which is made if it is not there.
@@ -158,15 +158,15 @@ def _check(file: str, ruling: Ruling) -> None:
         raise _refused(file, f"{shown(ruling.expires)!r} is not a date", "write YYYY-MM-DD")
     if ruling.expires and ruling.expires < today(os.environ):
         raise _refused(file, f"{ruling.expires} is over: it would decide nothing", "name a day to come")
-    for name in LEAST.get(ruling.choice, ()):
+    for name in REQUIRED_FIELDS.get(ruling.choice, ()):
         if not getattr(ruling, name):
             raise _refused(file, f"an acceptance without {name}", f"say the {name}: it is what a person signs")
 
 
-def _scope_of(known: Sequence[Scope], file: str, robots: Named, to_robots: Named) -> Scope:
+def _scope_of(scopes: Sequence[Scope], file: str, robots: RobotNames, to_robots: RobotNames) -> Scope:
     """The scope that a person names; the first if no robots are named. Robots that are named have to be alike."""
-    fitting = [narrowed for scope in known if (narrowed := scope.narrowed(robots, to_robots))]
-    if len(fitting) == 1 or (fitting and fitting[0].finding is known[0].finding):
+    fitting = [narrowed for scope in scopes if (narrowed := scope.narrowed(robots, to_robots))]
+    if len(fitting) == 1 or (fitting and fitting[0].finding is scopes[0].finding):
         return fitting[0]
     named = ", ".join(map(shown, (*(robots or ()), *(to_robots or ())))) or "no robot"
     if fitting:

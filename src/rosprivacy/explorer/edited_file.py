@@ -202,7 +202,7 @@ class EditedFile:
             if data != before:
                 write_texts([(file, data)], edited=file)
         done = Saved(own.file, new.lines, digest_of(data), new.remarks)
-        return self._known(done, edits, read()), done
+        return self._after_write(done, edits, read()), done
 
     def saved_as(self, edits: Sequence[Edit], file: str, read: Callable[[], EditedFile]) -> tuple[EditedFile, Saved]:
         """Write it under another name, where there is none; labels that had no file have this one then."""
@@ -217,11 +217,11 @@ class EditedFile:
             return self, done
         own = replace(self.own, file=file, how=self.own.how._replace(file=file))
         named = replace(self, own=own, readings={(file, False): own})
-        return named._known(done, edits, read()), done  # noqa: SLF001 - of its own class
+        return named._after_write(done, edits, read()), done  # noqa: SLF001 - of its own class
 
-    def _known(self, done: Saved, edits: Sequence[Edit], now: EditedFile) -> EditedFile:
+    def _after_write(self, saved: Saved, edits: Sequence[Edit], now: EditedFile) -> EditedFile:
         """The file as it was written; where somebody else was quicker since, nothing is known of its text."""
-        last = now.last if now.own.digest == done.digest else (done.digest, "")
+        last = now.last if now.own.digest == saved.digest else (saved.digest, "")
         written = {key: reading.labels for key, reading in now.readings.items()}
         return replace(self, last=last, says=self.entries(edits), written=written)
 

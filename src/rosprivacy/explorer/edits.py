@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypedDict
 from rosprivacy.analysis.errors import InputErrors, LabelError, shown
 from rosprivacy.analysis.model import NON_ROS
 from rosprivacy.ingest.labels.edited_entries import KINDS, Said, same_name
-from rosprivacy.ingest.labels.keywords import CHANNEL, NODE, NONE, moves_data
+from rosprivacy.ingest.labels.keywords import CHANNEL, NO_KIND, NODE, moves_data
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -29,7 +29,11 @@ SECTION = {
     **dict.fromkeys(NON_ROS, "elements"),
 }
 ROLES = (*moves_data(NODE), *moves_data(CHANNEL))  # what data does there
-WHOLE = {"conduit": "conduit", "mundane": "never", "sensitive": "sensitive"}  # said of all kinds -> key of a map
+WHOLE_NODE_KEYWORDS = {
+    "conduit": "conduit",
+    "mundane": "never",
+    "sensitive": "sensitive",
+}  # said of all kinds -> key of a map
 
 
 class Label(TypedDict, total=False):
@@ -165,21 +169,21 @@ def entry_of(label: Label, before: Any, vocabulary: Vocabulary) -> Any:
     roles = {key: one for key, one in roles.items() if one is not False}
     kept = {key: one for key, one in before.items() if key not in ROLES} if isinstance(before, dict) else {}
     more = {key: one for key, one in {**kept, **outside, **said}.items() if one not in ("", [])}
-    whole = [key for key in WHOLE if roles.get(key) is True]
+    whole = [key for key in WHOLE_NODE_KEYWORDS if roles.get(key) is True]
     if len(whole) == len(roles) == 1 and not more:
         return whole[0]
-    roles |= {WHOLE[key]: _all(vocabulary) for key in whole}
+    roles |= {WHOLE_NODE_KEYWORDS[key]: _all(vocabulary) for key in whole}
     if "mundane" in roles:
         del roles["mundane"]
     first = {key: more.pop(key) for key in ("kind",) if key in more}
     return {**first, **roles, **more} or None
 
 
-def _as_list(key: str, said: Any) -> Any:
+def _as_list(key: str, value: Any) -> Any:
     """Names as the label file has them: a list, whatever they come in."""
-    if key != "absent" and said != NONE and isinstance(said, str | dict if key == "derives" else str):
-        return [said]
-    return sorted(said) if isinstance(said, set | frozenset) else list(said) if isinstance(said, tuple) else said
+    if key != "absent" and value != NO_KIND and isinstance(value, str | dict if key == "derives" else str):
+        return [value]
+    return sorted(value) if isinstance(value, set | frozenset) else list(value) if isinstance(value, tuple) else value
 
 
 def _all(vocabulary: Vocabulary) -> list[str]:

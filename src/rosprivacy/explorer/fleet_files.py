@@ -51,7 +51,7 @@ class Targets:
                     self._readers[os.path.realpath(file)][robot.id] = robot
                     self._names[os.path.realpath(file)].add((file, alone))
 
-    def called(self, file: str) -> tuple[tuple[str, bool], ...]:
+    def names_of(self, file: str) -> tuple[tuple[str, bool], ...]:
         """Return by which names the fleet file leads to a label file, and whether as one of a robot."""
         return tuple(sorted(self._names.get(os.path.realpath(file), ())))
 
@@ -65,7 +65,7 @@ class Targets:
         For a domain these are the files of the robots in it; what the fleet file itself states has none.
         """
         targets: dict[str, Target] = {}
-        for reader in self._named(robot):
+        for reader in self._robot_names(robot):
             for files, alone in ((reader.labels, False), (reader.own, True)):
                 if files not in self._chosen:
                     self._chosen[files] = chosen(files)  # which looks into them
@@ -74,7 +74,7 @@ class Targets:
                     targets.setdefault(os.path.realpath(files[at]), self._target(files[at], alone=alone))
         return tuple(sorted(targets.values(), key=lambda target: target.alone))
 
-    def _named(self, robot: str) -> Iterable[Robot]:
+    def _robot_names(self, robot: str) -> Iterable[Robot]:
         if robot in self._robots:
             return (self._robots[robot],)
         return (each for each in self._robots.values() if each.domain and pseudo_robot(each.domain) == robot)
@@ -132,7 +132,7 @@ class FleetFiles:
         return {name: file.last[0] for file in self._edited.values() for name, _ in file.readings}
 
     @property
-    def beside(self) -> Iterable[tuple[str, str]]:
+    def other_files(self) -> Iterable[tuple[str, str]]:
         """The other files that were read, with their hashes: all that no answer went to.
 
         Of files that are alike one was read, in the place of all.
@@ -186,7 +186,7 @@ class FleetFiles:
 
     def says(self, file: str, edits: Sequence[Edit]) -> Entries:
         """Return what one of them says with edits; to know it, no text has to be kept."""
-        name = self._targets.called(file)[0][0]
+        name = self._targets.names_of(file)[0][0]
         if name in self._edited:
             return self._edited[name].entries(_of(name, edits))
         if name not in self._unedited:
@@ -195,7 +195,7 @@ class FleetFiles:
 
     def entry(self, of: Edit, edits: Sequence[Edit]) -> Edit:
         """Return the entry that one edit is about as it is with others: where it stands, and what it says."""
-        names = self._targets.called(of.file)
+        names = self._targets.names_of(of.file)
         if not names:
             _refuse(of.file, "is no label file of the fleet", "name it in the fleet file")
         name = names[0][0]
@@ -236,16 +236,16 @@ class FleetFiles:
 
     def system(self, edits: Sequence[Edit]) -> FleetSystem:
         """Return the fleet under the label files with edits."""
-        system = self.read.under(*self._meant(edits))
+        system = self.read.under(*self._meanings(edits))
         for (name, _), labels in self.read.reader.labels.items():
             self._digests.setdefault(name, labels.sha256)
         return system
 
     def tried(self, now: System, asked: Asked, what: WhatIf, edits: Sequence[Edit]) -> tuple[Result, tuple[str, ...]]:
         """Return the answer if something were so on some robots, and what to tell of it."""
-        return tried_on_robots(now, partial(self.read.tried, *self._meant(edits)), asked, what)
+        return tried_on_robots(now, partial(self.read.tried, *self._meanings(edits)), asked, what)
 
-    def _meant(self, edits: Sequence[Edit]) -> tuple[dict[tuple[str, bool], Labels], set[str]]:
+    def _meanings(self, edits: Sequence[Edit]) -> tuple[dict[tuple[str, bool], Labels], set[str]]:
         """What those that were looked into mean with edits, and the names of those that are not as on the disk."""
         labels: dict[tuple[str, bool], Labels] = {}
         for name, file in self._edited.items():
@@ -260,8 +260,8 @@ class FleetFiles:
 
     def _compared_anew(self, edits: Sequence[Edit]) -> FleetRead:
         """The fleet with robots compared by what their files hold now; what was said or written here is known."""
-        self.read.reader.relabel(self._meant(edits)[0])  # another answer, or what was taken back, may have been last
-        return self.read.again()
+        self.read.reader.relabel(self._meanings(edits)[0])  # another answer, or what was taken back, may have been last
+        return self.read.read_again()
 
     # --- the files ----------------------------------------------------------------------------------------------
 

@@ -58,17 +58,17 @@ class History:
         self.lock = RLock()
         self.files, self.asked = files, asked
         self.version = 0
-        self._done: list[Edit] = []
+        self._edits_made: list[Edit] = []
         self._undone: list[Edit] = []
         self._now = _Answered(system, answer(system, asked, count_paths=False))
         self._last: tuple[str, _Answered] | None = None  # edits, as text, before the last edit, undo or redo
         self._journal = Journal()
         self._watched = WatchedFiles()
-        self._watched.changed(self._others())
+        self._watched.changed(self._other_files())
 
-    def remember(self, folder: Path, named: tuple[str, ...], *, resume: bool) -> None:
+    def remember(self, folder: Path, named_files: tuple[str, ...], *, resume: bool) -> None:
         """Begin a journal; make the edits again that a session before left, if that is wanted and still the same."""
-        self._journal = Journal.begin(folder, self.files.file, self.files.digest, named, self.system)
+        self._journal = Journal.begin(folder, self.files.file, self.files.digest, named_files, self.system)
         offered = self._journal.offered
         if resume and offered and not offered.changed:
             self.resume()
@@ -103,12 +103,12 @@ class History:
     @property
     def edits(self) -> tuple[Edit, ...]:
         """What was done and not undone, the last one last."""
-        return tuple(self._done)
+        return tuple(self._edits_made)
 
     @property
     def can_undo(self) -> bool:
         """Whether there is an edit to take back."""
-        return bool(self._done)
+        return bool(self._edits_made)
 
     @property
     def can_redo(self) -> bool:
@@ -118,7 +118,7 @@ class History:
     @property
     def unsaved(self) -> int:
         """How many entries say something else than the file on the disk, as this session knows it."""
-        return len(self.files.unsaved(self._done))
+        return len(self.files.unsaved(self._edits_made))
 
     @property
     def unsaved_from_before(self) -> Unsaved | None:
@@ -136,7 +136,7 @@ class History:
     @property
     def entries(self) -> dict[tuple[str, str], Any]:
         """What the label file says with the edits: (section, name) -> entry; of a fleet with the file in the name."""
-        return self.files.entries(self._done)
+        return self.files.entries(self._edits_made)
 
     # --- edits --------------------------------------------------------------------------------------------------
 
@@ -145,8 +145,8 @@ class History:
         with self.lock:
             self.check_that_it_changes(edit.name)
             before = self.uncounted
-            edit = self.files.entry(edit, self._done)._replace(value=copied(edit.value))
-            self._go([*self._done, edit], [])
+            edit = self.files.entry(edit, self._edits_made)._replace(value=copied(edit.value))
+            self._go([*self._edits_made, edit], [])
             return Change(edit, self.version, *compared(before, self.uncounted))
 
     def undo(self) -> bool:
@@ -158,8 +158,8 @@ class History:
             If the label file, merged meanwhile, does not allow it; nothing is changed then.
         """
         with self.lock:
-            if self._done:
-                self._go(self._done[:-1], [*self._undone, self._done[-1]])
+            if self._edits_made:
+                self._go(self._edits_made[:-1], [*self._undone, self._edits_made[-1]])
                 return True
             return False
 
@@ -167,21 +167,21 @@ class History:
         """Make the edit again that was taken back last; return whether there was one; errors as of ``undo``."""
         with self.lock:
             if self._undone:
-                self._go([*self._done, self._undone[-1]], self._undone[:-1])
+                self._go([*self._edits_made, self._undone[-1]], self._undone[:-1])
                 return True
             return False
 
-    def _go(self, done: list[Edit], undone: list[Edit]) -> None:
+    def _go(self, edits: list[Edit], undone: list[Edit]) -> None:
         """Be where these edits are made and those are taken back."""
-        changed = self.files.differences(self._done, done)
-        here = repr(self._done), self._now  # as text: 1 is no True there, nor a list what it becomes later
-        if self._last is not None and self._last[0] == repr(done):  # as undo has it, and redo after it
+        changed = self.files.differences(self._edits_made, edits)
+        here = repr(self._edits_made), self._now  # as text: 1 is no True there, nor a list what it becomes later
+        if self._last is not None and self._last[0] == repr(edits):  # as undo has it, and redo after it
             self._now = self._last[1]
         else:
-            self._analyse(done)
-        self._done, self._undone, self._last = done, undone, here
+            self._analyse(edits)
+        self._edits_made, self._undone, self._last = edits, undone, here
         self.version += 1
-        self._journal.note(changed, self.files.unsaved(done))
+        self._journal.note(changed, self.files.unsaved(edits))
 
     def _analyse(self, edits: Sequence[Edit]) -> None:
         """Have the answer after edits; if they are wrong, that of before is kept."""
@@ -211,7 +211,7 @@ class History:
             why: list[str] = []
             for edit in offered.edits if offered else ():
                 try:
-                    if self.files.entry(edit, self._done).value != edit.value:
+                    if self.files.entry(edit, self._edits_made).value != edit.value:
                         self.do(edit)
                 except InputErrors as error:
                     refused.append(edit)
@@ -248,7 +248,7 @@ class History:
             self.check_that_it_changes(self.files.name, file=True)
             known = self.files.digest
             try:
-                return self.files.save(self._done)
+                return self.files.save(self._edits_made)
             finally:
                 self._go_on_with_written(known)
 
@@ -264,17 +264,17 @@ class History:
             self.check_that_it_changes(file, file=True)
             known = self.files.digest
             try:
-                return self.files.save_as(self._done, file)
+                return self.files.save_as(self._edits_made, file)
             finally:
                 self._go_on_with_written(known)
 
-    def _go_on_with_written(self, known: str) -> None:
+    def _go_on_with_written(self, digest: str) -> None:
         """Go on with what was written, also where one of several files could not be."""
-        unsaved = self.files.unsaved(self._done)
+        unsaved = self.files.unsaved(self._edits_made)
         # an edit and its undoing write nothing, and are saved all the same: the answer is that of the file then
-        if self.files.digest != known or not unsaved:
+        if self.files.digest != digest or not unsaved:
             self._journal.begin_anew(self.files.digest, unsaved)
-            self._analyse(self._done)
+            self._analyse(self._edits_made)
             self.version += 1
 
     def changed_on_disk(self) -> Conflict | None:
@@ -289,12 +289,12 @@ class History:
         The answer stays one about what was read. Label files that answers went to are told by ``changed_on_disk``.
         """
         with self.lock:
-            return self._watched.changed(self._others())
+            return self._watched.changed(self._other_files())
 
-    def _others(self) -> list[tuple[str, str]]:
+    def _other_files(self) -> list[tuple[str, str]]:
         """The files that the answer rests on and that answers do not go to, with their hashes."""
         asked = {key: self.uncounted.assumptions.get(key) for key in OF_QUESTION}
-        return [*self.files.beside, *files_in(asked)]
+        return [*self.files.other_files, *files_in(asked)]
 
     def merge(self) -> tuple[Edit, ...]:
         """Read the label file anew, and make the edits again on what it says now.
@@ -313,15 +313,15 @@ class History:
         with self.lock:
             self.check_that_it_changes(self.files.name, file=True)
             before = self.files
-            self.files, edits, both = before.merged(self._done)
+            self.files, edits, both = before.merged(self._edits_made)
             try:
                 self._analyse(edits)
             except BaseException:
                 self.files = before
                 raise
-            self._done = edits
+            self._edits_made = edits
             self.version += 1
-            self._journal.begin_anew(self.files.digest, self.files.unsaved(self._done))
+            self._journal.begin_anew(self.files.digest, self.files.unsaved(self._edits_made))
             return both
 
     # --- another question ---------------------------------------------------------------------------------------
@@ -329,11 +329,11 @@ class History:
     def ask(self, asked: Asked) -> None:
         """Have the answer to another question, such as one with other decisions."""
         self._ask(asked)
-        self._analyse(self._done)
+        self._analyse(self._edits_made)
 
     def _ask(self, asked: Asked) -> None:
         self.asked = asked
-        self.files.ask(asked, self._done)
+        self.files.ask(asked, self._edits_made)
 
     @contextmanager
     def undone_if_it_fails(self) -> Iterator[None]:

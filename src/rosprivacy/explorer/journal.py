@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from rosprivacy.system import System
 
 FORMAT = "rosprivacy.session"
-MOST = 16  # journals of one label file: of sessions that run, and of those that ended
+BOUND = 16  # journals of one label file: of sessions that run, and of those that ended
 MOST_READ = 64 * 2**20  # bytes
 LONGEST = 2**20  # bytes; a longer one is written anew, with the last word on each entry
 
@@ -109,7 +109,7 @@ class Journal:
 
     def __init__(self, folder: Path | None = None, about: str = "", base: Base = NOTHING) -> None:
         self.base = base
-        self.left: list[Left] = []
+        self.remaining: list[Left] = []
         self.remarks: list[str] = []
         self._locks: dict[Path, BaseFileLock] = {}
         self._file: Path | None = None
@@ -122,27 +122,27 @@ class Journal:
             self._take(folder, hashlib.sha256(about.encode("utf-8", "surrogatepass")).hexdigest()[:32])
         except OSError as error:
             self._fails(folder, error)
-        self.left.sort(key=lambda one: one.file.stat().st_mtime_ns, reverse=True)
+        self.remaining.sort(key=lambda one: one.file.stat().st_mtime_ns, reverse=True)
 
     @classmethod
-    def begin(cls, folder: Path, file: str, digest: str, named: tuple[str, ...], system: System) -> Journal:
+    def begin(cls, folder: Path, file: str, digest: str, named_files: tuple[str, ...], system: System) -> Journal:
         """Begin a journal about a label file that holds what a digest says; both are empty where there is none."""
         read = sorted({source for policy in system.policies for source in policy.sources})
         policies = hashlib.sha256(repr(read).encode("utf-8", "surrogatepass")).hexdigest()
-        return cls(folder, str(Path(file).resolve()) if file else repr(named), Base(digest, policies))
+        return cls(folder, str(Path(file).resolve()) if file else repr(named_files), Base(digest, policies))
 
     @property
     def offered(self) -> Unsaved | None:
         """What the newest of the sessions before left; None if there is nothing."""
-        if not self.left:
+        if not self.remaining:
             return None
-        return Unsaved(self.left[0].edits, self.left[0].base != self.base, self.left[0].torn)
+        return Unsaved(self.remaining[0].edits, self.remaining[0].base != self.base, self.remaining[0].torn)
 
     def _take(self, folder: Path, name: str) -> None:
         """Lock a file of our own, and what nobody holds."""
         import filelock  # noqa: PLC0415 - light start
 
-        for number in range(MOST):
+        for number in range(BOUND):
             file = folder / f"{name}-{number}.jsonl"
             beside = Path(f"{file}.lock")
             if self._file and not file.exists() and not beside.exists():
@@ -160,14 +160,14 @@ class Journal:
             else:
                 self._file = file
         if not self._file:
-            self.remarks.append(f"{shown(str(folder))}: {MOST} journals are there already; this session has none")
+            self.remarks.append(f"{shown(str(folder))}: {BOUND} journals are there already; this session has none")
 
     def _note(self, file: Path) -> None:
         left = read_journal(file)
         if left.torn:
             self.remarks.append(f"{shown(str(file))}: {left.torn} lines cannot be read, such as one that was cut off")
         if left.edits:
-            self.left.append(left)
+            self.remaining.append(left)
         elif not left.torn:  # what cannot be read stays for a person to look at
             self._drop(file)
 
@@ -179,12 +179,12 @@ class Journal:
 
     def settle(self, refused: Iterable[Edit] = ()) -> None:
         """Forget what the newest of the sessions before left, but for what could not be made again."""
-        if not self.left:
+        if not self.remaining:
             return
-        left, edits = self.left.pop(0), tuple(refused)
+        left, edits = self.remaining.pop(0), tuple(refused)
         if edits:
             write_texts([(left.file, _text(left.base, edits))])
-            self.left.insert(0, left._replace(edits=edits))
+            self.remaining.insert(0, left._replace(edits=edits))
         else:
             self._drop(left.file)
 
@@ -267,8 +267,8 @@ def read_journal(file: Path) -> Left:
     return Left(file, base, tuple(edits.values()), torn)
 
 
-def _edit(said: Any) -> Edit:
-    section, name, value, file = said if len(said) > len(Said._fields) else (*said, "")
+def _edit(entry: Any) -> Edit:
+    section, name, value, file = entry if len(entry) > len(Said._fields) else (*entry, "")
     if section not in KINDS or not isinstance(name, str) or not isinstance(file, str):
         raise ValueError
     return Edit(section, name, value, file)

@@ -64,7 +64,7 @@ class RobotFiles:
         The policies as they were read, under the label files as they were.
     at
         Which of the label files is edited.
-    beside
+    other_files
         The other files that were read, with their hashes: all that answers do not go to.
     refusal
         Why nothing can be changed, and what to do instead; empty where it can.
@@ -75,9 +75,9 @@ class RobotFiles:
 
     def __init__(
         self, read: System, asked: Asked, files: Sequence[Labels], edited: EditedFile, at: int = 0,
-        beside: Iterable[tuple[str, str]] = (), refusal: tuple[str, ...] = (),
+        other_files: Iterable[tuple[str, str]] = (), refusal: tuple[str, ...] = (),
     ) -> None:  # fmt: skip
-        self.read, self.asked, self.beside, self.refusal = read, asked, tuple(beside), refusal
+        self.read, self.asked, self.other_files, self.refusal = read, asked, tuple(other_files), refusal
         self._files, self._edited, self._at = tuple(files), edited, at
 
     @classmethod
@@ -185,7 +185,7 @@ class RobotFiles:
         """Read it anew, and hold edits against what it says now, as ``EditedFile.merged``; this here stays as it is."""
         now = self._read(self.file)
         left, both = self._edited.merged(now, edits)
-        return RobotFiles(self.read, self.asked, self._files, now, self._at, self.beside), left, both
+        return RobotFiles(self.read, self.asked, self._files, now, self._at, self.other_files), left, both
 
     def _read(self, file: str) -> EditedFile:
         return EditedFile.of(read_file(file or None, self.asked.vocabulary, self.asked.settings))

@@ -90,17 +90,17 @@ def questions(
     return tuple(sorted(asked.values(), key=lambda each: (each.can_wait, each.element.robot not in outliers)))
 
 
-def _question(asked: OpenQuestion, behind: Behind, proposed: Collection[tuple[str, str]]) -> Question:
-    element = asked.element
+def _question(question: OpenQuestion, behind: Behind, proposed: Collection[tuple[str, str]]) -> Question:
+    element = question.element
     label = label_key(element)
-    group = FIRST if asked.frontier else BEHIND
+    group = FIRST if question.frontier else BEHIND
     if element.is_channel:
         group = WAITS if behind.waits else AT_CHANNELS
     if (element.kind, element.name) in proposed:
         group = PROPOSED
     return Question(
-        element, label["section"], label["name"], asked.categories, asked.distance, group, asked.frontier,
-        behind.through, behind.closes, behind.leaks, asked.missing,
+        element, label["section"], label["name"], question.categories, question.distance, group, question.frontier,
+        behind.through, behind.closes, behind.leaks, question.missing,
     )  # fmt: skip
 
 

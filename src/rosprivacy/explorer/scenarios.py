@@ -101,26 +101,26 @@ class Scenario(NamedTuple):
     remarks: tuple[str, ...] = ()
 
 
-def tried(system: System, asked: Question, what: WhatIf) -> tuple[Result, tuple[str, ...]]:
+def tried(system: System, question: Question, what: WhatIf) -> tuple[Result, tuple[str, ...]]:
     """Return the answer if something were so, and what to tell of it."""
     if what.robots:
         raise _not_tried("names robots, and this is one robot", "leave robots away")
-    grants, labels = _cut(system.policies, what), _stated(asked, what)
+    grants, labels = _cut(system.policies, what), _stated(question, what)
     files = (*system.labels, labels) if labels else system.labels
     remarks: tuple[str, ...] = ()
     if grants:
         read = with_denied(system.policies, grants), system.diagnostics
-        changed, problems = lenient_system(read, list(files), asked, system.types)
+        changed, problems = lenient_system(read, list(files), question, system.types)
         remarks = tuple(map(str, problems))
     elif labels:
         assert system.under is not None, "of one robot"
         changed = system.under(files)
     else:
         changed = system
-    return answer(_with_steps(_doubting(changed, asked, what), what), asked), remarks
+    return answer(_with_steps(_doubting(changed, question, what), what), question), remarks
 
 
-def tried_on_robots(now: System, read: ReadFleet, asked: Question, what: WhatIf) -> tuple[Result, tuple[str, ...]]:
+def tried_on_robots(now: System, read: ReadFleet, question: Question, what: WhatIf) -> tuple[Result, tuple[str, ...]]:
     """Return the answer of the fleet if something were so on some robots, and what to tell of it.
 
     Parameters
@@ -132,8 +132,8 @@ def tried_on_robots(now: System, read: ReadFleet, asked: Question, what: WhatIf)
     _check_robots(now.fleet, what.robots)
     groups = (group for group in now.groups if any(robot.id in what.robots for robot in group.robots))
     policies = {policy.file: policy for group in groups for policy in now.members[group.robots[0].id].policies}
-    system, missing = read(what.robots, Tried(frozenset(_cut(policies.values(), what)), _stated(asked, what)))
-    result = answer(_filtered(_doubting(system, asked, what), now.fleet, what), asked)
+    system, missing = read(what.robots, Tried(frozenset(_cut(policies.values(), what)), _stated(question, what)))
+    result = answer(_filtered(_doubting(system, question, what), now.fleet, what), question)
     return result, tuple(dict.fromkeys(map(str, missing)))
 
 
@@ -193,14 +193,14 @@ def _cut(policies: Iterable[Policy], what: WhatIf) -> list[Grant]:
     return named + [grant for grant in grants if grant in chosen]
 
 
-def _stated(asked: Question, what: WhatIf) -> Labels | None:
+def _stated(question: Question, what: WhatIf) -> Labels | None:
     """What a label file would say; None for nothing."""
     flows: list[dict[str, Any]] = [{"from": a, "to": b, "never": list(kinds)} for a, b, kinds in what.filters]
     flows += [{"from": a, "to": b} for a, b in what.flows]
     if not (flows or what.elements):
         return None
     entries = {"labels": 1, "elements": dict(what.elements), "flows": flows}
-    return parse_labels(entries, asked.vocabulary, name=TRIED, bounds=asked.settings.bounds)
+    return parse_labels(entries, question.vocabulary, name=TRIED, bounds=question.settings.bounds)
 
 
 def _with_steps(system: System, what: WhatIf, wild: Mapping[str, frozenset[int]] | None = None) -> System:
@@ -224,12 +224,12 @@ def _with_steps(system: System, what: WhatIf, wild: Mapping[str, frozenset[int]]
     return replace(system, graph=graph, bound=bound)
 
 
-def _doubting(system: System, asked: Question, what: WhatIf) -> System:
+def _doubting(system: System, question: Question, what: WhatIf) -> System:
     """The system without what some sanitizers are said to clean."""
     elements = dict(system.bound.elements)
     for kind, name, kinds in what.doubted:
         section = section_of(kind, name, TRIED)
-        hierarchy = asked.vocabulary.hierarchy
+        hierarchy = question.vocabulary.hierarchy
         cleans_nothing = True
         for vertex, statements in system.bound.elements.items():
             element = system.graph.elements[vertex]

@@ -162,9 +162,9 @@ class Session:
         """Return a session with what was read from a database."""
         return cls(RobotFiles.stored(system, asked), system, asked)
 
-    def _journalled(self, folder: Path | None, named: tuple[str, ...], *, resume: bool) -> Session:
+    def _journalled(self, folder: Path | None, named_files: tuple[str, ...], *, resume: bool) -> Session:
         if folder is not None:
-            self.history.remember(folder, named, resume=resume)
+            self.history.remember(folder, named_files, resume=resume)
         return self
 
     # --- what is so now -----------------------------------------------------------------------------------------
@@ -230,7 +230,7 @@ class Session:
 
     # --- elements and robots ------------------------------------------------------------------------------------
 
-    def called(self, element: Element) -> tuple[str, str]:
+    def entry_of(self, element: Element) -> tuple[str, str]:
         """Return section and name of an element, as ``label`` takes them: of a fleet with its robot."""
         key = label_key(element)
         return key["section"], f"{element.robot}:{key['name']}" if self._files.fleet else key["name"]
@@ -422,7 +422,7 @@ class Session:
 
     def answer_for(self, element: Element, label: Label | None, *, only_this_robot: bool = False) -> Change:
         """Label an element, or take its label away; see ``label`` and ``unlabel``."""
-        section, name = self.called(element)
+        section, name = self.entry_of(element)
         if label is None:
             return self.unlabel(name, kind=section, only_this_robot=only_this_robot)
         return self.label(name, kind=section, only_this_robot=only_this_robot, **label)

@@ -212,7 +212,7 @@ def _with_more(result: Result, labels: Iterable[WrittenLabel], name: str) -> Res
     InputErrors
         If they contradict each other, or what is said.
     """
-    if result.again is None:
+    if result.reanalyse is None:
         return None
     sections: dict[str, dict[str, dict[str, list[object]]]] = defaultdict(
         lambda: defaultdict(lambda: defaultdict(list))
@@ -221,4 +221,4 @@ def _with_more(result: Result, labels: Iterable[WrittenLabel], name: str) -> Res
         for role, said in label.said.items():
             sections[label.section][label.name][role] += said
     text = json.dumps({"labels": 1, **sections})
-    return result.again((*result.labels, parse_labels(text, result.vocabulary, name=name)))
+    return result.reanalyse((*result.labels, parse_labels(text, result.vocabulary, name=name)))

@@ -68,7 +68,7 @@ class Person(Protocol):
         """Return a key, of a list also a number, or a label in place of an answer; nothing if there is no more."""
         ...
 
-    def told(self, remark: str) -> None:
+    def remark(self, remark: str) -> None:
         """Hear what became of the answer."""
         ...
 
@@ -156,7 +156,7 @@ class Conversation:
             self._postponed(question.about, rows)
             return True  # the person may have written a label by hand
         if self._would_close_untold(question.about, rows, key):
-            self.person.told(FOUND_SINCE)
+            self.person.remark(FOUND_SINCE)
             return True
         if key == EXACTLY:
             self._kept(Question(question.about, tuple(row for row in question.rows if row not in rows)), NO)
@@ -199,7 +199,7 @@ class Conversation:
         """Ask about channels that the person has picked, as a list; return False if the person stops."""
         apart = self.closing(rows)
         for row in apart:
-            self.person.told(f"{row.element.kind} {shown(row.element.name)}: {BY_ITSELF}")
+            self.person.remark(f"{row.element.kind} {shown(row.element.name)}: {BY_ITSELF}")
         self._alone.update(map(_of_channel, apart))
         listed = tuple(row for row in rows if row not in apart)
         return len(listed) < FEWEST or self._listed(Question(LISTED, listed), by_hand=True)
@@ -230,7 +230,7 @@ class Conversation:
             elif key == str(len(rows)) and len(rows) >= FEWEST:
                 self._confirmed(Question(LISTED, rows), by_hand=by_hand)
             else:
-                self.person.told(f"{key!r} is no answer here; {counted(len(rows), 'row')} left")
+                self.person.remark(f"{key!r} is no answer here; {counted(len(rows), 'row')} left")
                 continue
             self._taken_out.update(_of_channel(question.rows[one]) for one in out)
             return True
@@ -244,11 +244,11 @@ class Conversation:
         else:
             same = all(row in [one.saying(NOTHING) for one in still if one.alike] for row in question.rows)
         if not same:
-            self.person.told(CHANGED)
+            self.person.remark(CHANGED)
             return
         remarks = self.keep(question, question.rows[0].replies[0].key)
         for remark in remarks:
-            self.person.told(remark)
+            self.person.remark(remark)
         if remarks:
             self._postponed(GOES_THROUGH, question.rows)
         self.answers += 1
@@ -270,18 +270,18 @@ class Conversation:
             elif key in allowed(question, picked):
                 return key, rows
             else:
-                self.person.told(f"{key!r} is no answer here")
+                self.person.remark(f"{key!r} is no answer here")
 
     def _typed(self, label: WrittenLabel) -> None:
         for remark in self.typed(label):
-            self.person.told(remark)
+            self.person.remark(remark)
         self.answers += 1
 
     def _kept(self, question: Question, key: str) -> bool:
         """Keep an answer; return whether it changes what data get where."""
         remarks = self.keep(question, key)
         for remark in remarks:
-            self.person.told(remark)
+            self.person.remark(remark)
         if remarks:
             self._postponed(question.about, question.rows)
         self.answers += 1

@@ -18,7 +18,7 @@ from rosprivacy.ingest.labels.add_non_ros import extend
 from rosprivacy.ingest.labels.binding import join
 from rosprivacy.ingest.labels.entries import SECTIONS
 from rosprivacy.ingest.labels.label_file import OURS, Labels, infrastructure_of, parse_labels, read_labels
-from rosprivacy.ingest.labels.label_template import neighbours, told
+from rosprivacy.ingest.labels.label_template import endpoint_comment, neighbours
 from rosprivacy.ingest.labels.label_writer import NEW, NewLine, with_lines
 from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.ingest.policies.names import covered
@@ -162,5 +162,5 @@ def _lines(
 ) -> Iterator[NewLine]:
     writes, reads = around
     for kind, name in new:
-        remark = told(writes.get(name, ()), reads.get(name, ())) if kind == "node" else ""
+        remark = endpoint_comment(writes.get(name, ()), reads.get(name, ())) if kind == "node" else ""
         yield NewLine(f"{kind}s", literal(name), remark.removeprefix("  # "))

@@ -201,12 +201,12 @@ def _newly_there(before: Result, after: Result) -> Mapping[Element, Collection[s
     old, new = before.analysis.spread, after.analysis.spread
     known = {old.graph.elements[vertex]: set(old.names(old.begins(vertex))) for vertex in old.facts}
     starts: dict[int, list[int]] = defaultdict(list)  # by the bits that are followed
-    elements, net = new.graph.elements, Net.kept(new)
+    elements, net = new.graph.elements, Net.cached(new)
     for vertex in sorted(new.facts):
         begun = set(new.names(new.begins(vertex)))
         again = begun & known.get(elements[vertex], set())
         if begun - again:
-            starts[new.all_bits & ~sum(map(new.both, again))].append(vertex)
+            starts[new.all_bits & ~sum(map(new.forms_of, again))].append(vertex)
     found: dict[Element, set[str]] = defaultdict(set)
     for bits, some in starts.items():
         reach = search(net, some, bits, {})
@@ -219,10 +219,10 @@ def _reached(net: Net, reach: Search, allowed: int) -> Iterator[tuple[int, int]]
     """Vertices and the bits that get there, also where nothing of them is taken up: there limits are."""
     spread = net.spread
     met: dict[int, tuple[Meeting, int]] = {}
-    for vertex in {*reach.seen, *reach.begun}:
+    for vertex in {*reach.arrived_bits, *reach.begun}:
         yield vertex, present(reach, vertex)
-    for vertex in {*reach.gone, *reach.begun}:
-        leaving = reach.gone.get(vertex, 0)
+    for vertex in {*reach.left_bits, *reach.begun}:
+        leaving = reach.left_bits.get(vertex, 0)
         for index, target, _ in net.flows.get(vertex, ()):
             begun = spread.flow_emits.get(index, 0) & allowed if vertex in reach.begun else 0
             yield target, (leaving | begun) & spread.flow_keeps.get(index, spread.all_bits)

@@ -214,11 +214,11 @@ def _first_line(error: Exception) -> str:
     return shown(str(error).partition("\n")[0].rstrip(":"))
 
 
-def _bolt(found: server.Server) -> str:
-    return f"bolt://{server.HOST}:{found.bolt}"
+def _bolt(running: server.Server) -> str:
+    return f"bolt://{server.HOST}:{running.bolt}"
 
 
-def _ready(folder: Path, found: server.Server, written: int) -> Connection:
+def _ready(folder: Path, running: server.Server, written: int) -> Connection:
     """Wait until the server answers Bolt and the page of the browser can be asked for.
 
     Parameters
@@ -229,8 +229,8 @@ def _ready(folder: Path, found: server.Server, written: int) -> Connection:
     end = time.monotonic() + START_LIMIT
     while time.monotonic() < end:
         # Bolt comes first and the page a moment later; a refused attempt of the driver costs more than this look.
-        if server.listens(folder, found):
-            return _let_in(folder, found)
+        if server.listens(folder, running):
+            return _let_in(folder, running)
         if not server.running(folder):
             raise DatabaseError(_failure(folder, "the private server ended while it started", written))
         time.sleep(0.1)
@@ -238,9 +238,9 @@ def _ready(folder: Path, found: server.Server, written: int) -> Connection:
     raise DatabaseError(_failure(folder, problem, written))
 
 
-def _let_in(folder: Path, found: server.Server) -> Connection:
+def _let_in(folder: Path, running: server.Server) -> Connection:
     """Connect with the password that is kept, or with the next one if a start was broken off while it was taken."""
-    to = Connection(_bolt(found), USER, server.read_password(folder), str(server.password_file(folder)))
+    to = Connection(_bolt(running), USER, server.read_password(folder), str(server.password_file(folder)))
     later = server.next_password_file(folder)
     try:
         with open_driver(to):

@@ -235,10 +235,10 @@ def _remember(folder: Path, server: Server) -> None:
     write_private(folder / "server.json", json.dumps(asdict(server)))
 
 
-def _free_ports(*wanted: int) -> list[int]:
+def _free_ports(*ports: int) -> list[int]:
     """Return the ports that the server had last time if nobody holds them, in whatever way, or else any free ones."""
     with ExitStack() as held:  # all of them at once, so that they differ
-        return [_bound(held.enter_context(socket.socket()), port) for port in wanted]
+        return [_bound(held.enter_context(socket.socket()), port) for port in ports]
 
 
 def _bound(probe: socket.socket, port: int) -> int:

@@ -114,7 +114,7 @@ class FleetRead:
 
     def system(self, change: Change = NO_CHANGE) -> FleetSystem:
         """Return the fleet, if its policies had a change."""
-        return _made(self.fleet, self.groups, self.reader, change, self.question)
+        return _system(self.fleet, self.groups, self.reader, change, self.question)
 
     def under(self, labels: Mapping[tuple[str, bool], Labels], edited: Collection[str]) -> FleetSystem:
         """Return the fleet with labels in the place of what files say; of the others what was read stays.
@@ -134,7 +134,7 @@ class FleetRead:
         """
         self.reader.relabel(labels)
         groups = tuple(part for group in self.groups for part in group.apart(edited))
-        return _made(self.fleet, groups, self.reader, NO_CHANGE, self.question)
+        return _system(self.fleet, groups, self.reader, NO_CHANGE, self.question)
 
     def tried(
         self, labels: Mapping[tuple[str, bool], Labels], edited: Collection[str], robots: Collection[str], tried: Tried
@@ -157,10 +157,10 @@ class FleetRead:
         other = self.reader.trying(tried)
         parts = [part for group in self.groups for part in group.apart(edited)]
         groups = tuple(part for some in parts for part in some.parted(robots))
-        system = _made(self.fleet, groups, self.reader, NO_CHANGE, self.question, dict.fromkeys(robots, other))
+        system = _system(self.fleet, groups, self.reader, NO_CHANGE, self.question, dict.fromkeys(robots, other))
         return system, other.missing
 
-    def again(self) -> FleetRead:
+    def read_again(self) -> FleetRead:
         """Return the same with robots compared anew, by what their files hold now.
 
         What a file holds that somebody else changed is not what was read: who reads it is like nobody else.
@@ -170,7 +170,7 @@ class FleetRead:
         return replace(self, groups=tuple(part for group in groups for part in group.apart(other)))
 
 
-def _made(
+def _system(
     fleet: Fleet, groups: tuple[Alike, ...], reader: Reader, change: Change, question: Question,
     readers: Mapping[str, Reader] = {},
 ) -> FleetSystem:  # fmt: skip
@@ -186,7 +186,7 @@ def _made(
     if problems:
         raise InputErrors(problems)
     placed = place(fleet, groups, members, settings.view)
-    there = {key: reader.labels[key] for group in groups for key in reader.wanted(group.robots[0])}
+    there = {key: reader.labels[key] for group in groups for key in reader.label_files(group.robots[0])}
     labels = tuple(sorted(there.values(), key=lambda labels: (labels.file, labels.own)))
     elements = placed.graph.elements
     letting_out = let_out((one, placed.bound.elements.get(vertex, ())) for vertex, one in enumerate(elements))

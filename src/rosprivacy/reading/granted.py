@@ -92,7 +92,7 @@ def _deployed(names: list[str], settings: Settings, within: str | None, besides:
     return _with_said(policies, said)
 
 
-def _with_said(policies: Iterable[Policy], said: Iterable[Diagnostic]) -> Iterator[Policy]:
+def _with_said(policies: Iterable[Policy], diagnostics: Iterable[Diagnostic]) -> Iterator[Policy]:
     """What is said of a file goes with each policy that rests on it, else with one beside it, into saved graphs too."""
     policies = tuple(policies)
     resting: dict[str, list[int]] = defaultdict(list)
@@ -102,7 +102,7 @@ def _with_said(policies: Iterable[Policy], said: Iterable[Diagnostic]) -> Iterat
             resting[file].append(at)
             beside.setdefault(os.path.dirname(file), at)  # noqa: PTH120 - by its text
     more: dict[int, list[Diagnostic]] = defaultdict(list)
-    for one in said:
+    for one in diagnostics:
         file = one.place.file
         for at in resting.get(file) or (beside.get(os.path.dirname(file), 0),):  # noqa: PTH120 - by its text
             more[at].append(one)

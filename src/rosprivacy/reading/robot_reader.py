@@ -22,7 +22,7 @@ from rosprivacy.ingest.policies.comparisons import careful_warnings
 from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.ingest.policies.joint_policies import joint_warnings
 from rosprivacy.ingest.policies.merged_policies import OF_ONE_ROBOT, merging_notices
-from rosprivacy.ingest.policies.namespaces import pushed, told
+from rosprivacy.ingest.policies.namespaces import notices, pushed
 from rosprivacy.ingest.types.channel_types import matching_nothing
 from rosprivacy.reading.granted import read_granted
 from rosprivacy.reading.robot_system import read_types_files, with_types
@@ -87,10 +87,10 @@ class Reader:
             self._members, self._change = {}, change
         key = (robot.policies, robot.labels, robot.own, robot.strip, robot.add, robot.surroundings, robot.types)
         if key not in self._members:
-            self._members[key] = self._made(robot)
+            self._members[key] = self._system(robot)
         member = self._members[key]
         who = f"model {robot.model}" if robot.model else f"robot {robot.id}"
-        said = told(member.policies, who, robot.add)
+        said = notices(member.policies, who, robot.add)
         return replace(member, robot=robot, diagnostics=(*member.diagnostics, *said))
 
     def trying(self, tried: Tried) -> Reader:
@@ -128,7 +128,7 @@ class Reader:
             self.policies[robot.policies] = policies, said
         return self.policies[robot.policies]
 
-    def _made(self, robot: Robot) -> Member:
+    def _system(self, robot: Robot) -> Member:
         settings = self._settings
         tried = self._tried
         files = [*self._read_labels(robot), *([tried.labels] if tried.labels else [])]
@@ -162,7 +162,7 @@ class Reader:
 
     def _read_labels(self, robot: Robot) -> list[Labels]:
         settings = self._settings
-        standard, wanted = settings.standard_channels, self.wanted(robot)
+        standard, wanted = settings.standard_channels, self.label_files(robot)
         problems: list[InputError] = []
         for file, own in [key for key in wanted if key not in self.labels]:
             shipped = file == standard and file not in (*robot.labels, *robot.own)
@@ -182,7 +182,7 @@ class Reader:
             raise InputErrors(problems)
         return [self.labels[key] for key in wanted]
 
-    def wanted(self, robot: Robot) -> list[tuple[str, bool]]:
+    def label_files(self, robot: Robot) -> list[tuple[str, bool]]:
         """Return the label files of a robot, with that of the standard channels."""
         standard = self._settings.standard_channels
         return list(dict.fromkeys([*([(standard, False)] if standard else []), *files_of(robot)]))

@@ -83,29 +83,31 @@ def system_reader(
     """
     settings = question.settings
     graphs = read_graphs(settings)
-    (read, said), types = read_system(policies, settings, graphs), observed_types(settings, graphs)
+    (policies_read, remarks), types = read_system(policies, settings, graphs), observed_types(settings, graphs)
 
-    def made(change: Change) -> System:
-        there = changed(read, change)
+    def read(change: Change) -> System:
+        there = changed(policies_read, change)
         graph = build(there, settings.view, settings.bounds)
-        read_so = (there, said)
+        read_so = (there, remarks)
         return _under(labels, graph=graph, read=read_so, types=types, settings=settings, vocabulary=question.vocabulary)
 
-    return made
+    return read
 
 
 def _under(
     labels: tuple[str | Labels, ...], *, graph: FlowGraph, read: Read, types: Types, settings: Settings,
-    vocabulary: Vocabulary, whole: _Whole | None = None,
+    vocabulary: Vocabulary, unlabelled: _Whole | None = None,
 ) -> System:  # fmt: skip
     """Put policies that were read under labels; their graph is made once, and lasts for all labels."""
     files = read_label_files(labels, vocabulary, settings)
-    whole = whole or _Whole(graph)
-    names = whole.names_under(files)
+    unlabelled = unlabelled or _Whole(graph)
+    names = unlabelled.names_under(files)
     bound = bind(names.graph, files, settings.bounds, names=names)
     system = _joined(names.graph, bound, read, files, types, settings, vocabulary, names)
     system = replace(system, diagnostics=(*system.diagnostics, *matching_nothing(names.graph, types)))
-    again = partial(_under, graph=graph, read=read, types=types, settings=settings, vocabulary=vocabulary, whole=whole)
+    again = partial(
+        _under, graph=graph, read=read, types=types, settings=settings, vocabulary=vocabulary, unlabelled=unlabelled
+    )
     return replace(system, under=again)
 
 
@@ -229,7 +231,7 @@ def read_system(policies: tuple[str, ...], settings: Settings, graphs: list[Save
         read, diagnostics = read_granted(policies, settings)
     known = {policy.file for policy in read}  # read again is read anew
     sources = {name for policy in read for name, _ in policy.sources}
-    left = (d for graph in graphs for d in graph.left)
+    left = (d for graph in graphs for d in graph.diagnostics)
     diagnostics += tuple(d for d in left if d.place.file not in sources and d not in diagnostics)
     system = (*read, *(policy for policy in saved if policy.file not in known))
     read = tuple(sorted(system, key=lambda policy: policy.file))

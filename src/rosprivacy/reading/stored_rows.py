@@ -42,7 +42,7 @@ class StoredRows(NamedTuple):
 
 def rows_of(
     driver: Driver, text: str, values: Mapping[str, Any], *,
-    limit: int | None, timeout: float | None, asked: Query | None = None, vocabulary: Vocabulary | None = None,
+    limit: int | None, timeout: float | None, query: Query | None = None, vocabulary: Vocabulary | None = None,
 ) -> StoredRows:  # fmt: skip
     """Ask Cypher that only reads.
 
@@ -50,7 +50,7 @@ def rows_of(
     ----------
     limit, timeout
         As of ``run``.
-    asked
+    query
         The question of the pack that the Cypher is; None for Cypher of somebody's own.
     vocabulary
         Of the kinds of data that there can be; None for the shipped one.
@@ -62,10 +62,10 @@ def rows_of(
     DatabaseError
         If the server cannot answer for a reason of its own.
     """
-    if asked:
-        check_names(driver, asked, values)
+    if query:
+        check_names(driver, query, values)
     known = known_names(driver, vocabulary or load())
-    rows = run(driver, text, values, limit=limit, timeout=timeout, known=known)
+    rows = run(driver, text, values, limit=limit, timeout=timeout, known_names=known)
     robots = run(driver, ROBOTS, limit=None, timeout=timeout)
     others = of_other_schemas(dict(zip(robots.columns, row, strict=True)) for row in robots.rows)
     return StoredRows(rows, f"{others}, so rows can be missing or differ; {HINT}" if others else "")

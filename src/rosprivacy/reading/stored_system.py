@@ -53,7 +53,7 @@ def answer_stored(driver: Driver, settings: Settings) -> Result:
     """Analyse what is in the database, and write the answer about all categories back."""
     question = question_of(settings)._replace(every=True, most_across=MOST_ACROSS)
     system = stored_system(driver, question.vocabulary)
-    everything = question._replace(asked=None, decisions=None)
+    everything = question._replace(categories_asked=None, decisions=None)
     result = answer(system, everything)
     stored = system.stored
     names = {element: stored.robot_of(vertex) for vertex, element in enumerate(stored.graph.elements)}

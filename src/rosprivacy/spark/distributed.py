@@ -196,7 +196,7 @@ class _Run:
         )  # fmt: skip
         steps = self._steps(ours, ready)
         wanted = [c for c in categories if task.asked is None or c in task.asked]
-        mask = sum(ours.both(category) for category in wanted)
+        mask = sum(ours.forms_of(category) for category in wanted)
         numbers = [i for i, name in enumerate(categories) if name in wanted]
         ways = {i: forms(i, ours.bits, steps) for i in numbers}
         kernels = ready.map(partial(workers.kernel, forms=ways, hierarchy=task.hierarchy), keep=True)
@@ -290,7 +290,7 @@ class _Run:
         verdict = Verdict.of(
             leak=any(group.count.all > group.count.dismissed for group in groups),
             is_open=bool(count or core_open),
-            known=not lacking and not unread(told.diagnostics),
+            grounded=not lacking and not unread(told.diagnostics),
         )
         counts = sum((answer.counts for answer in answers), counted(piece.graph, ours, self._likeness, (), mine))
         return Found(

@@ -77,7 +77,7 @@ def run_on_spark(file: str, settings: Settings, master: str | None = None, resul
     question = in_contexts(question, contexts_of(fleet, question))
     task = Task(
         fleet, alike(fleet), settings.view, partial(file_reader, plain, str(Path.cwd()), fleet.root),
-        vocabulary.hierarchy, question.asked, question.today,
+        vocabulary.hierarchy, question.categories_asked, question.today,
     )  # fmt: skip
     if results:
         check_new(results)
@@ -98,7 +98,7 @@ def contexts_of(fleet: Fleet, question: Question) -> frozenset[str]:
 
     Label files that cannot be read say nothing here: the workers say what is wrong with them.
     """
-    if question.asked is None or not question.settings.article9:
+    if question.categories_asked is None or not question.settings.article9:
         return frozenset()
     robots = (*fleet.robots, *fleet.infrastructure)
     found = {name for robot in robots for name in robot.surroundings.contexts}

@@ -142,7 +142,7 @@ def _placed(units: Sequence[Unit], plan: Plan, read: Read) -> tuple[Placed, dict
 
 def _each_finding(part: Pairs) -> Iterator[tuple[int, int, bool, bool, bool]]:
     """(source, leak, dismissed, pseudonymised, beside) of each finding of the pairs."""
-    columns = (part.sources, part.leaks, part.dismissed, part.pseudonymised, part.beside)
+    columns = (part.sources, part.leaks, part.dismissed, part.pseudonymised, part.plain_also)
     for source, leak, dismissed, hidden, beside in zip(*(c.tolist() for c in columns), strict=True):
         yield source, leak, dismissed, hidden, False
         if beside:

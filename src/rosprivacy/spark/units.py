@@ -141,13 +141,13 @@ def units_piece(fleet: Fleet, units: Sequence[Some], at: Border, view: str) -> P
         for (sources, targets), (from_core, to_core), flow in zip(some.ends, at.ends, fleet.flows, strict=True):
             pairs = [*((a, b) for a in sources for b in to_core), *((a, b) for a in from_core for b in targets)]
             for a, b in pairs:
-                flow_said(flow, (a, b, FLOW), lines, whole.said)
+                flow_said(flow, (a, b, FLOW), lines, whole.flow_statements)
         for element, which in named(some, crossing, 0).items():
             whole.flows[element, at.hubs[which], FLOW] = ()
         for element, which in named(some, crossing, 1).items():
             for others, hub in at.hubs.items():
                 for line in sorted(which & others):
-                    flow_said(fleet.flows[line], (hub, element, FLOW), lines, whole.said)
+                    flow_said(fleet.flows[line], (hub, element, FLOW), lines, whole.flow_statements)
     add_lines(whole, lines)
     profiles = {robot: found for some in units for robot, found in some.profiles.items()}
     return _numbered(whole, at.elements, unit, profiles, view)

@@ -73,7 +73,11 @@ def test_findings_are_those_of_brute_force(system: System) -> None:
     number = index(system)
     expected = system.brute().findings()
     assert {
-        (f.kind, f.category, number[f.source], number[f.leak], f.beside): (f.pseudonymised, f.dismissed, len(f.steps))
+        (f.kind, f.category, number[f.source], number[f.leak], f.plain_also): (
+            f.pseudonymised,
+            f.dismissed,
+            len(f.steps),
+        )
         for f in found.findings
     } == expected
     assert len({f.id for f in found.findings}) == len(found.findings)
@@ -127,7 +131,11 @@ def test_an_accepted_leak_hides_nothing_behind_it(system: System, data: st.DataO
 
     found = system.analyse(Options(accepts=accepts))
     assert {
-        (f.kind, f.category, number[f.source], number[f.leak], f.beside): (f.pseudonymised, f.dismissed, len(f.steps))
+        (f.kind, f.category, number[f.source], number[f.leak], f.plain_also): (
+            f.pseudonymised,
+            f.dismissed,
+            len(f.steps),
+        )
         for f in found.findings
     } == system.brute().findings(accepted)
     for finding in found.findings:

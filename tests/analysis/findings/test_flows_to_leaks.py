@@ -75,7 +75,7 @@ def test_every_way_without_a_circle_is_in(system: System) -> None:
     for finding in found.findings:
         source, leak = number[finding.source], number[finding.leak]
         other = finding.kind != DISCLOSURE  # such a finding ends where data are kept or leave, at no leak
-        ends = {leak: found.spread.both(finding.category)} if other else None
+        ends = {leak: found.spread.forms_of(finding.category)} if other else None
         past = finding.dismissed or other
         got = flows_to_leaks(net, finding.category, sources=[source], leaks=[leak], past_leaks=past, ends=ends)
         flows = {system.edges[flow] for flow in got.flows}

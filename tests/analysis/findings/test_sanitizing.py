@@ -31,7 +31,7 @@ def test_what_passes_beside_a_sanitizer_is_what_others_read_from_its_channels(sy
         read = {a for a, b, (c, _) in brute.along if b == vertex and c == category and a >= system.nodes}  # channels
         readers = {b for a, b, (c, _) in brute.along if a in read and c == category and b != vertex}
         beside = {b for b in readers if not brute.has(b, "sanitizer", category)}
-        assert {number[element] for element in cleaning.beside} == beside
+        assert {number[element] for element in cleaning.neighbours} == beside
         sent = {data for a, _, data in brute.along if a == vertex}
         assert {c for c, hidden in sent if not hidden} <= set(cleaning.leaves)
         assert {c for c, hidden in sent if hidden} <= set(cleaning.pseudonymised)
@@ -46,7 +46,7 @@ def test_whoever_makes_another_kind_is_named_once(system: System) -> None:
         assume(False)
     rows = makings(analysis.spread, analysis.emitted)
     assert len(set(rows)) == len(rows)
-    assert all(row.made != row.made_of and row.made in analysis.emitted for row in rows)
+    assert all(row.target != row.made_of and row.target in analysis.emitted for row in rows)
 
 
 def test_the_care_homes_sanitizers() -> None:
@@ -59,20 +59,20 @@ def test_the_care_homes_sanitizers() -> None:
     }
     assert rows["/blur", "Video"].pseudonymised == ("Video",)  # it is still personal data (recital 26)
     assert rows["/face_recognizer", "Video"].leaves == ("FaceTemplate",)  # it drops the picture and says who it was
-    assert not any(row.beside for row in rows.values())  # whoever reads the picture cleans it
+    assert not any(row.neighbours for row in rows.values())  # whoever reads the picture cleans it
 
 
 def test_the_emergency_stop_reads_beside_the_filter() -> None:
     """The factory after its change: the filter cleans the safety video, one node still needs it as it is."""
     analysis = factory(5).analysis
     (row,) = cleanings(analysis.spread, analysis.emitted)
-    assert (row.element.name, [element.name for element in row.beside]) == ("/filter", ["/emergency_stop"])
+    assert (row.element.name, [element.name for element in row.neighbours]) == ("/filter", ["/emergency_stop"])
 
 
 def test_a_category_that_is_not_asked_for_is_left_out() -> None:
     analysis = care_home().analysis
     assert cleanings(analysis.spread, ["Voice"]) == ()
-    assert [(row.element.name, row.made_of, row.made) for row in makings(analysis.spread, ["FaceTemplate"])] == [
+    assert [(row.element.name, row.made_of, row.target) for row in makings(analysis.spread, ["FaceTemplate"])] == [
         ("/face_recognizer", "Video", "FaceTemplate")
     ]
 

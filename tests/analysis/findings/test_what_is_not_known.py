@@ -71,7 +71,7 @@ class TestPlainBesidePseudonymised:
         ends = Element("node", "/cam"), Element("node", "/cloud")
         hidden, plain, recorder = (finding["id"] for finding in before["findings"])
         assert hidden == finding_id("Video", *ends)
-        assert plain == finding_id("Video", *ends, beside=True)
+        assert plain == finding_id("Video", *ends, plain_also=True)
         plain_is = before["findings"][1]
         assert (plain_is["dismissed"], plain_is["pseudonymised"], plain_is["beside_pseudonymised"]) == (
             True,

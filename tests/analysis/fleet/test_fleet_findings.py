@@ -43,7 +43,7 @@ def test_patterns_are_those_of_all_robots_in_one_graph(case: Case) -> None:
     got = {}
     for pattern in view.patterns:
         f, robots = pattern.finding, placed.likeness
-        key = (f.kind, f.category, robots.alike(f.source), robots.alike(f.leak), pattern.across, f.beside)
+        key = (f.kind, f.category, robots.alike(f.source), robots.alike(f.leak), pattern.across, f.plain_also)
         got[key] = (pattern.count, pattern.dismissed, pattern.pseudonymised, pattern.robots)
         assert pattern.id == pattern_id(f, robots)
     assert got == {
@@ -89,7 +89,7 @@ def test_each_finding_is_one_of_all_robots_in_one_graph(case: Case) -> None:
     expected = brute.findings()
     number = {element: vertex for vertex, element in elements.items()}
     for f in analysis.findings:
-        key = (f.kind, f.category, number[f.source], number[f.leak], f.beside)
+        key = (f.kind, f.category, number[f.source], number[f.leak], f.plain_also)
         assert (f.pseudonymised, f.dismissed, len(f.witness) - 1) == expected[key]
 
 

@@ -32,7 +32,7 @@ def same(system: System, bound: Bound) -> None:
     for part in pairs(found.spread, tuple(concerns(found.spread, bound, system.hierarchy)), found.spread.all_bits):
         ends = list(zip(part.sources.tolist(), part.leaks.tolist(), strict=True))
         assert ends == sorted(set(ends))
-        flags = np.column_stack([part.pseudonymised, part.dismissed, part.beside])
+        flags = np.column_stack([part.pseudonymised, part.dismissed, part.plain_also])
         for end, (hidden, dismissed, beside) in zip(ends, flags.tolist(), strict=True):
             pair = part.kind, found.emitted[part.category], *end
             got |= {(*pair, hidden, dismissed), *([(*pair, False, True)] if beside else [])}

@@ -75,7 +75,7 @@ def _facts(analysis: Analysis) -> dict[str, Any]:
     """All that an analysis says, and what is found of it later."""
     told = {field.name: getattr(analysis, field.name) for field in fields(analysis) if field.name != "spread"}
     ours = analysis.spread
-    names = ("decisions", "course", "shape", "own", "graph", "_names", "_both")
+    names = ("decisions", "course", "shape", "memory", "graph", "_names", "_bits_of_category")
     told |= {f"spread.{f.name}": getattr(ours, f.name) for f in fields(ours) if f.name not in names}
     why = WhyCarried(analysis)
     ways = {(e, c): why.path(e, c) for e in analysis.graph.elements for c in ours.categories}

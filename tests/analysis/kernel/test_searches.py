@@ -48,8 +48,8 @@ def test_a_search_is_made_again_only_where_it_met_what_is_otherwise() -> None:
     bound = replace(bound, elements={**bound.elements, FILTER: (statement("source", "Video"),)})
     before = spread(graph, bound, hierarchy)
     made = _made(before)
-    assert FACES in made[CAMERA].seen
-    assert FACES not in made[FILTER].seen
+    assert FACES in made[CAMERA].arrived_bits
+    assert FACES not in made[FILTER].arrived_bits
     edited = replace(bound, elements={**bound.elements, FACES: (statement("mundane"),)})
     after = _made(spread(graph, edited, hierarchy, before))
     assert after[FILTER] is made[FILTER]
@@ -60,9 +60,9 @@ def test_where_a_channel_takes_up_more_its_writers_are_searched_anew() -> None:
     graph, bound, hierarchy = factory()
     before = spread(graph, bound, hierarchy)
     made = _made(before)
-    assert ROSOUT not in made[CAMERA].seen  # it is taken as mundane, and so nothing gets there
+    assert ROSOUT not in made[CAMERA].arrived_bits  # it is taken as mundane, and so nothing gets there
     edited = replace(bound, elements={**bound.elements, ROSOUT: (statement("sensitive"),)})
-    assert ROSOUT in _made(spread(graph, edited, hierarchy, before))[CAMERA].seen
+    assert ROSOUT in _made(spread(graph, edited, hierarchy, before))[CAMERA].arrived_bits
 
 
 def test_of_another_graph_none_is_kept() -> None:
@@ -91,7 +91,7 @@ def _made(found: Spread) -> dict[int, Search]:
 
 
 def _kept(found: Spread) -> dict[Any, Search]:
-    return searches(found)._made
+    return searches(found)._earlier
 
 
 def _told(reach: Search) -> dict[str, Any]:

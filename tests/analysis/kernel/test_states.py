@@ -13,7 +13,7 @@ from rosprivacy.analysis.kernel.backward import backward
 from rosprivacy.analysis.kernel.bits import bits_of
 from rosprivacy.analysis.kernel.nearest import Nearest
 from rosprivacy.analysis.kernel.search import search
-from rosprivacy.analysis.kernel.states import Net, States, made
+from rosprivacy.analysis.kernel.states import Net, States, derived_bits
 from tests.helpers.systems import System, analysed, statement, systems
 
 if TYPE_CHECKING:
@@ -74,13 +74,13 @@ def test_a_search_gets_as_far_in_as_many_flows(system: System, data: st.DataObje
         return
     found = analysis.spread
     net, source = Net.of(found), data.draw(st.sampled_from(sorted(found.facts)))
-    ending = found.both(data.draw(st.sampled_from(found.categories))) if found.categories else 0
+    ending = found.forms_of(data.draw(st.sampled_from(found.categories))) if found.categories else 0
     allowed = data.draw(st.sampled_from([found.all_bits, ending]))
     stop = {v: bits & ending for v, bits in found.leaks.items()}
     states = States(net, allowed, stop)
     levels = walked(states, begun(states, source))
     fast = search(net, [source], allowed, stop)
-    assert {v: bits for v, bits in fast.seen.items() if bits} == by_vertex(levels)
+    assert {v: bits for v, bits in fast.arrived_bits.items() if bits} == by_vertex(levels)
     arrived = {(v, b): level for v, rows in fast.arrived.items() for level, new, _ in rows for b in bits_of(new)}
     assert arrived == levels
 
@@ -92,7 +92,7 @@ def test_backward_and_nearest_tell_what_is_walked_to(system: System, data: st.Da
     if analysis is None or not analysis.spread.categories:
         return
     found = analysis.spread
-    one = st.sampled_from([found.both(name) for name in found.categories])
+    one = st.sampled_from([found.forms_of(name) for name in found.categories])
     places = data.draw(st.dictionaries(st.integers(0, len(found.graph.elements) - 1), one, min_size=1, max_size=2))
     states = States(Net.of(found), found.all_bits, {})
     back, near = backward(found, places), Nearest.of(found, places)
@@ -101,7 +101,7 @@ def test_backward_and_nearest_tell_what_is_walked_to(system: System, data: st.Da
         reached = {
             v: level
             for (v, b), level in sorted(levels.items(), key=lambda item: -item[1])  # of one vertex the least is left
-            if places.get(v, 0) & (1 << b | made(found, v, 1 << b))
+            if places.get(v, 0) & (1 << b | derived_bits(found, v, 1 << b))
         }
         assert back.entering.get(vertex, 0) >> bit & 1 == bool(reached)
         least = min(reached.values(), default=-1)

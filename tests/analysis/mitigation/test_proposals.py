@@ -121,7 +121,7 @@ def test_a_proposal_leaves_nothing_and_no_cheaper_one_does(random: Random, weigh
     number = {element: v for v, element in enumerate(found.graph.elements)}
     for proposal in proposals:
         assert proposal.proven
-        kept = {key_of(k.finding, number) for k in proposal.kept}
+        kept = {key_of(k.finding, number) for k in proposal.remaining}
         assert all(source == leak for _, _, source, leak in kept)  # with nothing forbidden, all else can be cut
         after = {key for key in left(applied(random, proposal)) if key[1] in proposal.categories}
         assert after == kept
@@ -173,7 +173,7 @@ def test_an_accepted_finding_is_left_and_what_lies_behind_it_is_removed(random: 
     for proposal in mitigate(system, found):
         assert proposal.proven
         after = {key for key in left(applied(random, proposal), taken) if key[1] in proposal.categories}
-        assert after == {key_of(kept.finding, number) for kept in proposal.kept}
+        assert after == {key_of(kept.finding, number) for kept in proposal.remaining}
 
 
 def flows_between(random: Random, number: dict[Element, int], step: ProposedStep) -> set[int]:
@@ -215,7 +215,7 @@ def test_nothing_on_the_way_to_a_time_critical_node_is_filtered(random: Random, 
         assert not {number[element] for step in proposal.steps for element in step.readers} & critical
         touched = {f for step in proposal.steps for f in flows_between(random, number, step)}
         assert not any(goes_on(random, random.edges[f], c) & critical for f in touched for c in PARENTS)
-        for kept in proposal.kept:
+        for kept in proposal.remaining:
             if kept.reason == NOT_ALLOWED:
                 way = [number[element] for element in kept.path]
                 assert (way[0], way[-1]) == (number[kept.finding.source], number[kept.finding.leak])

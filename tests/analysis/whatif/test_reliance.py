@@ -31,11 +31,11 @@ One = tuple[Any, ...]
 def answered(analysis: Analysis) -> tuple[Found, set[tuple[Any, str]]]:
     """Finding that nobody accepted -> (it stands, plain data is in it), with what stands beside it; open questions."""
     found: dict[Any, tuple[bool, bool]] = {}
-    beside = {f.id: f for f in analysis.findings if f.beside}
+    beside = {f.id: f for f in analysis.findings if f.plain_also}
     also = {(f.kind, f.category, f.source, f.leak) for f in beside.values()}
     for f in analysis.findings:
         key = (f.kind, f.category, f.source, f.leak)
-        if not f.beside and not f.accepted:
+        if not f.plain_also and not f.accepted:
             found[key] = (f.stands, not f.pseudonymised or key in also)
     return found, {(q.element.shown_as, c) for q in analysis.open for c in q.categories}
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from lxml import html
 
 from rosprivacy.explorer.element_ids import element_id
-from rosprivacy.explorer.web.kept_trials import MOST
+from rosprivacy.explorer.web.kept_trials import BOUND
 from tests.helpers.explorers import BARE, FACTORY, FILTERED, Explorer, copied, label, node, version
 from tests.helpers.languages import english_in
 
@@ -193,7 +193,7 @@ def test_what_is_tried_and_not_there_any_more_is_told(explore: Explore, labels: 
 
 def test_no_more_trials_are_kept_than_memory_holds(explore: Explore, labels: Path) -> None:
     client = explore(BARE, labels).client()
-    for _ in range(MOST):
+    for _ in range(BOUND):
         assert tried(client, what="filter", flow=FLOW, data="Video").status_code == 303
     answer = tried(client, what="filter", flow=FLOW, data="Video")
     assert answer.status_code == 422

@@ -23,8 +23,8 @@ def told(text: str) -> str:
 def said(text: str) -> list[tuple[object, ...]]:
     read = read_annotation(text, HERE, load())
     assert isinstance(read, Annotation), read
-    assert all(one.place == HERE for one in read.said)
-    return [(one.role, one.categories, one.method, one.stated, one.to, one.through) for one in read.said]
+    assert all(one.place == HERE for one in read.statements)
+    return [(one.role, one.categories, one.method, one.stated, one.to, one.through) for one in read.statements]
 
 
 @pytest.mark.parametrize(

@@ -122,7 +122,7 @@ def test_no_fewer_lines_remove_what_a_proposal_removes(policy: Policy, said: Sai
         assert proposal.proven
         grants = [grant for step in proposal.steps for grant in step.grants]
         after = analysed(system_of(with_denied([policy], grants), said, view))
-        kept = {one.finding.id for one in proposal.kept}
+        kept = {one.finding.id for one in proposal.remaining}
         assert left(after, proposal.categories) == kept
         for fewer in sets_of_lines(policy, proposal.lower - 1):
             other = analysed(system_of(with_denied([policy], fewer), said, view))
@@ -148,7 +148,7 @@ def test_a_filter_that_is_really_built_removes_what_its_proposal_says(policy: Po
             built = install(built, step, number)
             roles[f"/filter_{number}"] = [statement("sanitizer", c, method=Method.ANONYMISE) for c in step.categories]
         after = analysed(system_of([built], roles, view))
-        assert left(after, proposal.categories) == {one.finding.id for one in proposal.kept}
+        assert left(after, proposal.categories) == {one.finding.id for one in proposal.remaining}
 
 
 def install(policy: Policy, step: ProposedStep, number: int) -> Policy:

@@ -42,7 +42,7 @@ def told(bag: Bag) -> dict[str, tuple[tuple[str, ...], int | None]]:
 def test_a_recording_of_another_library(tmp_path: Path, storage: str) -> None:
     bag = read_bag(str(rosbag2(tmp_path / "run", storage)))
     assert told(bag) == ALL
-    assert (bag.storage, bag.complete, bag.messages, bag.beside) == (storage, True, 6, ())
+    assert (bag.storage, bag.complete, bag.messages, bag.extras) == (storage, True, 6, ())
     assert (bag.start, bag.end, bag.distro) == (START, START + 5 * 10**9, "rosbags")
     assert all(topic.hashes[0].startswith("RIHS01_") for topic in bag.topics)
     assert bag.size == sum(Path(file).stat().st_size for file in bag.files)
@@ -206,9 +206,9 @@ def test_files_that_are_missing_or_not_named_or_outside_are_told(tmp_path: Path)
 
 def test_what_is_beside_messages_is_named(tmp_path: Path) -> None:
     bag = read_bag(str(mcap(tmp_path / "a.mcap", attachment="me\x1b[2J.png", metadata="drive")))
-    assert bag.beside == ("attachment 'me\\\\x1b[2J.png'", "metadata 'drive'")
+    assert bag.extras == ("attachment 'me\\\\x1b[2J.png'", "metadata 'drive'")
     custom = read_bag(str(rosbag2(tmp_path / "run", custom="A. Person")))
-    assert custom.beside == ("custom data 'operator'",)
+    assert custom.extras == ("custom data 'operator'",)
 
 
 def test_a_crashed_recording_has_no_metadata(tmp_path: Path) -> None:
@@ -272,7 +272,7 @@ def test_a_gigabyte_costs_what_its_summary_costs(tmp_path: Path, monkeypatch: py
     monkeypatch.setattr(recorded_file, "MOST_READ", 10_000)  # a bound that only the summary keeps
     with recorded_file.bounded_stream(str(file), 100_000) as stream:
         assert mcap_file._summary(stream)
-        assert 100_000 - stream.left < 10_000
+        assert 100_000 - stream.remaining < 10_000
     assert told(read_bag(str(file))) == {"/camera": ((IMAGE,), 50), "/odom": ((ODOMETRY,), 1)}
     with file.open("r+b") as stream_:
         stream_.truncate(2**30 - 10)

@@ -106,7 +106,7 @@ def test_a_name_that_was_folded_stays_folded_with_what_it_was(tmp_path: Path) ->
     ((name, names),) = [(one.name, one.names) for one in ready.folded]
     assert (name, names) == ("/launch_ros", ("/launch_ros_1", "/launch_ros_2"))
     assert set(ready.enclaves) == {"/launch_ros", "/cam"}
-    assert (ready.observation.seen.first, ready.observation.seen.last) == (at(0), at(6))
+    assert (ready.observation.span.first, ready.observation.span.last) == (at(0), at(6))
 
 
 def test_without_the_types_beside_it_none_are_known_and_that_is_said(tmp_path: Path) -> None:

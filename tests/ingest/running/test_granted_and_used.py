@@ -35,7 +35,7 @@ def policy(lines: Lines, file: str) -> Policy:
 def observed(lines: Lines) -> Policy:
     seen = policy([line for line in lines if not is_pattern(line[2])], "seen.xml")
     return replace(
-        seen, grants=tuple(grant._replace(allow=True, enclave=grant.node, seen=SEEN) for grant in seen.grants)
+        seen, grants=tuple(grant._replace(allow=True, enclave=grant.node, observation=SEEN) for grant in seen.grants)
     )
 
 

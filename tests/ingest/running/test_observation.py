@@ -22,13 +22,13 @@ def test_what_was_seen_once_stays_and_times_add_up_in_any_order() -> None:
     sums = {str(added_up(order)) for order in permutations(several)}
     assert len(sums) == 1
     whole = added_up(several)
-    assert [(node.name, node.seen) for node in whole.nodes] == [
+    assert [(node.name, node.span) for node in whole.nodes] == [
         ("/a", Span(at(0), at(5))),
         ("/b", Span(at(0), at(9))),
         ("/c", Span(at(3), at(4))),
     ]
     assert whole.doors == ("dds", "text")
-    assert whole.seen == Span(at(0), at(9))
+    assert whole.span == Span(at(0), at(9))
 
 
 def test_an_endpoint_of_no_node_gets_its_node_when_that_is_told_later() -> None:

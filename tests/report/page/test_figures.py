@@ -61,7 +61,7 @@ def test_pictures_for_a_page_have_its_colours_and_name_both_ends() -> None:
     found = care_home().analysis
     for one, finding in zip(made(found), found.findings, strict=True):
         root = checked(one.svg)
-        assert one.whole
+        assert one.all_paths
         assert not re.search(r'(fill|stroke)="(black|#000000|white|#ffffff)"', one.svg)
         assert 'stroke="currentColor"' in one.svg
         assert {finding.source.name, finding.leak.name} <= set(texts(root).splitlines())
@@ -84,14 +84,14 @@ def test_a_picture_for_a_page_is_bounded_whatever_the_names_and_says_so() -> Non
     folded = picture_of(many, many.findings[0])
     assert folded
     assert len(folded.svg) < 10_000
-    assert folded.whole  # all are on one box, which says how many they are
+    assert folded.all_paths  # all are on one box, which says how many they are
 
 
 def test_what_is_not_whole_says_so_and_how_to_get_the_rest() -> None:
     result = factory(2)
     told = outline(result.document(), "en")
     one = made(result.analysis)[0]
-    page = html(told, Figures({told.entries[0].id: inline.Inline(one.svg, whole=False)}))
+    page = html(told, Figures({told.entries[0].id: inline.Inline(one.svg, all_paths=False)}))
     assert "Only the shorter paths are drawn" in page
     assert f"rosprivacy graph … --finding {told.entries[0].id}" in page
     assert "Only the shorter paths" not in html(told, Figures({told.entries[0].id: one}))

@@ -10,7 +10,7 @@ from lxml import html as lxml_html
 import rosprivacy
 from rosprivacy.report.catalogs.words import Words, plain
 from rosprivacy.report.page.assessment_file import Answers
-from rosprivacy.report.page.finding_entries import MOST, share
+from rosprivacy.report.page.finding_entries import BOUND, share
 from rosprivacy.report.page.html import html
 from tests.helpers.daily import one_in
 from tests.helpers.pages import LANGUAGES, texts, texts_of, told
@@ -62,24 +62,24 @@ def _many(folder: Path) -> dict[str, Any]:
 def test_the_share_of_a_kind_is_what_the_others_leave() -> None:
     assert share([]) == 0
     assert share([3, 5]) == 5
-    for numbers in ([MOST, MOST], [1, 2, 3 * MOST], [700, 700, 700], [MOST + 1], [1] * (MOST + 1)):
+    for numbers in ([BOUND, BOUND], [1, 2, 3 * BOUND], [700, 700, 700], [BOUND + 1], [1] * (BOUND + 1)):
         each = share(numbers)
         shown = sum(min(number, each) for number in numbers)
-        assert MOST - len(numbers) < shown <= max(MOST, len(numbers))
+        assert BOUND - len(numbers) < shown <= max(BOUND, len(numbers))
 
 
 def test_the_first_paths_of_each_kind_are_told_and_all_are_counted(report: Outline, root: Any) -> None:
     shown = {
         kind: root.xpath(f"count(//article[@class='way'][@data-category='{kind}'])") for kind in ("Video", "Voice")
     }
-    assert shown == {"Video": MOST - VOICE, "Voice": VOICE}
+    assert shown == {"Video": BOUND - VOICE, "Voice": VOICE}
     assert report.opening.headline == f"You have to decide {VIDEO + VOICE:,} things"
     assert {kind.name: (kind.to_assess, kind.left) for kind in report.kinds} == {
-        "Video": (VIDEO, VIDEO - MOST + VOICE),
+        "Video": (VIDEO, VIDEO - BOUND + VOICE),
         "Voice": (VOICE, 0),
     }
-    assert len(report.assessment.risks) == MOST
-    assert report.assessment.left == VIDEO + VOICE - MOST
+    assert len(report.assessment.risks) == BOUND
+    assert report.assessment.left == VIDEO + VOICE - BOUND
 
 
 @pytest.mark.parametrize("language", one_in(3, LANGUAGES))
@@ -87,7 +87,7 @@ def test_the_page_says_how_many_it_leaves_out_and_where_they_are(
     many: dict[str, Any], report: Outline, language: str
 ) -> None:
     words = Words(language)
-    left = VIDEO + VOICE - MOST
+    left = VIDEO + VOICE - BOUND
     for text in texts_of(report if language == "en" else told(many, language)):
         assert text.count(plain(words.count(left, "entry.left"))) == 2  # at the beginning, and at their kind
         assert plain(words.count(left, "risk.left")) in text
@@ -110,7 +110,7 @@ def test_what_a_person_has_answered_is_not_left_out(many: dict[str, Any], report
     assessment = told(many, answers=answers).assessment
     assert assessment.unmatched == ()
     assert [risk.flow.entries[0].id for risk in assessment.risks if risk.fields[3].text] == [last.id]
-    assert len(assessment.risks) == MOST + 1
+    assert len(assessment.risks) == BOUND + 1
 
 
 def test_a_page_of_few_paths_leaves_nothing_out() -> None:

@@ -28,7 +28,7 @@ from tests.helpers.pages import LANGUAGES, earlier, page, texts, told
 
 
 def test_the_same_document_gives_the_same_bytes() -> None:
-    assert html(told(care(), made="2026-11-21")) == html(told(care(), made="2026-11-21"))
+    assert html(told(care(), date="2026-11-21")) == html(told(care(), date="2026-11-21"))
 
 
 @pytest.mark.parametrize("language", LANGUAGES)

@@ -54,8 +54,8 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     several = outline(hospital().document(), "de")
     open_told = outline(run(2), "de", earlier=Earlier(run(1), "old.json", "0" * 64))
     said = {
-        "care-en": html(outline(care(), "en", made="2026-11-21")),
-        "care-de": html(outline(care(), "de", made="2026-11-21")),
+        "care-en": html(outline(care(), "en", date="2026-11-21")),
+        "care-de": html(outline(care(), "de", date="2026-11-21")),
         "all-en": html(all_told, figures(care_home(), all_told)),
         "open-de": html(open_told, figures(factory(2), open_told)),
         "fleet-en": html(outline(fleet(care(), [f"robot{i:03}" for i in range(300)]), "en")),

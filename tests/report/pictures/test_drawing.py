@@ -36,7 +36,7 @@ def scene() -> Scene:
 
 
 def test_graphviz_gets_only_letters_and_ids_of_our_own() -> None:
-    dot = unnamed_dot(Scenes(hostile()).of(("", "topic", HOSTILE[0]), most=100))
+    dot = unnamed_dot(Scenes(hostile()).of(("", "topic", HOSTILE[0]), limit=100))
     labels = re.findall(r'label="([^"]*)"', dot)
     assert labels
     assert all(set(label.replace("\\n", "")) == {"n"} for label in labels)
@@ -45,7 +45,7 @@ def test_graphviz_gets_only_letters_and_ids_of_our_own() -> None:
 
 
 def test_hostile_names_stand_in_it_as_text_and_nothing_runs_or_styles() -> None:
-    scene = Scenes(hostile()).of(("", "topic", HOSTILE[0]), most=100)
+    scene = Scenes(hostile()).of(("", "topic", HOSTILE[0]), limit=100)
     with Drawing() as drawing:
         root = etree.fromstring(drawing.svg(scene, LINKS).encode())
     assert {element.tag for element in root.iter()} <= DRAWS
@@ -110,7 +110,7 @@ def test_the_legend_tells_what_is_in_the_picture(scene: Scene) -> None:
 
 @pytest.mark.parametrize("language", ["de", "fr"])
 def test_a_picture_speaks_the_language_of_its_reader(language: str) -> None:
-    say = Phrases.told(Words(language), {})
+    say = Phrases.of_report(Words(language), {})
     assert set(say.texts) == set(TEXTS)
     with Pictures(say) as pictures:
         shown = pictures.of(factory(1).analysis, ("", "node", "/archive_server"))

@@ -40,7 +40,7 @@ SYSTEMS: dict[str, Callable[[], Result]] = {
 def phrases(result: Result, language: str) -> Phrases:
     kinds = result.vocabulary.categories
     titles = {name: category.text("title", language) for name, category in kinds.items()}
-    return Phrases.told(Words(language), titles)
+    return Phrases.of_report(Words(language), titles)
 
 
 def pictures(result: Result, language: str) -> Iterator[Picture]:

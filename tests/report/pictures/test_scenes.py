@@ -33,7 +33,7 @@ def test_paths_are_drawn_whole_and_the_rest_is_counted(system: System, most: int
     every = {element.identity for element in analysis.graph.elements}
     standard = {analysis.graph.elements[vertex].identity for vertex in analysis.spread.standard}
     for element in analysis.graph.elements:
-        picture = scenes.of(element.identity, most=most).picture
+        picture = scenes.of(element.identity, limit=most).picture
         drawn = {(box.robot, box.kind, name) for box in picture.boxes for name in box.names}
         assert element.identity in drawn
         asked = [c for one in analysis.open if one.element.identity == element.identity for c in one.categories]
@@ -84,7 +84,7 @@ def test_where_all_kinds_are_switched_off_none_is_drawn() -> None:
     assert not scenes.of(kinds=()).picture.boxes
     picture = scenes.of(("", "node", "/camera"), kinds=()).picture
     assert all(box.look == UNTOUCHED for box in picture.boxes)
-    assert not any(line.carries for line in (*picture.lines, *scenes.whole(kinds=()).picture.lines))
+    assert not any(line.carries for line in (*picture.lines, *scenes.whole_system(kinds=()).picture.lines))
 
 
 def test_where_nothing_leaks_it_is_drawn_where_data_goes_and_where_it_ends() -> None:
@@ -118,7 +118,7 @@ def test_a_whole_system_has_every_element_and_every_step_of_data(system: System,
     joined = Joined(analysis)
     every, _ = joined.elements()
     core = set(choose(joined, None, analysis.emitted, most).core)
-    bits = sum(map(spread.both, analysis.emitted))
+    bits = sum(map(spread.forms_of, analysis.emitted))
     folded = folded_by_place(joined, core, bits, most, IN_ENGLISH)
     counted = sum(int(box.words[0].split()[0]) for box in folded.boxes)
     assert counted + len(folded.single) + len(core) + folded.channels == len(every | core)
@@ -147,9 +147,9 @@ def test_a_whole_system_has_every_element_and_every_step_of_data(system: System,
 
 def test_a_large_system_is_drawn_whole_in_groups() -> None:
     analysis = care_home().analysis
-    small = Scenes(analysis).whole(most=16).picture
+    small = Scenes(analysis).whole_system(limit=16).picture
     assert {box.kind for box in small.boxes} >= {"group"}
     assert len(small.boxes) <= 16
-    large = Scenes(analysis).whole().picture
+    large = Scenes(analysis).whole_system().picture
     standard = {analysis.graph.elements[vertex].identity for vertex in analysis.spread.standard}
     assert {box.key for box in large.boxes} == {e.identity for e in analysis.graph.elements} - standard

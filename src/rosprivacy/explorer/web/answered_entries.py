@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.explorer.edits import ROLES
 from rosprivacy.explorer.web import forms
-from rosprivacy.ingest.labels.keywords import NONE
+from rosprivacy.ingest.labels.keywords import NO_KIND
 from rosprivacy.report.catalogs.words import Words
 
 if TYPE_CHECKING:
@@ -21,7 +21,11 @@ if TYPE_CHECKING:
     from rosprivacy.explorer.web.forms import Answer
 
 LANGUAGES = ("en", "de", "fr")  # in which an earlier review may have been
-WHOLE = ("conduit", "sensitive", "mundane")  # words that stand for an entry of a label file: about every kind
+WHOLE_NODE_ROLES = (
+    "conduit",
+    "sensitive",
+    "mundane",
+)  # words that stand for an entry of a label file: about every kind
 PER_KIND = ("source", "leak", "sanitizer", "conduit", "sensitive", "only", "never")
 
 
@@ -127,31 +131,31 @@ def made_by(entry: Any) -> tuple[str, ...]:
 def _without(now: Any, answer: Answer) -> dict[str, Any]:
     """What an entry says of data, without what it says of the kinds that an answer is about."""
     if isinstance(now, str):
-        return {now: True} if now in WHOLE and now in {answer.role, "conduit"} else {}
+        return {now: True} if now in WHOLE_NODE_ROLES and now in {answer.role, "conduit"} else {}
     if not isinstance(now, dict):
         return {}
     if answer.role == forms.DERIVES:  # what is made of data says nothing of what becomes of the data itself
         left = {key: now[key] for key in PER_KIND if key in now}
     else:
-        left = {key: _less(now[key], answer) for key in PER_KIND if key in now}
+        left = {key: _without_answer(now[key], answer) for key in PER_KIND if key in now}
     both = {forms.SOURCE: "leak", forms.LEAK: "source"}.get(answer.role, "")  # it may bring in and let out the same
     left |= {both: now[both]} if both in now else {}
     if "derives" in now:
         again = (answer.kinds, answer.to) if answer.role == forms.DERIVES else None
-        left["derives"] = [each for each in _as_list(now["derives"]) if again is None or _made(each) != again]
+        left["derives"] = [each for each in _as_list(now["derives"]) if again is None or _derivations(each) != again]
     return {key: value for key, value in left.items() if value}
 
 
-def _less(value: Any, answer: Answer) -> Any:
+def _without_answer(value: Any, answer: Answer) -> Any:
     """Kinds that are said, without those of an answer; that none is said stays, until one is."""
-    if value is True or value == NONE:
+    if value is True or value == NO_KIND:
         return value
     if isinstance(value, dict):
         return {kind: how for kind, how in value.items() if kind not in answer.kinds}
     return [kind for kind in _as_list(value) if kind not in answer.kinds]
 
 
-def _made(derivation: Any) -> tuple[Any, Any]:
+def _derivations(derivation: Any) -> tuple[Any, Any]:
     ends = derivation if isinstance(derivation, dict) else {}
     return tuple(_as_list(ends.get("from"))), ends.get("to")
 
@@ -161,7 +165,7 @@ def _as_map(value: Any) -> dict[str, Any]:
 
 
 def _as_list(value: Any) -> list[Any]:
-    return [] if value in (None, NONE) else list(value) if isinstance(value, list | tuple) else [value]
+    return [] if value in (None, NO_KIND) else list(value) if isinstance(value, list | tuple) else [value]
 
 
 # --- notes of a review

@@ -92,7 +92,7 @@ class Site:
         self._known = Suggester(what_is_known(session.uncounted.vocabulary, settings))
         self._standing = Standing(session, self._known)
         self._trials = Trials(session, self._known)
-        self._phrases = Phrases.told(words, titles_of(session.uncounted.vocabulary, words))
+        self._phrases = Phrases.of_report(words, titles_of(session.uncounted.vocabulary, words))
         self._pictures = Pictures(self._phrases)
         self._by = ""
         self._message: Message | None = None
@@ -311,7 +311,7 @@ class Site:
 
     def _try(self, form: Form) -> Outcome:
         """Try something; nothing that is kept anywhere changes."""
-        both = form.one("what") == TOGETHER
+        both = form.value("what") == TOGETHER
         tried = self._trials.together(form) if both else tried_in(form, self.standing, self._words)
         name = form.words("name") or self._new_name()
         self._trials.keep(name, tried)

@@ -62,7 +62,7 @@ if TYPE_CHECKING:
 CYPHER = "/cypher"
 SECONDS = 20.0  # that the server may take for one question
 AT_ONCE = 4  # questions; others of the page's threads are left for its other pages
-NAMED = 500  # elements that a field offers by name
+SHOWN_AT_MOST = 500  # elements that a field offers by name
 ROOM = (900.0, 600.0)  # for a picture, in pixels
 LONGEST_TITLE = 120
 LONGEST_TEXT = 20_000  # letters of a question
@@ -118,14 +118,14 @@ class Asked(NamedTuple):
 
 def asked_in(form: Form) -> tuple[Asked, str]:
     """Return what a form asks, and whether it is to be asked or to be edited."""
-    do = form.choice("do", (ASK, EDIT)) if form.one("do") else ASK
-    name, at = form.one("ask"), form.one("at")
+    do = form.choice("do", (ASK, EDIT)) if form.value("do") else ASK
+    name, at = form.value("ask"), form.value("at")
     if name:
         if name not in pack():
             raise FormError("There is no such question; choose one of the list.")
         query = pack()[name]
-        return Asked(query, {field.name: form.one(FIELD + field.name) for field in query.parameters}, at=at), do
-    text = form.one("text").replace("\r\n", "\n")
+        return Asked(query, {field.name: form.value(FIELD + field.name) for field in query.parameters}, at=at), do
+    text = form.value("text").replace("\r\n", "\n")
     if len(text) > LONGEST_TEXT:
         raise FormError(f"The text has at most {LONGEST_TEXT:,} letters; use rosprivacy query --file for a longer one.")
     if not text.strip():
@@ -190,7 +190,7 @@ def table_of(rows: Rows, query: Query | None, words: Words) -> Table:
             told.append(cells)
     except RecursionError:
         raise QueryError("the rows hold lists in lists that are too deep to be read; ask for less") from None
-    return Table(columns, tuple(told), rows.more or len(told) < len(rows.rows))
+    return Table(columns, tuple(told), rows.truncated or len(told) < len(rows.rows))
 
 
 def _cut(text: str, words: Words) -> str:
@@ -219,7 +219,7 @@ def picture_of(rows: Rows, title: str, say: Phrases) -> Picture | None:
         drawn += 1
     if not values:
         return None
-    every = drawn == len(rows.rows) and not rows.more
+    every = drawn == len(rows.rows) and not rows.truncated
     note = say.words("cypher.drawn.all") if every else say.words("cypher.drawn.some", n=drawn)
     return query_view(values, STORED_NAMES, title, (note,), say)
 
@@ -273,23 +273,23 @@ class StoredSite(Site):
 
     async def _question(self, request: Request) -> Response:
         body = await request.body()
-        return await run_in_threadpool(self._asked, body)
+        return await run_in_threadpool(self._ask, body)
 
     def _to_fill_in(self, query: str) -> Response:
         """The page with a question of the pack, if the address names one; nothing is asked."""
-        said = _said(query)
+        said = _summary(query)
         standing = self._now_standing()
         element, finding = standing.elements.get(said.get("at", "")), standing.findings.get(said.get("finding", ""))
         chosen = pack().get(said.get("ask", ""))
         at = said["at"] if element else element_id(finding.leak.identity) if finding else ""
         return self._page_of(Asked(chosen, prefilled(chosen, element, finding) if chosen else {}, at=at), standing)
 
-    def _asked(self, body: bytes) -> Response:
+    def _ask(self, body: bytes) -> Response:
         """Ask what a form asks; what cannot be answered stays in its fields."""
         asked, standing = Asked(), self._now_standing()
         try:
             form = Form(body)
-            asked = Asked(text=form.one("text"), at=form.one("at"))  # kept, whatever is wrong with the rest
+            asked = Asked(text=form.value("text"), at=form.value("at"))  # kept, whatever is wrong with the rest
             asked, do = asked_in(form)
             if do == EDIT:
                 return self._page_of(asked.to_edit(), standing)
@@ -311,7 +311,7 @@ class StoredSite(Site):
     def _answer(self, asked: Asked, standing: Standing) -> Answer:
         with self._opened() as driver:
             rows, warning = rows_of(
-                driver, asked.cypher, asked.values(), limit=ROWS, timeout=self._seconds, asked=asked.query,
+                driver, asked.cypher, asked.values(), limit=ROWS, timeout=self._seconds, query=asked.query,
                 vocabulary=standing.vocabulary,
             )  # fmt: skip
         table = table_of(rows, asked.query, self._words)
@@ -355,7 +355,7 @@ def _links(standing: Standing) -> Links:
 def _offered(standing: Standing) -> Mapping[str, tuple[str, ...]]:
     """Names for the fields of parameters, by type; a person may write others."""
     elements = list(standing.elements.values())
-    names = sorted({element.name for element in elements}) if len(elements) <= NAMED else []
+    names = sorted({element.name for element in elements}) if len(elements) <= SHOWN_AT_MOST else []
     found = {
         "category": sorted(standing.vocabulary.categories),
         "robot": sorted({element.robot for element in elements if element.robot}),
@@ -368,7 +368,7 @@ def _offered(standing: Standing) -> Mapping[str, tuple[str, ...]]:
     return {type_: tuple(some) for type_, some in found.items()}
 
 
-def _said(query: str) -> dict[str, str]:
+def _summary(query: str) -> dict[str, str]:
     try:
         return dict(parse_qsl(query[:LONGEST], errors="replace"))
     except ValueError:

@@ -49,7 +49,7 @@ def element_pane(standing: Standing, element: Element, view: View, words: Words)
     return Pane(
         id=at,
         name=shown(element.full_name),
-        kind=words.known(f"kind.{element.kind}", element.kind),
+        kind=words.of_value(f"kind.{element.kind}", element.kind),
         enclaves=_enclaves(standing, element),
         said=tuple(_roles(standing, at, words)),
         is_open=bool(open_kinds),
@@ -161,7 +161,7 @@ def _hops(path: Witness, standing: Standing, view: View, words: Words) -> Iterab
     """The elements of a path, each with the step that leads on from it, and the policy lines that allow it."""
     before = ""
     for number, element in enumerate(path.elements):
-        kind = words.known(f"kind.{element.kind}", element.kind)
+        kind = words.of_value(f"kind.{element.kind}", element.kind)
         step = path.steps[number] if number < len(path.steps) else None
         data = _data(step, standing, words) if step else ""
         lines = tuple(dict.fromkeys(_line(grant) for grant in step.grants)) if step else ()

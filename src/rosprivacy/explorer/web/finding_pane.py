@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.page.finding_entries import Entry
 
-NAMED = 100  # robots whose names are told
+SHOWN_AT_MOST = 100  # robots whose names are told
 OFFERED = 40  # choices on a page
 ALONE = ":one"  # behind the id of a finding: of its robot only
 
@@ -70,7 +70,7 @@ def _law(row: Mapping[str, Any], index: Index) -> Iterable[str]:
     for law in row["law"]:
         if law["provision"] == ARTICLE_10:
             provision = index.provision(row["category"], law["provision"])
-            yield words.pair(provision, words.known(f"law.{law['verdict']}", law["verdict"]))
+            yield words.pair(provision, words.of_value(f"law.{law['verdict']}", law["verdict"]))
 
 
 def _hops(finding: Finding, entry: Entry, standing: Standing, view: View) -> Iterable[Pane]:
@@ -190,4 +190,4 @@ def _further(session: Session, finding: Finding, scope: Scope, words: Words) -> 
 
 
 def _names(robots: Sequence[str], words: Words) -> str:
-    return words.row(words.first([shown(robot) for robot in robots], NAMED))
+    return words.row(words.first([shown(robot) for robot in robots], SHOWN_AT_MOST))

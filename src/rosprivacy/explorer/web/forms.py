@@ -90,7 +90,7 @@ class Form:
         for name, value in fields:
             self._fields.setdefault(name, []).append(value)
 
-    def one(self, name: str) -> str:
+    def value(self, name: str) -> str:
         """Return the value of a field; empty if it is not there."""
         values = self._fields.get(name, [""])
         if len(values) != 1:
@@ -103,21 +103,21 @@ class Form:
 
     def choice(self, name: str, allowed: Collection[str]) -> str:
         """Return a value that is one of some."""
-        value = self.one(name)
+        value = self.value(name)
         if value not in allowed:
             raise FormError(f"The form has no {name} that can be chosen here.")
         return value
 
     def number(self, name: str) -> int:
         """Return a number, of at most nine digits."""
-        value = self.one(name)
+        value = self.value(name)
         if not (value.isascii() and value.isdigit() and len(value) < 10):  # noqa: PLR2004 - digits
             raise FormError(f"The form has no {name}.")
         return int(value)
 
     def words(self, name: str) -> str:
         """Return a text of one line."""
-        value = " ".join(self.one(name).split())
+        value = " ".join(self.value(name).split())
         if len(value) > LONGEST[name]:
             raise FormError(f"The field {name} has at most {LONGEST[name]} letters.")
         if printable(value) != value:
@@ -151,7 +151,7 @@ def answer_in(form: Form, elements: Mapping[str, Element], kinds: Collection[str
 
 def element_in(form: Form, elements: Mapping[str, Element]) -> Element:
     """Return the element that a form names."""
-    at = form.one("element")
+    at = form.value("element")
     if at not in elements:
         raise FormError("There is no such element any more; choose another one.")
     return elements[at]

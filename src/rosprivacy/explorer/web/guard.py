@@ -94,14 +94,14 @@ class Door:
 
     def enter(self, token: str) -> str | None:
         """Return what the browser has to keep, once, for the token of the link; None for any other."""
-        if self._token is None or not _same(token, self._token):
+        if self._token is None or not _equal(token, self._token):
             return None
         self._token = None
         return self._kept
 
     def knows(self, kept: str) -> bool:
         """Whether this is what the link left in the browser."""
-        return self._token is None and _same(kept, self._kept)
+        return self._token is None and _equal(kept, self._kept)
 
 
 class Guard:
@@ -121,14 +121,14 @@ class Guard:
         if scope["type"] != "http":
             return  # no websockets; nothing is to be done when the server starts
 
-        async def held(message: Message) -> None:
+        async def respond(message: Message) -> None:
             if message["type"] == "http.response.start":
                 MutableHeaders(scope=message).update(HEADERS)
             await send(message)
 
         answer = self._answer(scope)
         with suppress(ClientDisconnect):  # a form that was broken off: there is nobody to tell
-            await (answer or self.app)(scope, receive, held)
+            await (answer or self.app)(scope, receive, respond)
 
     def _answer(self, scope: Scope) -> Response | None:
         """What is answered without asking the application; None for what it may be asked."""
@@ -201,6 +201,6 @@ def _cookie(headers: Headers, name: str) -> str:
     return cookie_parser("; ".join(headers.getlist("cookie"))).get(name, "")
 
 
-def _same(one: str, other: str) -> bool:
+def _equal(first: str, second: str) -> bool:
     """Compare in a time that tells nothing; of texts that is not done for all signs."""
-    return secrets.compare_digest(one.encode("utf-8", "surrogatepass"), other.encode())
+    return secrets.compare_digest(first.encode("utf-8", "surrogatepass"), second.encode())

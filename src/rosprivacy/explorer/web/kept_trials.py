@@ -29,9 +29,9 @@ if TYPE_CHECKING:
     from rosprivacy.labelling.suggesting_on_demand import Suggester
     from rosprivacy.report.catalogs.words import Words
 
-MOST = 20  # trials: each keeps a whole answer
+BOUND = 20  # trials: each keeps a whole answer
 SENTENCES = 40  # of one list
-NAMED = 3  # robots
+SHOWN_AT_MOST = 3  # robots
 
 
 class Trials:
@@ -55,8 +55,8 @@ class Trials:
 
     def keep(self, name: str, tried: Tried) -> None:
         """Try something, and keep it under a name; another of that name is replaced."""
-        if name not in self.names and len(self.names) >= MOST:
-            raise FormError(f"There are {MOST} trials already: forget one.")
+        if name not in self.names and len(self.names) >= BOUND:
+            raise FormError(f"There are {BOUND} trials already: forget one.")
         self._session.scenario(name, tried.what)
         self._says[name] = tried.says
 
@@ -145,7 +145,7 @@ def _findings(difference: Difference, what: str, standing: Standing, view: View,
         robots = difference.robots.get((what, finding), ())
         notes = [words("explorer.trial.plainly")] if what == PLAINER else []
         if robots:
-            names = words.row(words.first(list(map(shown, robots)), NAMED))
+            names = words.row(words.first(list(map(shown, robots)), SHOWN_AT_MOST))
             notes.append(words("explorer.trial.robots", robots=words.count(len(robots), "robot"), names=names))
         address = view._replace(finding=finding).address
         yield Pane(sentence=sentence_of(index.by_id[finding], index), address=address, robots=" ".join(notes))

@@ -178,9 +178,9 @@ def _groups(standing: Standing, view: View, words: Words) -> tuple[Pane, ...]:
     return tuple(group for group in groups if group.rows)
 
 
-def _group(key: str, rows: Sequence[Pane], left: int = 0, *, sure: bool = False) -> Pane:
-    """Rows under a title; ``left`` are not shown, and what is sure is not folded."""
-    return Pane(key=key, rows=rows, left=left, sure=sure)
+def _group(key: str, rows: Sequence[Pane], remaining: int = 0, *, sure: bool = False) -> Pane:
+    """Rows under a title; ``remaining`` are not shown, and what is sure is not folded."""
+    return Pane(key=key, rows=rows, left=remaining, sure=sure)
 
 
 def _asked(key: str, standing: Standing, view: View, words: Words) -> Pane:
@@ -258,6 +258,6 @@ def _found(standing: Standing, view: View, words: Words) -> tuple[Pane, ...]:
 def _row(element: Element, text: str, standing: Standing, view: View, words: Words) -> Pane:
     """An element to look at, with the findings there."""
     name = element_id(element.identity)
-    kind = words.known(f"kind.{element.kind}", element.kind)
+    kind = words.of_value(f"kind.{element.kind}", element.kind)
     text = " · ".join(part for part in (kind, text, stands_for(standing, element, words)) if part)
     return Pane(id=name, name=shown(element.full_name), told=text, address=view.to(name).address, ways=())

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 SKIP, NONE = "skip", "none"  # ask the engineer; brings in nothing: both are notes, and say nothing of data
 REASONED = (forms.SANITIZER, forms.ABSENT, forms.MUNDANE, NONE)
 ROS_STEPS = ("publish", "subscribe", "matches")  # that have a sentence of their own; data goes along all others
-MOST = 40  # rows of what may bring data in; the others are found by name
+BOUND = 40  # rows of what may bring data in; the others are found by name
 LONGEST = 200  # letters of what is looked for
 
 
@@ -118,7 +118,7 @@ def _sentences(hops: Sequence[Pane], words: Words) -> Iterator[Pane]:
     """The steps of the way of data, with the policy lines that allow them; none if it begins there."""
     for hop, after in pairwise(hops):
         role = hop.role if hop.role in ROS_STEPS else "flow"
-        ends = {"one": _named(hop.name, hop.of, words), "other": _named(after.name, after.of, words)}
+        ends = {"one": _element_names(hop.name, hop.of, words), "other": _element_names(after.name, after.of, words)}
         now = words("review.now", data=hop.data) if hop.data and hop is not hops[0] else ""
         text = " ".join(filter(None, [words(f"review.step.{role}", **ends), now]))
         yield Pane(told=text, lines=hop.lines, more=hop.more)
@@ -132,11 +132,13 @@ def named(element: Element, words: Words) -> str:
     >>> named(Element("topic", "/video"), IN_ENGLISH)
     '“/video” (channel)'
     """
-    return _named(shown(element.full_name), element.kind, words)
+    return _element_names(shown(element.full_name), element.kind, words)
 
 
-def _named(name: str, kind: str, words: Words) -> str:
-    return words("review.named", name=name, kind=words.known(f"review.kind.{kind}", words.known(f"kind.{kind}", kind)))
+def _element_names(name: str, kind: str, words: Words) -> str:
+    return words(
+        "review.named", name=name, kind=words.of_value(f"review.kind.{kind}", words.of_value(f"kind.{kind}", kind))
+    )
 
 
 def _named_with_robots(element: Element, standing: Standing, words: Words) -> str:
@@ -165,16 +167,16 @@ def answer_in_review(form: forms.Form, standing: Standing, words: Words) -> form
         if not is_there:
             raise NotYet(words(f"review.need.{what}"))
 
-    at = form.one("element")
+    at = form.value("element")
     need("element", is_there=at in standing.elements)
     element, reached = standing.elements[at], bool(standing.carried.get(at))
-    need("role", is_there=form.one("role"))
+    need("role", is_there=form.value("role"))
     role = form.choice("role", offered(element, reached=reached))
     answer = forms.Answer(element, role, note=form.words("note"), by=form.words("by"))
     need("by", is_there=answer.by)
     need("note", is_there=answer.note or role not in REASONED)
     detail = {forms.SANITIZER: "method", forms.DERIVES: "makes"}.get(role)
-    need("how", is_there=detail is None or form.one(detail))
+    need("how", is_there=detail is None or form.value(detail))
     if role in (SKIP, NONE, forms.ABSENT):
         return answer
     categories, about = standing.vocabulary.categories, form.several("about")
@@ -201,11 +203,11 @@ def sources_pane(standing: Standing, find: str, words: Words) -> Pane:
     fitting = [(at, element) for at, element in fitting if standing.session.targets_of(element)]
     fitting.sort(key=lambda item: item[0] in standing.spoken)
     rows = []
-    for at, element in fitting[:MOST]:
+    for at, element in fitting[:BOUND]:
         entry = next(iter(standing.entries_of(element)), None) if at in standing.spoken else None
         note = shown(note_before(entry) or left_of(entry))
         rows.append(Pane(id=at, name=_named_with_robots(element, standing, words), said=note))
-    return Pane(find=shown(find), rows=rows, more=len(fitting[MOST:]), followed=bool(standing.analysis.emitted))
+    return Pane(find=shown(find), rows=rows, more=len(fitting[BOUND:]), followed=bool(standing.analysis.emitted))
 
 
 # --- the end ----------------------------------------------------------------------------------------------------
@@ -217,7 +219,7 @@ def summary_pane(standing: Standing, questions: Sequence[Asked], words: Words) -
     verdict = verdict_of(standing)
     decided, followed = tuple(_decided(standing, words)), bool(standing.analysis.emitted)
     return Pane(
-        verdict=words.known(f"review.verdict.{verdict}", words.known(f"verdict.{verdict}", verdict)),
+        verdict=words.of_value(f"review.verdict.{verdict}", words.of_value(f"verdict.{verdict}", verdict)),
         end=(*_end(questions, words, decided=bool(decided), followed=followed), *in_doubt(index)),
         decided=decided,
         open=tuple(_open(question, standing, words) for question in questions),
@@ -259,7 +261,7 @@ def _decided(standing: Standing, words: Words) -> Iterator[Pane]:
 def _roles(entry: Any, titles: Mapping[str, str], words: Words) -> Iterator[str]:
     """What an entry of a label file says, in plain words."""
     if isinstance(entry, str):
-        yield words.known(f"review.said.{entry}", shown(entry))
+        yield words.of_value(f"review.said.{entry}", shown(entry))
     for role in ROLES if isinstance(entry, dict) else ():
         if role in entry:
             what = _what(entry[role], titles, words)

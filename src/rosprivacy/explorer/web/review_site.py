@@ -91,11 +91,11 @@ class ReviewSite(Site):
         answer = answer_in_review(form, self.standing, self._words)
         alone = form.choice("whose", WHOSE) == ROBOT
         now = self.session.entry_for(answer.element, only_this_robot=alone)
-        self.session.answer_for(answer.element, cast("Label", self._said(answer, now)), only_this_robot=alone)
+        self.session.answer_for(answer.element, cast("Label", self._label_text(answer, now)), only_this_robot=alone)
         self._entered, self._by = None, answer.by
         return Outcome(200, self._answered(answer, now, self._words(f"review.answer.{answer.role}")))
 
-    def _said(self, answer: Answer, now: Any) -> dict[str, Any]:
+    def _label_text(self, answer: Answer, now: Any) -> dict[str, Any]:
         """What the label file then says; ``now`` is what it says now."""
         if answer.role == SKIP:
             return leaving(now, answer.by, answer.note, self._words)

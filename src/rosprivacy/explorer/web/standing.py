@@ -54,7 +54,7 @@ class Standing:
     @cached_property
     def elements(self) -> Mapping[str, Element]:
         """All elements, by id."""
-        return self.analysis.spread.shape.kept("page: elements", None, lambda: by_id(self.analysis.graph))
+        return self.analysis.spread.shape.memoised("page: elements", None, lambda: by_id(self.analysis.graph))
 
     @cached_property
     def questions(self) -> Sequence[Question]:
@@ -110,7 +110,7 @@ class Standing:
         def find() -> dict[str, tuple[str, ...]]:
             return {element_id(at): kinds for at, kinds in reached_kinds(self.analysis).items()}
 
-        return self.analysis.spread.course.kept("page: carried", self.analysis.carried, find)
+        return self.analysis.spread.course.memoised("page: carried", self.analysis.carried, find)
 
     @cached_property
     def roles(self) -> Mapping[str, Mapping[str, tuple[str, ...]]]:

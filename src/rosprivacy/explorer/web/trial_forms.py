@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from rosprivacy.explorer.web.standing import Standing
     from rosprivacy.report.catalogs.words import Words
 
-MOST = 60  # of one list; a line or a flow further away has an element nearer to it
+BOUND = 60  # of one list; a line or a flow further away has an element nearer to it
 TOGETHER = "together"  # of two trials that are kept
 ALL_STEPS = ""  # in the place of one change of a proposal
 COUNTRY = re.compile(r"[A-Z]{2}")
@@ -57,8 +57,8 @@ def offers_at(standing: Standing, element: Element, words: Words) -> Pane:
         places = {place: None for place in places if line_id(place) in lines_of(standing)}
     return Pane(
         element=at,
-        flows=tuple(_between(flows, standing))[:MOST],
-        lines=() if shared else tuple(_offer(line_id(place), fit(str(place))) for place in places)[:MOST],
+        flows=tuple(_between(flows, standing))[:BOUND],
+        lines=() if shared else tuple(_offer(line_id(place), fit(str(place))) for place in places)[:BOUND],
         kinds=tuple(_offer(kind, title_of(kind, standing.vocabulary, words)) for kind in kinds),
         cleans=_cleans(standing, at) and not shared,
         whose=whose,
@@ -173,7 +173,7 @@ def _robots(form: Form, standing: Standing, *elements: Element) -> tuple[str, ..
 
 def _filter(form: Form, standing: Standing, words: Words) -> Tried:
     """One of a policy: it has a channel of its own, and what wildcards take past it gets past it."""
-    ends = _ends_of(standing, form.one("flow"))
+    ends = _ends_of(standing, form.value("flow"))
     if not ends:
         raise FormError("There is no such step any more; choose another one.")
     kinds, data = _kinds(form, standing, words)
@@ -186,7 +186,7 @@ def _filter(form: Form, standing: Standing, words: Words) -> Tried:
 def _cut(form: Form, standing: Standing, words: Words) -> Tried:
     lines = lines_of(standing)
     place = lines[form.choice("line", lines)]
-    element = standing.elements.get(form.one("element"))
+    element = standing.elements.get(form.value("element"))
     robots = _robots(form, standing, element) if element else ()
     what = WhatIf(cut=((place.file, place.line),), robots=robots)
     return Tried(what, (words("explorer.try.says.cut", line=shown(str(place))),))
@@ -206,7 +206,7 @@ def _storage(form: Form, standing: Standing, words: Words) -> Tried:
 
 def _facts(form: Form) -> dict[str, str]:
     """What is stated of the storage; what is not said is not known."""
-    days, country = form.one("days"), form.one("country").upper()
+    days, country = form.value("days"), form.value("country").upper()
     if days and not (days.isascii() and days.isdigit() and len(days) <= LONGEST_DAYS and int(days)):
         raise FormError("Say for how many days it keeps data, in digits, or leave it empty.")
     if country and not COUNTRY.fullmatch(country):
@@ -223,7 +223,7 @@ def _end(element: Element) -> str | Mapping[str, str]:
 
 def _doubt(form: Form, standing: Standing, words: Words) -> Tried:
     element = element_in(form, standing.elements)
-    if not _cleans(standing, form.one("element")):
+    if not _cleans(standing, form.value("element")):
         raise FormError("It is not said to clean anything.")
     kinds, data = _kinds(form, standing, words)
     robots = _robots(form, standing, element)
@@ -240,7 +240,7 @@ def _proposal(form: Form, standing: Standing, words: Words) -> Tried:
         raise FormError("There is no such proposal any more; ask again what closes it.")
     steps = proposals[number].steps
     rows = mitigation.document()["proposals"][number]["steps"]
-    if form.one("step") != ALL_STEPS:
+    if form.value("step") != ALL_STEPS:
         at = form.number("step")
         if at >= len(steps):
             raise FormError("There is no such change any more; ask again what closes it.")

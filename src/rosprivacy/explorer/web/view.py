@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 LONGEST = 4_096
 ALL = "all"  # in the place of what is drawn
-FOUND = 200  # letters of what is looked for
+FOUND_BOUND = 200  # letters of what is looked for
 
 
 class View(NamedTuple):
@@ -83,7 +83,7 @@ def trial_in(query: str, trials: Collection[str]) -> str:
     >>> trial_in("trial=a+filter&at=e1", {"a filter"})
     'a filter'
     """
-    return next((value for key, value in _said(query) if key == "trial" and value in trials), "")
+    return next((value for key, value in _answer_text(query) if key == "trial" and value in trials), "")
 
 
 def view_of(
@@ -99,16 +99,16 @@ def view_of(
     >>> view_of("at=e9&hide=Video&hide=Nothing&find=cam", {"e1"}, {"Video"}).address
     '/?hide=Video&find=cam'
     """
-    said = _said(query)
+    said = _answer_text(query)
     at = next((value for key, value in said if key == "at" and value in elements), "")
     hidden = dict.fromkeys(value for key, value in said if key == "hide" and value in kinds)
     find = next((value for key, value in said if key == "find"), "")
     finding = next((value for key, value in said if key == "finding" and value in findings), "")
     closes = bool(finding) and ("closes", "1") in said
-    return View(at, tuple(hidden), find[:FOUND], ("draw", ALL) in said, finding, closes, trial)
+    return View(at, tuple(hidden), find[:FOUND_BOUND], ("draw", ALL) in said, finding, closes, trial)
 
 
-def _said(query: str) -> list[tuple[str, str]]:
+def _answer_text(query: str) -> list[tuple[str, str]]:
     try:
         return parse_qsl(query[:LONGEST], errors="replace")
     except ValueError:
