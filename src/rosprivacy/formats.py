@@ -122,9 +122,9 @@ def in_pieces(answer: Answer, name: str, style: Style | None = None) -> str | by
 
 
 def _text(answer: Answer, style: Style) -> str:
-    from rosprivacy.report.document.analysis import document
+    from rosprivacy.report.document.analysis import document, verdict_facts
 
-    return text_of(document(answer, reliance=not style.quiet), style)
+    return text_of(verdict_facts(answer) if style.quiet else document(answer), style)
 
 
 def text_of(told: Mapping[str, Any], style: Style) -> str:
