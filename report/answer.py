@@ -77,6 +77,8 @@ class Answer:
         What is not known, or rests on more than a person's word (rule S11); the verdict takes them into account.
     hangs_on_asked
         Whether ``hangs_on`` is asked for: of a fleet it takes more than the analysis.
+    hangs_on_named
+        Whether a user asked for it by name, which a short document waits for.
     """
 
     analysis: Analysis
@@ -92,6 +94,7 @@ class Answer:
     enforced: Enforced | None = field(default=None, repr=False, compare=False)
     doubts: tuple[Doubt, ...] = ()
     hangs_on_asked: bool = field(default=True, repr=False, compare=False)
+    hangs_on_named: bool = field(default=False, repr=False, compare=False)
 
     @property
     def shown(self) -> Analysis:

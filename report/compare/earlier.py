@@ -17,7 +17,7 @@ from rosprivacy.analysis.errors import InputError, reason, shown
 from rosprivacy.analysis.files_read import noted
 from rosprivacy.analysis.json_shape import misfits, validator
 from rosprivacy.analysis.json_values import parsed
-from rosprivacy.report.document.analysis import FORMAT
+from rosprivacy.report.document.analysis import FORMAT, SHORT
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 HINT = "give what 'rosprivacy analyze --format json' printed"
 NEWER = "use the version of rosprivacy that wrote it, or write it again"
+SCHEMAS = {FORMAT: "analysis.schema.json", SHORT: "analysis-2.schema.json"}
 LARGEST = 512 * 2**20  # bytes
 
 
@@ -66,9 +67,10 @@ def document_of(data: bytes, file: str, remedy: str) -> Mapping[str, Any]:
     """
     document: dict[str, Any] = parsed(data, lambda *said: InputError(file, *said), remedy)
     said = document.get("format") if isinstance(document, dict) else None
-    if said != FORMAT:
+    if said not in SCHEMAS:
         if isinstance(said, str) and said.startswith("rosprivacy.analysis/"):
-            raise InputError(file, 0, f"is of the format {shown(said)}, and this version reads {FORMAT}", NEWER)
+            known = " and ".join(SCHEMAS)
+            raise InputError(file, 0, f"is of the format {shown(said)}, and this version reads {known}", NEWER)
         raise InputError(file, 0, f"is not a document of the format {FORMAT}", remedy)
     wrong = problems(document)
     if wrong:
@@ -109,12 +111,12 @@ def problems(document: Any) -> list[str]:
 
     Complexity: O(its size).
     """
-    return misfits(_validator(), document) or list(_contradictions(document))
+    return misfits(_validator(document["format"]), document) or list(_contradictions(document))
 
 
 @cache
-def _validator() -> Validator:
-    schema = files("rosprivacy.report.contract").joinpath("analysis.schema.json")
+def _validator(form: str) -> Validator:
+    schema = files("rosprivacy.report.contract").joinpath(SCHEMAS[form])
     return validator(json.loads(schema.read_text("utf-8")))
 
 

@@ -365,10 +365,9 @@ class HangsOn(TypedDict):
     ]
 
 
-class AnalysisDocument(HangsOn):
-    """What `rosprivacy analyze --format json` prints. Keys that are listed here stay; more may be added."""
+class Answered(HangsOn):
+    """What both forms of the document hold."""
 
-    format: Annotated[str, Keywords(const="rosprivacy.analysis/1")]
     verdict: Annotated[
         Verdict,
         "leak: a finding that is not dismissed. undetermined: none, but open elements, or no source. "
@@ -397,11 +396,6 @@ class AnalysisDocument(HangsOn):
         "The verdict in one English sentence, with its doubts by name and what the answer is restricted to; the "
         "same sentence stands in every output (rule S12).",
     ]
-    taken_away: Annotated[
-        NotRequired[list[LedgerRow]],
-        "The ledger: what keeps data from going on, or an element from being asked about, and on whose word. Of a "
-        "fleet it is told for one robot of those that are alike.",
-    ]
     carries: Annotated[
         list[Carried], "Every element that data arrives at or starts from, with the most specific categories."
     ]
@@ -422,11 +416,6 @@ class AnalysisDocument(HangsOn):
         "Message types of channels and their legs, as labels state them or as they were observed; where any are known.",
     ]
     contexts: Annotated[NotRequired[list[ContextEntry]], "The contexts that are stated."]
-    look_at: Annotated[
-        NotRequired[list[PointerEntry]],
-        "Provisions to look at that are not followed into paths; no verdict. National law stands there with its "
-        "country; those without categories and contexts concern every system.",
-    ]
     processing: Annotated[
         NotRequired[list[ProcessingEntry]],
         "Who is responsible, what data are processed for and on which basis, as stated of a robot or an element. "
@@ -439,9 +428,6 @@ class AnalysisDocument(HangsOn):
     ]
     sanitizers: Annotated[list[SanitizerEntry], "Who cleans which category, and what passes all the same."]
     derivations: Annotated[list[DerivationEntry], "Who makes one category of another."]
-    unreached: Annotated[
-        list[ElementEntry], "Elements that no data of these categories gets to; with carries, all that there is."
-    ]
     enclaves: Annotated[list[EnclaveEntry], "Of the policies, with the nodes in each."]
     flows: Annotated[Count, "Allowed flows of the graph."]
     denied_flows: Annotated[NotRequired[Count], "Flows that a DENY takes back from an ALLOW."]
@@ -460,4 +446,34 @@ class AnalysisDocument(HangsOn):
     enforced: Annotated[
         NotRequired[EnforcedEntry],
         "With --view both: what the enforced view adds to the declared one, which is the answer of record.",
+    ]
+
+
+class AnalysisDocument(Answered):
+    """What `rosprivacy analyze --format json` prints. Keys that are listed here stay; more may be added."""
+
+    format: Annotated[str, Keywords(const="rosprivacy.analysis/1")]
+    taken_away: Annotated[
+        NotRequired[list[LedgerRow]],
+        "The ledger: what keeps data from going on, or an element from being asked about, and on whose word. Of a "
+        "fleet it is told for one robot of those that are alike.",
+    ]
+    look_at: Annotated[
+        NotRequired[list[PointerEntry]],
+        "Provisions to look at that are not followed into paths; no verdict. National law stands there with its "
+        "country; those without categories and contexts concern every system.",
+    ]
+    unreached: Annotated[
+        list[ElementEntry], "Elements that no data of these categories gets to; with carries, all that there is."
+    ]
+
+
+class ShortDocument(Answered):
+    """What `rosprivacy analyze --format json2` prints: rosprivacy.analysis/1 without what few read of it."""
+
+    format: Annotated[str, Keywords(const="rosprivacy.analysis/2")]
+    left_out: Annotated[
+        list[str],
+        "Keys of rosprivacy.analysis/1 that are not in this document, which is not the same as nothing; "
+        "`--format json` writes them, and `--hangs-on` adds what the answer hangs on.",
     ]

@@ -1,4 +1,4 @@
-"""An ``Answer`` -> the JSON document ``rosprivacy.analysis/1``, a contract (``docs/analysis.schema.json``).
+"""An ``Answer`` -> the JSON document ``rosprivacy.analysis/1`` or ``/2``, contracts (``docs/*.schema.json``).
 
 In: an ``Answer``. Out: plain dicts and lists, sorted, with no time in them (rule S14).
 """
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.kernel.overruled import Overruled
     from rosprivacy.analysis.model import Category, Diagnostic, Element, Flow, FlowGraph
     from rosprivacy.report.answer import Answer
-    from rosprivacy.report.contract.analysis import AnalysisDocument, Assumptions
+    from rosprivacy.report.contract.analysis import AnalysisDocument, Assumptions, ShortDocument
     from rosprivacy.report.contract.records import (
         DeniedEntry,
         DiagnosticEntry,
@@ -57,13 +57,16 @@ if TYPE_CHECKING:
     from rosprivacy.report.contract.stated import DerivationEntry, OverruledEntry, SanitizerEntry, WaysEntry
 
 FORMAT = "rosprivacy.analysis/1"
+SHORT = "rosprivacy.analysis/2"
+NOT_IN_SHORT = ("look_at", "taken_away", "unreached")
+ASSUMED_NOT_IN_SHORT = ("globs", "standard_channels_reached")
 HANGS_ON = "--hangs-on"  # what asks for it
 SECTIONS = {"node": "nodes", "topic": "topics", "service": "services", "action": "actions"}  # of label files
 
 
-def document(answer: Answer) -> AnalysisDocument:
-    """Return the JSON document of an answer."""
-    made = with_types(with_processing(_analysis(answer), answer), answer)
+def document(answer: Answer, *, reliance: bool = True) -> AnalysisDocument:
+    """Return the JSON document of an answer; without ``reliance`` what it hangs on is not worked out."""
+    made = with_types(with_processing(_analysis(answer, reliance=reliance), answer), answer)
     if answer.decided:
         made = with_decisions(made, answer.decided)
     if answer.fleet:
@@ -73,7 +76,22 @@ def document(answer: Answer) -> AnalysisDocument:
     return _with_sentence(made)
 
 
-def _analysis(answer: Answer) -> AnalysisDocument:
+def short_document(answer: Answer) -> ShortDocument:
+    """Return the document without what few read; what the answer hangs on is in it only where a user asked for it."""
+    whole: dict[str, Any] = {**document(answer, reliance=answer.hangs_on_named)}
+    short = {key: value for key, value in whole.items() if key not in (*NOT_IN_SHORT, "not_asked")}
+    assumed = whole["assumptions"]
+    short["format"] = SHORT
+    short["assumptions"] = {key: value for key, value in assumed.items() if key not in ASSUMED_NOT_IN_SHORT}
+    short["left_out"] = [
+        *([] if "hangs_on" in whole else ["hangs_on"]),
+        *NOT_IN_SHORT,
+        *(f"assumptions.{key}" for key in ASSUMED_NOT_IN_SHORT),
+    ]
+    return cast("ShortDocument", short)
+
+
+def _analysis(answer: Answer, *, reliance: bool) -> AnalysisDocument:
     """The analysis as one JSON object, without what only some answers have."""
     analysis, taken = answer.shown, answer.taken_away
     categories, hierarchy, graph = answer.vocabulary.categories, answer.vocabulary.hierarchy, analysis.graph
@@ -147,10 +165,11 @@ def _analysis(answer: Answer) -> AnalysisDocument:
             "globs": glob_entries(answer.globs(taken)),
         },
     }
-    if answer.hangs_on is None:  # so that nobody takes it for 'hangs on nothing'
+    hangs_on = answer.hangs_on if reliance else None
+    if hangs_on is None:  # so that nobody takes it for 'hangs on nothing'
         document["not_asked"] = [{"key": "hangs_on", "option": HANGS_ON}]
     else:
-        document["hangs_on"] = reliance_rows(answer.hangs_on)
+        document["hangs_on"] = reliance_rows(hangs_on)
     return document
 
 

@@ -194,6 +194,7 @@ def concluded(
         accepts=options.accepts,
         doubts=listed,
         hangs_on_asked=question.settings.hangs_on or system.likeness.robots <= 1,
+        hangs_on_named=question.settings.hangs_on,
         policies=system.policies,
         labels=system.labels,
         types=system.types,

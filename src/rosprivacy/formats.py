@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 # What is text; the table below has one row for each, and 'docx'.
 TextFormat = Literal[
-    "text", "json", "sarif", "cnil-pia", "turtle", "json-ld", "html", "markdown", "article30", "works-council",
+    "text", "json", "json2", "sarif", "cnil-pia", "turtle", "json-ld", "html", "markdown", "article30", "works-council",
 ]  # fmt: skip
 
 
@@ -122,9 +122,9 @@ def in_pieces(answer: Answer, name: str, style: Style | None = None) -> str | by
 
 
 def _text(answer: Answer, style: Style) -> str:
-    from rosprivacy.report.document.analysis import document
+    from rosprivacy.report.document.analysis import document, verdict_facts
 
-    return text_of(document(answer), style)
+    return text_of(verdict_facts(answer) if style.quiet else document(answer), style)
 
 
 def text_of(document: Mapping[str, Any], style: Style) -> str:
@@ -151,6 +151,13 @@ def _json(answer: Answer, _: Style) -> Iterator[str]:
     from rosprivacy.report.document.analysis import document
 
     return json_text.in_pieces(document(answer))
+
+
+def _short_json(answer: Answer, _: Style) -> Iterator[str]:
+    from rosprivacy.report import json_text
+    from rosprivacy.report.document.analysis import short_document
+
+    return json_text.in_pieces(short_document(answer))
 
 
 def _linked_data(form: str) -> Callable[[Answer, Style], str]:
@@ -273,6 +280,7 @@ FORMATS = {
     for known in (
         Format("text", ".txt", _text, ("language", "verbose", "quiet"), both_views=True),
         Format("json", ".json", _json, both_views=True),
+        Format("json2", ".json", _short_json, both_views=True),
         Format("sarif", ".sarif", _sarif, both_views=True),
         Format("cnil-pia", ".json", _cnil_pia, ("language",)),
         Format("turtle", ".ttl", _linked_data("turtle"), _LINKED),

@@ -85,7 +85,7 @@ BYTES = [
     (b'{"format": "rosprivacy.analysis/1", "\\udfff": 1}', "bad.json: the document has a key that is no text: half "),
     (b'{"format": "rosprivacy.analysis/1", "a": %s1%s}' % (b"[" * 90, b"]" * 90), " is nested too deeply; "),
     (b'{"format": "rosprivacy.analysis/1", "a": %s' % (b"[" * 90_000), "bad.json: nested too deeply; "),
-    (b'{"format": "rosprivacy.analysis/2"}', "/2, and this version reads rosprivacy.analysis/1; use"),
+    (b'{"format": "rosprivacy.analysis/3"}', "/3, and this version reads rosprivacy.analysis/1 and "),
     (b'{"format": "rosprivacy.diff/1"}', "bad.json: is not a document of the format rosprivacy.analysis/1; give what"),
     (b'["rosprivacy.analysis/1"]', "bad.json: is not a document of the format rosprivacy.analysis/1; give what"),
 ]  # fmt: skip

@@ -142,6 +142,9 @@ def of_a_policy(policy: str) -> Iterator[Arguments]:
 
 def of_single_commands() -> Iterator[Arguments]:
     """Yield what is asked once, or of two inputs."""
+    yield ("analyze", *ROBOTS["care-home"], "-f", "json2")
+    yield ("analyze", *ROBOTS["care-home"], "-f", "json2", "--hangs-on", "--view", "both")
+    yield ("analyze", *EXAMPLE_FLEET, "-f", "json2")
     care, labels = ROBOTS["care-home"][0], ROBOTS["care-home"][2]
     earlier = "tests/cases/earlier/care-home"
     yield ("--help",)

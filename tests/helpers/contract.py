@@ -9,7 +9,7 @@ import json
 import types
 from typing import TYPE_CHECKING, Annotated, Any, NotRequired, Union, get_args, get_origin, get_type_hints, is_typeddict
 
-from rosprivacy.report.contract.analysis import AnalysisDocument
+from rosprivacy.report.contract.analysis import AnalysisDocument, ShortDocument
 from rosprivacy.report.contract.bags import BagsDocument
 from rosprivacy.report.contract.mitigation import MitigationDocument
 from rosprivacy.report.contract.policies import CheckDocument, LintDocument
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 Schema = dict[str, Any]
 DOCUMENTS: dict[str, Any] = {
     "analysis": AnalysisDocument,
+    "analysis-2": ShortDocument,
     "mitigation": MitigationDocument,
     "suggestions": SuggestionsDocument,
     "model-exchanges": ExchangesDocument,

@@ -213,8 +213,8 @@ class TestSaved:
                 "old.json: damaged or changed: findings[0] is a number, not an object",
             ),
             (
-                '{"format": "rosprivacy.analysis/2", ' + SAVED % "[]",
-                "old.json: is of the format rosprivacy.analysis/2, and this version reads rosprivacy.analysis/1; use",
+                '{"format": "rosprivacy.analysis/3", ' + SAVED % "[]",
+                "old.json: is of the format rosprivacy.analysis/3, and this version reads rosprivacy.analysis/1 and ",
             ),
             ("fleet: 2", "old.json:1: fleet format '2'"),
         ],
