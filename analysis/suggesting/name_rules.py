@@ -120,7 +120,7 @@ def is_silent(name: str, rules: NameRules) -> bool:
     part = _speaking(name.split("/")[::-1], rules)
     if not part or of_topic_nothing(name, rules):
         return bool(part)
-    return part[0] in rules.commanding or not rules.silent.isdisjoint(_ending_at(part, len(part)))
+    return part[0] in rules.commanding or not rules.silent.isdisjoint(_last_phrases(part))
 
 
 def of_topic_nothing(name: str, rules: NameRules) -> Spoken | None:
@@ -141,7 +141,7 @@ def ends_with(name: str, phrases: frozenset[Phrase]) -> bool:
     (True, False)
     """
     part = _own(name)
-    return not phrases.isdisjoint(_ending_at(part, len(part)))
+    return not phrases.isdisjoint(_last_phrases(part))
 
 
 def has_word(name: str, some: frozenset[str]) -> bool:
@@ -189,14 +189,14 @@ def _last(part: Phrase, rules: Mapping[Phrase, NameRule], silent: frozenset[Phra
 
 @lru_cache(maxsize=2**16)
 def _phrases(part: Phrase) -> tuple[Phrase, ...]:
-    """The phrases of a part of a name: those that end last first, of these the longest first."""
-    return tuple(phrase for end in range(len(part), 0, -1) for phrase in _ending_at(part, end))
+    """The phrases of a part of a name: those that end last first, of these the longest first; O(words)."""
+    beginnings = (part[max(0, end - LONGEST_PHRASE) : end] for end in range(len(part), 0, -1))
+    return tuple(phrase for beginning in beginnings for phrase in _last_phrases(beginning))
 
 
-@lru_cache(maxsize=2**16)
-def _ending_at(part: Phrase, end: int) -> tuple[Phrase, ...]:
-    """The phrases of a part that end there, the longest first."""
-    return tuple(part[start:end] for start in range(max(0, end - LONGEST_PHRASE), end))
+def _last_phrases(part: Phrase) -> tuple[Phrase, ...]:
+    """The phrases at the end of a part, the longest first."""
+    return tuple(part[start:] for start in range(max(0, len(part) - LONGEST_PHRASE), len(part)))
 
 
 def _instead(spoken: Spoken, parts: Sequence[str], rules: NameRules) -> Spoken:
