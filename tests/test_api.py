@@ -209,7 +209,7 @@ def test_every_format_is_written_by_its_name(
 
 
 def test_a_format_that_is_none_is_an_error_with_all_that_are(care: rosprivacy.Result) -> None:
-    with pytest.raises(rosprivacy.InputError, match="unknown format 'sariff'; one of text, json, json2, sarif, "):
+    with pytest.raises(rosprivacy.InputError, match="unknown format 'sariff'; one of text, json, json1, sarif, "):
         care.to("sariff")
 
 

@@ -20,7 +20,7 @@ ROBOT = ("examples/factory/before.policy.xml", "-l", "examples/factory/run2.labe
 
 
 def analysed(cli: Cli, *arguments: str) -> dict[str, Any]:
-    told: dict[str, Any] = json.loads(cli("analyze", *arguments, "-f", "json", cwd=ROOT).stdout)
+    told: dict[str, Any] = json.loads(cli("analyze", *arguments, "-f", "json1", cwd=ROOT).stdout)
     return told
 
 

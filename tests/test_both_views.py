@@ -187,7 +187,7 @@ def test_formats_that_do_not_tell_it_are_refused(cli: Cli, more: tuple[str, ...]
     done = cli("analyze", "p.xml", "-l", "l.yaml", "--view", "both", *more)
     assert done.returncode == 2
     message = " ".join(done.stderr.replace("│", " ").split())  # it stands in a box
-    assert "--view both writes text, json, json2, sarif, html, markdown, docx" in message
+    assert "--view both writes text, json, json1, sarif, html, markdown, docx" in message
 
 
 @pytest.mark.usefixtures("example")

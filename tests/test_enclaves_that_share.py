@@ -46,7 +46,7 @@ def told(stored: int, *, alone: bool = False) -> list[str]:
         except RosPrivacyError as error:
             proposals = str(error)
         why = [repr(result.why_not("/n0", node)) for node in NODES[1:3]]
-        return [*(str(result.to(name)) for name in FORMATS), str(counted.to("json")), proposals, *why]
+        return [*(str(result.to(name)) for name in FORMATS), str(counted.to("json1")), proposals, *why]
 
 
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture])

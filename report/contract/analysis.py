@@ -450,7 +450,7 @@ class Answered(HangsOn):
 
 
 class AnalysisDocument(Answered):
-    """What `rosprivacy analyze --format json` prints. Keys that are listed here stay; more may be added."""
+    """What `rosprivacy analyze --format json1` prints. Keys that are listed here stay; more may be added."""
 
     format: Annotated[str, Keywords(const="rosprivacy.analysis/1")]
     taken_away: Annotated[
@@ -469,7 +469,7 @@ class AnalysisDocument(Answered):
 
 
 class ShortDocument(Answered):
-    """What `rosprivacy analyze --format json2` prints: rosprivacy.analysis/1 without what few read of it."""
+    """What `rosprivacy analyze --format json` prints: rosprivacy.analysis/1 without what few read of it."""
 
     format: Annotated[str, Keywords(const="rosprivacy.analysis/2")]
     left_out: Annotated[

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 # What is text; the table below has one row for each, and 'docx'.
 TextFormat = Literal[
-    "text", "json", "json2", "sarif", "cnil-pia", "turtle", "json-ld", "html", "markdown", "article30", "works-council",
+    "text", "json", "json1", "sarif", "cnil-pia", "turtle", "json-ld", "html", "markdown", "article30", "works-council",
 ]  # fmt: skip
 
 
@@ -279,8 +279,8 @@ FORMATS = {
     known.name: known
     for known in (
         Format("text", ".txt", _text, ("language", "verbose", "quiet"), both_views=True),
-        Format("json", ".json", _json, both_views=True),
-        Format("json2", ".json", _short_json, both_views=True),
+        Format("json", ".json", _short_json, both_views=True),
+        Format("json1", ".json", _json, both_views=True),
         Format("sarif", ".sarif", _sarif, both_views=True),
         Format("cnil-pia", ".json", _cnil_pia, ("language",)),
         Format("turtle", ".ttl", _linked_data("turtle"), _LINKED),

@@ -97,7 +97,7 @@ class Result(Answer):
         return self.closes(self) if self.closes and not self.fleet else Answer.proposals(self)
 
     def document(self) -> dict[str, Any]:
-        """Return the JSON document of the contract."""
+        """Return the whole JSON document, ``rosprivacy.analysis/1``; ``to("json")`` is the short one, ``/2``."""
         return dict(document(self))
 
     @overload

@@ -92,7 +92,7 @@ def test_several_policies_of_one_robot_of_a_fleet_are_told_alike(cli: Cli, folde
 
 
 def answers(cli: Cli, folder: Path, *options: str) -> Any:
-    return json.loads(cli("analyze", "p", "-l", "l.yaml", "--per-policy", "-f", "json", *options, cwd=folder).stdout)
+    return json.loads(cli("analyze", "p", "-l", "l.yaml", "--per-policy", "-f", "json1", *options, cwd=folder).stdout)
 
 
 def test_each_policy_alone_is_as_if_it_were_the_only_one(cli: Cli, folder: Path) -> None:
@@ -101,7 +101,7 @@ def test_each_policy_alone_is_as_if_it_were_the_only_one(cli: Cli, folder: Path)
     assert (document["format"], document["verdict"]) == ("rosprivacy.analyses/1", "leak")
     verdicts = {row["policy"]: row["analysis"]["verdict"] for row in document["policies"]}
     assert verdicts == {"p/a.xml": "no-leak-found", "p/b.xml": "undetermined", "p/c.xml": "leak"}
-    alone = cli("analyze", "p/c.xml", "-l", "l.yaml", "-f", "json", cwd=folder).stdout
+    alone = cli("analyze", "p/c.xml", "-l", "l.yaml", "-f", "json1", cwd=folder).stdout
     assert document["policies"][2]["analysis"] == json.loads(alone)
     schema = json.loads((ROOT / "docs" / "analysis.schema.json").read_text("utf-8"))
     for row in document["policies"]:

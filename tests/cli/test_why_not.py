@@ -49,7 +49,7 @@ def _folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def taken(cli: Cli, *more: str) -> list[dict[str, Any]]:
-    rows: list[dict[str, Any]] = json.loads(cli("analyze", "p.xml", "-l", "l.yaml", "-f", "json", *more).stdout)[
+    rows: list[dict[str, Any]] = json.loads(cli("analyze", "p.xml", "-l", "l.yaml", "-f", "json1", *more).stdout)[
         "taken_away"
     ]
     return rows

@@ -148,7 +148,7 @@ def held(system: Written, deeds: list[Edit | str]) -> None:
                 saved = session.save()
                 assert isinstance(saved, Saved)
                 there = answer_robot((policy,), (file,), asked)
-                assert session.result.to("json") == there.to("json")
+                assert session.result.to("json1") == there.to("json1")
                 assert session.unsaved == 0
             elif deed == "undo":
                 assert session.undo() == bool(done)

@@ -85,7 +85,7 @@ def meant(scope: Scope, likeness: Likeness) -> set[tuple[str, str, str, str]]:
 
 
 def test_a_session_that_can_decide_begins_as_the_analysis(hospital: Path) -> None:
-    assert begun(hospital).result.to("json") == rosprivacy.analyze_fleet(hospital).to("json")
+    assert begun(hospital).result.to("json1") == rosprivacy.analyze_fleet(hospital).to("json1")
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -108,7 +108,7 @@ def test_what_is_decided_is_exactly_what_was_told_and_what_the_file_means(hospit
         told = told | decided if choice == "accept" else told - decided
         assert accepted(session.result) == told
         whole = fresh(hospital)
-        assert whole.to("json") == session.result.to("json")
+        assert whole.to("json1") == session.result.to("json1")
         assert not any("changed since" in one.message for one in whole.diagnostics)
 
 
@@ -219,7 +219,7 @@ def test_what_an_editor_wrote_meanwhile_stays_and_counts(small: Path) -> None:
     session.decide(across, "accept", **SIGNED)
     assert "# by hand\n" in file.read_text("utf-8")
     assert len(accepted(session.result)) == 20
-    assert fresh(small).to("json") == session.result.to("json")
+    assert fresh(small).to("json1") == session.result.to("json1")
 
 
 def test_where_an_entry_speaks_closer_nothing_is_written(small: Path) -> None:
@@ -228,12 +228,12 @@ def test_where_an_entry_speaks_closer_nothing_is_written(small: Path) -> None:
     session.decide(pattern(session, across=False).id, "avoid", robots=["eye_2"])
     entry = file.read_text("utf-8").replace("[eye_2]", "[eye_5]")
     file.write_text(entry, "utf-8")  # by an editor: the session has not seen it
-    before = session.result.to("json")
+    before = session.result.to("json1")
     others = [one for one in session.scopes(pattern(session, across=False)) if "eye_5" in one.robots]
     with pytest.raises(RosPrivacyError, match="line 4 decides it, too"):
         session.decide(others[0].finding.id, "accept", **SIGNED)
     assert file.read_text("utf-8") == entry
-    assert session.result.to("json") == before
+    assert session.result.to("json1") == before
 
 
 def test_where_the_file_contradicts_itself_nothing_is_written(small: Path) -> None:
@@ -241,11 +241,11 @@ def test_where_the_file_contradicts_itself_nothing_is_written(small: Path) -> No
     session.decide(pattern(session, across=True).id, "avoid")
     entries = "- {category: Video, leak: /up*, decision: avoid}\n- {category: Video, leak: /u*k, decision: mitigate}\n"
     file.write_text(f"decisions: 1\nfindings:\n{entries}", "utf-8")
-    before, version = session.result.to("json"), session.version
+    before, version = session.result.to("json1"), session.version
     with pytest.raises(RosPrivacyError, match="contradicts"):
         session.decide(pattern(session, across=True).id, "accept", **SIGNED)
     assert file.read_text("utf-8") == f"decisions: 1\nfindings:\n{entries}"
-    assert (session.result.to("json"), session.version) == (before, version)
+    assert (session.result.to("json1"), session.version) == (before, version)
 
 
 def test_a_decision_that_is_over_is_not_renewed_without_a_day(small: Path) -> None:
@@ -269,7 +269,7 @@ def test_what_was_refused_before_a_decision_keeps_no_robots_apart(small: Path) -
         session.label("one:/camera", only_this_robot=True, sanitizer={"Video": "drop"})
     session.decide(pattern(session, across=False).id, "accept", robots=["one", "two"], **SIGNED)
     assert session.stands_for("one") == ("one", "two")
-    assert session.result.to("json") == fresh(small).to("json")
+    assert session.result.to("json1") == fresh(small).to("json1")
 
 
 def test_labels_that_are_not_saved_and_decisions_are_in_one_answer(hospital: Path) -> None:

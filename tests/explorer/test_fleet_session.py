@@ -61,7 +61,7 @@ def held(file: Path) -> dict[str, bytes]:
 
 def test_a_session_begins_as_the_analysis(hospital: Path) -> None:
     session = begun(hospital)
-    assert session.result.to("json") == fresh(hospital).to("json")
+    assert session.result.to("json1") == fresh(hospital).to("json1")
     assert session.outliers == {"carrier_lent"}
     assert session.stands_for("carrier_01") == tuple(f"carrier_{n:02}" for n in range(1, 24))
     assert len(session.target("carrier_01").robots) == 24
@@ -70,7 +70,7 @@ def test_a_session_begins_as_the_analysis(hospital: Path) -> None:
 @pytest.mark.parametrize("seed", range(4))
 def test_edits_saved_mean_what_the_files_then_mean(hospital: Path, seed: int) -> None:
     session, random = begun(hospital), Random(seed)  # noqa: S311 - no secret
-    start, before = session.result.to("json"), held(hospital)
+    start, before = session.result.to("json1"), held(hospital)
     nodes = sorted({e.full_name for e in session.result.analysis.graph.elements if e.is_node and e.robot})
     touched = set()
     for _ in range(6):
@@ -85,14 +85,14 @@ def test_edits_saved_mean_what_the_files_then_mean(hospital: Path, seed: int) ->
     assert touched
     assert isinstance(session.save(), Saved)
     assert session.unsaved == 0
-    assert session.result.to("json") == fresh(hospital).to("json")
+    assert session.result.to("json1") == fresh(hospital).to("json1")
     after = held(hospital)
     assert {name for name in after if after[name] != before[name]} <= touched
     while session.undo():
         pass
     session.save()
     assert held(hospital) == before
-    assert session.result.to("json") == start
+    assert session.result.to("json1") == start
 
 
 def test_an_answer_goes_to_the_model_or_to_one_robot(hospital: Path) -> None:
@@ -120,7 +120,7 @@ def test_models_that_share_a_file_are_answered_for_together(small: Path) -> None
     session.label("cart_1:/recorder", leak="Video")
     assert not [question for question in session.questions() if question.name == "/recorder"]
     session.save()
-    assert session.result.to("json") == fresh(small).to("json")
+    assert session.result.to("json1") == fresh(small).to("json1")
     assert (small.parent / "shared.yaml").read_text() == LABELS + "  /recorder: {leak: [Video]}\n"
 
 
@@ -134,7 +134,7 @@ def test_robots_are_apart_once_their_own_files_say_different_things(small: Path)
     session.label("two:/recorder", only_this_robot=True, leak="Video")
     session.save()
     assert session.stands_for("one") == ("one", "two")
-    assert session.result.to("json") == fresh(small).to("json")
+    assert session.result.to("json1") == fresh(small).to("json1")
 
 
 def test_robots_are_alike_after_a_merge_where_what_was_said_of_one_was_taken_back(small: Path) -> None:
@@ -146,7 +146,7 @@ def test_robots_are_alike_after_a_merge_where_what_was_said_of_one_was_taken_bac
     (small.parent / "shared.yaml").write_text(LABELS + "  /recorder: {leak: [Video]}\n")
     session.merge()
     assert session.stands_for("one") == ("one", "two")
-    assert session.result.to("json") == fresh(small).to("json")
+    assert session.result.to("json1") == fresh(small).to("json1")
 
 
 def test_what_somebody_else_wrote_is_not_written_over(small: Path) -> None:
@@ -161,7 +161,7 @@ def test_what_somebody_else_wrote_is_not_written_over(small: Path) -> None:
     session.merge()
     assert isinstance(session.save(), Saved)
     assert (small.parent / "shared.yaml").read_text() == theirs + "  /recorder: conduit\n"
-    assert session.result.to("json") == fresh(small).to("json")
+    assert session.result.to("json1") == fresh(small).to("json1")
 
 
 def test_what_was_saved_before_gives_way_to_what_somebody_else_said_later(small: Path) -> None:
@@ -172,7 +172,7 @@ def test_what_was_saved_before_gives_way_to_what_somebody_else_said_later(small:
     shared.write_text(shared.read_text().replace("/recorder: conduit", "/recorder: {leak: [Video]}"))
     assert session.merge() == ()
     assert session.unsaved == 0
-    assert session.result.to("json") == fresh(small).to("json")
+    assert session.result.to("json1") == fresh(small).to("json1")
     session.label("bot_1:/recorder", conduit=True)
     shared.write_text(shared.read_text().replace("/recorder: {leak: [Video]}", "/recorder: {leak: [Voice]}"))
     assert [edit.value for edit in session.merge()] == [{"leak": ["Voice"]}]
@@ -201,7 +201,7 @@ def test_what_was_not_saved_is_offered_for_the_files_of_the_fleet_only(small: Pa
 def test_the_public_function_opens_the_same_session(small: Path) -> None:
     session = rosprivacy.explore(fleet=small)
     assert isinstance(session, rosprivacy.FleetSession)
-    assert session.result.to("json") == fresh(small).to("json")
+    assert session.result.to("json1") == fresh(small).to("json1")
     with pytest.raises(InputError, match="other files are named beside it"):
         rosprivacy.explore("p.xml", fleet=small)  # type: ignore[call-overload]
 

@@ -55,7 +55,7 @@ def test_what_was_not_saved_is_offered_and_made_again(file: Path) -> None:
     session.label("/archive_server", leak="Voice", note="häßlich\n")
     session.undo()
     session.redo()
-    entries, told = session.entries, session.result.to("json")
+    entries, told = session.entries, session.result.to("json1")
     session.close()
     second = begun(file)
     offered = second.history.unsaved_from_before
@@ -65,7 +65,7 @@ def test_what_was_not_saved_is_offered_and_made_again(file: Path) -> None:
     assert second.edits == ()
     assert second.history.resume() == ()
     assert second.entries == entries
-    assert second.result.to("json") == told
+    assert second.result.to("json1") == told
     assert second.history.unsaved_from_before is None
     second.close()
     third = begun(file, resume=True)  # the second one was not saved either

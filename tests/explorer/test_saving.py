@@ -50,7 +50,7 @@ def test_three_edits_change_three_lines_of_449(cli: Cli, corpus: Path, tmp_path:
         name, _, remark = old.partition(":")
         assert new.startswith(f"{name}: ")
         assert new.endswith(remark.strip())  # its comment
-    assert session.result.to("json") == rosprivacy.analyze(policy, file).to("json")
+    assert session.result.to("json1") == rosprivacy.analyze(policy, file).to("json1")
 
 
 ODD = """\
@@ -106,7 +106,7 @@ def test_a_comment_of_a_line_that_goes_stands_above(tmp_path: Path) -> None:
     after = file.read_text()
     assert "    # to the cloud\n" in after
     assert "# until June" in after
-    assert session.result.to("json") == rosprivacy.analyze(BEFORE, file).to("json")
+    assert session.result.to("json1") == rosprivacy.analyze(BEFORE, file).to("json1")
 
 
 @pytest.mark.parametrize(

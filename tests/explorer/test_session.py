@@ -32,7 +32,7 @@ def session(file: Path) -> Session:
 
 
 def test_a_session_begins_as_the_analysis(session: Session, file: Path) -> None:
-    assert session.result.to("json") == rosprivacy.analyze(BEFORE, file).to("json")
+    assert session.result.to("json1") == rosprivacy.analyze(BEFORE, file).to("json1")
     assert not session.history.can_undo
     assert session.unsaved == 0
 
@@ -137,7 +137,7 @@ def test_saving_changes_the_lines_of_the_edits(session: Session, file: Path) -> 
     after = file.read_text().splitlines()
     assert [line for line in after if line not in before] == ['  /archive_server: {leak: [Video], note: "it is far"}']
     assert len(after) == len(before)
-    assert session.result.to("json") == rosprivacy.analyze(BEFORE, file).to("json")
+    assert session.result.to("json1") == rosprivacy.analyze(BEFORE, file).to("json1")
     session.undo()
     session.save()
     assert file.read_text().splitlines() == before
@@ -171,7 +171,7 @@ def test_what_was_saved_before_gives_way_to_what_somebody_else_said_later(sessio
     file.write_text(theirs)
     assert session.merge() == ()
     assert session.unsaved == 0
-    assert session.result.to("json") == rosprivacy.analyze(BEFORE, file).to("json")
+    assert session.result.to("json1") == rosprivacy.analyze(BEFORE, file).to("json1")
     session.label("/navigator", leak="Video")
     session.save()
     assert "/archive_server: {leak: [Video]}" in file.read_text()
@@ -194,4 +194,4 @@ def test_a_session_without_a_file_is_saved_under_a_name(tmp_path: Path) -> None:
         session.save()
     session.save_as(str(tmp_path / "new.yaml"))
     assert (tmp_path / "new.yaml").read_text() == "labels: 1\nnodes:\n  /safety_camera: {source: [Video]}\n"
-    assert session.result.to("json") == rosprivacy.analyze(BEFORE, tmp_path / "new.yaml").to("json")
+    assert session.result.to("json1") == rosprivacy.analyze(BEFORE, tmp_path / "new.yaml").to("json1")

@@ -63,7 +63,7 @@ def _documents() -> tuple[Any, Any]:
         rosprivacy.analyze("base.xml", "base.yaml", today=DAY),
         rosprivacy.analyze_fleet("example.yaml", today=DAY),
     )
-    robot, fleet = (json.loads(result.to("json")) for result in results)
+    robot, fleet = (json.loads(result.to("json1")) for result in results)
     return robot, fleet
 
 

@@ -90,8 +90,8 @@ def of_one_robot(robot: Arguments) -> Iterator[Arguments]:
             yield ("report", *robot, "-f", form, "--lang", language, "-o", "out")
     for form in ("html", "markdown"):
         yield ("report", *robot, "-f", form, "--redact", "-o", "out")
-    yield ("analyze", *robot, "-f", "json", "--no-standard-channels", "--no-type-limits")
-    yield ("analyze", *robot, "-f", "json", "--article9", "--paths", "all")
+    yield ("analyze", *robot, "-f", "json1", "--no-standard-channels", "--no-type-limits")
+    yield ("analyze", *robot, "-f", "json1", "--article9", "--paths", "all")
     undecided = robot[:-2] if "--decisions" in robot else robot
     for form in ("dot", "svg", "graphml", "mermaid"):
         yield ("graph", *undecided, "-f", form, "-o", "out")
@@ -109,16 +109,16 @@ def shortly(robot: Arguments) -> Iterator[Arguments]:
     """Yield the calls that answer about one robot, without those that only say the answer in other words."""
     yield ("analyze", *robot)
     yield ("analyze", *robot, "-q")
-    for form in ("json", "sarif"):
+    for form in ("json1", "sarif"):
         yield ("analyze", *robot, "-f", form)
-    yield ("analyze", *robot, "-f", "json", "--view", "both")
+    yield ("analyze", *robot, "-f", "json1", "--view", "both")
     yield ("report", *robot, "-f", "markdown", "-o", "out")
 
 
 def of_a_fleet(given: Arguments, *, every: bool) -> Iterator[Arguments]:
     yield from shortly(given)
     yield ("fleet", given[1])
-    yield ("analyze", *given, "-f", "json", "--hangs-on")
+    yield ("analyze", *given, "-f", "json1", "--hangs-on")
     if every:
         yield ("analyze", *given, "-v", "--decisions", "tests/cases/earlier/fleet/decisions.yaml")
         for language in LANGUAGES:
@@ -133,7 +133,7 @@ def of_a_fleet(given: Arguments, *, every: bool) -> Iterator[Arguments]:
 
 def of_a_policy(policy: str) -> Iterator[Arguments]:
     yield ("analyze", policy)
-    yield ("analyze", policy, "-f", "json")
+    yield ("analyze", policy, "-f", "json1")
     yield ("lint", policy)
     yield ("graph", policy, "-f", "dot", "-o", "out")
     yield ("labels", policy, "--init", "-o", "-")
@@ -142,9 +142,9 @@ def of_a_policy(policy: str) -> Iterator[Arguments]:
 
 def of_single_commands() -> Iterator[Arguments]:
     """Yield what is asked once, or of two inputs."""
-    yield ("analyze", *ROBOTS["care-home"], "-f", "json2")
-    yield ("analyze", *ROBOTS["care-home"], "-f", "json2", "--hangs-on", "--view", "both")
-    yield ("analyze", *EXAMPLE_FLEET, "-f", "json2")
+    yield ("analyze", *ROBOTS["care-home"], "-f", "json")
+    yield ("analyze", *ROBOTS["care-home"], "-f", "json", "--hangs-on", "--view", "both")
+    yield ("analyze", *EXAMPLE_FLEET, "-f", "json")
     care, labels = ROBOTS["care-home"][0], ROBOTS["care-home"][2]
     earlier = "tests/cases/earlier/care-home"
     yield ("--help",)
@@ -164,7 +164,7 @@ def of_single_commands() -> Iterator[Arguments]:
     for finding in ("9f25", "329b"):
         yield ("show", finding, care, "-l", labels)
         yield ("show", finding, care, "-l", labels, "-f", "json", "--decisions", f"{earlier}/decisions.yaml")
-    yield ("analyze", "--add", f"{earlier}/graph.json", "-l", labels, "-f", "json")
+    yield ("analyze", "--add", f"{earlier}/graph.json", "-l", labels, "-f", "json1")
     yield ("analyze", care, "-l", labels, "--save-graph", "out")
     yield ("report", care, "-l", labels, "--since", f"{earlier}/analysis.json", "-f", "markdown", "-o", "out")
     for form in ("text", "json", "markdown"):

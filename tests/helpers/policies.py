@@ -17,7 +17,7 @@ ESCAPE = "\x1b"
 
 
 def document(cli: Cli, *arguments: str | Path, cwd: Path | None = None) -> Any:
-    return json.loads(cli("analyze", *arguments, "--format", "json", cwd=cwd).stdout)
+    return json.loads(cli("analyze", *arguments, "--format", "json1", cwd=cwd).stdout)
 
 
 def everything(folder: Path) -> dict[str, bytes]:

@@ -327,9 +327,12 @@ def _each_alone(
     from rosprivacy.reading.robot_system import answer_each
     from rosprivacy.report.json_text import as_text
 
-    if form not in ("text", "json"):
-        raise typer.BadParameter("--per-policy writes text and json")
+    if form not in ("text", "json", "json1"):
+        raise typer.BadParameter("--per-policy writes text, json and json1")
     each = answer_each(inputs.required_policies, tuple(inputs.labels or ()), settings)
-    emit(per_policy.texts(each, style) if form == "text" else as_text(per_policy.document(each)), output)
+    emit(
+        per_policy.texts(each, style) if form == "text" else as_text(per_policy.document(each, short=form == "json")),
+        output,
+    )
     codes = (exit_code(result, fail_on) for _, result in each)
     return int(per_policy.worst_of(codes, per_policy.CODES_WORST_FIRST))

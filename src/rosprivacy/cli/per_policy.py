@@ -36,12 +36,17 @@ def texts(results: Results, style: Style) -> str:
     return "".join([*reports, *(f"{line}\n" for line in (*(_row(*one) for one in results), head))])
 
 
-def document(results: Results) -> dict[str, Any]:
-    """Return the documents of all policies in one."""
+def document(results: Results, *, short: bool) -> dict[str, Any]:
+    """Return the documents of all policies in one, each ``rosprivacy.analysis/2`` if ``short``, else ``/1``."""
+    from rosprivacy.report.document.analysis import short_document
+
     return {
         "format": FORMAT,
         "verdict": worst_of((str(result.analysis.verdict) for _, result in results), WORST_FIRST),
-        "policies": [{"policy": file, "analysis": result.document()} for file, result in results],
+        "policies": [
+            {"policy": file, "analysis": short_document(result) if short else result.document()}
+            for file, result in results
+        ],
     }
 
 

@@ -2,7 +2,7 @@
 
 A folder with three tables. ``robots``: the rows of each robot for the database, lists as JSON; what is shared has
 several, which are put together. ``elements``: for people who ask with other tools, each element with what gets there.
-``answer``: one row with the format and the document of ``analyze --format json``.
+``answer``: one row with the format and the document of ``analyze --format json1``.
 """
 
 from __future__ import annotations

@@ -46,7 +46,7 @@ def written(channel: str, *others: str, kind: str = "topic", uplink: str = "{lea
 
 def told(cli: Cli, *options: str) -> tuple[int, str, list[tuple[str, str, str]], Any]:
     """Exit code, verdict, (doubt, rank, element) of each doubt, and what Assumed says of the channels."""
-    done = cli("analyze", "p.xml", "-l", "l.yaml", *options, "-f", "json")
+    done = cli("analyze", "p.xml", "-l", "l.yaml", *options, "-f", "json1")
     document = json.loads(done.stdout)
     rows = [(row["doubt"], row["rank"], (row["element"] or {}).get("name", "")) for row in document["doubts"]]
     closing = [row for row in document["assumptions"]["standard_channels_reached"] if "keeps_from" in row]

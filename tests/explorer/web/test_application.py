@@ -63,14 +63,14 @@ def test_undo_and_redo_go_to_the_start_and_back(explore: Explore, tmp_path: Path
     client = explorer.client()
     label(client, CAMERA, "source", **VIDEO)
     label(client, ARCHIVE, "leak", about="Video")
-    leak = explorer.session.result.to("json")
+    leak = explorer.session.result.to("json1")
     for _ in range(2):
         assert client.post("/undo", data={"version": version(client)}).status_code == 303
     assert explorer.session.edits == ()
     assert client.post("/undo", data={"version": version(client)}).status_code == 303  # nothing happens
     for _ in range(2):
         client.post("/redo", data={"version": version(client)})
-    assert explorer.session.result.to("json") == leak
+    assert explorer.session.result.to("json1") == leak
 
 
 def test_a_window_that_did_not_see_the_last_answer_changes_nothing(explore: Explore, tmp_path: Path) -> None:

@@ -52,7 +52,7 @@ def test_only_the_label_files_that_were_answered_for_are_written(browser: WebDri
         assert "stands for 23 robots" in reader.text("#element .facts")
         reader.answer("carrier_01:/recorder", "c")
         reader.save()
-        assert explorer.session.result.to("json") == answer_fleet(str(hospital), Settings()).to("json")
+        assert explorer.session.result.to("json1") == answer_fleet(str(hospital), Settings()).to("json1")
     after = {file: file.read_bytes() for file in hospital.parent.rglob("*") if file.is_file()}
     assert {file for file in after if after[file] != before.get(file)} == {model, own}
     for labels in (model, own):
@@ -68,7 +68,7 @@ def test_an_answer_for_the_model_alone_leaves_the_file_of_one_robot_as_it_was(
         reader = Reader(browser, explorer)
         reader.answer("carrier_lent:/recorder", "l")  # of the model, as it is chosen beforehand
         reader.save()
-        assert explorer.session.result.to("json") == answer_fleet(str(hospital), Settings()).to("json")
+        assert explorer.session.result.to("json1") == answer_fleet(str(hospital), Settings()).to("json1")
     assert own.read_bytes() == before
     assert "  /recorder: {leak: [Video]}" in (hospital.parent / "carrier.labels.yaml").read_text("utf-8")
 

@@ -130,7 +130,7 @@ def test_what_is_chosen_is_decided_and_the_others_stay_open(begun: Explorer, hos
     assert decide(client, on_every_robot(begun), **SIGNED, whose=alone).status_code == 303
     assert open_on(file, hospital, finding) == left - {"carrier_01"}
     whole = rosprivacy.analyze_fleet(hospital, decisions=file)
-    assert whole.to("json") == begun.session.result.to("json")
+    assert whole.to("json1") == begun.session.result.to("json1")
 
 
 def test_what_is_decided_already_is_told_and_what_is_not_comes_first(begun: Explorer) -> None:
@@ -206,12 +206,12 @@ def test_what_an_editor_wrote_meanwhile_stays(begun: Explorer, hospital: Path, f
 
 def test_a_decision_on_a_full_disk_decides_nothing(begun: Explorer, file: Path) -> None:
     client, finding = begun.client(), on_every_robot(begun)
-    before = begun.session.result.to("json")
+    before = begun.session.result.to("json1")
     with full_disk(10):
         refused = decide(client, finding, **SIGNED, whose=finding.id)
     assert refused.status_code == 422
     assert "cannot be written" in refused.text
-    assert begun.session.result.to("json") == before
+    assert begun.session.result.to("json1") == before
     assert not file.exists()
     assert decide(client, finding, **SIGNED, whose=finding.id).status_code == 303
 

@@ -57,7 +57,7 @@ def test_an_answer_is_of_the_model_or_of_one_robot(explore: Explore, hospital: P
     assert "/uplink" not in own
     assert "  /recorder: conduit" in model
     assert "  /uplink: conduit" in model
-    assert explorer.session.result.to("json") == answer_fleet(str(hospital), Settings()).to("json")
+    assert explorer.session.result.to("json1") == answer_fleet(str(hospital), Settings()).to("json1")
 
 
 def test_a_suggestion_is_taken_for_the_robots_that_are_chosen(explore: Explore, hospital: Path) -> None:
@@ -100,7 +100,7 @@ def tried(client: TestClient, **said: str) -> str:
 def test_a_filter_or_a_cut_on_a_path_is_tried_on_the_robots_of_its_model(explore: Explore, hospital: Path) -> None:
     explorer = explore(hospital, hospital, fleet=True)
     client = explorer.client()
-    before = explorer.session.result.to("json")
+    before = explorer.session.result.to("json1")
     rows = html.fromstring(client.get("/").text).cssselect("a.way")
     way = next(one.get("href", "") for one in rows if "carrier_lent:/camera_driver" in one.text_content())
     page = html.fromstring(client.get(way).text)
@@ -115,7 +115,7 @@ def test_a_filter_or_a_cut_on_a_path_is_tried_on_the_robots_of_its_model(explore
     cut = next(form for form in forms if form["what"] == "cut")
     assert "On 24 robots: carrier_01, carrier_02, carrier_03, and 21 more." in tried(client, **{**cut, "name": "cut"})
     assert explorer.session.version == 0
-    assert explorer.session.result.to("json") == before
+    assert explorer.session.result.to("json1") == before
 
 
 def test_at_an_element_it_is_chosen_whether_the_model_or_one_robot_is_meant(explore: Explore, hospital: Path) -> None:

@@ -214,7 +214,7 @@ def chain(tmp_path: Path) -> Path:
 def answer(cli: Cli, folder: Path, *entries: str, options: Sequence[str] = ()) -> dict[str, Any]:
     text = "".join(f"- {{{entry}}}\n" for entry in entries)
     (folder / "d.yaml").write_text(f"decisions: 1\nfindings:\n{text}")
-    arguments = ("p.xml", "-l", "l.yaml", "--decisions", "d.yaml", "-f", "json", *options)
+    arguments = ("p.xml", "-l", "l.yaml", "--decisions", "d.yaml", "-f", "json1", *options)
     done = cli("analyze", *arguments, cwd=folder)
     assert done.stderr == ""
     document: dict[str, Any] = json.loads(done.stdout)
@@ -302,7 +302,7 @@ def test_missing_legal_bases_are_flagged_where_a_category_is_special(cli: Cli, t
         "- {category: FaceTemplate, decision: accept, reason: why, owner: who, legal_basis: [Art. 6(1)(a)]}\n"
         "- {category: Voice, decision: accept, reason: why, owner: who}\n"
     )
-    document = json.loads(cli("analyze", *CARE, "--decisions", file, "-f", "json").stdout)
+    document = json.loads(cli("analyze", *CARE, "--decisions", file, "-f", "json1").stdout)
     said = {(d["line"], d["message"]) for d in document["diagnostics"] if d["file"] == str(file)}
     assert {line for line, _ in said} == {3, 4}
     assert any("no ground under Article 9(2), and FaceTemplate can fall under GDPR Art. 9(1)" in m for _, m in said)
@@ -358,6 +358,6 @@ def test_mitigate_leaves_accepted_findings_alone(cli: Cli, chain: Path) -> None:
 
 def test_the_same_decisions_give_the_same_bytes_on_the_same_day(chain: Path) -> None:  # S14
     (chain / "d.yaml").write_text(f"decisions: 1\nfindings:\n- {{{ACCEPT_RELAY}}}\n")
-    arguments = ("analyze", "p.xml", "-l", "l.yaml", "--decisions", "d.yaml", "-f", "json")
+    arguments = ("analyze", "p.xml", "-l", "l.yaml", "--decisions", "d.yaml", "-f", "json1")
     seeds = ("0", "1")
     assert len({run(*arguments, cwd=chain, PYTHONHASHSEED=s, SOURCE_DATE_EPOCH="0").stdout for s in seeds}) == 1

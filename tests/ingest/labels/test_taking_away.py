@@ -65,7 +65,7 @@ def labels(*texts: str) -> list[str]:
 
 
 def document(cli: Cli, *options: str) -> dict[str, Any]:
-    made: dict[str, Any] = json.loads(cli("analyze", "p.xml", *options, "--format", "json").stdout)
+    made: dict[str, Any] = json.loads(cli("analyze", "p.xml", *options, "--format", "json1").stdout)
     return made
 
 
@@ -415,7 +415,7 @@ class TestEndsOfStatedFlows:
         ring = "elements: {ring: {kind: shared-memory, between: [/camera, %s]}}\nnodes: {/camera: {source: [Video]}}"
         (line,) = refused(cli("analyze", "p.xml", *labels(ring % "/map")))
         assert "names '/map', which is a node and a topic; write {node: /map} or {topic: /map}" in line
-        document = cli("analyze", "p.xml", *labels(ring % "{node: /map}"), "--format", "json").stdout
+        document = cli("analyze", "p.xml", *labels(ring % "{node: /map}"), "--format", "json1").stdout
         assert {"robot": "", "kind": "node", "name": "/map"} in [
             row["element"] for row in json.loads(document)["carries"]
         ]

@@ -29,7 +29,7 @@ def test_what_is_left_out_is_named_and_the_rest_is_as_in_the_long_one(
     cli: Cli, system: str, asked: tuple[str, ...]
 ) -> None:
     long, short = (
-        json.loads(cli("analyze", *SYSTEMS[system], *asked, "-f", form).stdout) for form in ("json", "json2")
+        json.loads(cli("analyze", *SYSTEMS[system], *asked, "-f", form).stdout) for form in ("json1", "json")
     )
     assert ("hangs_on" in short) == bool(asked)
     assert (long.pop("format"), short.pop("format")) == ("rosprivacy.analysis/1", "rosprivacy.analysis/2")
@@ -44,19 +44,19 @@ def test_what_is_left_out_is_named_and_the_rest_is_as_in_the_long_one(
 @pytest.mark.parametrize("system", SYSTEMS)
 def test_diff_reads_it_as_the_long_one(cli: Cli, tmp_path: Path, system: str) -> None:
     answers = []
-    for form in ("json", "json2"):
+    for form in ("json1", "json"):
         saved = tmp_path / f"{form}.json"
         cli("analyze", *SYSTEMS[system], "-f", form, "-o", saved)
         answers.append(cli("diff", saved, *CARE_HOME, "-f", "json").stdout)
     assert answers[0]
     assert answers[0] == answers[1]
-    done = cli("diff", tmp_path / "json.json", tmp_path / "json2.json", "-f", "json")
+    done = cli("diff", tmp_path / "json1.json", tmp_path / "json.json", "-f", "json")
     assert not json.loads(done.stdout)["worse"]
 
 
 def test_a_report_tells_changes_since_it(cli: Cli, tmp_path: Path) -> None:
     pages = []
-    for form in ("json", "json2"):
+    for form in ("json1", "json"):
         saved = tmp_path / "before.json"
         cli("analyze", *CARE_HOME, "--category", "Voice", "-f", form, "-o", saved)
         pages.append(cli("report", *CARE_HOME, "--since", saved, "-f", "markdown").stdout.splitlines())
@@ -65,7 +65,7 @@ def test_a_report_tells_changes_since_it(cli: Cli, tmp_path: Path) -> None:
     assert len(pages[0]) > 100
 
 
-@pytest.mark.parametrize("asked", [("-q",), ("-f", "json2")])
+@pytest.mark.parametrize("asked", [("-q",), ("-f", "json")])
 def test_what_the_answer_hangs_on_is_not_worked_out_where_it_is_not_shown(
     cli: Cli, monkeypatch: pytest.MonkeyPatch, asked: tuple[str, ...]
 ) -> None:
@@ -73,5 +73,5 @@ def test_what_the_answer_hangs_on_is_not_worked_out_where_it_is_not_shown(
     monkeypatch.setattr(Answer, "hangs_on", property(worked_out.append))
     cli("analyze", *CARE_HOME, *asked)
     assert not worked_out
-    cli("analyze", *CARE_HOME, "-f", "json")
+    cli("analyze", *CARE_HOME, "-f", "json1")
     assert worked_out

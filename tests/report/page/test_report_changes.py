@@ -77,7 +77,7 @@ def test_files_that_differ_are_named() -> None:
     [
         ("", ": the file is empty; give what"),
         ("[]", ": is not a document of the format rosprivacy.analysis/1"),
-        ('{"format": "rosprivacy.analysis/2"}', ": is of the format rosprivacy.analysis/2, and this"),
+        ('{"format": "rosprivacy.analysis/3"}', ": is of the format rosprivacy.analysis/3, and this"),
         ('{"format": "rosprivacy.analysis/1"}', ": damaged or changed: the document lacks verdict, view, categories,"),
         ("[" * 100_000, ": nested too deeply"),
         ("\ud800", None),
