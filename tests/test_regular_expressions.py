@@ -32,7 +32,7 @@ SQUARE = {
     "ingest/reading/json5_values.py:_TOKEN": (MAX_BYTES, "a file that json5 has read before"),
     "queries/library.py:TEXT": (OURS, "a question that comes with the program"),
     "queries/reading.py:_EARLIER": (MESSAGE, "a message of the server"),
-    "queries/reading.py:_NAMED": (MESSAGE, "a message of the server"),
+    "queries/reading.py:_MISSING_NAME": (MESSAGE, "a message of the server"),
     "queries/saved.py:_TOKEN": (OURS, "a question that comes with the program"),
 }
 GLOBS = "analysis/expressions.py:regex"  # made of a stranger's glob, with groups that JavaScript does not have
