@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 from fleet_robots import small_robots
 from measure import NotMeasured, Row, compared, side_by_side, wall
 
+from rosprivacy.parts.fleet_on_spark import run_on_spark
+from rosprivacy.parts.session import session
 from rosprivacy.reading.fleet_system import answer_fleet
 from rosprivacy.settings import Settings
-from rosprivacy.spark.fleet_on_spark import run_on_spark
-from rosprivacy.spark.session import session
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -1,6 +1,6 @@
 """The same system, however it is read, gives the same findings, decisions, assumptions and verdict.
 
-Fleets on Spark and in memory: ``tests/spark/test_spark.py``.
+Fleets on Spark and in memory: ``tests/parts/test_spark.py``.
 """
 
 from __future__ import annotations

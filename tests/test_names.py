@@ -34,7 +34,6 @@ OLDER = {
     "analysis.findings": 2,
     "analysis.kernel": 1,
     "analysis.model": 3,
-    "analysis.parts": 4,
     "analysis.suggesting": 56,
     "cli": 6,
     "explorer": 35,
@@ -53,6 +52,7 @@ OLDER = {
     "labelling": 51,
     "ontology": 2,
     "queries": 1,
+    "parts": 60,
     "report": 2,
     "report.cnil": 4,
     "report.compare": 6,
@@ -62,7 +62,6 @@ OLDER = {
     "report.sarif": 1,
     "report.suggest": 10,
     "report.text": 1,
-    "spark": 56,
 }
 
 

@@ -39,7 +39,7 @@ SAME_PART = {
     "mitigation": {"", "report/contract", "report/document", "report/text"},  # what is told of proposals
     "non_ros": {"analysis", "report/page"},  # what is told of non-ROS elements
     "why_not": {"analysis/whatif", "cli", "report/text"},  # the question, and its answer
-    "session": {"explorer", "spark"},  # what lasts from its begin to its end: of a person, and of a cluster
+    "session": {"explorer", "parts"},  # what lasts from its begin to its end: of a person, and of a cluster
 }
 
 

@@ -19,7 +19,7 @@ from pathlib import Path
 READERS = [
     "rosprivacy.ingest", "rosprivacy.ontology.own", "rosprivacy.ontology.own", "rosprivacy.ontology.turtle",
     "rosprivacy.analysis.durations", "rosprivacy.analysis.text", "rosprivacy.analysis.written_names",
-    "rosprivacy.queries.library", "rosprivacy.report.compare", "rosprivacy.spark.parquet",
+    "rosprivacy.queries.library", "rosprivacy.report.compare", "rosprivacy.parts.parquet",
 ]  # fmt: skip
 LONGEST = 400  # bytes of choices
 

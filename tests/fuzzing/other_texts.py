@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 import rosprivacy
 from rosprivacy.ingest.database.fleet_rows import robot_rows
 from rosprivacy.ingest.database.rows import rows_of
+from rosprivacy.parts.parquet import FORMAT, PARTS
 from rosprivacy.queries.library import pack
-from rosprivacy.spark.parquet import FORMAT, PARTS
 from tests.fuzzing.words import DURATIONS, ODD_TEXT, with_fault
 
 if TYPE_CHECKING:

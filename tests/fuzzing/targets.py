@@ -44,12 +44,12 @@ from rosprivacy.mitigation import run_mitigation
 from rosprivacy.observing import written
 from rosprivacy.ontology.own import with_own
 from rosprivacy.ontology.vocabulary import load
+from rosprivacy.parts import parquet
 from rosprivacy.queries.library import parse
 from rosprivacy.queries.reading import refuse_too_much
 from rosprivacy.report.compare.earlier import read_earlier
 from rosprivacy.report.json_text import as_text
 from rosprivacy.settings import Settings
-from rosprivacy.spark import parquet
 from tests.fuzzing import (
     bag_texts,
     code_texts,

@@ -41,7 +41,6 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "whatif": FACTS | {"findings"},
         "fleet": FACTS | {"findings"},
         "mitigation": FACTS | {"findings"},
-        "parts": FACTS | {"findings", "fleet"},
         "suggesting": MODEL | {"kernel", "answer"},
     },
     "ingest": {
@@ -98,10 +97,10 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "bags": ANSWERS | {"reading"},
         "observing": {""},
         "watching": ANSWERS | {"reading", "observing"},
-        "spark": ANSWERS | {"reading"},
+        "parts": ANSWERS | {"reading"},
         "private_neo4j": {""},
         "explorer": WORK,
-        "cli": WORK | {"bags", "observing", "watching", "private_neo4j", "spark", "explorer"},
+        "cli": WORK | {"bags", "observing", "watching", "private_neo4j", "parts", "explorer"},
         "__main__": {"cli"},
     },
 }

@@ -17,13 +17,13 @@ from rosprivacy.analysis.model.doubt import RANKS
 from rosprivacy.ingest.fleet.alike_robots import alike
 from rosprivacy.ingest.fleet.fleet_file import read_fleet
 from rosprivacy.ontology.vocabulary import load
+from rosprivacy.parts.distributed import Task, analyse_in_parts
+from rosprivacy.parts.fleet_on_spark import file_reader, result
+from rosprivacy.parts.shown_robots import shown
+from rosprivacy.parts.workers import filled
 from rosprivacy.question import Question
 from rosprivacy.reading.fleet_system import answer_fleet
 from rosprivacy.settings import Settings
-from rosprivacy.spark.distributed import Task, analyse_in_parts
-from rosprivacy.spark.fleet_on_spark import file_reader, result
-from rosprivacy.spark.shown_robots import shown
-from rosprivacy.spark.workers import filled
 from tests.helpers.fleet_files import policy, write
 from tests.helpers.random_fleets import Case, found_in
 from tests.helpers.systems import HIERARCHY
@@ -33,10 +33,10 @@ if TYPE_CHECKING:
 
     from rosprivacy.ingest.fleet.dds_domains import Member
     from rosprivacy.ingest.fleet.fleet_file import Robot
+    from rosprivacy.parts.distributed import Found
+    from rosprivacy.parts.shown_robots import Shown
+    from rosprivacy.parts.units import Unit
     from rosprivacy.result import Result
-    from rosprivacy.spark.distributed import Found
-    from rosprivacy.spark.shown_robots import Shown
-    from rosprivacy.spark.units import Unit
 
 
 def given_members(members: dict[str, Member]) -> Callable[[Robot], Member]:

@@ -282,7 +282,7 @@ def answer(
 
         check_outputs([Path(computed.results), written.output])
     if inputs.fleet and computed.engine is Engine.spark:
-        from rosprivacy.spark.fleet_on_spark import run_on_spark
+        from rosprivacy.parts.fleet_on_spark import run_on_spark
 
         result = run_on_spark(inputs.fleet, settings, computed.master, computed.results)
     else:

@@ -157,7 +157,7 @@ def _load_fleet(file: str, settings: Settings, neo4j: str | None, *, both_views:
 
 def _load_results(folder: str, ontologies: tuple[str, ...], neo4j: str | None) -> None:
     from rosprivacy.ontology.vocabulary import load
-    from rosprivacy.spark.parquet import read
+    from rosprivacy.parts.parquet import read
 
     vocabulary = load(ontologies=ontologies)
     document, rows = read(folder)

@@ -19,15 +19,15 @@ from rosprivacy.analysis.errors import ClusterError, InputError, InputErrors
 from rosprivacy.analysis.files_read import one_run
 from rosprivacy.analysis.model import IN_PARTS
 from rosprivacy.ingest.fleet.joins import OF_FLEET
+from rosprivacy.parts import session as spark
+from rosprivacy.parts.fleet_on_spark import run_on_spark
+from rosprivacy.parts.parquet import check_new, read
 from rosprivacy.private_neo4j import connection
 from rosprivacy.reading.fleet_system import answer_fleet
 from rosprivacy.reading.stored_system import answer_stored
 from rosprivacy.report.atomic import check_outputs
 from rosprivacy.report.installing import command_for
 from rosprivacy.settings import Settings
-from rosprivacy.spark import session as spark
-from rosprivacy.spark.fleet_on_spark import run_on_spark
-from rosprivacy.spark.parquet import check_new, read
 from tests.helpers.command import XI
 from tests.helpers.fleet_files import policy, write
 from tests.helpers.fleet_rows import rows as rows_in_memory
@@ -387,7 +387,7 @@ def test_a_defect_of_ours_in_a_worker_is_no_error_of_the_cluster(session: SparkS
     from py4j.protocol import Py4JError
     from pyspark.errors import PySparkException
 
-    from rosprivacy.spark.workers import steps
+    from rosprivacy.parts.workers import steps
 
     with pytest.raises((PySparkException, Py4JError), match="AttributeError"):
         spark.scatter(session, ["no part"]).map(steps).collect()

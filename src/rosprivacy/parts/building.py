@@ -13,7 +13,7 @@ from rosprivacy.analysis.kernel.spreading import emitted
 from rosprivacy.ingest.fleet.fleet_graph import Some, likeness, place_some
 from rosprivacy.ingest.fleet.joins import let_out
 from rosprivacy.ingest.labels.pins import PIN_OF_NOTHING
-from rosprivacy.spark.units import Lines, crossing_lines, named
+from rosprivacy.parts.units import Lines, crossing_lines, named
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.fleet.joins import Met
     from rosprivacy.ingest.labels.entries import Limit
     from rosprivacy.ingest.types.types_file import TypesFile
-    from rosprivacy.spark.units import Unit
+    from rosprivacy.parts.units import Unit
 
     Read = Callable[[Robot], Member]  # a robot -> the same with its graph
 

@@ -17,8 +17,8 @@ import pytest
 import rosprivacy
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.ingest.database.rows import rows_of
-from rosprivacy.spark.parquet import ANSWER, FORMAT, PARTS, ROBOTS, read
-from rosprivacy.spark.unit_rows import own_properties, parts_of
+from rosprivacy.parts.parquet import ANSWER, FORMAT, PARTS, ROBOTS, read
+from rosprivacy.parts.unit_rows import own_properties, parts_of
 from tests.helpers.command import Cli, refused
 from tests.helpers.daily import one_in
 from tests.helpers.damages import damaged, damaged_bytes, one_line_each

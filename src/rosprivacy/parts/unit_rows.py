@@ -21,10 +21,10 @@ from rosprivacy.ingest.database.rows import rows_of
 from rosprivacy.ingest.fleet.dds_domains import is_domain, pseudo_robot
 from rosprivacy.ingest.fleet.fleet_graph import place_chosen
 from rosprivacy.ontology.vocabulary import load
+from rosprivacy.parts.shown_robots import limited
+from rosprivacy.parts.units import unit_of
 from rosprivacy.question import Question
 from rosprivacy.robot_doubts import breaking, doubt_lines, doubts_by_robot
-from rosprivacy.spark.shown_robots import limited
-from rosprivacy.spark.units import unit_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
@@ -39,9 +39,9 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.fleet.dds_domains import Member
     from rosprivacy.ingest.fleet.fleet_file import Fleet
     from rosprivacy.ingest.fleet.fleet_graph import Placed
+    from rosprivacy.parts.building import Read
+    from rosprivacy.parts.units import Unit
     from rosprivacy.settings import Settings
-    from rosprivacy.spark.building import Read
-    from rosprivacy.spark.units import Unit
 
 AT_ONCE = 25  # units that are placed in one graph
 Wanted = dict[int, set[tuple[str, int, int, bool]]]

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.findings.concerns import Concern
     from rosprivacy.analysis.kernel.spread import Spread
-    from rosprivacy.analysis.parts.border import PartNetwork
+    from rosprivacy.parts.border import PartNetwork
 
     Indices = NDArray[np.int64]
     Bits = NDArray[np.uint64]

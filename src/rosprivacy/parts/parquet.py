@@ -17,18 +17,18 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import ClusterError, GraphError, InputError, InputErrors, reason, shown
 from rosprivacy.ingest.database.rows import RobotRows
+from rosprivacy.parts.checked_rows import check_ends, robot_rows
+from rosprivacy.parts.session import scatter, told
+from rosprivacy.parts.unit_rows import Plan, core_rows, put_together, unit_rows
 from rosprivacy.report.compare.earlier import document_of
 from rosprivacy.report.installing import command_for
-from rosprivacy.spark.checked_rows import check_ends, robot_rows
-from rosprivacy.spark.session import scatter, told
-from rosprivacy.spark.unit_rows import Plan, core_rows, put_together, unit_rows
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from pyspark.sql import SparkSession
 
-    from rosprivacy.spark.units import Unit
+    from rosprivacy.parts.units import Unit
 
 FORMAT = "rosprivacy-results-1"
 PARTS = tuple(field.name for field in fields(RobotRows) if field.name not in ("robot", "beyond"))  # of one view only

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.fleet.tallies import Count, Form, Pair, Tallies
-from rosprivacy.analysis.parts.part_pairs import forms_of
+from rosprivacy.parts.part_pairs import forms_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

@@ -15,9 +15,9 @@ import numpy as np
 
 from rosprivacy.analysis.fleet.source_leak_pairs import CategoryRun
 from rosprivacy.analysis.kernel.fixpoint import WORD
-from rosprivacy.analysis.parts.part_pairs import STOPS, ends_of, how
-from rosprivacy.analysis.parts.part_patterns import CORE, End, Source
-from rosprivacy.spark import workers
+from rosprivacy.parts import workers
+from rosprivacy.parts.part_pairs import STOPS, ends_of, how
+from rosprivacy.parts.part_patterns import CORE, End, Source
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -28,10 +28,10 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Element
-    from rosprivacy.analysis.parts.border import Core
-    from rosprivacy.analysis.parts.part_pairs import Class
-    from rosprivacy.spark.units import Piece
-    from rosprivacy.spark.workers import Brought, Parts, Run
+    from rosprivacy.parts.border import Core
+    from rosprivacy.parts.part_pairs import Class
+    from rosprivacy.parts.units import Piece
+    from rosprivacy.parts.workers import Brought, Parts, Run
 
     Bits = NDArray[np.uint64]
     Indices = NDArray[np.int64]

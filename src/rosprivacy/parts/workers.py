@@ -19,11 +19,11 @@ from rosprivacy.analysis.fleet.counts import Counts, counted
 from rosprivacy.analysis.kernel.arrays import of_elements
 from rosprivacy.analysis.kernel.spreading import fill, meaning
 from rosprivacy.analysis.non_ros import on_day, unanswered
-from rosprivacy.analysis.parts.border import Bringer, PartNetwork
-from rosprivacy.analysis.parts.part_pairs import Class, Crossing
-from rosprivacy.analysis.parts.part_patterns import End, Source, Within
-from rosprivacy.spark.building import Problem, problems_of
-from rosprivacy.spark.units import HUB, Piece, units_piece
+from rosprivacy.parts.border import Bringer, PartNetwork
+from rosprivacy.parts.building import Problem, problems_of
+from rosprivacy.parts.part_pairs import Class, Crossing
+from rosprivacy.parts.part_patterns import End, Source, Within
+from rosprivacy.parts.units import HUB, Piece, units_piece
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
@@ -37,8 +37,8 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Element
     from rosprivacy.ingest.fleet.fleet_file import Fleet
-    from rosprivacy.spark.building import Built
-    from rosprivacy.spark.units import Border
+    from rosprivacy.parts.building import Built
+    from rosprivacy.parts.units import Border
 
     Bits = NDArray[np.uint64]
 

@@ -25,14 +25,14 @@ from rosprivacy.analysis.kernel.arrays import GraphArrays, of_elements
 from rosprivacy.analysis.kernel.spreading import emitted, fill, meaning
 from rosprivacy.analysis.model import Rank, unread
 from rosprivacy.analysis.non_ros import on_day
-from rosprivacy.analysis.parts.border import Core
-from rosprivacy.analysis.parts.part_patterns import Crossed
 from rosprivacy.ingest.fleet.alike_robots import COLON, chosen, known_to_flows
 from rosprivacy.ingest.fleet.fleet_graph import likeness, no_robot, nowhere, place_some
 from rosprivacy.ingest.fleet.joins import joins_nothing
-from rosprivacy.spark import building, workers
-from rosprivacy.spark.classes import Classes, first_of
-from rosprivacy.spark.units import GATE, HUB, border, core_piece, crossing_lines, split, unit_of, with_limits
+from rosprivacy.parts import building, workers
+from rosprivacy.parts.border import Core
+from rosprivacy.parts.classes import Classes, first_of
+from rosprivacy.parts.part_patterns import Crossed
+from rosprivacy.parts.units import GATE, HUB, border, core_piece, crossing_lines, split, unit_of, with_limits
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
@@ -49,9 +49,9 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.fleet.alike_robots import Alike
     from rosprivacy.ingest.fleet.fleet_file import Fleet
     from rosprivacy.ingest.fleet.fleet_graph import Some
-    from rosprivacy.spark.building import Read, Told
-    from rosprivacy.spark.units import Border, Piece
-    from rosprivacy.spark.workers import Parts
+    from rosprivacy.parts.building import Read, Told
+    from rosprivacy.parts.units import Border, Piece
+    from rosprivacy.parts.workers import Parts
 
     Bits = NDArray[np.uint64]
     Indices = NDArray[np.int64]

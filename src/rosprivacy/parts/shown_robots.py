@@ -16,7 +16,7 @@ from rosprivacy.analysis.findings.findings import Options, analyse
 from rosprivacy.analysis.findings.open_questions import lacking
 from rosprivacy.analysis.fleet.patterns import FleetView, patterns_of
 from rosprivacy.ingest.fleet.fleet_graph import place_chosen
-from rosprivacy.spark.units import split
+from rosprivacy.parts.units import split
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Bound, Element, NonRosFacts
     from rosprivacy.ingest.fleet.dds_domains import Member
     from rosprivacy.ingest.fleet.fleet_graph import Placed
-    from rosprivacy.spark.distributed import Found, Task
+    from rosprivacy.parts.distributed import Found, Task
 
 Wanted = dict[int, set[tuple[str, int, int, bool]]]
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.json_values import parsed
 from rosprivacy.ingest.database.rows import RobotRows, rows_of
 from rosprivacy.ingest.database.schema import ROLES
-from rosprivacy.spark.unit_rows import own_properties, parts_of
+from rosprivacy.parts.unit_rows import own_properties, parts_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

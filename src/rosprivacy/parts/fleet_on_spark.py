@@ -25,14 +25,14 @@ from rosprivacy.ingest.fleet.joins import OF_FLEET
 from rosprivacy.ingest.labels.countries import countries
 from rosprivacy.ingest.labels.label_file import read_labels
 from rosprivacy.ontology.vocabulary import load
+from rosprivacy.parts.distributed import Task, analyse_in_parts
+from rosprivacy.parts.parquet import check_new, write
+from rosprivacy.parts.session import scatter, session
+from rosprivacy.parts.shown_robots import shown
+from rosprivacy.parts.unit_rows import Plan
+from rosprivacy.parts.units import crossing_lines, split
 from rosprivacy.question import in_contexts, question_of
 from rosprivacy.reading.robot_reader import Reader
-from rosprivacy.spark.distributed import Task, analyse_in_parts
-from rosprivacy.spark.parquet import check_new, write
-from rosprivacy.spark.session import scatter, session
-from rosprivacy.spark.shown_robots import shown
-from rosprivacy.spark.unit_rows import Plan
-from rosprivacy.spark.units import crossing_lines, split
 from rosprivacy.system import System
 
 if TYPE_CHECKING:
@@ -40,13 +40,13 @@ if TYPE_CHECKING:
 
     from rosprivacy.ingest.fleet.dds_domains import Member
     from rosprivacy.ingest.fleet.fleet_file import Fleet, Robot
+    from rosprivacy.parts.building import Read
+    from rosprivacy.parts.distributed import Found
+    from rosprivacy.parts.shown_robots import Shown
+    from rosprivacy.parts.units import Unit
     from rosprivacy.question import Question
     from rosprivacy.result import Result
     from rosprivacy.settings import Settings
-    from rosprivacy.spark.building import Read
-    from rosprivacy.spark.distributed import Found
-    from rosprivacy.spark.shown_robots import Shown
-    from rosprivacy.spark.units import Unit
 
 
 def run_on_spark(file: str, settings: Settings, master: str | None = None, results: str | None = None) -> Result:
