@@ -1,9 +1,8 @@
 """Bounds on what a stranger's input can press on: an answer is whole, or refused with the bound and how to raise it.
 
 Time and memory grow with the bytes of an input, and some grow faster: with pairs of wildcards, with the number that a
-group of robots states, with sources times leaks. These are bounded where they are read or made. The bounds stand
-beside ``--max-bytes``, which bounds the input itself, and are so large that no system known to us meets one. Never is
-a bound met by leaving something out in silence (rule S11).
+group of robots states, with sources times leaks. These are bounded where they are read or made. The bounds are
+so large that no system known to us meets one. Never is a bound met by leaving something out in silence (rule S11).
 """
 
 from __future__ import annotations
@@ -57,6 +56,8 @@ class Bounds:
     path_steps
         For each finding paths that share no flow are counted on all flows between its ends. Where this bound is met,
         the other findings say that one path is there, and a warning says of how many that is so.
+    policy_bytes
+        Of a policy with all that it includes, where a chain of includes that doubles at each step ends soon.
     """
 
     name: int = _bound(16_384, "characters in a name")
@@ -68,6 +69,7 @@ class Bounds:
     findings: int = _bound(200_000, "findings")
     search_steps: int = _bound(100_000_000, "elements reached, counted for each source")
     path_steps: int = _bound(300_000_000, "steps of counting paths")
+    policy_bytes: int = _bound(64 * 2**20, "bytes of a policy with all that it includes")
 
     @classmethod
     def raised(cls, written: Iterable[str]) -> Bounds:

@@ -25,6 +25,7 @@ from rosprivacy.ingest.policies.xinclude import Documents
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
+    from rosprivacy.analysis.bounds import Bounds
     from rosprivacy.analysis.model import Bound, Diagnostic, FlowGraph, Grant, Place, Policy, Profile
     from rosprivacy.ingest.policies.xinclude import Item
 
@@ -207,15 +208,15 @@ class _Include(NamedTuple):
 class _Traced(Documents):
     """Documents that note which includes they read."""
 
-    def __init__(self, root: Path, max_bytes: int) -> None:
-        super().__init__(root, max_bytes)
+    def __init__(self, root: Path, bounds: Bounds) -> None:
+        super().__init__(root, bounds)
         self.read: list[_Include] = []
 
     def took(self, include: Item, file: str, xpointer: str, brought: list[Item]) -> None:
         self.read.append(_Include(include.place, include.chain, (file, xpointer), tuple(brought)))
 
 
-def include_breaches(files: Iterable[str], include_root: str | None, max_bytes: int) -> Iterator[Breach]:
+def include_breaches(files: Iterable[str], include_root: str | None, bounds: Bounds) -> Iterator[Breach]:
     """Yield the rules that includes break; what is no policy, or cannot be read, has none.
 
     Notes
@@ -223,7 +224,7 @@ def include_breaches(files: Iterable[str], include_root: str | None, max_bytes: 
     Linear in the lines that includes bring.
     """
     for file in files:
-        documents = _Traced(Path(include_root) if include_root else Path(file).parent, max_bytes)
+        documents = _Traced(Path(include_root) if include_root else Path(file).parent, bounds)
         try:
             root = documents.open(file)
         except InputErrors:

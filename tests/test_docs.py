@@ -83,7 +83,7 @@ BOUNDED = """
 ## Bounds
 
 What an input may press on. Above a bound the message says how much there is, and `--bound NAME=N` sets another one; no
-system known to us meets one. The input itself is bounded by `--max-bytes`, the list of ways by `--max-paths`.
+system known to us meets one. The list of ways is bounded by `--max-paths`.
 
 | name | default | of what |
 | --- | --- | --- |

@@ -19,7 +19,6 @@ from rosprivacy.analysis.errors import InputError, InputErrors, PolicyError, rea
 from rosprivacy.analysis.model import NOT_READ, UNREAD_FILE, Diagnostic, Place, Policy, Severity
 from rosprivacy.ingest.policies.folders import Contents, contents, not_read_here
 from rosprivacy.ingest.policies.policy_xml import NotAPolicyError, read_policy
-from rosprivacy.ingest.policies.xinclude import MAX_BYTES
 from rosprivacy.ingest.reading.confined import WIDEN, leaves, what_leaves
 from rosprivacy.ingest.reading.file_kinds import PERMISSIONS, POLICY, kind_of_file
 
@@ -45,7 +44,6 @@ def read_policies(
     include_root: str | None = None,
     within: str | None = None,
     besides: Iterable[str] = (),
-    max_bytes: int = MAX_BYTES,
     bounds: Bounds = BOUNDS,
     progress: Callable[[Sequence[str]], Iterable[str]] = lambda files: files,
 ) -> tuple[tuple[Policy, ...], tuple[Diagnostic, ...]]:
@@ -85,7 +83,7 @@ def read_policies(
     skipped: list[NotAPolicyError] = []
     for file in progress([file for file in everything if file not in outside]):
         try:
-            policies.append(read_policy(file, include_root=include_root, max_bytes=max_bytes, bounds=bounds))
+            policies.append(read_policy(file, include_root=include_root, bounds=bounds))
         except InputErrors as error:
             first = error.errors[0]
             if isinstance(first, NotAPolicyError) and file not in named:

@@ -32,7 +32,7 @@ from rosprivacy.analysis.model import (
     Severity,
 )
 from rosprivacy.ingest.policies.names import resolve
-from rosprivacy.ingest.policies.xinclude import MAX_BYTES, Documents, Item, has_text
+from rosprivacy.ingest.policies.xinclude import Documents, Item, has_text
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping
@@ -77,9 +77,7 @@ class NotAPolicyError(PolicyError):
     deployed: bool = False
 
 
-def read_policy(
-    file: str, *, include_root: str | None = None, max_bytes: int = MAX_BYTES, bounds: Bounds = BOUNDS
-) -> Policy:
+def read_policy(file: str, *, include_root: str | None = None, bounds: Bounds = BOUNDS) -> Policy:
     """Read one policy file with all that it includes.
 
     Parameters
@@ -101,7 +99,7 @@ def read_policy(
     InputErrors
         With every problem of the file, each a ``PolicyError`` of one line.
     """
-    documents = Documents(Path(include_root) if include_root else Path(file).parent, max_bytes)
+    documents = Documents(Path(include_root) if include_root else Path(file).parent, bounds)
     root = documents.open(file)
     reader = _Reader(documents, file, bounds)
     reader.policy(root)

@@ -20,6 +20,7 @@ from urllib.parse import unquote
 
 from lxml import etree
 
+from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import InputError, InputErrors, PolicyError, reason, shown
 from rosprivacy.analysis.model import EMPTY_INCLUDE, FALLBACK_TAKEN, Diagnostic, Place, Severity
 from rosprivacy.ingest.reading.bounded_file import contents, nearest_file
@@ -28,10 +29,11 @@ from rosprivacy.ingest.reading.confined import WIDEN, leaves, what_leaves
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from rosprivacy.analysis.bounds import Bounds
+
 NAMESPACES = ("http://www.w3.org/2001/XInclude", "http://www.w3.org/2003/XInclude")
 XML_BASE = "{http://www.w3.org/XML/1998/namespace}base"
 DEPTH = 32
-MAX_BYTES = 64 * 2**20
 
 _XPOINTER = re.compile(r"\s*xpointer\(\s*((?:/(?:\*|[\w.-]+))+)\s*\)\s*")
 _POSITION = re.compile(r", line \d+, column \d+$")
@@ -75,15 +77,14 @@ class Documents:
     ----------
     root
         The folder tree that includes may read from.
-    max_bytes
-        For the policy and its includes together; an included file counts each time that it is included, so a chain
-        of includes that doubles at each step ends soon.
+    bounds
+        Of them ``policy_bytes`` holds here; an included file counts each time that it is included.
     """
 
-    def __init__(self, root: Path, max_bytes: int = MAX_BYTES) -> None:
+    def __init__(self, root: Path, bounds: Bounds = BOUNDS) -> None:
         self.root = root.resolve()
-        self.budget = max_bytes
-        self.max_bytes = max_bytes
+        self.bounds = bounds
+        self.budget = bounds.policy_bytes
         self.problems: list[InputError] = []
         self.diagnostics: list[Diagnostic] = []
         self.sources: dict[str, str] = {}
@@ -214,8 +215,7 @@ class Documents:
         size = known[1] if known else _size(path, file, place)
         self.budget -= size
         if self.budget < 0:
-            what = f"more than {self.max_bytes} bytes with all includes"
-            raise _error(place, what, "allow more with --max-bytes, or split the policy")
+            raise _error(place, *self.bounds.refusal("policy_bytes"))
         if known:
             return known[0]
         data = _read(path, file, place)

@@ -68,7 +68,7 @@ def lint_policies(
     breaches = {
         *read_breaches(system.diagnostics),
         *grant_breaches([grant for policy in read for grant in policy.grants], system.graph),
-        *include_breaches((policy.file for policy in read), settings.include_root, settings.max_bytes),
+        *include_breaches((policy.file for policy in read), settings.include_root, settings.bounds),
         *enclave_breaches(read, system.graph, system.bound),
     }
     kept = sorted((breach for breach in breaches if breach.rule in rules), key=_order)

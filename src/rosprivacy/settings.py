@@ -16,7 +16,6 @@ from rosprivacy.analysis.findings.findings import MAX_PATHS
 from rosprivacy.analysis.modes import Article9Level, View
 from rosprivacy.analysis.modes import Paths as PathsListed
 from rosprivacy.ingest.labels.label_file import STANDARD
-from rosprivacy.ingest.policies.xinclude import MAX_BYTES
 from rosprivacy.ingest.types import TABLE
 from rosprivacy.ontology.vocabulary import TOP
 
@@ -70,10 +69,8 @@ class Options(TypedDict, total=False):
         keystore names its own.
     include_root
         Folder that includes may read from; by default the policy's own.
-    max_bytes
-        Bound on a policy with all that it includes.
     bounds
-        On what else an input can press: ``Bounds(robots=500_000)``.
+        On what an input can press: ``Bounds(robots=500_000)``.
     progress
         Wraps the list of files that are read, to show how far it is.
     """
@@ -96,7 +93,6 @@ class Options(TypedDict, total=False):
     allow_unsigned: bool
     permissions_ca: Paths
     include_root: Path | None
-    max_bytes: int
     bounds: Bounds
     progress: Callable[[Sequence[str]], Iterable[str]]
 
@@ -155,7 +151,6 @@ class Settings:
     max_paths: int = MAX_PATHS
     hangs_on: bool = False
     include_root: str | None = None
-    max_bytes: int = MAX_BYTES
     domain: int | None = None
     allow_unsigned: bool = False
     permissions_ca: tuple[str, ...] = ()

@@ -36,6 +36,11 @@ def topics(*names: str, role: str = "publish") -> str:
     return f'<topics {role}="ALLOW">{"".join(f"<topic>{name}</topic>" for name in names)}</topics>'
 
 
+def policy_of_bytes(number: int) -> Input:
+    """Spaces at its end count too."""
+    return Input({"p.xml": policy(topics("t")).ljust(number)}, ("analyze", "p.xml"), "p.xml: ")
+
+
 def long_name(number: int) -> Input:
     return Input({"p.xml": policy("\n" + topics("/" + "n" * (number - 1)))}, ("analyze", "p.xml"), "p.xml:2: ")
 
@@ -81,7 +86,7 @@ def label_globs(number: int) -> Input:
     """A glob beside a name has 4 steps; the standard channels are switched off, since they are globs too."""
     text = "labels: 1\nnodes:\n" + "".join(f"  /{'*' * (i + 1)}a: conduit\n" for i in range((number + 3) // 4))
     files = {"p.xml": policy(topics("t")), "l.yaml": text}
-    return Input(files, ("analyze", "p.xml", "-l", "l.yaml", "--no-standard-channels"), "l.yaml:13: ")
+    return Input(files, ("analyze", "p.xml", "-l", "l.yaml", "--standard-channels", "none"), "l.yaml:13: ")
 
 
 def matched_names(number: int) -> Input:
@@ -103,6 +108,7 @@ def leaks(number: int) -> Input:
 
 
 ROWS: list[tuple[str, int, Callable[[int], Input], int]] = [  # bound, set to, what has so many, or the default
+    ("policy_bytes", 900, policy_of_bytes, 0),
     ("name", 300, long_name, 0),
     ("name", 300, long_label, 1),  # its name is not there: so much is read
     ("nesting", 6, nested_labels, 1),  # no label is a list of lists

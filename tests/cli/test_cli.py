@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 import rosprivacy
+from rosprivacy.cli.exit_code import REMOVED_OPTIONS
 from tests.helpers.command import XI, Cli, refused, run
 
 if TYPE_CHECKING:
@@ -32,8 +33,7 @@ def test_version() -> None:
 OPTIONS = {
     "analyze": (
         "--labels", "--add", "--save-graph", "--format", "--output", "--categories", "--category", "--view", "--paths",
-        "--max-paths", "--standard-channels", "--no-standard-channels", "--fail-on", "--include-root", "--max-bytes",
-        "--bound", "--decisions",
+        "--max-paths", "--standard-channels", "--fail-on", "--include-root", "--bound", "--decisions",
         "--quiet", "--verbose", "--help", "-l", "-f", "-o", "-c", "-q", "-v", "-h",
     ),
     "decide": (
@@ -43,11 +43,11 @@ OPTIONS = {
     "mitigate": (
         "--labels", "--add", "--ontology", "--limits", "--by", "--patch", "--format", "--output", "--categories",
         "--category", "--decisions",
-        "--view", "--standard-channels", "--no-standard-channels", "--include-root", "--max-bytes", "--bound", "--help",
+        "--view", "--standard-channels", "--include-root", "--bound", "--help",
     ),
     "labels": (
         "--add", "--ontology", "--view", "--init", "--schema", "--standard", "--infrastructure", "--output",
-        "--standard-channels", "--no-standard-channels", "--include-root", "--max-bytes", "--bound", "--help",
+        "--standard-channels", "--include-root", "--bound", "--help",
     ),
 }  # fmt: skip
 
@@ -193,7 +193,6 @@ def test_a_word_that_fail_on_does_not_know_is_told_which_to_write(cli: Cli, word
         ["analyze", "p.xml", "--nope"],
         ["analyze", "p.xml", "--view", "real"],
         ["analyze", "p.xml", "--max-paths", "0"],
-        ["analyze", "p.xml", "--max-bytes", "x"],
         ["analyze", "p.xml", "--fail-on", "always"],
         ["labels"],
         ["labels", "p.xml"],
@@ -267,7 +266,7 @@ def test_standard_channels_can_be_read_replaced_and_switched_off(
     (tmp_path / "mine.yaml").write_text("labels: 1\ntopics: {'*/rosout': mundane}\n")
     taken = [
         document(cli, before, "-l", runs[0], *options)["standard_channels"]
-        for options in ([], ["--standard-channels", tmp_path / "mine.yaml"], ["--no-standard-channels"])
+        for options in ([], ["--standard-channels", tmp_path / "mine.yaml"], ["--standard-channels", "none"])
     ]
     assert taken == [39, 1, 0]
 
@@ -289,8 +288,18 @@ def test_an_include_root_can_be_named(cli: Cli, tmp_path: Path) -> None:
     assert document(cli, "robot/p.xml", "--include-root", ".", cwd=tmp_path)["elements"] == 2
 
 
-def test_max_bytes_is_a_bound(cli: Cli, before: Path) -> None:
-    assert "more than 100 bytes" in refused(cli("analyze", before, "--max-bytes", "100"))[0]
+def test_the_bytes_of_a_policy_are_bounded(cli: Cli, before: Path) -> None:
+    assert "--bound policy_bytes=N" in refused(cli("analyze", before, "--bound", "policy_bytes=100"))[0]
+
+
+@pytest.mark.parametrize("option", REMOVED_OPTIONS)
+def test_an_option_of_earlier_versions_is_refused_with_what_to_write(cli: Cli, before: Path, option: str) -> None:
+    done = cli("analyze", before, option)
+    instead = REMOVED_OPTIONS[option].removeprefix("write ").replace("=N", "=99999999").split()
+    assert (done.returncode, done.stdout) == (2, "")
+    assert option in done.stderr
+    assert instead[0] in done.stderr
+    assert cli("analyze", before, *instead).returncode == 4
 
 
 def test_a_folder_and_a_glob_are_read(cli: Cli, before: Path, after: Path) -> None:

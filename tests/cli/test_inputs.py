@@ -165,8 +165,8 @@ def test_what_makes_no_sense_for_a_command_is_refused_in_one_wording(cli: Cli, c
         (["--from-database"], ["--fleet", "f.yaml"], f"{STORED}: no --fleet"),
         (
             ["--from-database"],
-            ["--max-bytes", "5", "--no-standard-channels"],
-            f"{STORED}: no --no-standard-channels, --max-bytes",
+            ["--include-root", ".", "--standard-channels", "none"],
+            f"{STORED}: no --standard-channels, --include-root",
         ),
         (
             ["--from-database"],
@@ -175,7 +175,6 @@ def test_what_makes_no_sense_for_a_command_is_refused_in_one_wording(cli: Cli, c
         ),
         (["--from-database"], ["--standard-channels", "s.yaml"], f"{STORED}: no --standard-channels"),
         (["--from-database"], ["--category", "Video"], f"{STORED}: no --category"),
-        (["--from-database"], ["--max-bytes", "5"], f"{STORED}: no --max-bytes"),
         ([], [], "Invalid value for POLICY: name at least one policy: a file, a folder or a glob"),
         ([], ["-l", "l.yaml"], "Invalid value for POLICY: name at least one policy: a file, a folder or a glob"),
     ],

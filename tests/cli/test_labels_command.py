@@ -58,7 +58,7 @@ def test_a_first_label_file_is_valid_as_it_is_and_says_nothing(cli: Cli, before:
 
 def test_a_first_label_file_lists_standard_channels_where_they_are_not_taken(cli: Cli, before: Path) -> None:
     assert "/rosout:" not in cli("labels", "--init", before).stdout
-    assert "  /rosout:" in cli("labels", "--init", before, "--no-standard-channels").stdout
+    assert "  /rosout:" in cli("labels", "--init", before, "--standard-channels", "none").stdout
 
 
 @pytest.mark.parametrize(

@@ -90,7 +90,7 @@ def of_one_robot(robot: Arguments) -> Iterator[Arguments]:
             yield ("report", *robot, "-f", form, "--lang", language, "-o", "out")
     for form in ("html", "markdown"):
         yield ("report", *robot, "-f", form, "--redact", "-o", "out")
-    yield ("analyze", *robot, "-f", "json1", "--no-standard-channels", "--no-type-limits")
+    yield ("analyze", *robot, "-f", "json1", "--standard-channels", "none", "--type-limits", "none")
     yield ("analyze", *robot, "-f", "json1", "--article9", "--paths", "all")
     undecided = robot[:-2] if "--decisions" in robot else robot
     for form in ("dot", "svg", "graphml", "mermaid"):

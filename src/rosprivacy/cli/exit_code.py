@@ -47,6 +47,11 @@ REMOVED_VALUES = {  # words of earlier versions -> what to write; no alias, sinc
     "todo": "write leak; or leave it out, to fail on undetermined too",
     "all": "leave out --decisions, so that no finding is accepted",
 }
+REMOVED_OPTIONS = {  # options of earlier versions -> what to write
+    "--max-bytes": "write --bound policy_bytes=N",
+    "--no-standard-channels": "write --standard-channels none",
+    "--no-type-limits": "write --type-limits none",
+}
 
 
 def exit_code(result: Result, fail_on: Collection[FailOn]) -> int:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 from typer.core import TyperGroup
 
-from rosprivacy.cli.exit_code import SIGPIPE
+from rosprivacy.cli.exit_code import REMOVED_OPTIONS, SIGPIPE
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -53,6 +53,11 @@ class Group(TyperGroup):
             raise typer.Exit(128 + SIGPIPE) from None
         except EOFError as error:
             raise RuntimeError("the input ended") from error
+        except Exception as error:  # typer exports no name for an unknown option
+            removed = getattr(error, "option_name", "")
+            if removed in REMOVED_OPTIONS:
+                raise typer.BadParameter(f"there is no {removed} any more; {REMOVED_OPTIONS[removed]}") from None
+            raise
 
 
 def _untyped(parameters: Iterable[Any]) -> list[Any]:

@@ -16,6 +16,7 @@ from rosprivacy.analysis.bounds import Bounds
 from rosprivacy.analysis.modes import View
 from rosprivacy.cli.driver import driver_of
 from rosprivacy.cli.options import (
+    NOT_USED,
     AllowUnsigned,
     BoundsRaised,
     Categories,
@@ -25,9 +26,6 @@ from rosprivacy.cli.options import (
     FromDatabase,
     IncludeRoot,
     LabelFiles,
-    MaxBytes,
-    NoStandard,
-    NoTypeLimits,
     Ontologies,
     PermissionsCA,
     Policies,
@@ -60,15 +58,12 @@ class Inputs(NamedTuple):
     add: SavedGraphs = None
     ontology: Ontologies = None
     standard_channels: Standard = "rosprivacy:standard"
-    no_standard_channels: NoStandard = False
     types: TypesFiles = None
     type_limits: TypeLimitsFile = "rosprivacy:types"
-    no_type_limits: NoTypeLimits = False
     domain: Domain = None
     allow_unsigned: AllowUnsigned = False
     permissions_ca: PermissionsCA = None
     include_root: IncludeRoot = None
-    max_bytes: MaxBytes = 64 * 2**20
     bound: BoundsRaised = None
     categories: Categories = None
     category: SixLists = "PersonalData"
@@ -86,14 +81,13 @@ class Inputs(NamedTuple):
             categories=tuple(self.categories or ()),
             ontologies=tuple(self.ontology or ()),
             category=self.category,
-            standard_channels=None if self.no_standard_channels else self.standard_channels,
+            standard_channels=None if self.standard_channels == NOT_USED else self.standard_channels,
             types=tuple(self.types or ()),
-            type_limits=None if self.no_type_limits else self.type_limits,
+            type_limits=None if self.type_limits == NOT_USED else self.type_limits,
             domain=self.domain,
             allow_unsigned=self.allow_unsigned,
             permissions_ca=tuple(self.permissions_ca or ()),
             include_root=str(self.include_root) if self.include_root else None,
-            max_bytes=self.max_bytes,
             bounds=Bounds.raised(self.bound or ()),
             progress=progress_of,
             decisions=str(self.decisions) if self.decisions else None,
@@ -149,8 +143,8 @@ class Inputs(NamedTuple):
 
 
 OF_FILES = (
-    "policies", "labels", "add", "fleet", "standard_channels", "no_standard_channels", "types", "domain",
-    "allow_unsigned", "permissions_ca", "include_root", "max_bytes", "category", "view",
+    "policies", "labels", "add", "fleet", "standard_channels", "types", "domain",
+    "allow_unsigned", "permissions_ca", "include_root", "category", "view",
 )  # fmt: skip
 DEFAULTS = Inputs._field_defaults
 WRITTEN = {name: f"--{name.replace('_', '-')}" for name in DEFAULTS} | {"policies": "POLICY"}

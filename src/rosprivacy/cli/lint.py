@@ -25,7 +25,7 @@ class LintFormat(StrEnum):
 @reads_system(
     "policies, and label files",
     without=(
-        "fleet", "from_database", "neo4j", "add", "types", "type_limits", "no_type_limits", "categories", "view",
+        "fleet", "from_database", "neo4j", "add", "types", "type_limits", "categories", "view",
         "decisions",
     ),
 )  # fmt: skip

@@ -27,7 +27,7 @@ SHORTEST = "10s"  # what most middlewares need until all is found
 @reads_system(
     "labels for --watch",
     without=(
-        "policies", "fleet", "from_database", "neo4j", "add", "include_root", "max_bytes", "decisions", "view",
+        "policies", "fleet", "from_database", "neo4j", "add", "include_root", "decisions", "view",
         "categories", "types",
     ),
 )  # fmt: skip

@@ -122,12 +122,11 @@ Ontologies = Annotated[
 Standard = Annotated[
     str,
     typer.Option(
-        "--standard-channels", metavar="FILE", help="Label file of the standard ROS channels.", rich_help_panel=READ
+        "--standard-channels",
+        metavar="FILE|none",
+        help="Label file of the standard ROS channels; none: take no channel as mundane by itself.",
+        rich_help_panel=READ,
     ),
-]
-NoStandard = Annotated[
-    bool,
-    typer.Option("--no-standard-channels", help="Take no channel as mundane by itself.", rich_help_panel=READ),
 ]
 TypesFiles = Annotated[
     list[str] | None,
@@ -143,14 +142,10 @@ TypeLimitsFile = Annotated[
     str,
     typer.Option(
         "--type-limits",
-        metavar="FILE",
-        help="Table of what message types cannot carry, and what they suggest.",
+        metavar="FILE|none",
+        help="Table of what message types cannot carry, and what they suggest; none: each can carry everything.",
         rich_help_panel=READ,
     ),
-]
-NoTypeLimits = Annotated[
-    bool,
-    typer.Option("--no-type-limits", help="Take every message type to carry everything.", rich_help_panel=READ),
 ]
 Domain = Annotated[
     int | None,
@@ -189,16 +184,12 @@ IncludeRoot = Annotated[
         rich_help_panel=READ,
     ),
 ]
-MaxBytes = Annotated[
-    int,
-    typer.Option(min=1, metavar="N", help="Bound on a policy with all that it includes.", rich_help_panel=READ),
-]
 BoundsRaised = Annotated[
     list[str] | None,
     typer.Option(
         metavar="NAME=N",
         show_default=False,
-        help=f"Another bound on what is read or made; may be repeated. Names: {', '.join(WHAT)}.",
+        help=f"A bound on what is read or made; may be repeated. Names: {', '.join(WHAT)}.",
         rich_help_panel=READ,
     ),
 ]
@@ -251,6 +242,7 @@ DecisionsFile = Annotated[
         rich_help_panel=QUESTION_PANEL,
     ),
 ]
+NOT_USED = "none"  # as a name of a shipped file: that it is not used
 PRINTED = Path("-")  # as a name of an output: standard output
 
 

@@ -21,7 +21,7 @@ from rosprivacy.cli.model_options import (
     Timeout,
     Unencrypted,
 )
-from rosprivacy.cli.options import Output, TextOrJson
+from rosprivacy.cli.options import NOT_USED, Output, TextOrJson
 from rosprivacy.cli.output import emit
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from rosprivacy.result import Result
 
 
-@reads_system("all kinds, types and findings", without=("no_type_limits", "categories", "decisions"))
+@reads_system("all kinds, types and findings", without=("categories", "decisions"))
 def suggest(
     inputs: Inputs,
     rules: Annotated[
@@ -112,6 +112,7 @@ def suggest(
         model, model_url, dry_run, mask, record, replay, model_requests, model_timeout, model_unencrypted
     )
     options.check(into)
+    refuse("suggest", "the table of types", ["--type-limits none"] if inputs.type_limits == NOT_USED else [])
     refuse("suggest", "--by with --ask only", ["--by"] if by and not ask else [])
     if ask and (into is None or output or format is TextOrJson.json or model or replay or dry_run):
         raise typer.BadParameter("--ask needs --into FILE; it takes neither --output, --format json nor a model")

@@ -56,7 +56,6 @@ def read_granted(names: Iterable[str], settings: Settings, within: str | None = 
             include_root=settings.include_root,
             within=within,
             besides=(*access, *granted),
-            max_bytes=settings.max_bytes,
             bounds=settings.bounds,
             progress=settings.progress,
         )

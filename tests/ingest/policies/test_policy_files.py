@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from rosprivacy.analysis.bounds import Bounds
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.ingest.policies.policy_files import read_policies
 
@@ -306,5 +307,5 @@ def test_include_root_and_bounds_hold_for_every_file(tmp_path: Path) -> None:
     assert [grant.name for grant in policies[0].grants] == ["/x"]
     with pytest.raises(InputErrors, match="leaves the folder"):
         read_policies([file])
-    with pytest.raises(InputErrors, match="more than 10 bytes"):
-        read_policies([file], max_bytes=10)
+    with pytest.raises(InputErrors, match="more than the bound of 10"):
+        read_policies([file], bounds=Bounds(policy_bytes=10))

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from rosprivacy.analysis.bounds import Bounds
 from rosprivacy.analysis.errors import InputErrors
 
 if TYPE_CHECKING:
@@ -142,8 +143,8 @@ def test_depth_is_bounded(tmp_path: Path) -> None:
 
 def test_a_bomb_that_doubles_at_each_step_is_bounded_by_its_bytes(tmp_path: Path) -> None:
     chain(tmp_path, 30, times=2)
-    found = refused(policy(tmp_path, include("0.xml")), max_bytes=200_000)
-    assert any("more than 200000 bytes with all includes; allow more with --max-bytes" in line for line in found)
+    found = refused(policy(tmp_path, include("0.xml")), bounds=Bounds(policy_bytes=200_000))
+    assert any("raise it with --bound policy_bytes=N" in line for line in found)
     assert len(found) <= 31  # one per place, however often it is reached
 
 
@@ -161,17 +162,17 @@ def test_fallbacks_nested_in_fallbacks_are_bounded_too(tmp_path: Path) -> None:
 def test_a_file_that_is_too_large_is_refused_by_its_size(tmp_path: Path) -> None:
     file = policy(tmp_path, topic("x"))
     size = file.stat().st_size
-    assert names(read(file, max_bytes=size)) == ["/x"]
-    (line,) = refused(file, max_bytes=size - 1)
-    assert f"more than {size - 1} bytes" in line
+    assert names(read(file, bounds=Bounds(policy_bytes=size))) == ["/x"]
+    (line,) = refused(file, bounds=Bounds(policy_bytes=size - 1))
+    assert f"more than the bound of {size - 1}" in line
 
 
 def test_an_included_file_counts_each_time(tmp_path: Path) -> None:
     write(tmp_path / "f.xml", f"<profile>{topic('x')}</profile>")
     file = policy(tmp_path, *[include("f.xml")] * 3)
     size = file.stat().st_size + 3 * (tmp_path / "f.xml").stat().st_size
-    assert len(read(file, max_bytes=size).grants) == 3
-    assert "more than" in refused(file, max_bytes=size - 1)[0]
+    assert len(read(file, bounds=Bounds(policy_bytes=size)).grants) == 3
+    assert "more than" in refused(file, bounds=Bounds(policy_bytes=size - 1))[0]
 
 
 @pytest.mark.parametrize("href", [".", "down", "down/", "pipe", "./"])
