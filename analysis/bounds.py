@@ -22,9 +22,9 @@ OPTION = "--bound"
 LARGEST = 10**18
 
 
-def _bound(default: int, what: str) -> int:
-    """Make a field of ``Bounds``; ``what`` is counted, for messages and the documentation."""
-    made: int = field(default=default, metadata={"what": what})
+def _bound(default: int, counted: str) -> int:
+    """Make a field of ``Bounds``; ``counted`` is what there is more or less of, for messages and the documentation."""
+    made: int = field(default=default, metadata={"counted": counted})
     return made
 
 
@@ -89,9 +89,9 @@ class Bounds:
         values: dict[str, int] = {}
         for text in written:
             name, _, number = text.partition("=")
-            if name not in WHAT:
-                near = nearest(name.casefold(), WHAT, like=0)
-                what = f"{shown(name)!r} is none of {', '.join(WHAT)}"
+            if name not in COUNTED:
+                near = nearest(name.casefold(), COUNTED, like=0)
+                what = f"{shown(name)!r} is none of {', '.join(COUNTED)}"
                 problems.append(InputError(OPTION, 0, what, did_you_mean(near)))
             elif not (number.isascii() and number.isdecimal() and len(number) < len(str(LARGEST)) and int(number)):
                 what = f"{shown(text)!r} sets no bound"
@@ -117,12 +117,12 @@ class Bounds:
         """
         bound = getattr(self, name)
         more = f"more than the bound of {bound:,}"
-        told = f"{more} {WHAT[name]}" if amount is None else f"{amount:,} {WHAT[name]}, {more}"
+        told = f"{more} {COUNTED[name]}" if amount is None else f"{amount:,} {COUNTED[name]}, {more}"
         return told, f"raise it with {OPTION} {name}=N"
 
 
 BOUNDS = Bounds()
-WHAT = {one.name: str(one.metadata["what"]) for one in fields(Bounds)}
+COUNTED = {one.name: str(one.metadata["counted"]) for one in fields(Bounds)}
 
 
 @dataclass(slots=True, eq=False, repr=False)

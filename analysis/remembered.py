@@ -45,7 +45,7 @@ class About:
 class Change(NamedTuple):
     """What is not as it was when a decision was made: a field of ``About``, as text then and now."""
 
-    what: str
+    aspect: str
     before: str
     now: str
 
@@ -54,7 +54,7 @@ def changes(before: About | None, now: About | None) -> tuple[Change, ...]:
     """Return what has changed, of what is known of both.
 
     >>> before = About("declared", ("/camera", "/uplink"), 1)
-    >>> [(c.what, c.before, c.now) for c in changes(before, About("declared", ("/camera", "/log", "/uplink"), 2))]
+    >>> [(c.aspect, c.before, c.now) for c in changes(before, About("declared", ("/camera", "/log", "/uplink"), 2))]
     [('path', '/camera -> /uplink', '/camera -> /log -> /uplink'), ('disjoint_paths', '1', '2')]
     >>> changes(None, before), changes(before, before)
     ((), ())
@@ -68,7 +68,9 @@ def _changes(before: About, now: About) -> Iterator[Change]:
         "path": (" -> ".join(before.path), " -> ".join(now.path)),
         "disjoint_paths": (str(before.disjoint_paths or ""), str(now.disjoint_paths or "")),
     }
-    yield from (Change(what, then, today) for what, (then, today) in pairs.items() if then and today and then != today)
+    yield from (
+        Change(aspect, then, today) for aspect, (then, today) in pairs.items() if then and today and then != today
+    )
     if before.robots and now.robots and before.robots != now.robots:
         yield Change("robots", str(len(before.robots)), _counted(now.robots, now.robots - before.robots))
 
@@ -86,7 +88,7 @@ def change_text(changes: Iterable[Change]) -> str:
     >>> change_text([Change("disjoint_paths", "1", "2"), Change("robots", "2", "3, +amr-3")])
     'disjoint paths: 1 then, 2 now; robots: 2 then, 3, +amr-3 now'
     """
-    return "; ".join(f"{change.what.replace('_', ' ')}: {change.before} then, {change.now} now" for change in changes)
+    return "; ".join(f"{change.aspect.replace('_', ' ')}: {change.before} then, {change.now} now" for change in changes)
 
 
 def as_written(about: About) -> Mapping[str, object]:

@@ -277,9 +277,9 @@ def answers_in(data: bytes, where: str) -> Answered:
     (Answered(answers=(1,), unread=''), 'the model refused')
     """
 
-    def fail(line: int, what: str, hint: str) -> ModelError:
+    def fail(line: int, fault: str, hint: str) -> ModelError:
         del line, hint  # of files
-        return ModelError(f"{where}: the answer is no chat completion ({what}); {BASE}")
+        return ModelError(f"{where}: the answer is no chat completion ({fault}); {BASE}")
 
     outer = parsed(data, fail, "")
     try:

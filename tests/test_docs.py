@@ -19,7 +19,7 @@ import pytest
 import typer
 
 import rosprivacy
-from rosprivacy.analysis.bounds import BOUNDS, WHAT
+from rosprivacy.analysis.bounds import BOUNDS, COUNTED
 from rosprivacy.analysis.model import NON_ROS, RANKS
 from rosprivacy.cli.app import program
 from rosprivacy.cli.exit_code import CODES
@@ -115,7 +115,7 @@ def command_line() -> str:
 
 def bounds() -> str:
     """What is bounded, by default."""
-    return BOUNDED + "".join(f"| `{name}` | {getattr(BOUNDS, name):,} | {what} |\n" for name, what in WHAT.items())
+    return BOUNDED + "".join(f"| `{name}` | {getattr(BOUNDS, name):,} | {what} |\n" for name, what in COUNTED.items())
 
 
 def matrix(commands: dict[str, Any]) -> str:

@@ -89,7 +89,7 @@ def test_most_of_them_have_a_finding_and_many_an_accepted_one() -> None:
     findings = [[f for f in result.analysis.findings if not f.dismissed] for result in results]
     assert sum(map(bool, findings)) > len(results) / 6
     assert sum(any(f.accepted for f in some) for some in findings) > len(results) / 50
-    changed = [change.what for r in results if r.decided for some in r.decided.changed.values() for change in some]
+    changed = [change.aspect for r in results if r.decided for some in r.decided.changed.values() for change in some]
     assert set(changed) == {"view", "path", "disjoint_paths"}
 
 

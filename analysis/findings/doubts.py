@@ -123,7 +123,7 @@ def _of_files(diagnostics: Iterable[Diagnostic]) -> Iterator[Doubt]:
 def _ends(analysis: Analysis) -> Iterator[Doubt]:
     """Where data's path ends without anybody known."""
     for end in analysis.unknown_ends:
-        yield Doubt(ENDS[end.what], end.element, categories=end.categories)
+        yield Doubt(ENDS[end.missing], end.element, categories=end.categories)
 
 
 def _closed(analysis: Analysis) -> Iterator[Doubt]:

@@ -43,7 +43,7 @@ GOES_TO_SUCH = (
     "what the sources bring in goes nowhere, or only to standard channels and to those whose type cannot carry it: "
     "no data was followed"
 )
-WHAT = {
+NOTHING_FOLLOWED_BECAUSE = {
     NO_SOURCE: "no label names a source: no data was followed",
     GOES_NOWHERE: "what the sources bring in goes nowhere, or to standard channels only: no data was followed",
     NO_LEAK_NAMED: "no label says where data gets out: nothing that it gets to could be a leak",
@@ -176,7 +176,7 @@ def unknown_ends(spread: Spread, mask: int) -> tuple[UnknownEnd, ...]:
     >>> graph, bound, hierarchy = factory()
     >>> unread = replace(graph, flows=graph.flows[:5])  # nobody subscribes
     >>> carried = spread(unread, bound, hierarchy)
-    >>> [(end.element.name, end.what, end.categories) for end in unknown_ends(carried, carried.all_bits)]
+    >>> [(end.element.name, end.missing, end.categories) for end in unknown_ends(carried, carried.all_bits)]
     [('/video', 'reader', ('Video',))]
     """
     merged: dict[tuple[str, str, str, str], tuple[Element, int]] = {}
@@ -329,6 +329,6 @@ def lacking(code: str, *, restricted: bool, limited: bool = False) -> tuple[Diag
     """
     if not code:
         return ()
-    what = NO_SOURCE_OF_THESE if code == NO_SOURCE and restricted else WHAT[code]
+    what = NO_SOURCE_OF_THESE if code == NO_SOURCE and restricted else NOTHING_FOLLOWED_BECAUSE[code]
     what = GOES_TO_SUCH if code == GOES_NOWHERE and limited else what
     return (Diagnostic(Place("labels", 0), Severity.WARNING, f"{what}, so this says nothing about the system", code),)

@@ -202,10 +202,10 @@ class _Rows:
     def _of_robot(self, vertex: int) -> Processing:
         return self._bound.of_robots.get(self._analysis.graph.elements[vertex].robot, UNSTATED)
 
-    def _first(self, way: Way, category: str, what: str, group: tuple[str, ...] | None = None) -> list[str]:
+    def _first(self, way: Way, category: str, attribute: str, group: tuple[str, ...] | None = None) -> list[str]:
         """What the first of several states of a kind of data; of one group of articles, where one is named."""
         for said in way:
-            stated: ByCategory = getattr(said, what)
+            stated: ByCategory = getattr(said, attribute)
             found = [one for some in nearest(stated, category, self._hierarchy) for one in some]
             if some := [one for one in found if group is None or group_of(one) == group]:
                 return some

@@ -38,11 +38,11 @@ class Course:
     def __init__(self) -> None:
         self._memory: dict[str, tuple[object, Any]] = {}
 
-    def memoised(self, what: str, under: object, find: Callable[[], Computed]) -> Computed:
+    def memoised(self, name: str, under: object, find: Callable[[], Computed]) -> Computed:
         """Return what is found, or was found before under the same; of each thing the last is kept."""
-        known = self._memory.get(what)
+        known = self._memory.get(name)
         if known is None or known[0] != under:
-            known = self._memory[what] = under, find()
+            known = self._memory[name] = under, find()
         found: Computed = known[1]
         return found
 

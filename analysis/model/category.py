@@ -100,9 +100,9 @@ class Legal(NamedTuple):
         """Whether it is Article 9(1) GDPR."""
         return is_article_9(self.name)
 
-    def text(self, what: str, language: str) -> str:
+    def text(self, attribute: str, language: str) -> str:
         """Return its ``meaning``, ``condition`` or ``name`` in a language, in English if there is no translation."""
-        return self.translations.get(language, {}).get(what) or str(getattr(self, what))
+        return self.translations.get(language, {}).get(attribute) or str(getattr(self, attribute))
 
 
 class Pointer(NamedTuple):
@@ -236,6 +236,6 @@ class Category(NamedTuple):
         """Its place in the order of kinds, the heaviest first."""
         return weight({self.article9, *(legal.verdict for legal in self.law)}, self.data_types)
 
-    def text(self, what: str, language: str) -> str:
+    def text(self, attribute: str, language: str) -> str:
         """Return its ``title``, ``definition``, ``reason`` or ``gdpr`` in a language, else in English."""
-        return self.translations.get(language, {}).get(what) or str(getattr(self, what))
+        return self.translations.get(language, {}).get(attribute) or str(getattr(self, attribute))

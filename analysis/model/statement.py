@@ -291,7 +291,7 @@ class UnknownEnd(NamedTuple):
     ----------
     element
         A channel, or a leg of one, with data; or an element outside ROS.
-    what
+    missing
         What is not known: the ``reader`` of a channel, of a service's leg its server or client; the ``flow`` that
         leads to an element outside ROS.
     categories
@@ -299,5 +299,5 @@ class UnknownEnd(NamedTuple):
     """
 
     element: Element
-    what: str
+    missing: str
     categories: tuple[str, ...] = ()

@@ -135,7 +135,7 @@ def ledger(
         ),
         *_restricted(spread, leaks, asked),
         *(TakenAway(UNREAD, None, None, (), (d.place,), note=d.message) for d in unread),
-        *(TakenAway(UNKNOWN_READER, e.element, None, e.categories, (), note=e.what) for e in analysis.unknown_ends),
+        *(TakenAway(UNKNOWN_READER, e.element, None, e.categories, (), note=e.missing) for e in analysis.unknown_ends),
     ]
     return tuple(sorted(rows, key=_order))
 

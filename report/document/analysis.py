@@ -107,7 +107,7 @@ def _analysis(answer: Answer, *, reliance: bool) -> AnalysisDocument:
         "unknown_ends": [
             {
                 "element": element_dict(end.element),
-                "unknown": end.what,
+                "unknown": end.missing,
                 "categories": list(end.categories),
             }
             for end in analysis.unknown_ends

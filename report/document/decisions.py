@@ -40,7 +40,7 @@ def decided_findings(findings: Iterable[FindingEntry], decided: Decided) -> list
 
 def _decision(entry: Decision, state: State, decided: Decided) -> DecisionEntry:
     changed: list[ChangedSince] = [
-        {"what": change.what, "before": change.before, "now": change.now} for change in decided.changed.get(entry, ())
+        {"what": change.aspect, "before": change.before, "now": change.now} for change in decided.changed.get(entry, ())
     ]
     decision: DecisionEntry = {
         "choice": str(entry.choice),

@@ -159,7 +159,7 @@ def by_system(result: Result) -> Callable[[str], Said]:
     graph, spread = analysis.graph, analysis.spread
     labels = by_labels(result.labels, result.vocabulary)
     unread_files = unread(result.diagnostics)
-    unreached = {end.element for end in analysis.unknown_ends if end.what == "flow"}  # nobody says what is in these
+    unreached = {end.element for end in analysis.unknown_ends if end.missing == "flow"}  # nobody says what is in these
     vertices: dict[Channel, list[int]] = defaultdict(list)
     patterns: dict[tuple[str, str], list[int]] = defaultdict(list)
     for vertex, element in enumerate(graph.elements):

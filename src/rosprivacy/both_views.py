@@ -88,7 +88,7 @@ def _both_views(settings: Settings, reader: Callable[[Question], Reader]) -> Res
     system = declared(NO_CHANGE)
     result = answer(system, of_record)
     every = answer(system, of_record._replace(every=True)) if system.is_fleet else result
-    known = {finding.id: finding.pseudonymised for finding in every.analysis.findings if not finding.dismissed}
+    declared_ids = {finding.id: finding.pseudonymised for finding in every.analysis.findings if not finding.dismissed}
     whole = enforced(NO_CHANGE)
     found = answer(whole, question)
     remedies = Remedies(
@@ -97,9 +97,11 @@ def _both_views(settings: Settings, reader: Callable[[Question], Reader]) -> Res
         granted(system.graph),
         _enclaves(whole.graph.profiles),
         whole.likeness.second,
-        {one for one, pseudonymised in known.items() if pseudonymised},
+        {one for one, pseudonymised in declared_ids.items() if pseudonymised},
     )
-    new = (one for one in found.analysis.findings if not one.dismissed and _is_new(one, known))  # accepted ones, too
+    new = [  # accepted ones, too
+        one for one in found.analysis.findings if not one.dismissed and _is_new(one, declared_ids)
+    ]
     added = tuple(_added(new, remedies, whole.likeness))
     more = {shown for shown, _ in _open(found) - _open(every) if shown[0] not in whole.likeness.second}
     elements = {one.element.shown_as: one.element for one in found.analysis.open}
@@ -107,9 +109,9 @@ def _both_views(settings: Settings, reader: Callable[[Question], Reader]) -> Res
     return replace(result, enforced=Enforced(found, added, tuple(outside_first)))
 
 
-def _is_new(finding: Finding, known: Mapping[str, bool]) -> bool:
+def _is_new(finding: Finding, declared_ids: Mapping[str, bool]) -> bool:
     """Whether the declared view has it not, or only in pseudonymised form while plain data is in it now (rule S10)."""
-    return finding.id not in known or (known[finding.id] and not finding.pseudonymised)
+    return finding.id not in declared_ids or (declared_ids[finding.id] and not finding.pseudonymised)
 
 
 def _open(result: Result) -> set[tuple[tuple[str, str, str, str], str]]:

@@ -141,13 +141,13 @@ def keeps_what_is_there(policy: Path) -> None:
         raise InputErrors([InputError(str(file), 0, "is there already and would be lost", hint) for file in there])
 
 
-def _sibling(policy: Path, what: str) -> Path:
+def _sibling(policy: Path, content: str) -> Path:
     name = policy.name
     for ending in (".policy.xml", ".xml"):
         if name.lower().endswith(ending) and len(name) > len(ending):
             name = name[: -len(ending)]
             break
-    return policy.with_name(f"{name}.{what}.yaml")
+    return policy.with_name(f"{name}.{content}.yaml")
 
 
 def observe(

@@ -161,12 +161,12 @@ def _categories_named(vocabulary: Vocabulary, settings: Settings, contexts: Coll
     return {name for name in asked if _chosen(vocabulary.categories[name], settings, contexts)}
 
 
-def _unknown(filters: Iterable[str], names: set[str], option: str, what: str) -> Iterator[OntologyError]:
+def _unknown(filters: Iterable[str], names: set[str], option: str, noun: str) -> Iterator[OntologyError]:
     """What a filter names that no category has."""
     for name in filters:
         if name not in names:
             hint = f"it is one of: {', '.join(sorted(names))}"
-            yield OntologyError(option, 0, f"unknown {what} {shown(name)!r}", hint)
+            yield OntologyError(option, 0, f"unknown {noun} {shown(name)!r}", hint)
 
 
 def _chosen(category: Category, settings: Settings, contexts: Collection[str]) -> bool:

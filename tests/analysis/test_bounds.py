@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from rosprivacy.analysis.bounds import BOUNDS, WHAT, Bounds, Tally
+from rosprivacy.analysis.bounds import BOUNDS, COUNTED, Bounds, Tally
 from rosprivacy.analysis.errors import FleetError, InputErrors
 from rosprivacy.analysis.model import Place
 
@@ -45,7 +45,7 @@ def test_all_that_is_wrong_is_told_at_once() -> None:
     assert len(refused.value.errors) == 2
 
 
-@pytest.mark.parametrize("name", WHAT)
+@pytest.mark.parametrize("name", COUNTED)
 def test_a_refusal_names_the_number_the_bound_and_the_option(name: str) -> None:
     what, hint = Bounds().refusal(name, 10**17)
     assert what.startswith("100,000,000,000,000,000 ")

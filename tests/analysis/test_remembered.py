@@ -25,7 +25,7 @@ THEN = About("declared", ("/a", "/b"), 2, frozenset({"r1", "r2"}))
 )
 def test_each_thing_that_changes_is_told(now: About, what: str, before: str, today: str) -> None:
     (change,) = changes(THEN, now)
-    assert (change.what, change.before, change.now) == (what, before, today)
+    assert (change.aspect, change.before, change.now) == (what, before, today)
     assert change_text([change]).endswith(" now")
 
 

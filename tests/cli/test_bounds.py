@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 import rosprivacy
-from rosprivacy.analysis.bounds import BOUNDS, WHAT
+from rosprivacy.analysis.bounds import BOUNDS, COUNTED
 from tests.helpers.command import Cli, refused, run
 from tests.helpers.daily import one_in
 from tests.helpers.policies import document, policy
@@ -160,7 +160,7 @@ def test_the_default_is_refused_above_as_well(
 
 
 def test_every_bound_has_its_rows() -> None:
-    assert {*(name for name, *_ in ROWS), "search_steps", "path_steps", "passed_over"} == set(WHAT)
+    assert {*(name for name, *_ in ROWS), "search_steps", "path_steps", "passed_over"} == set(COUNTED)
 
 
 def test_sources_are_followed_up_to_a_bound(cli: Cli, tmp_path: Path) -> None:

@@ -150,11 +150,11 @@ DEFAULTS = Inputs._field_defaults
 WRITTEN = {name: f"--{name.replace('_', '-')}" for name in DEFAULTS} | {"policies": "POLICY"}
 
 
-def refuse(who: str, takes: str, options: Iterable[str]) -> None:
+def refuse(command: str, takes: str, options: Iterable[str]) -> None:
     """Refuse options that make no sense beside a command or another option."""
     refused = ", ".join(options)
     if refused:
-        raise typer.BadParameter(f"{who} takes {takes}: no {refused}")
+        raise typer.BadParameter(f"{command} takes {takes}: no {refused}")
 
 
 def reads_system(

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from rosprivacy.analysis.bounds import WHAT
+from rosprivacy.analysis.bounds import COUNTED
 from rosprivacy.analysis.modes import View
 
 
@@ -189,7 +189,7 @@ BoundsRaised = Annotated[
     typer.Option(
         metavar="NAME=N",
         show_default=False,
-        help=f"A bound on what is read or made; may be repeated. Names: {', '.join(WHAT)}.",
+        help=f"A bound on what is read or made; may be repeated. Names: {', '.join(COUNTED)}.",
         rich_help_panel=READ,
     ),
 ]

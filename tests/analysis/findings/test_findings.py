@@ -167,7 +167,7 @@ def test_unknown_ends_are_those_of_brute_force(system: System) -> None:
         return
     number = index(system)
     assert {number[end.element]: set(end.categories) for end in found.unknown_ends} == system.brute().unknown_ends()
-    assert all((end.what == "reader") == end.element.is_channel for end in found.unknown_ends)
+    assert all((end.missing == "reader") == end.element.is_channel for end in found.unknown_ends)
 
 
 @given(systems())
