@@ -17,7 +17,7 @@ from markupsafe import Markup, escape
 
 from rosprivacy.report.page.figures import Figures, page_legend
 from rosprivacy.report.page.outline import PARAGRAPHS
-from rosprivacy.report.page.spaced_templates import SpacedTemplates
+from rosprivacy.report.page.spaced_templates import TEMPLATES, CompiledTemplates, SpacedTemplates
 from rosprivacy.report.pictures.looks import INK
 
 if TYPE_CHECKING:
@@ -74,7 +74,12 @@ def environment_of(language: str) -> tuple[Environment, str, str]:
     """Return the templates of a language, the style, the script."""
     loader = SpacedTemplates(language)
     environment = Environment(
-        loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+        loader=loader,
+        bytecode_cache=CompiledTemplates(TEMPLATES, language),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
     )
     css, js = (loader.get_source(environment, name)[0] for name in ("report.css", "report.js"))
     return environment, css, js

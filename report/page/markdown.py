@@ -15,7 +15,7 @@ from markupsafe import Markup
 
 from rosprivacy.report.catalogs.words import NARROW, WIDE
 from rosprivacy.report.page.outline import PARAGRAPHS
-from rosprivacy.report.page.spaced_templates import SpacedTemplates
+from rosprivacy.report.page.spaced_templates import TEMPLATES, CompiledTemplates, SpacedTemplates
 
 if TYPE_CHECKING:
     from rosprivacy.report.page.outline import Outline
@@ -69,6 +69,7 @@ def code(value: str) -> Markup:
 def _environment(language: str) -> Environment:
     environment = Environment(
         loader=SpacedTemplates(language),
+        bytecode_cache=CompiledTemplates(TEMPLATES, f"md-{language}"),
         autoescape=False,  # noqa: S701 - it is not HTML; ``finalize`` escapes every value for Markdown
         finalize=escaped,
         undefined=StrictUndefined,

@@ -6,6 +6,7 @@ Jinja2 escapes every value.
 from __future__ import annotations
 
 from functools import cache
+from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
@@ -23,6 +24,7 @@ from rosprivacy.explorer.web.view import ALL
 from rosprivacy.report.document.analysis import verdict_facts
 from rosprivacy.report.finding_order import place_of
 from rosprivacy.report.page.html import in_html
+from rosprivacy.report.page.spaced_templates import CompiledTemplates
 from rosprivacy.report.pictures.live_svg import Links
 from rosprivacy.report.verdict import doubt_phrases, verdict_meaning
 
@@ -80,7 +82,14 @@ def template(name: str) -> Template:
 @cache
 def _templates() -> Environment:
     loader = PackageLoader("rosprivacy.explorer.web")
-    return Environment(loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    return Environment(
+        loader=loader,
+        bytecode_cache=CompiledTemplates(Path(__file__).parent / "templates"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
 
 
 def render_page(page: Pane, words: Words, picture: Shown, beside: Pane, *, read_only: bool, **more: Any) -> str:
