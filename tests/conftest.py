@@ -41,7 +41,7 @@ GROUPS = {
 }
 
 settings.register_profile("everyday", max_examples=5, deadline=None)
-settings.register_profile("slow", max_examples=50, deadline=None, print_blob=True)
+settings.register_profile("slow", max_examples=25, deadline=None, print_blob=True)
 settings.register_profile("thorough", max_examples=200, deadline=None, print_blob=True)
 
 

@@ -1,4 +1,4 @@
-"""What is run every day of many rows that are alike; all of them run with ``--slow``, as in CI."""
+"""What is run every day of many rows that are alike, what in CI (``--slow``), and what each week (``--thorough``)."""
 
 from __future__ import annotations
 
@@ -10,8 +10,18 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 
+IN_CI = 3  # of the rows that are not for every day, every so many-th
+
+
 def one_in(number: int, rows: Iterable[Any]) -> list[Any]:
-    """Rows of ``parametrize``: the first and every so many-th is for every day, the others are slow."""
-    slow = pytest.mark.slow
-    tuples = [(row, row if isinstance(row, tuple) else (row,)) for row in rows]
-    return [pytest.param(*values, marks=slow) if i % number else row for i, (row, values) in enumerate(tuples)]
+    """Rows of ``parametrize``: the first and every so many-th is for every day; of the others a third is for CI."""
+    chosen: list[Any] = []
+    others = 0
+    for i, row in enumerate(rows):
+        if i % number == 0:
+            chosen.append(row)
+            continue
+        mark = pytest.mark.thorough if others % IN_CI else pytest.mark.slow
+        chosen.append(pytest.param(*(row if isinstance(row, tuple) else (row,)), marks=mark))
+        others += 1
+    return chosen
