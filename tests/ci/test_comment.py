@@ -6,42 +6,42 @@ import json
 import os
 import re
 import subprocess
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import pytest
 import yaml
 
-from tests.helpers.ci_files import (
-    ACTION,
-    CI,
-    FACTORY,
-    FROM_HERE,
-    hostile,
-    planted,
-    tool,
-)
+from tests.helpers.ci_files import ACTION, CI, FACTORY, FROM_HERE, hostile, planted, tool
 from tests.helpers.sarif import HOSTILE
 
+WORKFLOW: Any = yaml.safe_load((CI / "privacy.yml").read_text("utf-8"))
+STEPS = WORKFLOW["jobs"]["paths-to-assess"]["steps"]
+(COMPARING,) = (step for step in STEPS if "NOTHING" in step.get("env", {}))
 pytestmark = pytest.mark.slow  # each comment is made by processes
 
 
 def compare(tmp_path: Path, before: dict[str, Any], after: dict[str, Any]) -> str:
-    files = [tmp_path / "before.json", tmp_path / "after.json"]
-    for file, report in zip(files, (before, after), strict=True):
-        file.write_text(json.dumps(report))
-    done = tool("rosprivacy", "diff", *map(str, files), "--format", "markdown", "--fail-on", "never")
+    for name, report in (("before.json", before), ("after.json", after)):
+        (tmp_path / name).write_text(json.dumps(report))
+    command = ("rosprivacy", "diff", "before.json", "after.json", "--format", "markdown", "--fail-on", "never")
+    done = tool(*command, cwd=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
     return done.stdout
 
 
-def report_of(run: int) -> dict[str, Any]:
+@cache
+def _report_text(run: int) -> str:
     policy = "before" if run < 4 else "after"
-    done = tool(
-        "rosprivacy", "analyze", f"{policy}.policy.xml", "-l", f"run{run}.labels.yaml", "-f", "json", cwd=FACTORY
-    )
-    found: dict[str, Any] = json.loads(done.stdout)
-    return found
+    command = ("rosprivacy", "analyze", f"{policy}.policy.xml", "-l", f"run{run}.labels.yaml", "-f", "json")
+    return tool(*command, cwd=FACTORY).stdout
+
+
+def report_of(run: int) -> dict[str, Any]:
+    """What is said of one of the factory's runs."""
+    report: dict[str, Any] = json.loads(_report_text(run))
+    return report
 
 
 def test_the_comment_says_what_is_new_and_what_is_gone(tmp_path: Path) -> None:
@@ -58,9 +58,7 @@ def test_the_comment_says_what_is_new_and_what_is_gone(tmp_path: Path) -> None:
 
 def test_what_was_not_analysed_before_is_all_new(tmp_path: Path) -> None:
     """The report that the workflow takes in its place."""
-    steps = yaml.safe_load((CI / "privacy.yml").read_text("utf-8"))["jobs"]["paths-to-assess"]["steps"]
-    (nothing,) = (step["env"]["NOTHING"] for step in steps if "NOTHING" in step.get("env", {}))
-    (tmp_path / "nothing.xml").write_text(nothing, "utf-8")
+    (tmp_path / "nothing.xml").write_text(COMPARING["env"]["NOTHING"], "utf-8")
     before = tool("rosprivacy", "analyze", "nothing.xml", "--fail-on", "never", "--format", "json", cwd=tmp_path)
     comment = compare(tmp_path, json.loads(before.stdout), report_of(2))
     assert "**New paths to assess: 2**" in comment
@@ -96,16 +94,11 @@ def test_long_lists_are_cut_and_say_so(tmp_path: Path) -> None:
     assert len(comment) < 10_000
 
 
-def workflow() -> Any:
-    return yaml.safe_load((CI / "privacy.yml").read_text("utf-8"))
-
-
 def say_what_changes(runner: dict[str, str], checkout: Path, outcome: str, **more: str) -> str:
     """Run that step of the workflow, after an analysis of the pull request; return its comment."""
-    (step,) = (step for step in workflow()["jobs"]["paths-to-assess"]["steps"] if "NOTHING" in step.get("env", {}))
-    variables = {name: value for name, value in step["env"].items() if "${{" not in value} | {"BEFORE": outcome}
+    variables = {name: value for name, value in COMPARING["env"].items() if "${{" not in value} | {"BEFORE": outcome}
     environment = {**os.environ, **runner, **variables, **more, "FORK": "true"}
-    command = ["bash", "--noprofile", "--norc", "-eo", "pipefail", "-c", step["run"]]
+    command = ["bash", "--noprofile", "--norc", "-eo", "pipefail", "-c", COMPARING["run"]]
     done = subprocess.run(command, cwd=checkout, env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     return Path(runner["GITHUB_STEP_SUMMARY"]).read_text("utf-8")
@@ -136,24 +129,22 @@ def test_nothing_of_a_hostile_checkout_runs_while_it_is_compared(runner: dict[st
 
 def test_who_reads_a_pull_request_can_write_nothing() -> None:
     """And who can write checks nothing out; the baseline is made before the pull request is there."""
-    assert workflow()["permissions"] == {}
-    for job in workflow()["jobs"].values():
+    assert WORKFLOW["permissions"] == {}
+    for job in WORKFLOW["jobs"].values():
         outs = [step["with"] for step in job["steps"] if step.get("uses", "").startswith("actions/checkout@")]
         assert all(out["persist-credentials"] is False for out in outs)
         assert not outs or job["permissions"] == {"contents": "read"}
-    steps = workflow()["jobs"]["paths-to-assess"]["steps"]
-    at = {step.get("name"): i for i, step in enumerate(steps)}
+    at = {step.get("name"): i for i, step in enumerate(STEPS)}
     assert at["Check out what the pull request is for"] < at["As it is"] < at["Check out what would be"]
     assert at["Check out what would be"] < at["As it would be"] < at["Say what changes"]
     for name in ("As it is", "As it would be"):
-        assert all(steps[at[name]]["with"][kind].startswith("${{ runner.temp }}/") for kind in ("sarif", "json"))
+        assert all(STEPS[at[name]]["with"][kind].startswith("${{ runner.temp }}/") for kind in ("sarif", "json"))
 
 
 def test_the_workflow_runs_what_is_there() -> None:
-    steps = workflow()["jobs"]["paths-to-assess"]["steps"]
     inputs = yaml.safe_load(ACTION.read_text("utf-8"))["inputs"]
-    ours = [step["with"] for step in steps if step.get("uses", "").endswith("/rosprivacy@main")]
+    ours = [step["with"] for step in STEPS if step.get("uses", "").endswith("/rosprivacy@main")]
     assert len(ours) == 2
     assert all(set(given) <= set(inputs) for given in ours)
-    assert "pull_request_target" not in workflow()[True]  # YAML reads 'on' so
-    assert not any("${{" in step.get("run", "") for job in workflow()["jobs"].values() for step in job["steps"])
+    assert "pull_request_target" not in WORKFLOW[True]  # YAML reads 'on' so
+    assert not any("${{" in step.get("run", "") for job in WORKFLOW["jobs"].values() for step in job["steps"])
