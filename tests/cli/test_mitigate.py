@@ -381,6 +381,16 @@ def test_several_kinds_get_a_proposal_each_and_one_together(cli: Cli) -> None:
     assert all(proposal["proven"] for proposal in report["proposals"])
 
 
+def test_a_flow_that_a_person_states_is_named_by_its_line(cli: Cli, tmp_path: Path) -> None:
+    """S9: it has no profile and no enclave."""
+    (tmp_path / "l.yaml").write_text(
+        "labels: 1\nnodes: {/safety_camera: {source: [Video]}}\nelements: {disk: {kind: storage, leak: [Video]}}\n"
+        "flows:\n  - {from: /safety_camera, to: disk}\ntopics: {/safety_video: mundane}\n"
+    )
+    text = cli("mitigate", BEFORE, "-l", "l.yaml", "--by", "filter", cwd=tmp_path).stdout
+    assert "l.yaml:5  stated flow\n" in text
+
+
 def test_a_sanitizer_that_reads_a_wildcard_which_a_source_names(cli: Cli, tmp_path: Path) -> None:
     """S7: a source names channels. That a wildcard gets past a filter to a node makes that node none of them."""
     (tmp_path / "p.xml").write_text(short_policy("/cam>/*", "/clean>/out</*", "/up</*"))
