@@ -164,6 +164,7 @@ def test_what_makes_no_sense_for_a_command_is_refused_in_one_wording(cli: Cli, c
         ([*FLEETS, "p.xml"], f"{NAMED} POLICY"),
         ([*FLEETS, *SYSTEM], f"{NAMED} POLICY, --labels"),
         ([*FLEETS, "--add", "g.json"], f"{NAMED} --add"),
+        (["--from-database", "p.xml"], f"{STORED} POLICY"),
         (["--from-database", "--add", "g.json"], f"{STORED} --add"),
         (["--from-database", *FLEETS], f"{STORED} --fleet"),
         (
