@@ -35,7 +35,7 @@ OLDER = {
     "analysis.kernel": 1,
     "analysis.model": 3,
     "analysis.suggesting": 56,
-    "cli": 6,
+    "cli": 1,
     "explorer": 35,
     "explorer.web": 30,
     "ingest": 1,

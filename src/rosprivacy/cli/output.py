@@ -71,10 +71,10 @@ def _encoding(text: str) -> str:
     return "utf-8" if text.startswith(("{", "@prefix")) else sys.stdout.encoding
 
 
-def not_for_a_terminal(what: str, output: Path | None) -> None:
+def not_for_a_terminal(form: str, output: Path | None) -> None:
     """Refuse to pour into a terminal what nobody reads there, before anything is computed."""
     if output is None and sys.stdout is not None and sys.stdout.isatty():
-        raise InputError("standard output", 0, f"{what} is not for a terminal", "name a file with --output, or pipe it")
+        raise InputError("standard output", 0, f"{form} is not for a terminal", "name a file with --output, or pipe it")
 
 
 def on_console(write: Callable[[Console], None], *, colour: bool) -> str:
@@ -88,7 +88,7 @@ def on_console(write: Callable[[Console], None], *, colour: bool) -> str:
     return text.getvalue()
 
 
-def progress_of(files: Sequence[str], what: str = "policies") -> Iterable[str]:
+def progress_of(files: Sequence[str], inputs: str = "policies") -> Iterable[str]:
     """Show a bar on a terminal when there is much to read."""
     many = 20
     if len(files) < many or not sys.stderr.isatty():
@@ -96,4 +96,4 @@ def progress_of(files: Sequence[str], what: str = "policies") -> Iterable[str]:
     from rich.console import Console
     from rich.progress import track
 
-    return track(files, description=f"Reading {what}", console=Console(stderr=True), transient=True)
+    return track(files, description=f"Reading {inputs}", console=Console(stderr=True), transient=True)
