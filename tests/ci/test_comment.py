@@ -6,89 +6,76 @@ import json
 import os
 import re
 import subprocess
-from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 import yaml
 
-from tests.helpers.ci_files import ACTION, CI, FACTORY, FROM_HERE, hostile, planted, tool
+import rosprivacy
+from tests.helpers.ci_files import ACTION, CI, FACTORY, FROM_HERE, hostile, planted
 from tests.helpers.sarif import HOSTILE
+
+if TYPE_CHECKING:
+    from tests.helpers.command import Cli
 
 WORKFLOW: Any = yaml.safe_load((CI / "privacy.yml").read_text("utf-8"))
 STEPS = WORKFLOW["jobs"]["paths-to-assess"]["steps"]
 (COMPARING,) = (step for step in STEPS if "NOTHING" in step.get("env", {}))
-pytestmark = pytest.mark.slow  # each comment is made by processes
 
 
-def compare(tmp_path: Path, before: dict[str, Any], after: dict[str, Any]) -> str:
+def compare(cli: Cli, folder: Path, before: dict[str, Any], after: dict[str, Any]) -> str:
     for name, report in (("before.json", before), ("after.json", after)):
-        (tmp_path / name).write_text(json.dumps(report))
-    command = ("rosprivacy", "diff", "before.json", "after.json", "--format", "markdown", "--fail-on", "never")
-    done = tool(*command, cwd=tmp_path)
+        (folder / name).write_text(json.dumps(report))
+    done = cli("diff", "before.json", "after.json", "--format", "markdown", "--fail-on", "never", cwd=folder)
     assert (done.returncode, done.stderr) == (0, "")
     return done.stdout
 
 
-@cache
-def _report_text(run: int) -> str:
-    policy = "before" if run < 4 else "after"
-    command = ("rosprivacy", "analyze", f"{policy}.policy.xml", "-l", f"run{run}.labels.yaml", "-f", "json")
-    return tool(*command, cwd=FACTORY).stdout
-
-
 def report_of(run: int) -> dict[str, Any]:
     """What is said of one of the factory's runs."""
-    report: dict[str, Any] = json.loads(_report_text(run))
+    policy = FACTORY / f"{'before' if run < 4 else 'after'}.policy.xml"
+    report: dict[str, Any] = json.loads(rosprivacy.analyze(policy, FACTORY / f"run{run}.labels.yaml").to("json"))
     return report
 
 
-def test_the_comment_says_what_is_new_and_what_is_gone(tmp_path: Path) -> None:
+def test_the_comment_says_what_is_new_and_what_is_gone(cli: Cli, tmp_path: Path) -> None:
     run1, run2, run5 = report_of(1), report_of(2), report_of(5)
-    new = compare(tmp_path, run1, run2)
+    new = compare(cli, tmp_path, run1, run2)
     assert "**New paths to assess: 2**" in new
-    assert "- `Video`: `node /safety_camera` → `node /archive_server`, allowed at `before.policy.xml:14`\n" in new
+    assert "- `Video`: `node /safety_camera` → `node /archive_server`, allowed at `" in new
+    assert "before.policy.xml:14`\n" in new
     assert "Verdict: `undetermined` before, `leak` now." in new
-    assert "**Gone: 2**" in compare(tmp_path, run2, run5)
-    same = compare(tmp_path, run2, run2)
+    assert "**Gone: 2**" in compare(cli, tmp_path, run2, run5)
+    same = compare(cli, tmp_path, run2, run2)
     assert "No path to assess is new, gone or changed." in same
     assert "this is no legal verdict" in same
 
 
-def test_what_was_not_analysed_before_is_all_new(tmp_path: Path) -> None:
+def test_what_was_not_analysed_before_is_all_new(cli: Cli, tmp_path: Path) -> None:
     """The report that the workflow takes in its place."""
     (tmp_path / "nothing.xml").write_text(COMPARING["env"]["NOTHING"], "utf-8")
-    before = tool("rosprivacy", "analyze", "nothing.xml", "--fail-on", "never", "--format", "json", cwd=tmp_path)
-    comment = compare(tmp_path, json.loads(before.stdout), report_of(2))
+    before = cli("analyze", "nothing.xml", "--fail-on", "never", "--format", "json", cwd=tmp_path)
+    comment = compare(cli, tmp_path, json.loads(before.stdout), report_of(2))
     assert "**New paths to assess: 2**" in comment
     assert "Verdict: `undetermined` before, `leak` now." in comment
     assert "Asked otherwise" not in comment
 
 
-def test_no_name_can_link_or_mention_anybody(tmp_path: Path) -> None:
+def test_no_name_can_link_or_mention_anybody_and_long_lists_are_cut(cli: Cli, tmp_path: Path) -> None:
     after = report_of(2)
-    for finding in after["findings"]:
-        finding["leak"]["name"] = f"`@everyone ![x](http://e)\n# {HOSTILE}"
-        finding["leak"]["robot"] = "`<img>"
-        finding["witness"][-1] = finding["leak"]
-    comment = compare(tmp_path, report_of(1), after)
-    (line, *_) = [line for line in comment.splitlines() if "@everyone" in line]
-    spans = re.fullmatch(r"- `[^`]+`: `[^`]+` → `[^`]+`, allowed at `[^`]+`", line)
-    assert spans  # all that is named is inside code
-    assert len(line) < 400
-    assert line.isprintable()
-
-
-def test_long_lists_are_cut_and_say_so(tmp_path: Path) -> None:
-    after = report_of(2)
-    one = after["findings"][0]
-    leaks = [{**one["leak"], "name": f"/l{i}x"} for i in range(500)]
-    witness = one["witness"][:-1]
+    first = after["findings"][0]
+    names = [f"`@everyone ![x](http://e)\n# {HOSTILE}{i}" for i in range(500)]
+    leaks = [{**first["leak"], "name": name, "robot": "`<img>"} for name in names]
     after["findings"] = [
-        {**one, "id": f"{i:016x}", "leak": leak, "witness": [*witness, leak]} for i, leak in enumerate(leaks)
+        {**first, "id": f"{i:016x}", "leak": leak, "witness": [*first["witness"][:-1], leak]}
+        for i, leak in enumerate(leaks)
     ]
-    comment = compare(tmp_path, report_of(1), after)
+    comment = compare(cli, tmp_path, report_of(1), after)
+    lines = [line for line in comment.splitlines() if "@everyone" in line]
+    inside_code = re.compile(r"- `[^`]+`: `[^`]+` → `[^`]+`, allowed at `[^`]+`")
+    assert all(inside_code.fullmatch(line) and len(line) < 400 and line.isprintable() for line in lines)
+    assert lines
     assert "**New paths to assess: 500**" in comment
     assert "- and 480 more" in comment
     assert len(comment) < 10_000
@@ -104,6 +91,7 @@ def say_what_changes(runner: dict[str, str], checkout: Path, outcome: str, **mor
     return Path(runner["GITHUB_STEP_SUMMARY"]).read_text("utf-8")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("outcome", ["failure", "success"])
 def test_a_pull_request_is_not_its_own_baseline(outcome: str, runner: dict[str, str], tmp_path: Path) -> None:
     """It brings a before.json that says that nothing is new; and an analysis that failed leaves one half done."""
@@ -118,6 +106,7 @@ def test_a_pull_request_is_not_its_own_baseline(outcome: str, runner: dict[str, 
     assert "Verdict: `undetermined` before, `leak` now." in comment
 
 
+@pytest.mark.slow
 def test_nothing_of_a_hostile_checkout_runs_while_it_is_compared(runner: dict[str, str], tmp_path: Path) -> None:
     trace = hostile(tmp_path / "checkout")
     for name in ("before.json", "after.json"):
