@@ -1,12 +1,11 @@
 """Mutated policies and label files: a result, or one line for each problem; nothing else, and nothing opened outside.
 
-The mutations and ``Guard`` are in ``fuzz_corpus.py``, which does the same with real policies, by the thousand.
+Of files as people write them; ``tests/fuzzing`` does the same with what grammars make, for every reader.
 """
 
 from __future__ import annotations
 
 import json
-import runpy
 import subprocess
 import sys
 import tempfile
@@ -21,15 +20,15 @@ import rosprivacy
 from rosprivacy.analysis.errors import InputErrors, LabelError
 from rosprivacy.ingest.labels.label_file import read_labels
 from rosprivacy.ingest.policies.policy_xml import read_policy
-from rosprivacy.ingest.policies.saved_graph import as_dict, read_saved
+from rosprivacy.ingest.policies.saved_graph import as_dict
 from rosprivacy.ontology.vocabulary import load
-from tests.helpers.paths import ROOT, TESTS
+from tests.fuzzing.mutations import Guard, hide, mutate, outcome, plant, words
+from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from random import Random
 
-FUZZ = runpy.run_path(str(TESTS / "fuzz_corpus.py"))
 FACTORY = ROOT / "examples" / "factory"
 
 POLICY = """<?xml version="1.0" encoding="UTF-8"?>
@@ -64,6 +63,23 @@ POLICY = """<?xml version="1.0" encoding="UTF-8"?>
 OLD = """<policy version="0.1.0"><profiles>
 <profile ns="/" node="a"><topics publish="ALLOW"><topic>~x</topic></topics></profile></profiles></policy>
 """
+LABELS = """\
+labels: 1
+nodes:
+  /safety_camera: {source: [Video], note: a}
+  /robot_camera: {source: {Video: [/robot_video]}}
+  "/arch*": {leak: [Video, Voice], derives: [{from: Video, to: FaceTemplate}]}
+  /navigator: conduit
+  /emergency_stop: {sanitizer: {Video: pseudonymise, Voice: drop}, conduit: [Location]}
+channels:
+  /new_pose: mundane
+  /safety_video: sensitive
+  /robot_video: {only: [Video], note: b}
+services:
+  "/*": {never: [Health]}
+flows:
+  - {from: /navigator, to: /new_pose, never: [Video]}
+"""
 NAMES = "labels: 1\nnodes:\n  '*': {source: [Video], leak: [Voice], derives: [{from: Video, to: Voice}]}\n"
 SIX = '{\n\t"source": ["/robot_camera"],\n\t"leak": ["/archive_server"],\n\t"mundane": []\n}\n'
 
@@ -85,22 +101,21 @@ def root() -> Iterator[Path]:
     with tempfile.TemporaryDirectory() as folder:
         root, outside = Path(folder, "root"), Path(folder, "outside")
         root.mkdir()
-        FUZZ["hide"](outside)
-        FUZZ["plant"](root, outside)
+        hide(outside)
+        plant(root, outside)
         (root / "node.xml").write_bytes((FACTORY / "node.xml").read_bytes())
         (root / "names.yaml").write_text(NAMES)
         yield root
 
 
-def never_crashes(root: Path, random: Random, kind: str, seeds: list[bytes], read: Callable[[Path], Any]) -> str:
+def never_crashes(root: Path, random: Random, kind: str, seeds: list[bytes], read: Callable[[Path], Any]) -> None:
     """Write a mutated seed and read it; nothing outside is opened."""
     outside = root.parent / "outside"
     file = root / f"mutated.{kind}"
-    file.write_bytes(FUZZ["mutate"](random, random.choice(seeds), FUZZ["words"](kind, outside)))
-    with FUZZ["Guard"](outside) as guard:
-        result: str = FUZZ["outcome"](lambda: read(file))
+    file.write_bytes(mutate(random, random.choice(seeds), words(kind, outside)))
+    with Guard(outside) as guard:
+        outcome(lambda: read(file))
     assert guard.opened == []
-    return result
 
 
 def policies() -> list[bytes]:
@@ -109,7 +124,7 @@ def policies() -> list[bytes]:
 
 def labels() -> list[bytes]:
     files = [path.read_bytes() for path in sorted(FACTORY.glob("*.labels.yaml"))]
-    return [*files, SIX.encode(), FUZZ["LABELS"].encode(), FUZZ["LABELS"].encode()]
+    return [*files, SIX.encode(), LABELS.encode(), LABELS.encode()]
 
 
 # ---------------------------------------------------------------- the net has no holes
@@ -128,10 +143,10 @@ def test_the_seeds_are_good(root: Path) -> None:
 def test_the_guard_sees_what_python_and_what_c_opens(root: Path) -> None:
     from lxml import etree
 
-    with FUZZ["Guard"](root.parent / "outside") as guard:
+    with Guard(root.parent / "outside") as guard:
         (root / "link.xml").read_text()
         assert len(guard.check()) > 0
-    with FUZZ["Guard"](root.parent / "outside") as guard:
+    with Guard(root.parent / "outside") as guard:
         etree.parse(str(root / "link.xml"))
         assert guard.check() == ["secret.xml"]
 
@@ -140,35 +155,20 @@ def test_an_outcome_is_accepted_or_refused_and_nothing_else() -> None:
     def refuse(problem: str) -> None:
         raise InputErrors([LabelError("f", 1, problem, "do")])
 
-    assert FUZZ["outcome"](lambda: None) == "accepted"
-    assert FUZZ["outcome"](lambda: refuse("bad")) == "refused"
+    assert outcome(lambda: None) == "accepted"
+    assert outcome(lambda: refuse("bad")) == "refused"
     with pytest.raises(AssertionError):
-        FUZZ["outcome"](lambda: refuse("two\nlines"))
+        outcome(lambda: refuse("two\nlines"))
     with pytest.raises(AssertionError):
-        FUZZ["outcome"](lambda: ["/outside_the_root"])
+        outcome(lambda: ["/outside_the_root"])
     with pytest.raises(ZeroDivisionError):
-        FUZZ["outcome"](lambda: 1 / 0)
+        outcome(lambda: 1 / 0)
 
 
 # ---------------------------------------------------------------- mutations
 
 
-def _policy(root: Path, random: Random) -> None:
-    never_crashes(root, random, "policy", policies(), lambda file: read_policy(str(file)))
-
-
-def _fragment(root: Path, random: Random) -> None:
-    (root / "p.xml").write_text(POLICY.replace("node.xml", "mutated.policy"))
-    seeds = [(FACTORY / "node.xml").read_bytes()]
-    never_crashes(root, random, "policy", seeds, lambda _: read_policy(str(root / "p.xml")))
-
-
-def _label(root: Path, random: Random) -> None:
-    vocabulary = load()
-    never_crashes(root, random, "label", labels(), lambda file: read_labels(str(file), vocabulary))
-
-
-def _analysis_of_policy(root: Path, random: Random) -> None:
+def policy(root: Path, random: Random) -> None:
     def analyse(file: Path) -> Any:
         view: Any = random.choice(("declared", "enforced"))
         return rosprivacy.analyze([str(file)], [str(root / "names.yaml")], view=view, paths="all").document()
@@ -176,40 +176,37 @@ def _analysis_of_policy(root: Path, random: Random) -> None:
     never_crashes(root, random, "policy", policies(), analyse)
 
 
-def _analysis_of_label(root: Path, random: Random) -> None:
-    policy = str(FACTORY / "after.policy.xml")
-    never_crashes(root, random, "label", labels(), lambda file: rosprivacy.analyze([policy], [str(file)]).document())
+def fragment(root: Path, random: Random) -> None:
+    (root / "p.xml").write_text(POLICY.replace("node.xml", "mutated.policy"))
+    seeds = [(FACTORY / "node.xml").read_bytes()]
+    never_crashes(root, random, "policy", seeds, lambda _: read_policy(str(root / "p.xml")))
 
 
-def _saved_graph(root: Path, random: Random) -> None:
+def label_file(root: Path, random: Random) -> None:
+    after = str(FACTORY / "after.policy.xml")
+    never_crashes(root, random, "label", labels(), lambda file: rosprivacy.analyze([after], [str(file)]).document())
+
+
+def saved_graph(root: Path, random: Random) -> None:
     (root / "p.xml").write_text(POLICY)
     seed = json.dumps(as_dict([read_policy(str(root / "p.xml"))]), indent=1)
 
     def add(file: Path) -> Any:
-        read_saved(str(file))
         return rosprivacy.analyze([], [str(root / "names.yaml")], add=(str(file),)).document()
 
     never_crashes(root, random, "label", [seed.encode()], add)
 
 
-TARGETS = [_policy, _fragment, _label, _analysis_of_policy, _analysis_of_label, _saved_graph]
-
-
 @pytest.mark.slow
-@pytest.mark.parametrize("target", TARGETS, ids=lambda target: target.__name__.strip("_"))
-def test_a_mutation_is_read_or_refused(root: Path, target: Callable[[Path, Random], None]) -> None:
-    @WEEKDAYS
-    @given(DICE)
-    def mutations(random: Random) -> None:
-        target(root, random)
+@pytest.mark.parametrize("target", [policy, fragment, label_file, saved_graph], ids=lambda target: target.__name__)
+def test_a_mutation_is_read_or_refused(
+    root: Path,
+    target: Callable[[Path, Random], None],
+    thorough: bool,  # noqa: FBT001 - a fixture
+) -> None:
+    """Some for each change, the same ones; each week thousands of others."""
 
-    mutations()
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("target", TARGETS, ids=lambda target: target.__name__.strip("_"))
-def test_thousands_of_mutations_are_read_or_refused(root: Path, target: Callable[[Path, Random], None]) -> None:
-    @SUNDAYS
+    @(SUNDAYS if thorough else WEEKDAYS)
     @given(DICE)
     def mutations(random: Random) -> None:
         target(root, random)
@@ -224,8 +221,8 @@ def test_thousands_of_mutations_are_read_or_refused(root: Path, target: Callable
 @given(st.binary(max_size=200))
 def test_any_bytes_are_refused_as_policy_and_labels(root: Path, data: bytes) -> None:
     (root / "any").write_bytes(data)
-    assert FUZZ["outcome"](lambda: read_policy(str(root / "any"))) == "refused"
-    FUZZ["outcome"](lambda: read_labels(str(root / "any"), load()))
+    assert outcome(lambda: read_policy(str(root / "any"))) == "refused"
+    outcome(lambda: read_labels(str(root / "any"), load()))
 
 
 XML_TEXT = st.text(st.characters(exclude_categories=["Cs", "Cc"], exclude_characters="\ufffe\uffff"), max_size=8)
@@ -244,7 +241,7 @@ def test_any_names_are_carried_through_to_the_report(root: Path, ns: str, node: 
     (root / "names.xml").write_text(head + profile + tail, "utf-8")
     (root / "mundane.yaml").write_text("labels: 1\nchannels: {'*': mundane}")
     files = [str(root / "names.xml")], [str(root / "names.yaml"), str(root / "mundane.yaml")]
-    FUZZ["outcome"](lambda: rosprivacy.analyze(*files).document())
+    outcome(lambda: rosprivacy.analyze(*files).document())
 
 
 # ---------------------------------------------------------------- small files that cost much

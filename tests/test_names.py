@@ -30,7 +30,6 @@ STORED = {
 # Wings whose names are older than this rule: how many such names each has. A number only falls.
 OLDER = {
     "analysis.suggesting": 56,
-    "cli": 3,
     "explorer": 35,
     "explorer.web": 30,
     "ingest.database": 2,

@@ -13,17 +13,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from tests.helpers.ci_files import (
-    ACTION,
-    CI,
-    FACTORY,
-    FROM_HERE,
-    HOSTED,
-    hooks_repository,
-    hostile,
-    planted,
-    tool,
-)
+from tests.helpers.ci_files import ACTION, CI, FACTORY, FROM_HERE, HOSTED, hooks_repository, hostile, planted, tool
 from tests.helpers.paths import ROOT
 from tests.helpers.sarif import checked
 
@@ -97,14 +87,6 @@ def test_the_action_fails_when_it_is_told_to(fail_on: str, code: int, runner: di
     assert view == ("enforced" if fail_on == "never" else "declared")
 
 
-def test_bad_input_ends_the_action_with_the_problem(runner: dict[str, str], tmp_path: Path) -> None:
-    *_, done = run_action({"policies": "-x; echo hello"}, runner, tmp_path)
-    assert done.returncode == 2
-    assert "-x; echo hello: " in done.stderr
-    assert done.stdout.splitlines()[-1].startswith("::")  # commands are read again
-    assert "hello" not in done.stdout
-
-
 def test_nothing_of_a_hostile_checkout_runs_in_the_action(runner: dict[str, str], tmp_path: Path) -> None:
     checkout = tmp_path / "checkout"
     shutil.copytree(FACTORY, checkout / "p")
@@ -122,12 +104,15 @@ def test_nothing_of_a_hostile_checkout_runs_in_the_action(runner: dict[str, str]
     assert json.loads((checkout / "rosprivacy.json").read_text("utf-8"))["verdict"] == "leak"
 
 
-def test_an_answer_that_the_checkout_brings_is_not_taken_for_ours(runner: dict[str, str], tmp_path: Path) -> None:
-    """If the analysis fails, a later step must not find one."""
+def test_bad_input_ends_the_action_with_the_problem(runner: dict[str, str], tmp_path: Path) -> None:
+    """No input is part of a script; and answers that the checkout brings are not there for a later step."""
     for name in ("rosprivacy.sarif", "rosprivacy.json"):
         planted(tmp_path / "checkout" / name, '{"verdict": "no-leak-found", "findings": []}')
-    *_, done = run_action({"policies": "none.policy.xml"}, runner, tmp_path / "checkout")
+    *_, done = run_action({"policies": "-x; echo hello"}, runner, tmp_path / "checkout")
     assert done.returncode == 2
+    assert "-x; echo hello: " in done.stderr
+    assert done.stdout.splitlines()[-1].startswith("::")  # commands are read again
+    assert "hello" not in done.stdout
     assert list((tmp_path / "checkout").iterdir()) == []
     assert not Path(runner["GITHUB_OUTPUT"]).exists()
 
@@ -143,18 +128,13 @@ def test_the_action_writes_through_no_linked_folder(runner: dict[str, str], tmp_
     assert (tmp_path / "elsewhere" / "out.json").read_text("utf-8") == "mine"
 
 
-def test_nothing_of_a_hostile_checkout_runs_while_the_action_installs(tmp_path: Path) -> None:
+def test_nothing_of_a_hostile_checkout_runs_while_the_action_installs(runner: dict[str, str], tmp_path: Path) -> None:
     """The first step too; and what it installs is what the lock names."""
     action, checkout = hooks_repository(tmp_path / "action"), tmp_path / "checkout"
     shutil.copytree(FACTORY, checkout / "p")
     trace = hostile(checkout)
-    (tmp_path / "temp").mkdir()
-    runner = {
-        "RUNNER_TEMP": str(tmp_path / "temp"),
-        "GITHUB_ACTION_PATH": str(action),
-        "GITHUB_OUTPUT": str(tmp_path / "output"),
-        "GITHUB_STEP_SUMMARY": str(tmp_path / "summary.md"),
-    }
+    shutil.rmtree(runner["RUNNER_TEMP"] + "/rosprivacy")
+    runner["GITHUB_ACTION_PATH"] = str(action)
     inputs = {"policies": "p/before.policy.xml", "labels": "p/run2.labels.yaml", "python": sys.executable}
     done = run_action(inputs, {**runner, **FROM_HERE}, checkout)
     assert not trace.exists(), trace.read_text("utf-8")
@@ -173,29 +153,13 @@ def alike(pin: str) -> str:
     return re.sub("[-_.]+", "-", pin.lower())
 
 
-def test_a_file_with_another_hash_is_not_installed(tmp_path: Path) -> None:
+def test_a_file_with_another_hash_is_not_installed(runner: dict[str, str], tmp_path: Path) -> None:
     action = hooks_repository(tmp_path / "action")
     lock = (action / "requirements.lock").read_text("utf-8")
     (action / "requirements.lock").write_text(re.sub("sha256:[0-9a-f]{8}", "sha256:00000000", lock), "utf-8")
-    (tmp_path / "temp").mkdir()
-    runner = {"RUNNER_TEMP": str(tmp_path / "temp"), "GITHUB_ACTION_PATH": str(action)}
+    shutil.rmtree(runner["RUNNER_TEMP"] + "/rosprivacy")
+    runner["GITHUB_ACTION_PATH"] = str(action)
     (done,) = run_action({"python": sys.executable, "policies": "p"}, runner, tmp_path)
     assert done.returncode == 1
     assert "DO NOT MATCH THE HASHES" in done.stderr
     assert not (tmp_path / "temp" / "rosprivacy" / "bin" / "rosprivacy").exists()
-
-
-def test_the_action_installs_itself(tmp_path: Path) -> None:
-    shutil.copytree(FACTORY, tmp_path / "p")
-    (tmp_path / "temp").mkdir()
-    runner = {
-        "RUNNER_TEMP": str(tmp_path / "temp"),
-        "GITHUB_ACTION_PATH": str(hooks_repository(tmp_path / "action")),
-        "GITHUB_OUTPUT": str(tmp_path / "output"),
-        "GITHUB_STEP_SUMMARY": str(tmp_path / "summary.md"),
-        "PYTHONPATH": "",
-    }
-    inputs = {"policies": "p/after.policy.xml", "labels": "p/run5.labels.yaml", "python": sys.executable}
-    done = run_action(inputs, runner, tmp_path)
-    assert [step.returncode for step in done] == [0, 0], done[-1].stderr
-    assert outputs(runner) == {"verdict": "no-leak-found", "findings": "0"}

@@ -7,110 +7,91 @@ import os
 import re
 import subprocess
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 import yaml
 
-from tests.helpers.ci_files import (
-    ACTION,
-    CI,
-    FACTORY,
-    FROM_HERE,
-    hostile,
-    planted,
-    tool,
-)
+import rosprivacy
+from tests.helpers.ci_files import ACTION, CI, FACTORY, FROM_HERE, hostile, planted
 from tests.helpers.sarif import HOSTILE
 
-pytestmark = pytest.mark.slow  # each comment is made by processes
+if TYPE_CHECKING:
+    from tests.helpers.command import Cli
+
+WORKFLOW: Any = yaml.safe_load((CI / "privacy.yml").read_text("utf-8"))
+STEPS = WORKFLOW["jobs"]["paths-to-assess"]["steps"]
+(COMPARING,) = (step for step in STEPS if "NOTHING" in step.get("env", {}))
 
 
-def compare(tmp_path: Path, before: dict[str, Any], after: dict[str, Any]) -> str:
-    files = [tmp_path / "before.json", tmp_path / "after.json"]
-    for file, report in zip(files, (before, after), strict=True):
-        file.write_text(json.dumps(report))
-    done = tool("rosprivacy", "diff", *map(str, files), "--format", "markdown", "--fail-on", "never")
+def compare(cli: Cli, folder: Path, before: dict[str, Any], after: dict[str, Any]) -> str:
+    for name, report in (("before.json", before), ("after.json", after)):
+        (folder / name).write_text(json.dumps(report))
+    done = cli("diff", "before.json", "after.json", "--format", "markdown", "--fail-on", "never", cwd=folder)
     assert (done.returncode, done.stderr) == (0, "")
     return done.stdout
 
 
 def report_of(run: int) -> dict[str, Any]:
-    policy = "before" if run < 4 else "after"
-    done = tool(
-        "rosprivacy", "analyze", f"{policy}.policy.xml", "-l", f"run{run}.labels.yaml", "-f", "json", cwd=FACTORY
-    )
-    found: dict[str, Any] = json.loads(done.stdout)
-    return found
+    """What is said of one of the factory's runs."""
+    policy = FACTORY / f"{'before' if run < 4 else 'after'}.policy.xml"
+    report: dict[str, Any] = json.loads(rosprivacy.analyze(policy, FACTORY / f"run{run}.labels.yaml").to("json"))
+    return report
 
 
-def test_the_comment_says_what_is_new_and_what_is_gone(tmp_path: Path) -> None:
+def test_the_comment_says_what_is_new_and_what_is_gone(cli: Cli, tmp_path: Path) -> None:
     run1, run2, run5 = report_of(1), report_of(2), report_of(5)
-    new = compare(tmp_path, run1, run2)
+    new = compare(cli, tmp_path, run1, run2)
     assert "**New paths to assess: 2**" in new
-    assert "- `Video`: `node /safety_camera` → `node /archive_server`, allowed at `before.policy.xml:14`\n" in new
+    assert "- `Video`: `node /safety_camera` → `node /archive_server`, allowed at `" in new
+    assert "before.policy.xml:14`\n" in new
     assert "Verdict: `undetermined` before, `leak` now." in new
-    assert "**Gone: 2**" in compare(tmp_path, run2, run5)
-    same = compare(tmp_path, run2, run2)
+    assert "**Gone: 2**" in compare(cli, tmp_path, run2, run5)
+    same = compare(cli, tmp_path, run2, run2)
     assert "No path to assess is new, gone or changed." in same
     assert "this is no legal verdict" in same
 
 
-def test_what_was_not_analysed_before_is_all_new(tmp_path: Path) -> None:
+def test_what_was_not_analysed_before_is_all_new(cli: Cli, tmp_path: Path) -> None:
     """The report that the workflow takes in its place."""
-    steps = yaml.safe_load((CI / "privacy.yml").read_text("utf-8"))["jobs"]["paths-to-assess"]["steps"]
-    (nothing,) = (step["env"]["NOTHING"] for step in steps if "NOTHING" in step.get("env", {}))
-    (tmp_path / "nothing.xml").write_text(nothing, "utf-8")
-    before = tool("rosprivacy", "analyze", "nothing.xml", "--fail-on", "never", "--format", "json", cwd=tmp_path)
-    comment = compare(tmp_path, json.loads(before.stdout), report_of(2))
+    (tmp_path / "nothing.xml").write_text(COMPARING["env"]["NOTHING"], "utf-8")
+    before = cli("analyze", "nothing.xml", "--fail-on", "never", "--format", "json", cwd=tmp_path)
+    comment = compare(cli, tmp_path, json.loads(before.stdout), report_of(2))
     assert "**New paths to assess: 2**" in comment
     assert "Verdict: `undetermined` before, `leak` now." in comment
     assert "Asked otherwise" not in comment
 
 
-def test_no_name_can_link_or_mention_anybody(tmp_path: Path) -> None:
+def test_no_name_can_link_or_mention_anybody_and_long_lists_are_cut(cli: Cli, tmp_path: Path) -> None:
     after = report_of(2)
-    for finding in after["findings"]:
-        finding["leak"]["name"] = f"`@everyone ![x](http://e)\n# {HOSTILE}"
-        finding["leak"]["robot"] = "`<img>"
-        finding["witness"][-1] = finding["leak"]
-    comment = compare(tmp_path, report_of(1), after)
-    (line, *_) = [line for line in comment.splitlines() if "@everyone" in line]
-    spans = re.fullmatch(r"- `[^`]+`: `[^`]+` → `[^`]+`, allowed at `[^`]+`", line)
-    assert spans  # all that is named is inside code
-    assert len(line) < 400
-    assert line.isprintable()
-
-
-def test_long_lists_are_cut_and_say_so(tmp_path: Path) -> None:
-    after = report_of(2)
-    one = after["findings"][0]
-    leaks = [{**one["leak"], "name": f"/l{i}x"} for i in range(500)]
-    witness = one["witness"][:-1]
+    first = after["findings"][0]
+    names = [f"`@everyone ![x](http://e)\n# {HOSTILE}{i}" for i in range(500)]
+    leaks = [{**first["leak"], "name": name, "robot": "`<img>"} for name in names]
     after["findings"] = [
-        {**one, "id": f"{i:016x}", "leak": leak, "witness": [*witness, leak]} for i, leak in enumerate(leaks)
+        {**first, "id": f"{i:016x}", "leak": leak, "witness": [*first["witness"][:-1], leak]}
+        for i, leak in enumerate(leaks)
     ]
-    comment = compare(tmp_path, report_of(1), after)
+    comment = compare(cli, tmp_path, report_of(1), after)
+    lines = [line for line in comment.splitlines() if "@everyone" in line]
+    inside_code = re.compile(r"- `[^`]+`: `[^`]+` → `[^`]+`, allowed at `[^`]+`")
+    assert all(inside_code.fullmatch(line) and len(line) < 400 and line.isprintable() for line in lines)
+    assert lines
     assert "**New paths to assess: 500**" in comment
     assert "- and 480 more" in comment
     assert len(comment) < 10_000
 
 
-def workflow() -> Any:
-    return yaml.safe_load((CI / "privacy.yml").read_text("utf-8"))
-
-
 def say_what_changes(runner: dict[str, str], checkout: Path, outcome: str, **more: str) -> str:
     """Run that step of the workflow, after an analysis of the pull request; return its comment."""
-    (step,) = (step for step in workflow()["jobs"]["paths-to-assess"]["steps"] if "NOTHING" in step.get("env", {}))
-    variables = {name: value for name, value in step["env"].items() if "${{" not in value} | {"BEFORE": outcome}
+    variables = {name: value for name, value in COMPARING["env"].items() if "${{" not in value} | {"BEFORE": outcome}
     environment = {**os.environ, **runner, **variables, **more, "FORK": "true"}
-    command = ["bash", "--noprofile", "--norc", "-eo", "pipefail", "-c", step["run"]]
+    command = ["bash", "--noprofile", "--norc", "-eo", "pipefail", "-c", COMPARING["run"]]
     done = subprocess.run(command, cwd=checkout, env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     return Path(runner["GITHUB_STEP_SUMMARY"]).read_text("utf-8")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("outcome", ["failure", "success"])
 def test_a_pull_request_is_not_its_own_baseline(outcome: str, runner: dict[str, str], tmp_path: Path) -> None:
     """It brings a before.json that says that nothing is new; and an analysis that failed leaves one half done."""
@@ -125,6 +106,7 @@ def test_a_pull_request_is_not_its_own_baseline(outcome: str, runner: dict[str, 
     assert "Verdict: `undetermined` before, `leak` now." in comment
 
 
+@pytest.mark.slow
 def test_nothing_of_a_hostile_checkout_runs_while_it_is_compared(runner: dict[str, str], tmp_path: Path) -> None:
     trace = hostile(tmp_path / "checkout")
     for name in ("before.json", "after.json"):
@@ -136,24 +118,22 @@ def test_nothing_of_a_hostile_checkout_runs_while_it_is_compared(runner: dict[st
 
 def test_who_reads_a_pull_request_can_write_nothing() -> None:
     """And who can write checks nothing out; the baseline is made before the pull request is there."""
-    assert workflow()["permissions"] == {}
-    for job in workflow()["jobs"].values():
+    assert WORKFLOW["permissions"] == {}
+    for job in WORKFLOW["jobs"].values():
         outs = [step["with"] for step in job["steps"] if step.get("uses", "").startswith("actions/checkout@")]
         assert all(out["persist-credentials"] is False for out in outs)
         assert not outs or job["permissions"] == {"contents": "read"}
-    steps = workflow()["jobs"]["paths-to-assess"]["steps"]
-    at = {step.get("name"): i for i, step in enumerate(steps)}
+    at = {step.get("name"): i for i, step in enumerate(STEPS)}
     assert at["Check out what the pull request is for"] < at["As it is"] < at["Check out what would be"]
     assert at["Check out what would be"] < at["As it would be"] < at["Say what changes"]
     for name in ("As it is", "As it would be"):
-        assert all(steps[at[name]]["with"][kind].startswith("${{ runner.temp }}/") for kind in ("sarif", "json"))
+        assert all(STEPS[at[name]]["with"][kind].startswith("${{ runner.temp }}/") for kind in ("sarif", "json"))
 
 
 def test_the_workflow_runs_what_is_there() -> None:
-    steps = workflow()["jobs"]["paths-to-assess"]["steps"]
     inputs = yaml.safe_load(ACTION.read_text("utf-8"))["inputs"]
-    ours = [step["with"] for step in steps if step.get("uses", "").endswith("/rosprivacy@main")]
+    ours = [step["with"] for step in STEPS if step.get("uses", "").endswith("/rosprivacy@main")]
     assert len(ours) == 2
     assert all(set(given) <= set(inputs) for given in ours)
-    assert "pull_request_target" not in workflow()[True]  # YAML reads 'on' so
-    assert not any("${{" in step.get("run", "") for job in workflow()["jobs"].values() for step in job["steps"])
+    assert "pull_request_target" not in WORKFLOW[True]  # YAML reads 'on' so
+    assert not any("${{" in step.get("run", "") for job in WORKFLOW["jobs"].values() for step in job["steps"])

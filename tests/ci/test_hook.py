@@ -24,7 +24,7 @@ from tests.helpers.ci_files import (
     tool,
 )
 
-pytestmark = pytest.mark.slow  # pre-commit makes environments
+pytestmark = pytest.mark.slow  # pre-commit is a process, and makes repositories
 
 
 def users_repository(folder: Path, hooks: Path, hook: dict[str, Any]) -> Path:
@@ -36,22 +36,28 @@ def users_repository(folder: Path, hooks: Path, hook: dict[str, Any]) -> Path:
     return committed(folder)
 
 
-def run_hook(folder: Path, tmp_path: Path) -> subprocess.CompletedProcess[str]:
+def run_hook(folder: Path, tmp_path: Path, **more: str) -> subprocess.CompletedProcess[str]:
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    variables = {"PRE_COMMIT_HOME": str(tmp_path / "home"), "PATH": path, "GIT_CONFIG_NOSYSTEM": "1"}
-    return tool("pre_commit", "run", "--all-files", "--verbose", "--color=never", cwd=folder, **variables)
+    variables = {"PRE_COMMIT_HOME": str(tmp_path / "home"), "PATH": path, "GIT_CONFIG_NOSYSTEM": "1", **more}
+    command = [sys.executable, "-I", "-m", "pre_commit", "run", "--all-files", "--verbose", "--color=never"]
+    environment = {**os.environ, **variables}
+    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+
+
+@pytest.fixture
+def hooks(tmp_path: Path) -> Path:
+    """A repository that brings the hook alone."""
+    (tmp_path / "hooks").mkdir()
+    shutil.copy(HOOKS, tmp_path / "hooks")
+    return committed(tmp_path / "hooks")
 
 
 def test_the_hooks_are_what_pre_commit_takes() -> None:
     assert tool("pre_commit", "validate-manifest", str(HOOKS)).returncode == 0
 
 
-def test_the_hook_fails_on_a_leak_and_passes_without_one(tmp_path: Path) -> None:
-    """In the environment of the tests, so that nothing is fetched; how it is installed is the next test's."""
-    hooks = tmp_path / "hooks"
-    hooks.mkdir()
-    shutil.copy(HOOKS, hooks)
-    committed(hooks)
+def test_the_hook_fails_on_a_leak_and_passes_without_one(hooks: Path, tmp_path: Path) -> None:
+    """In the environment of the tests, so that nothing is fetched; how it is installed is the last test's."""
     entry = {"language": "system", "entry": f"{sys.executable} -m rosprivacy analyze"}
     leak = run_hook(users_repository(tmp_path / "leak", hooks, {**entry, "args": arguments(2)}), tmp_path)
     assert leak.returncode == 1, leak.stderr
@@ -63,27 +69,19 @@ def test_the_hook_fails_on_a_leak_and_passes_without_one(tmp_path: Path) -> None
     assert "Passed" in clean.stdout
 
 
-def test_nothing_of_a_hostile_repository_runs_in_the_hook(tmp_path: Path) -> None:
+def test_nothing_of_a_hostile_repository_runs_in_the_hook(hooks: Path, tmp_path: Path) -> None:
     """Its own entry, in the environment of the tests; git and its hooks are pre-commit's business."""
-    hooks = tmp_path / "hooks"
-    hooks.mkdir()
-    shutil.copy(HOOKS, hooks)
-    committed(hooks)
     folder = users_repository(tmp_path / "user", hooks, {"language": "system", "args": arguments(2)})
     trace = tmp_path / "ran"
     for name in TAKEN_FOR_MODULES:
         planted(folder / name, f"open({str(trace)!r}, 'a').write(__file__ + ' ')\n")
-    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    variables = {"PRE_COMMIT_HOME": str(tmp_path / "home"), "PATH": path, "GIT_CONFIG_NOSYSTEM": "1", **FROM_HERE}
-    command = [sys.executable, "-I", "-m", "pre_commit", "run", "--all-files", "--verbose", "--color=never"]
-    done = subprocess.run(
-        command, cwd=folder, env={**os.environ, **variables}, capture_output=True, text=True, check=False
-    )
+    done = run_hook(folder, tmp_path, **FROM_HERE)
     assert not trace.exists(), trace.read_text("utf-8")
     assert "Video: /safety_camera -> /archive_server" in done.stdout, done.stdout + done.stderr
     assert done.returncode == 1
 
 
+@pytest.mark.thorough  # an environment with all that rosprivacy needs is made
 def test_pre_commit_installs_the_hook_from_this_repository(tmp_path: Path) -> None:
     hooks = hooks_repository(tmp_path / "hooks")
     done = run_hook(users_repository(tmp_path / "user", hooks, {"args": arguments(2)}), tmp_path)

@@ -11,10 +11,7 @@ import tomllib
 import pytest
 import yaml
 
-from tests.helpers.ci_files import (
-    HOSTED,
-    tool,
-)
+from tests.helpers.ci_files import HOSTED, tool
 from tests.helpers.paths import ROOT
 
 

@@ -20,51 +20,9 @@ if TYPE_CHECKING:
 from tests.helpers.policies import ESCAPE, document, policy
 
 
-@pytest.fixture
-def after(examples: Path) -> Path:
-    return examples / "factory" / "after.policy.xml"
-
-
 def test_version() -> None:
     done = run("--version")
     assert (done.returncode, done.stdout, done.stderr) == (0, f"rosprivacy {rosprivacy.__version__}\n", "")
-
-
-OPTIONS = {
-    "analyze": (
-        "--labels", "--add", "--save-graph", "--format", "--output", "--categories", "--category", "--view", "--paths",
-        "--max-paths", "--standard-channels", "--fail-on", "--include-root", "--bound", "--decisions",
-        "--quiet", "--verbose", "--help", "-l", "-f", "-o", "-c", "-q", "-v", "-h",
-    ),
-    "decide": (
-        "--decisions", "--report", "--reason", "--owner", "--legal-basis", "--expires", "--ticket", "--category",
-        "--source", "--leak", "--robot", "--ontology", "--help",
-    ),
-    "mitigate": (
-        "--labels", "--add", "--ontology", "--limits", "--by", "--patch", "--format", "--output", "--categories",
-        "--category", "--decisions",
-        "--view", "--standard-channels", "--include-root", "--bound", "--help",
-    ),
-    "labels": (
-        "--add", "--ontology", "--view", "--init", "--schema", "--standard", "--infrastructure", "--output",
-        "--standard-channels", "--include-root", "--bound", "--help",
-    ),
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("flag", ["--help", "-h"])
-def test_help_lists_the_commands(cli: Cli, flag: str) -> None:
-    done = cli(flag)
-    assert (done.returncode, done.stderr) == (0, "")
-    assert {"analyze", "labels", "--version"} <= set(done.stdout.split())
-
-
-@pytest.mark.parametrize("command", sorted(OPTIONS))
-def test_help_lists_each_option(cli: Cli, command: str) -> None:
-    done = cli(command, "--help")
-    assert (done.returncode, done.stderr) == (0, "")
-    assert set(OPTIONS[command]) <= set(done.stdout.split())
-    assert ESCAPE not in done.stdout
 
 
 @pytest.mark.parametrize(
@@ -85,115 +43,65 @@ def test_help_lists_each_option(cli: Cli, command: str) -> None:
 )
 def test_the_shell_completes(words: Sequence[str], wanted: set[str]) -> None:
     program = Path(sys.executable).with_name("rosprivacy")
-    variables = {
-        "_ROSPRIVACY_COMPLETE": "complete_bash",
-        "COMP_WORDS": " ".join(words),
-        "COMP_CWORD": str(len(words) - 1),
-    }
-    done = subprocess.run(
-        [program], capture_output=True, text=True, env=os.environ | variables, timeout=60, check=False
-    )
+    place = {"COMP_WORDS": " ".join(words), "COMP_CWORD": str(len(words) - 1)}
+    environment = os.environ | {"_ROSPRIVACY_COMPLETE": "complete_bash"} | place
+    done = subprocess.run([program], capture_output=True, text=True, env=environment, timeout=60, check=False)
     assert done.stderr == ""
     assert set(done.stdout.split()) == wanted
 
 
 @pytest.mark.parametrize(
-    ("policy", "labels", "verdict"),
+    ("policy", "labels", "verdict", "code"),
     [
-        ("before", 1, "undetermined"),  # S12: no finding, but open elements
-        ("before", 2, "leak"),
-        ("before", 3, "leak"),
-        ("after", 4, "leak"),  # the request to save footage carries it
-        ("after", 5, "no-leak-found"),
+        ("before", 1, "undetermined", 4),  # S12: no finding, but open elements
+        ("before", 2, "leak", 1),
+        ("before", 3, "leak", 1),
+        ("after", 4, "leak", 1),  # the request to save footage carries it
+        ("after", 5, "no-leak-found", 0),
     ],
 )
-@pytest.mark.parametrize(
-    ("fail_on", "codes"),
-    [
-        (None, {"leak": 1, "undetermined": 4, "no-leak-found": 0}),
-        ("undetermined", {"leak": 1, "undetermined": 4, "no-leak-found": 0}),
-        ("undecided", {"leak": 1, "undetermined": 4, "no-leak-found": 0}),
-        ("leak", {"leak": 1, "undetermined": 0, "no-leak-found": 0}),  # a source is named: data was followed
-        ("never", {"leak": 0, "undetermined": 0, "no-leak-found": 0}),
-    ],
-)
+@pytest.mark.parametrize("fail_on", [None, "undetermined", "undecided", "leak", "never"])
 def test_the_exit_code_is_the_verdict(
-    cli: Cli,
-    before: Path,
-    after: Path,
-    runs: list[Path],
-    policy: str,
-    labels: int,
-    verdict: str,
-    fail_on: str | None,
-    codes: dict[str, int],
+    cli: Cli, before: Path, runs: list[Path], policy: str, labels: int, verdict: str, code: int, fail_on: str | None
 ) -> None:
     chosen = ["--fail-on", fail_on] if fail_on else []
-    done = cli("analyze", {"before": before, "after": after}[policy], "-l", runs[labels - 1], "-q", *chosen)
-    assert (done.stdout.split(":")[0], done.returncode, done.stderr) == (verdict, codes[verdict], "")
+    done = cli("analyze", before.with_name(f"{policy}.policy.xml"), "-l", runs[labels - 1], "-q", *chosen)
+    passes = fail_on == "never" or (
+        fail_on == "leak" and verdict == "undetermined"
+    )  # a source is named: data was followed
+    (line,) = done.stdout.splitlines()
+    assert (line.partition(":")[0], done.returncode, done.stderr) == (verdict, 0 if passes else code, "")
 
 
 NOTHING_SAID = "labels: 1\nnodes:\n  /robot_camera:\nchannels:\n  /robot_video: mundane\n"
 
 
-@pytest.mark.parametrize("labels", [None, "", "labels: 1\n", NOTHING_SAID, "rosprivacy:infrastructure"])
-@pytest.mark.parametrize(("fail_on", "code"), [(None, 4), ("leak", 4), ("undetermined", 4), ("undecided", 4)])
+@pytest.mark.parametrize("labels", [None, "the template", "labels: 1\n", NOTHING_SAID, "rosprivacy:infrastructure"])
+@pytest.mark.parametrize("fail_on", [None, "leak", "undetermined", "undecided"])
 def test_where_no_source_is_named_no_build_is_green(
-    cli: Cli, before: Path, tmp_path: Path, labels: str | None, fail_on: str | None, code: int
+    cli: Cli, before: Path, tmp_path: Path, labels: str | None, fail_on: str | None
 ) -> None:
     """S11, S12, the table of exit codes: nothing was looked at, whatever the build fails on."""
-    if labels == "":
-        labels = cli("labels", "--init", before).stdout  # the template, untouched
-    file = labels if labels is None or labels.startswith("rosprivacy:") else tmp_path / "l.yaml"
-    if isinstance(file, Path):
-        file.write_text(labels or "", "utf-8")
-    done = cli("analyze", before, *(["-l", str(file)] if file else []), *(["--fail-on", fail_on] if fail_on else []))
-    assert (done.stdout.partition(":")[0], done.returncode) == ("undetermined", code)
+    file = tmp_path / "l.yaml"
+    file.write_text(cli("labels", "--init", before).stdout if labels == "the template" else labels or "", "utf-8")
+    named = ["-l", str(labels if labels == "rosprivacy:infrastructure" else file)] if labels else []
+    done = cli("analyze", before, *named, *(["--fail-on", fail_on] if fail_on else []))
+    assert (done.stdout.partition(":")[0], done.returncode) == ("undetermined", 4)
     step = done.stdout.splitlines()[-1]
-    assert step.startswith("Next: name a source in a label file, such as nodes: {/camera: {source: [Video]}}; ")
+    assert step.startswith("Next: name a source in a label file")
     assert "candidates by name: /robot_camera, /safety_camera" in step
 
 
 def test_where_no_source_of_what_is_asked_is_named_no_build_is_green(cli: Cli, before: Path, runs: list[Path]) -> None:
-    done = cli("analyze", before, "-l", runs[0], "-c", "Voice", "--fail-on", "leak")
-    assert done.returncode == 4
-    assert done.stdout.splitlines()[-1].endswith("only Voice was asked for")
-
-
-def test_the_next_step_stands_last(cli: Cli, before: Path, after: Path, runs: list[Path]) -> None:
-    last = [cli("analyze", before, "-l", labels).stdout.splitlines()[-1] for labels in runs[:2]]
-    assert (
-        last[0] == "Next: review /emergency_stop and 8 more, say it in a label file (rosprivacy labels --next), repeat"
-    )
-    assert last[1].startswith("Next: decide about each finding (rosprivacy decide)")
-    assert "Next:" not in cli("analyze", after, "-l", runs[4]).stdout
-
-
-@pytest.mark.parametrize(
-    ("word", "instead"),
-    [
-        ("off", "write never"),
-        ("todo", "write leak"),
-        ("all", "leave out --decisions"),
-        ("Undetermined", "did you mean undetermined"),
-        ("nope", "one of undetermined, leak, undecided, doubt, never"),
-    ],
-)
-def test_a_word_that_fail_on_does_not_know_is_told_which_to_write(cli: Cli, word: str, instead: str) -> None:
-    done = cli("analyze", "p.xml", "--fail-on", word)
-    assert (done.returncode, done.stdout) == (2, "")
-    assert instead in " ".join(done.stderr.replace("│", "").split())
+    assert cli("analyze", before, "-l", runs[0], "-c", "Voice", "--fail-on", "leak").returncode == 4
 
 
 @pytest.mark.parametrize(
     "arguments",
     [
-        ["analyse"],
         ["analyze"],
         ["analyze", "p.xml", "--nope"],
-        ["analyze", "p.xml", "--view", "real"],
         ["analyze", "p.xml", "--max-paths", "0"],
-        ["analyze", "p.xml", "--fail-on", "always"],
         ["labels"],
         ["labels", "p.xml"],
         ["labels", "--init"],
@@ -205,19 +113,6 @@ def test_wrong_usage_is_2_with_a_word_on_standard_error(cli: Cli, arguments: lis
     assert (done.returncode, done.stdout) == (2, "")
     assert "Usage:" in done.stderr
     assert "Traceback" not in done.stderr
-
-
-def test_the_text_report_names_verdict_way_and_policy_lines(cli: Cli, before: Path, runs: list[Path]) -> None:
-    done = cli("analyze", before, "--labels", runs[1])
-    assert done.stdout.startswith("leak: ")
-    for said in ("/safety_camera", "/archive_server", "  before.policy.xml:54", "Review next", "Assumed", str(runs[1])):
-        assert said in done.stdout
-    assert done.stderr == ""
-
-
-def test_quiet_prints_the_verdict_only(cli: Cli, before: Path, runs: list[Path]) -> None:
-    done = cli("analyze", before, "--labels", runs[1], "--quiet")
-    assert len(done.stdout.splitlines()) == 1
 
 
 def test_verbose_prints_what_the_report_leaves_out(cli: Cli, tmp_path: Path) -> None:
@@ -252,11 +147,6 @@ def test_the_same_input_gives_the_same_bytes(before: Path, runs: list[Path], for
 def test_an_answer_about_some_categories_leaves_out_the_others(cli: Cli, before: Path, runs: list[Path]) -> None:
     assert document(cli, before, "-l", runs[1], "-c", "Video")["verdict"] == "leak"
     assert document(cli, before, "-l", runs[1], "-c", "Voice", "-c", "Health")["verdict"] == "undetermined"
-
-
-def test_an_unknown_category_is_refused_with_the_nearest(cli: Cli, before: Path) -> None:
-    (line,) = refused(cli("analyze", before, "--categories", "Vidio"))
-    assert "unknown category 'Vidio'; did you mean Video" in line
 
 
 def test_standard_channels_can_be_read_replaced_and_switched_off(
@@ -302,10 +192,10 @@ def test_an_option_of_earlier_versions_is_refused_with_what_to_write(cli: Cli, b
     assert cli("analyze", before, *instead).returncode == 4
 
 
-def test_a_folder_and_a_glob_are_read(cli: Cli, before: Path, after: Path) -> None:
+def test_a_folder_and_a_glob_are_read(cli: Cli, before: Path) -> None:
     by_folder, by_glob = document(cli, before.parent), document(cli, before.parent / "*.policy.xml")
     assert [Path(file["file"]).name for file in by_folder["assumptions"]["policies"]] == [
-        after.name,
+        "after.policy.xml",
         before.name,
         "node.xml",
     ]

@@ -212,6 +212,8 @@ GRAPHS = [
     ("policies.0.profiles.0", 5, "policies[0].profiles[0] is a number, not an object"),
     ("policies.0.sources", [], "policies[0].sources is a list, not an object"),
     ("policies.0.diagnostics", [{}], "policies[0].diagnostics[0] lacks file, line"),
+    ("policies.0.grants.0.name", "/\ud800", "policies[0].grants[0].name is no text: half of a "),
+    ("policies.0.grants.0.name", ["x"] * 10_000, "policies[0].grants[0].name is a list, not text"),
     ("not_read", [1], "not_read[0] is a number, not an object"),
     ("format", "rosprivacy.graph/2", "not a saved graph (rosprivacy.graph/1); use the version of rosprivacy"),
 ]
@@ -231,24 +233,18 @@ def test_a_damaged_graph_is_refused_with_the_place(
     assert everything(folder) == there
 
 
-def mutated(cli: Cli, folder: Path, argv: tuple[str, ...], file: str, seed: int) -> None:
-    data = damaged(Random(f"{argv} {file} {seed}"), (EARLIER / file).read_bytes())  # noqa: S311 - repeatable
+# A few for each change; each week all, and the fuzzing (``tests/fuzzing``) makes others.
+SEEDS = [0, *(pytest.param(n, marks=pytest.mark.slow if n < 4 else pytest.mark.thorough) for n in range(1, 30))]
+DAMAGED = [
+    *((reader, file) for reader in READERS.values() for file in (ANALYSIS, "fleet/analysis.json")),
+    *((reader, "care-home/graph.json") for reader in GRAPH_READERS.values()),
+]
+
+
+@pytest.mark.parametrize("cli", ["here"], indirect=True)  # there are many
+@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize(("reader", "file"), DAMAGED, ids=lambda value: value if isinstance(value, str) else value[0])
+def test_any_damage_ends_as_documented(cli: Cli, folder: Path, reader: tuple[str, ...], file: str, seed: int) -> None:
+    data = damaged(Random(f"{reader} {file} {seed}"), (EARLIER / file).read_bytes())  # noqa: S311 - repeatable
     (folder / "bad.json").write_bytes(data)
-    one_line_each(cli(*argv, cwd=folder), {0, 1, 2, 4})
-
-
-@pytest.mark.parametrize("cli", ["here"], indirect=True)  # there are many
-@pytest.mark.parametrize("seed", one_in(30, range(30)))
-@pytest.mark.parametrize("reader", READERS)
-@pytest.mark.parametrize("file", [ANALYSIS, "fleet/analysis.json"])
-def test_any_damage_of_an_analysis_ends_as_documented(
-    cli: Cli, folder: Path, reader: str, file: str, seed: int
-) -> None:
-    mutated(cli, folder, READERS[reader], file, seed)
-
-
-@pytest.mark.parametrize("cli", ["here"], indirect=True)  # there are many
-@pytest.mark.parametrize("seed", one_in(30, range(30)))
-@pytest.mark.parametrize("reader", GRAPH_READERS)
-def test_any_damage_of_a_graph_ends_as_documented(cli: Cli, folder: Path, reader: str, seed: int) -> None:
-    mutated(cli, folder, GRAPH_READERS[reader], "care-home/graph.json", seed)
+    one_line_each(cli(*reader, cwd=folder), {0, 1, 2, 4})

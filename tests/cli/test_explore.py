@@ -56,49 +56,50 @@ def entered(line: str) -> tuple[http.client.HTTPConnection, dict[str, str]]:
     return asking, {**headers, "content-type": "application/x-www-form-urlencoded"}
 
 
-def test_the_link_opens_the_page_and_what_is_saved_stands_in_the_named_file(tmp_path: Path) -> None:
-    labels = tmp_path / "new.labels.yaml"
-    with started("-l", str(labels), "--lang", "de") as (process, lines):
-        asking, headers = entered(lines[0])
-        asking.request("GET", "/", headers=headers)
-        assert "Zu entscheiden" in asking.getresponse().read().decode()
-        said = {"version": "0", "element": node("/robot_camera"), "role": "source", "brings": "Video"}
-        for path, form, status in (("/label", said, 303), ("/save", {"version": "1"}, 303), ("/undo", said, 409)):
-            asking.request("POST", path, urlencode(form), headers)
-            answer = asking.getresponse()
-            answer.read()
-            assert answer.status == status
-        asking.close()
-    assert process.returncode == 0
-    assert "/robot_camera: {source: [Video]}" in labels.read_text("utf-8")
+def post(asking: http.client.HTTPConnection, headers: dict[str, str], path: str, **form: str) -> tuple[int, str | None]:
+    """Send a form about the first version of the page, or about the one that is named; status, and where to go on."""
+    asking.request("POST", path, urlencode({"version": "0", **form}), headers)
+    answer = asking.getresponse()
+    answer.read()
+    return answer.status, answer.headers["location"]
 
 
-def test_a_review_asks_in_the_readers_language_and_saves_who_answered(tmp_path: Path) -> None:
+def page(asking: http.client.HTTPConnection, headers: dict[str, str], path: str = "/") -> str:
+    asking.request("GET", path, headers=headers)
+    return asking.getresponse().read().decode()
+
+
+CAMERA = {"element": node("/robot_camera"), "role": "source", "brings": "Video"}
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [(("--lang", "de"), "Zu entscheiden"), (("--review", "--lang", "fr"), "Toutes les réponses sont enregistrées")],
+    ids=["page", "review"],
+)
+def test_the_link_opens_the_page_and_what_is_saved_stands_in_the_named_file(
+    tmp_path: Path, options: tuple[str, ...], words: str
+) -> None:
+    """In the reader's language, and with who answered."""
     labels = tmp_path / "new.labels.yaml"
-    with started("-l", str(labels), "--review", "--lang", "fr") as (process, lines):
+    with started("-l", str(labels), *options) as (process, lines):
         asking, headers = entered(lines[0])
-        said = {"version": "0", "element": node("/robot_camera"), "role": "source", "brings": "Video", "by": "A. Lee"}
-        for path, form in (("/label", said), ("/save", {"version": "1"})):
-            asking.request("POST", path, urlencode(form), headers)
-            answer = asking.getresponse()
-            answer.read()
-            assert answer.status == 303
-        asking.request("GET", answer.headers["location"], headers=headers)
-        assert "Toutes les réponses sont enregistrées" in asking.getresponse().read().decode()
+        assert post(asking, headers, "/label", **CAMERA, by="A. Lee")[0] == 303
+        status, there = post(asking, headers, "/save", version="1")
+        assert status == 303
+        assert words in page(asking, headers, there or "/")
+        assert post(asking, headers, "/undo")[0] == 409
         asking.close()
     assert process.returncode == 0
-    assert "A. Lee" in labels.read_text("utf-8")
+    assert '/robot_camera: {source: [Video], author: "A. Lee"}' in labels.read_text("utf-8")
 
 
 def test_a_decision_goes_to_the_file_that_the_command_names(tmp_path: Path) -> None:
-    labels, decisions = str(FACTORY / "run2.labels.yaml"), tmp_path / "new.decisions.yaml"
-    with started("-l", labels, "--decisions", str(decisions)) as (process, lines):
+    decisions = tmp_path / "new.decisions.yaml"
+    options = ("-l", str(FACTORY / "run2.labels.yaml"), "--decisions", str(decisions))
+    with started(*options) as (process, lines):
         asking, headers = entered(lines[0])
-        said = {"version": "0", "finding": "dc5715a35ba5591a", "choice": "mitigate", "owner": "A. Lee"}
-        asking.request("POST", "/decide", urlencode(said), headers)
-        answer = asking.getresponse()
-        answer.read()
-        assert answer.status == 303
+        assert post(asking, headers, "/decide", finding="dc5715a35ba5591a", choice="mitigate", owner="A. Lee")[0] == 303
         asking.close()
     assert process.returncode == 0
     assert "id: dc5715a35ba5591a" in decisions.read_text("utf-8")
@@ -107,9 +108,7 @@ def test_a_decision_goes_to_the_file_that_the_command_names(tmp_path: Path) -> N
 def test_what_is_not_saved_is_told_at_the_end(tmp_path: Path) -> None:
     with started("-l", str(tmp_path / "new.labels.yaml")) as (process, lines):
         asking, headers = entered(lines[0])
-        said = {"version": "0", "element": node("/robot_camera"), "role": "source", "brings": "Video"}
-        asking.request("POST", "/label", urlencode(said), headers)
-        assert asking.getresponse().status == 303
+        assert post(asking, headers, "/label", **CAMERA)[0] == 303
         asking.close()
         process.send_signal(signal.SIGINT)
         _, errors = process.communicate(timeout=SECONDS)
@@ -117,34 +116,27 @@ def test_what_is_not_saved_is_told_at_the_end(tmp_path: Path) -> None:
     assert not (tmp_path / "new.labels.yaml").exists()
 
 
+@pytest.mark.parametrize(
+    ("words", "problem"),
+    [
+        ((BARE, "--fleet", "f.yaml"), "--fleet"),
+        ((BARE, "--from-database"), "--from-database"),
+        (("--from-database", "--decisions", "d.yaml"), "--decisions: is for policies and fleets"),
+        (("--from-database", "--review"), "--review: has no file for answers in a database"),
+        (("no.policy.xml",), "no.policy.xml: file not found"),
+    ],
+    ids=str,
+)
+def test_what_it_does_not_take_is_refused(cli: Cli, words: tuple[str | Path, ...], problem: str) -> None:
+    done = cli("explore", *words)
+    assert (done.returncode, problem in done.stderr) == (2, True), done.stderr
+
+
 def test_who_came_by_ssh_is_told_the_way() -> None:
     with started(SSH_CONNECTION="192.0.2.7 51234 192.0.2.9 22", LOGNAME="anna") as (_, lines):
         port = re.search(r":(\d+)/enter", lines[0])
         assert port
         assert f"ssh -N -L {port[1]}:127.0.0.1:{port[1]} anna@192.0.2.9" in lines[2]
-
-
-@pytest.mark.parametrize("option", [("--fleet", "f.yaml"), ("--from-database",)])
-def test_what_it_does_not_take_is_refused(cli: Cli, option: tuple[str, ...]) -> None:
-    assert cli("explore", str(BARE), *option).returncode == 2
-
-
-def test_nothing_is_decided_about_a_database(cli: Cli) -> None:
-    done = cli("explore", "--from-database", "--decisions", "d.yaml")
-    assert done.returncode == 2
-    assert "--decisions: is for policies and fleets" in done.stderr
-
-
-def test_a_review_of_a_database_has_no_file_for_answers(cli: Cli) -> None:
-    done = cli("explore", "--from-database", "--review")
-    assert done.returncode == 2
-    assert "--review: has no file for answers in a database" in done.stderr
-
-
-def test_a_policy_that_is_not_there_is_one_line(cli: Cli, tmp_path: Path) -> None:
-    done = cli("explore", "no.policy.xml", cwd=tmp_path)
-    assert done.returncode == 2
-    assert len(done.stderr.splitlines()) == 1
 
 
 def test_no_argument_of_the_browser_holds_the_secret(tmp_path: Path) -> None:
@@ -189,8 +181,7 @@ def test_a_form_that_is_broken_off_is_no_error_of_the_program(tmp_path: Path, of
                 head = "".join(f"{name}: {value}\r\n" for name, value in said.items())
                 broken.sendall(f"POST /label HTTP/1.1\r\n{head}\r\n".encode() + b"x" * of)
         again = http.client.HTTPConnection(asking.host, asking.port, timeout=SECONDS)
-        again.request("GET", "/", headers=headers)
-        assert again.getresponse().status == 200
+        assert page(again, headers)
         again.close()
         process.send_signal(signal.SIGINT)
         _, errors = process.communicate(timeout=SECONDS)

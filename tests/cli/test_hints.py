@@ -25,12 +25,18 @@ if TYPE_CHECKING:
         (("analyse",), "Did you mean 'analyze'"),
         (("analyze", "--lables", "x"), "--labels"),
         (("analyze", "p.xml", "--view", "declard"), "did you mean declared"),
+        (("analyze", "p.xml", "--fail-on", "off"), "write never"),
+        (("analyze", "p.xml", "--fail-on", "todo"), "write leak"),
+        (("analyze", "p.xml", "--fail-on", "all"), "leave out --decisions"),
+        (("analyze", "p.xml", "--fail-on", "Undetermined"), "did you mean undetermined"),
+        (("analyze", "p.xml", "--fail-on", "nope"), "one of undetermined, leak, undecided, doubt, never"),
         (("decide", "acept"), "did you mean accept"),
         (("graph", "p.xml", "--format", "svgg"), "did you mean svg"),
         (("categories", "Vidio"), "did you mean Video"),
-        (("analyze", BEFORE, "-c", "Vidio"), "did you mean Video"),
+        (("analyze", BEFORE, "-c", "Vidio"), "unknown category 'Vidio'; did you mean Video"),
         (("why-not", "/robot_camra", "/archive_server", BEFORE), "did you mean /robot_camera"),
         (("graph", BEFORE, "--around", "/navigatr"), "did you mean /navigator"),
+        (("analyze", "nope.xml"), "nope.xml: file not found; correct the path"),
         (("analyze", "none.policy.xml"), "did you mean one.policy.xml?"),
         (("analyze", BEFORE, "-l", "labls.yaml"), "did you mean labels.yaml?"),
         (("analyze", "--fleet", "one.policy.xml"), "this is XML, such as a policy, and not YAML or JSON"),
@@ -73,10 +79,6 @@ def test_a_file_of_another_kind_is_told_once_with_where_it_belongs(
     if not what.endswith("graph.txt"):
         (line,) = refused(cli("observe", "--text", name, "-o", "p.xml", cwd=tmp_path))
         assert re.match(rf"{re.escape(name)}:1: this is {what}", line)
-
-
-def test_a_missing_file_has_no_line(cli: Cli, tmp_path: Path) -> None:
-    assert refused(cli("analyze", "nope.xml", cwd=tmp_path)) == ["nope.xml: file not found; correct the path"]
 
 
 def test_a_warning_without_a_place_has_none(cli: Cli) -> None:

@@ -93,16 +93,17 @@ def test_no_two_innocent_steps_end_in_nothing_found(corpus: Path, name: str) -> 
 
 @pytest.mark.slow
 def test_nor_on_any_policy_of_the_corpus(corpus: Path, thorough: bool) -> None:  # noqa: FBT001 - a fixture
-    names = tuple(sorted(str(file.relative_to(corpus / "policies")) for file in (corpus / "policies").rglob("*.xml")))
-    planted = planted_in(corpus, names)
-    assert len(planted) > 10
-    found: list[str] = []
+    """Half of the policies for each change, few steps on each; all of them each week."""
+    names = sorted(str(file.relative_to(corpus / "policies")) for file in (corpus / "policies").rglob("*.xml"))
+    planted = planted_in(corpus, tuple(names if thorough else names[::2]))
+    assert len(planted) > 5
+    part = 1 if thorough else 8
+    wrong_answers: list[str] = []
     for number, one in enumerate(planted):
         few = len(one.system.graph.elements) > LARGE
         singles, pairs = (20, 15) if few else (80, 80)
-        part = 1 if thorough else 4
-        found += wrong(one, Random(number), singles // part, pairs // part)  # noqa: S311 - no secret
-    assert found == []
+        wrong_answers += wrong(one, Random(number), singles // part, pairs // part)  # noqa: S311 - no secret
+    assert wrong_answers == []
 
 
 @pytest.mark.parametrize("name", SMALL[:2])

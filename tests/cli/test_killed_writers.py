@@ -111,6 +111,14 @@ def written(home: Path, writer: Writer) -> dict[str, bytes | None]:
     return {name: there.get(name) for name in writer.outputs}
 
 
+def when(name: str) -> list[pytest.MarkDecorator]:
+    """One for every day; one for each way to write for each change; the other formats, which are written alike."""
+    if name == "decide":
+        return []
+    alike = " -f " in name and name not in ("analyze -f json", "report -f html")
+    return [pytest.mark.thorough if alike else pytest.mark.slow]
+
+
 @dataclass
 class Killing:
     """A writer, killed again and again in one folder."""
@@ -144,9 +152,7 @@ class Killing:
         assert not [name for name in everything(self.home) if name.endswith(".lock")]
 
 
-@pytest.mark.parametrize(
-    "name", [name if name == "decide" else pytest.param(name, marks=pytest.mark.slow) for name in WRITERS]
-)
+@pytest.mark.parametrize("name", [pytest.param(name, marks=when(name)) for name in WRITERS])
 def test_a_killed_writer_leaves_the_old_or_the_new(program: Forked, tmp_path: Path, name: str, every: int) -> None:
     """Before and after each call that opens, writes, flushes, renames, removes or locks; and by the clock."""
     killing = Killing(program, WRITERS[name], tmp_path / "home")

@@ -16,13 +16,12 @@ from jsonschema import Draft202012Validator
 import rosprivacy
 from rosprivacy.analysis.mitigation.limits import Weights
 from rosprivacy.ingest.policies.policy_xml import read_policy
-from tests.helpers.command import XI, Cli, Done, refused, run
+from tests.helpers.command import XI, Cli, refused
 from tests.helpers.factory import BEFORE, FACTORY, RUN3
 from tests.helpers.fleet_files import policy as short_policy
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from pathlib import Path
 
 SCHEMA = json.loads((ROOT / "docs" / "mitigation.schema.json").read_text("utf-8"))
@@ -62,17 +61,6 @@ def test_the_factory_gets_the_papers_two_changes(cli: Cli) -> None:
     assert [less["element"]["name"] for less in proposal["affected"]] == ["/archive_server"]
 
 
-def test_the_text_says_the_same_in_words(cli: Cli) -> None:
-    done = cli("mitigate", BEFORE, "-l", RUN3)
-    assert done.returncode == 0
-    lines = [line.strip() for line in done.stdout.splitlines()]
-    assert lines[0] == "Video: 2 changes remove 1 finding"
-    assert "Put a filter between /safety_video (topic) and /archive_server (node)" in lines
-    assert "A filter before /safety_video (topic) would also reach: /emergency_stop" in lines
-    assert "/save_footage: {never: [Video]}" in lines
-    assert any(line.startswith("Proven: analysed anew with this, and if the review finds none,") for line in lines)
-
-
 def test_storages_and_transfers_can_be_cut_off_or_stated(cli: Cli, tmp_path: Path) -> None:
     """Rule S10: their ways go on from leaks, so the filter before the leak alone does not do."""
     labels = tmp_path / "l.yaml"
@@ -89,9 +77,6 @@ def test_storages_and_transfers_can_be_cut_off_or_stated(cli: Cli, tmp_path: Pat
         ("storage-limitation", "tapes"),
         ("third-country-transfer", "tapes"),
     ]
-    text = cli("mitigate", BEFORE, "-l", labels).stdout
-    assert "   Without a change of flows, if it is so or can be arranged, label files can state:" in text.splitlines()
-    assert "      of tapes (storage): a retention within the limit for Video  (" in text
 
 
 def test_the_proof_knows_of_storages(cli: Cli, tmp_path: Path) -> None:
@@ -108,12 +93,6 @@ def test_the_proof_knows_of_storages(cli: Cli, tmp_path: Path) -> None:
     assert found[-1]["verdict_then"] != "leak"
 
 
-def test_what_the_review_and_the_filter_of_the_paper_leave_is_nothing(cli: Cli) -> None:
-    """Run 5 is run 3 with both changes made."""
-    done = cli("mitigate", FACTORY / "after.policy.xml", "-l", FACTORY / "run5.labels.yaml")
-    assert (done.returncode, done.stdout.splitlines()[0]) == (0, "no-leak-found: no open finding, nothing to remove")
-
-
 def test_the_label_that_is_printed_closes_the_way(cli: Cli, tmp_path: Path) -> None:
     report = proposals(cli, BEFORE, "-l", RUN3)
     review, _ = report["proposals"][0]["steps"]
@@ -123,10 +102,8 @@ def test_the_label_that_is_printed_closes_the_way(cli: Cli, tmp_path: Path) -> N
     assert [step_of(step) for step in proposal["steps"]] == [("filter", ("/safety_video", "/archive_server"))]
 
 
-LIMITS = """\
-limits: 1
-time_critical: [/emergency_stop]
-"""
+REVIEW_OR_FILTER = ("--by", "review", "--by", "filter")
+AT_THE_CAMERA = [("filter", ("/safety_camera", "/safety_video"))]
 
 
 def limits(folder: Path, text: str) -> Path:
@@ -136,81 +113,86 @@ def limits(folder: Path, text: str) -> Path:
 
 
 def test_a_time_critical_node_is_named_and_spared(cli: Cli, tmp_path: Path) -> None:
-    done = cli("mitigate", BEFORE, "-l", RUN3, "--limits", limits(tmp_path, LIMITS), "--by", "filter")
-    lines = [line.strip() for line in done.stdout.splitlines()]
-    assert "A filter before /safety_video (topic) would also reach: /emergency_stop (time-critical)" in lines
-    assert "nothing on the way to /emergency_stop is touched: time-critical" in lines
-    assert "Put a filter between /save_footage (service request) and /archive_server (node)" in lines
+    file = limits(tmp_path, "limits: 1\ntime_critical: [/emergency_stop]\n")
+    (proposal,) = proposals(cli, BEFORE, "-l", RUN3, "--limits", file, "--by", "filter")["proposals"]
+    assert ("filter", ("/save_footage", "/archive_server")) in [step_of(step) for step in proposal["steps"]]
+    assert {element["name"] for step in proposal["steps"] for element in step["reaches"]} == {"/archive_server"}
+    done = cli("mitigate", BEFORE, "-l", RUN3, "--limits", file, "--by", "filter")
+    assert "/emergency_stop (time-critical)" in done.stdout
 
 
 @pytest.mark.parametrize(
-    ("text", "steps"),
+    "text",
     [
-        # weights turn it: a review that is dear, a node that is not
-        ("weights: {review: 100, filter: 2, node: 1}", [("filter", ("/safety_camera", "/safety_video"))]),
-        # never here
-        (
-            "places: [{from: /safety_video, to: /archive_server, never: [filter]}]\ntime_critical: [/emergency_stop]",
-            None,
-        ),
-        (
-            "places: [{at: /archive_server, never: all}, {at: /safety_video, never: filter}]",
-            None,
-        ),
-        ("places: [{at: /save_footage, never: all}]", [("filter", ("/safety_camera", "/safety_video"))]),
-        ("places: [{at: /save_footage, factor: 50}]", [("filter", ("/safety_camera", "/safety_video"))]),
-        ("places: [{at: '/save*', never: [review]}, {at: /safety_camera, never: [filter]}]\nweights: {deny: 1000}", 2),
+        "weights: {review: 100, filter: 2, node: 1}",  # a review that is dear, a node that is not
+        "places: [{at: /save_footage, never: all}]",
+        "places: [{at: /save_footage, factor: 50}]",
     ],
 )
-def test_limits_decide_what_is_proposed(cli: Cli, tmp_path: Path, text: str, steps: Any) -> None:
+def test_limits_decide_what_is_proposed(cli: Cli, tmp_path: Path, text: str) -> None:
     file = limits(tmp_path, f"limits: 1\n{text}\n")
-    done = cli("mitigate", BEFORE, "-l", RUN3, "--limits", file, "--by", "review", "--by", "filter", "-f", "json")
-    (proposal,) = json.loads(done.stdout)["proposals"]
-    if steps is None:  # nothing may be changed on a way: it says which
-        assert done.returncode == 1
-        assert proposal["steps"] == []
-        (kept,) = proposal["keeps"]
-        assert (kept["reason"], kept["way"][0]["name"], kept["way"][-1]["name"]) == (
-            "not-allowed", "/safety_camera", "/archive_server",
-        )  # fmt: skip
-    elif isinstance(steps, int):
-        assert len(proposal["steps"]) == steps
-        assert proposal["proven"]
-    else:
-        assert [step_of(step) for step in proposal["steps"]] == steps
-        assert (done.returncode, proposal["proven"]) == (0, True)
+    (proposal,) = proposals(cli, BEFORE, "-l", RUN3, "--limits", file, *REVIEW_OR_FILTER)["proposals"]
+    assert [step_of(step) for step in proposal["steps"]] == AT_THE_CAMERA
+    assert proposal["proven"]
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    "text",
     [
-        ("limits: 2", "1: limits format '2'"),
-        ("time_critical: []", "1: no 'limits: 1'"),
-        ("[]", "1: a limits file is a map, not a list"),
-        ("limits: 1\ntime_critical: [/emergency_stp]", "2: '/emergency_stp' matches no element"),
-        ("limits: 1\ntime_critical: [/safety_video]", "2: '/safety_video' is a topic"),
-        ("limits: 1\nweights: {filter: 0}", "2: filter is '0'"),
-        ("limits: 1\nweights: {filter: yes}", "2: filter is 'yes'"),
-        ("limits: 1\nweights: {node: 99999999999999999999}", "2: node is '99999999999999999999'"),
-        ("limits: 1\nweights: {fliter: 3}", "2: unknown key 'fliter'; did you mean 'filter'?"),
-        ("limits: 1\nplaces: [{at: /a, from: /b, never: all}]", "2: a place needs at, or from and to"),
-        ("limits: 1\nplaces: [{at: /new_pose, never: [cut]}]", "2: 'cut' is not a kind of change"),
-        ("limits: 1\nplaces: [{at: /new_pose}]", "2: a place without never or factor says nothing"),
-        ("limits: 1\nplaces: [{from: /new_pose, to: /safety_camera, never: all}]", "2: no flow goes from '/new_pose'"),
-        ("limits: 1\nplaces: [/a]", "2: a place is a map, not a text"),
-        ("limits: 1\nplaces: /a", "2: places takes a list, not a text"),
-        ("limits: 1\ntime_critical: [3]", "2: a number where an element is named"),
+        "places: [{from: /safety_video, to: /archive_server, never: [filter]}]\ntime_critical: [/emergency_stop]",
+        "places: [{at: /archive_server, never: all}, {at: /safety_video, never: filter}]",
     ],
 )
-def test_bad_limits_are_refused_with_their_line(cli: Cli, tmp_path: Path, text: str, said: str) -> None:
+def test_where_nothing_may_be_changed_on_a_way_that_is_named(cli: Cli, tmp_path: Path, text: str) -> None:
+    file = limits(tmp_path, f"limits: 1\n{text}\n")
+    done = cli("mitigate", BEFORE, "-l", RUN3, "--limits", file, *REVIEW_OR_FILTER, "-f", "json")
+    (proposal,) = json.loads(done.stdout)["proposals"]
+    assert (done.returncode, proposal["steps"]) == (1, [])
+    (way,) = proposal["keeps"]
+    assert (way["reason"], way["way"][0]["name"], way["way"][-1]["name"]) == (
+        "not-allowed", "/safety_camera", "/archive_server",
+    )  # fmt: skip
+
+
+def test_limits_of_two_kinds_of_change_are_held_together(cli: Cli, tmp_path: Path) -> None:
+    text = "places: [{at: '/save*', never: [review]}, {at: /safety_camera, never: [filter]}]\nweights: {deny: 1000}"
+    file = limits(tmp_path, f"limits: 1\n{text}\n")
+    (proposal,) = proposals(cli, BEFORE, "-l", RUN3, "--limits", file, *REVIEW_OR_FILTER)["proposals"]
+    assert (len(proposal["steps"]), proposal["proven"]) == (2, True)
+
+
+@pytest.mark.parametrize(
+    ("text", "problems"),
+    [
+        ("limits: 2", ["1: limits format '2'"]),
+        ("time_critical: []", ["1: no 'limits: 1'"]),
+        ("[]", ["1: a limits file is a map, not a list"]),
+        ("limits: 1\ntime_critical: [/safety_video]", ["2: '/safety_video' is a topic"]),
+        ("limits: 1\ntime_critical: [3]", ["2: a number where an element is named"]),
+        ("limits: 1\nweights: {filter: 0}", ["2: filter is '0'"]),
+        ("limits: 1\nweights: {filter: yes}", ["2: filter is 'yes'"]),
+        ("limits: 1\nweights: {node: 99999999999999999999}", ["2: node is '99999999999999999999'"]),
+        ("limits: 1\nweights: {fliter: 3}", ["2: unknown key 'fliter'; did you mean 'filter'?"]),
+        ("limits: 1\nplaces: [{at: /a, from: /b, never: all}]", ["2: a place needs at, or from and to"]),
+        ("limits: 1\nplaces: [{at: /new_pose, never: [cut]}]", ["2: 'cut' is not a kind of change"]),
+        ("limits: 1\nplaces: [{at: /new_pose}]", ["2: a place without never or factor says nothing"]),
+        (
+            "limits: 1\nplaces: [{from: /new_pose, to: /safety_camera, never: all}]",
+            ["2: no flow goes from"],
+        ),
+        ("limits: 1\nplaces: [/a]", ["2: a place is a map, not a text"]),
+        ("limits: 1\nplaces: /a", ["2: places takes a list, not a text"]),
+        (
+            "limits: 2\nfoo: 1\ntime_critical: [/emergency_stp]\nplaces: [{at: /y, never: all}]",
+            ["1: limits format", "2: unknown key", "3: '/emergency_stp' matches no element", "4: '/y' matches"],
+        ),
+    ],
+)
+def test_bad_limits_are_refused_with_all_their_lines(cli: Cli, tmp_path: Path, text: str, problems: list[str]) -> None:
     file = limits(tmp_path, text)
     lines = refused(cli("mitigate", BEFORE, "-l", RUN3, "--limits", file))
-    assert any(line.startswith(f"{file}:{said}") for line in lines), lines
-
-
-def test_all_problems_of_a_limits_file_are_said_at_once(cli: Cli, tmp_path: Path) -> None:
-    file = limits(tmp_path, "limits: 2\nfoo: 1\ntime_critical: [/x]\nplaces: [{at: /y, never: all}]\n")
-    assert len(refused(cli("mitigate", BEFORE, "-l", RUN3, "--limits", file))) == 4
+    assert len(lines) == len(problems)
+    assert all(line.startswith(f"{file}:{problem}") for line, problem in zip(lines, problems, strict=True)), lines
 
 
 # ---------------------------------------------------------------- DENY and patches
@@ -261,63 +243,41 @@ def policy(profiles: str, *, enclave: str = "/e") -> str:
 CAMERA = "<profile ns='/' node='camera'>\n<topics publish='ALLOW'><topic>video</topic></topics>\n</profile>"
 
 
-def included(folder: Path, inner: str, profiles: str) -> str:
-    (folder / "inner.xml").write_text(inner)
-    return profiles
-
-
-SHAPES: dict[str, Callable[[Path], str]] = {
-    "one name to a group": lambda _: (
-        "<profile ns='/' node='cloud'><topics subscribe='ALLOW'><topic>video</topic></topics></profile>"
+CLOUD = "<profile ns='/' node='cloud'>{}</profile>"
+NAMES = "<topics subscribe='ALLOW'>{}<topic>video</topic>{}</topics>"
+SHAPES = {
+    "one name to a group": CLOUD.format(NAMES.format("", "")),
+    "all on one line": CLOUD.format(NAMES.format("<topic>pose</topic>", "")),
+    "lines of their own": CLOUD.format(NAMES.format("\n  <topic>pose</topic>\n  ", "\n")),
+    "two roles in a group": CLOUD.format(NAMES.format("", "").replace("<topics", "<topics publish='ALLOW'")),
+    "a comment between": CLOUD.format(
+        "<!-- > <topic>video</topic> -->\n" + NAMES.format("\n<!-- why -->", "<!-- here -->\n<topic>pose</topic>")
     ),
-    "all on one line": lambda _: (
-        "<profile ns='/' node='cloud'><topics subscribe='ALLOW'><topic>pose</topic>"
-        "<topic>video</topic></topics></profile>"
+    "names with characters that XML escapes": CLOUD.format(NAMES.format("<topic>pose&amp;&lt;</topic>", "")),
+    "a line that is included": "\n".join(
+        f"<profile ns='/' node='{node}'>\n<xi:include href='inner.xml' xpointer='xpointer(/profile/*)'/>\n</profile>"
+        for node in ("cloud", "other")
     ),
-    "lines of their own": lambda _: (
-        "  <profile ns='/' node='cloud'>\n    <topics subscribe='ALLOW'>\n      <topic>pose</topic>\n"
-        "      <topic>video</topic>\n    </topics>\n  </profile>"
-    ),
-    "two roles in a group": lambda _: (
-        "  <profile ns='/' node='cloud'>\n    <topics publish='ALLOW' subscribe='ALLOW'>\n"
-        "      <topic>video</topic>\n    </topics>\n  </profile>"
-    ),
-    "a comment between": lambda _: (
-        "<profile ns='/' node='cloud'><!-- > <topic>video</topic> -->\n<topics subscribe='ALLOW'>\n"
-        "<!-- why --><topic>video</topic> <!-- here -->\n<topic>pose</topic></topics></profile>"
-    ),
-    "names with characters that XML escapes": lambda _: (
-        "<profile ns='/' node='cloud'><topics subscribe='ALLOW'><topic>pose&amp;&lt;</topic><topic>video</topic>"
-        "</topics></profile>"
-    ),
-    "a line that is included": lambda folder: included(
-        folder,
-        "<profile>\n<topics subscribe='ALLOW'>\n<topic>/video</topic>\n<topic>/pose</topic>\n</topics>\n</profile>",
-        "<profile ns='/' node='cloud'>\n<xi:include href='inner.xml' xpointer='xpointer(/profile/*)'/>\n</profile>\n"
-        "<profile ns='/' node='other'>\n<xi:include href='inner.xml' xpointer='xpointer(/profile/*)'/>\n</profile>",
-    ),
-    "a profile that is included": lambda folder: included(
-        folder,
-        "<profiles>\n<profile ns='/' node='cloud'>\n<topics subscribe='ALLOW'>\n<topic>video</topic>\n</topics>\n"
-        "</profile>\n</profiles>",
-        "<xi:include href='inner.xml' xpointer='xpointer(/profiles/*)'/>",
-    ),
-    "Windows line ends": lambda _: (
-        "<profile ns='/' node='cloud'>\r\n  <topics subscribe='ALLOW'>\r\n    <topic>pose</topic>\r\n"
-        "    <topic>video</topic>\r\n  </topics>\r\n</profile>"
-    ),
+    "a profile that is included": "<xi:include href='inner.xml' xpointer='xpointer(/profiles/*)'/>",
+    "Windows line ends": CLOUD.format(NAMES.format("\r\n  <topic>pose</topic>\r\n  ", "\r\n")),
 }
+INNER = {
+    "a line that is included": "<profile>\n<topics subscribe='ALLOW'>\n<topic>/video</topic>\n<topic>/pose</topic>\n"
+    "</topics>\n</profile>",
+    "a profile that is included": f"<profiles>\n{CLOUD.format(NAMES.format('', ''))}\n</profiles>",
+}
+LABELS = "labels: 1\nnodes: {/camera: {source: [Video]}, /cloud: {leak: [Video]}}\n"
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("shape", SHAPES)
-def test_a_patch_fits_the_way_a_policy_is_written(tmp_path: Path, shape: str) -> None:
+def test_a_patch_fits_the_way_a_policy_is_written(cli: Cli, tmp_path: Path, shape: str) -> None:
     file, diff = tmp_path / "p.xml", tmp_path / "fix.diff"
-    file.write_bytes(policy(f"{CAMERA}\n{SHAPES[shape](tmp_path)}").encode())
-    labels = tmp_path / "l.yaml"
-    labels.write_text("labels: 1\nnodes: {/camera: {source: [Video]}, /cloud: {leak: [Video]}}\n")
+    (tmp_path / "inner.xml").write_text(INNER.get(shape, "<profile/>"))
+    file.write_bytes(policy(f"{CAMERA}\n{SHAPES[shape]}").encode())
+    (tmp_path / "l.yaml").write_text(LABELS)
     limited = limits(tmp_path, "limits: 1\nplaces: [{at: /camera, never: all}]\n")
-    done = run("mitigate", "p.xml", "-l", "l.yaml", "--by", "deny", "--patch", diff, "--limits", limited, cwd=tmp_path)
+    done = cli("mitigate", "p.xml", "-l", "l.yaml", "--by", "deny", "--patch", diff, "--limits", limited, cwd=tmp_path)
     assert done.returncode == 0, done.stdout
     assert "no patch:" not in done.stdout, done.stdout
     before = set(read_policy(str(file)).grants)
@@ -325,16 +285,16 @@ def test_a_patch_fits_the_way_a_policy_is_written(tmp_path: Path, shape: str) ->
     after = read_policy(str(file)).grants
     denied = {(grant.role, grant.name, grant.node) for grant in after if not grant.allow}
     assert denied == {("subscribe", "/video", "/cloud")}
-    kept = {(g.role, g.name, g.node) for g in after if g.allow} | denied
-    assert kept == {(g.role, g.name, g.node) for g in before}
-    assert run("analyze", "p.xml", "-l", "l.yaml", cwd=tmp_path).returncode == 4  # no leak, /video unreviewed
+    allowed = {(g.role, g.name, g.node) for g in after if g.allow}
+    assert allowed | denied == {(g.role, g.name, g.node) for g in before}
+    assert cli("analyze", "p.xml", "-l", "l.yaml", cwd=tmp_path).returncode == 4  # no leak, /video unreviewed
 
 
 def test_where_no_patch_can_be_made_it_says_so(cli: Cli, tmp_path: Path) -> None:
     """A file that is not UTF-8; the proposal stands."""
-    text = policy(f"{CAMERA}\n<!-- é -->\n{SHAPES['one name to a group'](tmp_path)}")
+    text = policy(f"{CAMERA}\n<!-- é -->\n{SHAPES['one name to a group']}")
     (tmp_path / "p.xml").write_bytes(f"<?xml version='1.0' encoding='iso-8859-1'?>{text}".encode("iso-8859-1"))
-    (tmp_path / "l.yaml").write_text("labels: 1\nnodes: {/camera: {source: [Video]}, /cloud: {leak: [Video]}}\n")
+    (tmp_path / "l.yaml").write_text(LABELS)
     report = proposals(cli, "p.xml", "-l", "l.yaml", "--by", "deny", cwd=tmp_path)
     assert report["patch"] == ""
     assert report["why_no_patch"].startswith("p.xml: ")
@@ -355,10 +315,7 @@ def test_a_saved_graph_opens_no_file_that_it_names(cli: Cli, tmp_path: Path) -> 
 def test_labels_that_a_patch_leaves_without_an_element_are_named(cli: Cli, tmp_path: Path) -> None:
     wildcard = "<profile ns='/' node='cloud'><topics subscribe='ALLOW'><topic>vid*</topic></topics></profile>"
     (tmp_path / "p.xml").write_text(policy(f"{CAMERA}\n{wildcard}"))
-    (tmp_path / "l.yaml").write_text(
-        "labels: 1\nnodes: {/camera: {source: [Video]}, /cloud: {leak: [Video]}}\n"
-        "flows: [{from: '/vid*', to: /cloud, never: [Voice]}]\n"
-    )
+    (tmp_path / "l.yaml").write_text(f"{LABELS}flows: [{{from: '/vid*', to: /cloud, never: [Voice]}}]\n")
     limited = limits(tmp_path, "limits: 1\nplaces: [{at: /camera, never: all}]\n")
     report = proposals(cli, "p.xml", "-l", "l.yaml", "--by", "deny", "--limits", limited, cwd=tmp_path)
     (line,) = report["labels_without_element"]
@@ -394,22 +351,13 @@ def test_a_filter_is_not_proposed_where_a_wildcard_reads_past_it(cli: Cli, tmp_p
 
 def test_a_hostile_name_is_quoted_in_the_label_and_harmless_in_the_text(cli: Cli, tmp_path: Path) -> None:
     name = "vi: {x}\u202e#"
-    text = policy(CAMERA.replace("video", name) + SHAPES["one name to a group"](tmp_path).replace("video", name))
+    text = policy(CAMERA.replace("video", name) + SHAPES["one name to a group"].replace("video", name))
     (tmp_path / "p.xml").write_text(text, "utf-8")
-    (tmp_path / "l.yaml").write_text("labels: 1\nnodes: {/camera: {source: [Video]}, /cloud: {leak: [Video]}}\n")
+    (tmp_path / "l.yaml").write_text(LABELS)
     done = cli("mitigate", "p.xml", "-l", "l.yaml", cwd=tmp_path)
     assert "\u202e" not in done.stdout
     (line,) = [line for line in done.stdout.splitlines() if "never: [" in line]
     assert yaml.safe_load(line) == {f"/{name}": {"never": ["Video"]}}
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("form", ["text", "json"])
-def test_the_same_input_gives_the_same_bytes(form: str) -> None:  # S14
-    care = ROOT / "examples" / "care-home"
-    policy_, labels = care / "care-home.policy.xml", care / "care-home.labels.yaml"
-    answers = {run("mitigate", policy_, "-l", labels, "-f", form, PYTHONHASHSEED=seed).stdout for seed in "017"}
-    assert len(answers) == 1
 
 
 def test_the_readme_of_mitigation_shows_what_is_printed(cli: Cli) -> None:
@@ -433,21 +381,14 @@ def test_several_kinds_get_a_proposal_each_and_one_together(cli: Cli) -> None:
     assert all(proposal["proven"] for proposal in report["proposals"])
 
 
-def test_a_policy_is_needed(cli: Cli) -> None:
-    done: Done = cli("mitigate", "-l", RUN3)
-    assert done.returncode == 2
-
-
 def test_a_flow_that_a_person_states_is_named_by_its_line(cli: Cli, tmp_path: Path) -> None:
     """S9: it has no profile and no enclave."""
     (tmp_path / "l.yaml").write_text(
-        "labels: 1\nnodes:\n  /safety_camera: {source: [Video]}\nelements:\n  disk: {kind: storage, leak: [Video]}\n"
-        "flows:\n  - {from: /archive_server, to: disk}\n  - {from: /safety_camera, to: disk}\n"
-        "topics: {/safety_video: mundane}\n"
+        "labels: 1\nnodes: {/safety_camera: {source: [Video]}}\nelements: {disk: {kind: storage, leak: [Video]}}\n"
+        "flows:\n  - {from: /safety_camera, to: disk}\ntopics: {/safety_video: mundane}\n"
     )
     text = cli("mitigate", BEFORE, "-l", "l.yaml", "--by", "filter", cwd=tmp_path).stdout
-    assert "l.yaml:8  stated flow\n" in text
-    assert "(profile , enclave )" not in text
+    assert "l.yaml:5  stated flow\n" in text
 
 
 def test_a_sanitizer_that_reads_a_wildcard_which_a_source_names(cli: Cli, tmp_path: Path) -> None:

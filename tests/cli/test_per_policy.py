@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import jsonschema
 import pytest
 
+from tests.helpers.fleet_files import policy
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
@@ -23,60 +24,43 @@ channels: {/video: sensitive}
 """
 
 
-def policy(*profiles: tuple[str, str, str]) -> str:
-    """Profiles of (node, publish or subscribe, topic)."""
-    inner = "".join(
-        f'<profile ns="/" node="{node}"><topics {role}="ALLOW"><topic>{topic}</topic></topics></profile>'
-        for node, role, topic in profiles
-    )
-    inside = f'<enclave path="/"><profiles>{inner}</profiles></enclave>'
-    return f'<policy version="0.2.0"><enclaves>{inside}</enclaves></policy>'
+ONE_GRAPH = "notice: p/a.xml:1: 3 policies make one graph"
+ALONE = "--per-policy analyses each alone"
 
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     """A camera in one policy, what lets out in another: only together they leak."""
     (tmp_path / "p").mkdir()
-    (tmp_path / "p" / "a.xml").write_text(policy(("camera", "publish", "video")))
-    (tmp_path / "p" / "b.xml").write_text(policy(("uplink", "subscribe", "video")))
+    (tmp_path / "p" / "a.xml").write_text(policy("/camera>video"))
+    (tmp_path / "p" / "b.xml").write_text(policy("/uplink<video"))
     (tmp_path / "l.yaml").write_text(LABELS)
     return tmp_path
 
 
-def notices(cli: Cli, folder: Path) -> list[str]:
+@pytest.mark.parametrize(
+    ("third", "notice"),
+    [
+        ((), ""),  # what belongs together
+        (("/camera>video",), ""),  # the same is no other
+        (("/arm>vid*",), ""),  # a wildcard joins them
+        (("/camera>other",), ": node /camera is stated differently in p/a.xml and p/c.xml; "),
+        (("/arm>joints,rosout",), " of 2 parts that share no node and no channel: p/a.xml and p/b.xml | p/c.xml; "),
+    ],
+    ids=["two", "the same", "wildcard", "another node", "nothing in common"],
+)
+def test_what_may_not_belong_together_is_named(cli: Cli, folder: Path, third: tuple[str, ...], notice: str) -> None:
+    if third:
+        (folder / "p" / "c.xml").write_text(policy(*third))
     lines = cli("analyze", "p", "-l", "l.yaml", cwd=folder).stdout.splitlines()
-    return [line for line in lines if MERGED in line]
-
-
-def test_files_that_belong_together_are_no_notice(cli: Cli, folder: Path) -> None:
-    assert notices(cli, folder) == []
-
-
-def test_a_node_that_two_files_state_differently_is_named(cli: Cli, folder: Path) -> None:
-    (folder / "p" / "c.xml").write_text(policy(("camera", "publish", "other")))
-    (said,) = notices(cli, folder)
-    assert said == (
-        "notice: p/a.xml:1: 3 policies make one graph, with what each of them allows: node /camera is stated "
-        "differently in p/a.xml and p/c.xml; --per-policy analyses each alone"
-    )
-    (folder / "p" / "c.xml").write_text(policy(("camera", "publish", "video")))
-    assert notices(cli, folder) == []  # the same is no other
-
-
-def test_files_without_a_common_name_are_named(cli: Cli, folder: Path) -> None:
-    (folder / "p" / "c.xml").write_text(policy(("arm", "publish", "joints"), ("arm", "publish", "rosout")))
-    (said,) = notices(cli, folder)
-    assert said == (
-        "notice: p/a.xml:1: 3 policies make one graph of 2 parts that share no node and no channel: "
-        "p/a.xml and p/b.xml | p/c.xml; if these are several systems, --per-policy analyses each alone"
-    )
-    (folder / "p" / "c.xml").write_text(policy(("arm", "publish", "vid*")))
-    assert notices(cli, folder) == []  # a wildcard joins them
+    told = [line for line in lines if MERGED in line]
+    assert len(told) == bool(notice)
+    assert all(line.startswith(ONE_GRAPH) and notice in line and line.endswith(ALONE) for line in told)
 
 
 def test_several_policies_of_one_robot_of_a_fleet_are_told_alike(cli: Cli, folder: Path) -> None:
     """What a robot runs makes one graph (S4); of what two robots run, each has its own."""
-    (folder / "p" / "c.xml").write_text(policy(("camera", "publish", "other"), ("uplink", "subscribe", "rosout")))
+    (folder / "p" / "c.xml").write_text(policy("/camera>other", "/uplink<rosout"))
     fleet = "fleet: 1\nname: f\nrobots: {r: {policies: [%s], labels: l.yaml}, s: {policies: [%s], labels: l.yaml}}\n"
     (folder / "f.yaml").write_text(fleet % ("p/a.xml, p/b.xml, p/c.xml", "p/b.xml, p/a.xml"))
     done = cli("analyze", "--fleet", "f.yaml", cwd=folder)
@@ -96,7 +80,7 @@ def answers(cli: Cli, folder: Path, *options: str) -> Any:
 
 
 def test_each_policy_alone_is_as_if_it_were_the_only_one(cli: Cli, folder: Path) -> None:
-    (folder / "p" / "c.xml").write_text(policy(("camera", "publish", "video"), ("uplink", "subscribe", "video")))
+    (folder / "p" / "c.xml").write_text(policy("/camera>video", "/uplink<video"))
     document = answers(cli, folder)
     assert (document["format"], document["verdict"]) == ("rosprivacy.analyses/1", "leak")
     verdicts = {row["policy"]: row["analysis"]["verdict"] for row in document["policies"]}
@@ -109,20 +93,18 @@ def test_each_policy_alone_is_as_if_it_were_the_only_one(cli: Cli, folder: Path)
 
 
 def test_the_text_ends_with_a_summary_and_the_exit_code_is_the_worst(cli: Cli, folder: Path) -> None:
-    given = ("analyze", "p", "-l", "l.yaml", "--per-policy")
-    done = cli(*given, cwd=folder)
+    command = ("analyze", "p", "-l", "l.yaml", "--per-policy")
+    done = cli(*command, cwd=folder)
     assert done.returncode == 4  # b alone has no source
-    assert done.stdout.splitlines()[-3:] == [
-        "no-leak-found: p/a.xml: 0 findings, 0 elements to review",
-        "undetermined: p/b.xml: 0 findings, 0 elements to review",
-        f"undetermined: the worst of 2 policies, each alone; {APART}",
-    ]
-    assert done.stdout.startswith("== p/a.xml\nno-leak-found: ")
-    assert len(cli(*given, "-q", cwd=folder).stdout.splitlines()) == 3
+    assert [line.partition(": ")[0] for line in done.stdout.splitlines()[-3:]] == [
+        "no-leak-found", "undetermined", "undetermined",
+    ]  # fmt: skip
+    assert done.stdout.endswith(f"the worst of 2 policies, each alone; {APART}\n")
+    assert len(cli(*command, "-q", cwd=folder).stdout.splitlines()) == 3
     assert cli("analyze", "p", "-l", "l.yaml", cwd=folder).returncode == 1  # together they leak
-    (folder / "p" / "c.xml").write_text(policy(("camera", "publish", "video"), ("uplink", "subscribe", "video")))
-    assert cli(*given, cwd=folder).returncode == 1
-    assert cli(*given, "--fail-on", "never", cwd=folder).returncode == 0
+    (folder / "p" / "c.xml").write_text(policy("/camera>video", "/uplink<video"))
+    assert cli(*command, cwd=folder).returncode == 1
+    assert cli(*command, "--fail-on", "never", cwd=folder).returncode == 0
 
 
 def test_a_name_that_matches_in_no_policy_is_an_error(cli: Cli, folder: Path) -> None:

@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors, ModelError, QueryError, RosPrivacyError
-from tests.fuzz_corpus import SECRET, hide, mutate, plant, words
 from tests.fuzzing.choices import Choices
 from tests.fuzzing.label_texts import BASE, BASE_LABELS, EXAMPLE_FLEET, STAR_LABELS
+from tests.fuzzing.mutations import SECRET, hide, mutate, plant, words
 from tests.fuzzing.watch import Hang, Watch
 from tests.fuzzing.whole import report_whole, run_command
 

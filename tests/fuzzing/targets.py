@@ -92,7 +92,7 @@ class Target:
     arguments
         Of the command that reads it; none where there is none without a server.
     words
-        Which dictionary of ``fuzz_corpus`` the mutations take; none for files that are no text.
+        Which dictionary of ``mutations`` the mutations take; none for files that are no text.
     """
 
     name: str

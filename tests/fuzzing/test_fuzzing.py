@@ -81,8 +81,9 @@ def test_a_kept_seed_is_read_or_refused(name: str, watched: Watch) -> None:
 @pytest.mark.parametrize("name", LIGHT)
 def test_at_least_a_third_of_what_is_made_is_accepted(name: str, watched: Watch) -> None:
     random = Random(16)  # noqa: S311 - repeatable
-    kinds = [reading(TARGETS[name], random.randbytes(60), watched).kind for _ in range(TRIED)]
-    assert kinds.count("accepted") >= TRIED / 3
+    tried = TRIED // 3 if name in HEAVY else TRIED
+    kinds = [reading(TARGETS[name], random.randbytes(60), watched).kind for _ in range(tried)]
+    assert kinds.count("accepted") >= tried / 3
 
 
 DAILY = {"policy", "analysis"}  # a second or two each

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from rosprivacy.ingest.mitigation.deny_patch import TEMPORARY
 from rosprivacy.report.pictures.graphviz import WORKER
-from tests.fuzz_corpus import Guard
+from tests.fuzzing.mutations import Guard
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:

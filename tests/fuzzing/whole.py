@@ -15,7 +15,7 @@ import typer.main
 from rosprivacy.cli.app import main
 from rosprivacy.cli.exit_code import FailOn, exit_code
 from rosprivacy.formats import FORMATS
-from tests.fuzz_corpus import SECRET
+from tests.fuzzing.mutations import SECRET
 from tests.helpers.word import text_of
 
 if TYPE_CHECKING:

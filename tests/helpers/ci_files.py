@@ -14,14 +14,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 ACTION, HOOKS, CI = ROOT / "action.yml", ROOT / ".pre-commit-hooks.yaml", ROOT / "examples" / "ci"
-
-
 HOSTED = ROOT / ".github" / "workflows" / "ci.yml"
-
-
 FACTORY = ROOT / "examples" / "factory"
-
-
 GIT = ["git", "-c", "user.name=t", "-c", "user.email=t@example.org", "-c", "init.defaultBranch=main"]
 
 
@@ -74,19 +68,11 @@ TAKEN_FOR_MODULES = (
     *("pip/__init__.py", "pip/__main__.py", "venv/__init__.py", "venv/__main__.py", "ensurepip/__main__.py"),
     *("setuptools/__init__.py", "setuptools/build_meta.py"),
 )
-
-
 TAKEN_FOR_COMMANDS = (
     *("python", "python3", "sed", "cat", "rm", "dirname", "git", "jq", ".bashrc", ".profile", ".bash_profile"),
-    *(
-        ".git/hooks/post-checkout",
-        ".git/hooks/post-index-change",
-        ".git/hooks/pre-commit",
-        ".git/hooks/fsmonitor-watchman",
-    ),
+    *(".git/hooks/post-checkout", ".git/hooks/post-index-change", ".git/hooks/pre-commit"),
+    ".git/hooks/fsmonitor-watchman",
 )
-
-
 FROM_HERE = {"PYTHONPATH": f"{os.pathsep}/nowhere"}  # as `export PYTHONPATH=$PYTHONPATH:…` makes it: the current folder
 
 

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import re
-import runpy
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.ingest.policies.policy_xml import read_policy
-from tests.helpers.paths import TESTS
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -28,9 +26,6 @@ CHILDREN = 'xpointer="xpointer(/profile/*)"'
 
 
 HIDDEN = '<profile><topics publish="ALLOW"><topic>secret</topic></topics></profile>'
-
-
-FUZZ = runpy.run_path(str(TESTS / "fuzz_corpus.py"))
 
 
 def topic(name: str) -> str:

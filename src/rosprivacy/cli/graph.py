@@ -63,14 +63,14 @@ class Part:
     robot: str | None
     around: list[str] | None
     steps: int
-    most: int | None
+    bound: int | None
     fold: bool
     loose_ends: bool | None
 
     @property
     def chosen(self) -> bool:
         """Whether a user chose any of it."""
-        return bool(self.finding or self.robot or self.around or self.most or self.fold) or self.loose_ends is not None
+        return bool(self.finding or self.robot or self.around or self.bound or self.fold) or self.loose_ends is not None
 
 
 DRAWN = "What is drawn of it"  # panels of help
@@ -197,10 +197,10 @@ def graph(
 
 def _shown(show: Shown | None, part: Part, *, everything: bool) -> Shown:
     """The view that is asked for; some options are of one view only."""
-    of_privacy = bool(part.finding or part.most)
+    of_privacy = bool(part.finding or part.bound)
     if show is Shown.ros and of_privacy:
         raise typer.BadParameter("--finding and --most are for --show privacy")
-    if everything and part.most:
+    if everything and part.bound:
         raise typer.BadParameter("--all draws everything, --most does not: choose one of them")
     return show or (Shown.privacy if of_privacy else Shown.ros)
 
@@ -246,7 +246,7 @@ def _view(
     beside = result.fleet.likeness.second if result.fleet else ()
     if show is Shown.privacy:
         if part.finding:
-            return _finding(result, part.finding, views.PER_BOX * part.most if part.most else None, say)
+            return _finding(result, part.finding, views.PER_BOX * part.bound if part.bound else None, say)
         return with_added(result, say, lambda also: views.privacy_view(result.analysis, beside, say, also))
     denials = [grant for policy in result.policies for grant in policy.grants if not grant.allow]
     picture = with_added(
@@ -280,7 +280,7 @@ def _narrowed(picture: Picture, part: Part) -> Picture:
         picture = narrow.folded(picture)
     if part.loose_ends is False:
         picture = narrow.without_loose_ends(picture)
-    return views.bounded(picture, part.most) if part.most else picture
+    return views.bounded(picture, part.bound) if part.bound else picture
 
 
 def _legible(picture: Picture) -> Picture:

@@ -169,7 +169,7 @@ def _load_results(folder: str, ontologies: tuple[str, ...], neo4j: str | None) -
 
 
 def _load_many(
-    rows: Iterable[RobotRows], vocabulary: Vocabulary, neo4j: str | None, what: str, robots: int, sentence: str
+    rows: Iterable[RobotRows], vocabulary: Vocabulary, neo4j: str | None, origin: str, robots: int, sentence: str
 ) -> None:
     """Write many robots, and say what was written of what, with the verdict in a sentence."""
     from rosprivacy.ingest.database.loading import load
@@ -177,7 +177,7 @@ def _load_many(
     with driver_of(neo4j) as driver, _bar(None) as advance:
         done = load(driver, rows, vocabulary, advance)
     _tell_replaced(done)
-    shares = f"{what}: {robots:,} robots and what they share"
+    shares = f"{origin}: {robots:,} robots and what they share"
     emit(f"{shares}: {done.written:,} written, {done.unchanged:,} as they were\n{sentence}\n", None)
 
 

@@ -36,11 +36,11 @@ class RowFormat(StrEnum):
     svg = "svg"
 
 
-def not_drawn(what: str, columns: Iterable[str]) -> str:
+def not_drawn(title: str, columns: Iterable[str]) -> str:
     """Return why there is no drawing, and what to do."""
     names = ", ".join(map(shown, columns))
     hint = "return some with --cypher (RETURN path), or take a query that rosprivacy query lists as one to be drawn"
-    return f"{what}: gives no node, relationship or path to draw, only {names}; {hint}"
+    return f"{title}: gives no node, relationship or path to draw, only {names}; {hint}"
 
 
 def answer(rows: Rows, form: RowFormat, title: str, *, wide: bool) -> str | bytes:

@@ -10,7 +10,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-from tests.helpers.includes import FUZZ, HIDDEN, write
+from tests.fuzzing.mutations import Guard
+from tests.helpers.includes import HIDDEN, write
 
 
 @pytest.fixture
@@ -23,6 +24,6 @@ def root(tmp_path: Path) -> Path:
 @pytest.fixture
 def guarded(root: Path) -> Iterator[None]:
     """Nothing outside of the root is opened, by Python or by libxml2."""
-    with FUZZ["Guard"](root.parent / "outside") as guard:
+    with Guard(root.parent / "outside") as guard:
         yield
         assert guard.check() == []
