@@ -52,7 +52,6 @@ OLDER = {
     "labelling": 51,
     "ontology": 2,
     "queries": 1,
-    "parts": 60,
     "report": 2,
     "report.cnil": 4,
     "report.compare": 6,

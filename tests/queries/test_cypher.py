@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from neo4j import Driver
 
     from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.ingest.database.rows import RobotRows
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 pytestmark = pytest.mark.database
@@ -162,7 +163,7 @@ def made_up_labels(policy: Path) -> str:
 @pytest.mark.corpus
 def test_on_every_policy_of_the_corpus(driver: Driver, corpus: Path, tmp_path: Path) -> None:
     expected = Disclosures()
-    rows = []
+    rows: list[RobotRows] = []
     labels = tmp_path / "labels.yaml"
     for policy in sorted((corpus / "policies").rglob("*.xml")):
         try:

@@ -120,8 +120,8 @@ class Core:
         return _carried(self.network, self.gates, arrived)
 
 
-def _carried(network: GraphArrays, at: Indices, given: Bits) -> tuple[Bits, Bits]:
+def _carried(network: GraphArrays, at: Indices, begun: Bits) -> tuple[Bits, Bits]:
     """The fixpoint, when some vertices emit what is given."""
     emitted = network.emitted.copy()
-    emitted[at] = given
+    emitted[at] = begun
     return fixpoint(network.edges, emitted, network.keep, network.derivations)

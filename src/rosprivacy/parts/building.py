@@ -1,22 +1,25 @@
 """Units of a fleet are read and placed, wherever it is: what the driver has to know of them before they are carried.
 
-In: units. Out: each placed by itself, and ``Told``, which is small and goes to the driver.
+In: units. Out: each placed by itself, and a ``Report``, which is small and goes to the driver.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from collections import Counter
+from dataclasses import dataclass, fields, replace
+from functools import partial, reduce
+from operator import or_
+from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.analysis.kernel.spreading import emitted
 from rosprivacy.ingest.fleet.fleet_graph import Some, likeness, place_some
 from rosprivacy.ingest.fleet.joins import let_out
 from rosprivacy.ingest.labels.pins import PIN_OF_NOTHING
-from rosprivacy.parts.units import Lines, crossing_lines, named
+from rosprivacy.parts.units import Lines, crossing_lines, naming_lines
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
     from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.analysis.model import Diagnostic, Place
@@ -45,8 +48,8 @@ def raised(problems: Iterable[Problem]) -> None:
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
-    """What a part tells when its robots are read.
+class Report:
+    """What a part reports when its robots are read; all of it can be put together in any order but that of messages.
 
     Attributes
     ----------
@@ -58,22 +61,22 @@ class Told:
         Of its label files.
     countries
         Whether the country of any element is stated.
-    found
-        Per flow of the fleet file: whether its ends are here.
-    named
-        (lines, side 0 or 1) -> (unit, for how many elements of the fleet the elements stand that these lines name).
+    ends
+        (number of a flow of the fleet file, side 0 or 1): ends that are here.
+    naming
+        (lines, side, unit, for how many elements of the fleet the elements stand that these lines name there).
     restated
         Places of flows that a label file says more of.
     met
         Where the flows of the fleet file begin and end.
+    contexts
+        (kind, name, context) of its elements: a pattern stands for robots that are not shown, too.
     types
         Files of observed message types, without what they say of channels.
     typed
         Whether the message type of any channel is known.
     letting_out
         Robots at which data is let out or kept, if it gets there.
-    contexts
-        (kind, name, context) of its elements: a pattern stands for robots that are not shown, too.
     """
 
     problems: tuple[Problem, ...] = ()
@@ -83,8 +86,8 @@ class Told:
     diagnostics: tuple[Diagnostic, ...] = ()
     limits: frozenset[Limit] = frozenset()
     countries: bool = False
-    found: tuple[tuple[bool, bool], ...] = ()
-    named: Mapping[tuple[Lines, int], Mapping[str, int]] = field(default_factory=dict)
+    ends: frozenset[tuple[int, int]] = frozenset()
+    naming: frozenset[tuple[Lines, int, str, int]] = frozenset()
     restated: tuple[Place, ...] = ()
     met: frozenset[Met] = frozenset()
     contexts: frozenset[tuple[str, str, str]] = frozenset()
@@ -100,97 +103,83 @@ class Built:
     names: tuple[str, ...]
     units: tuple[Some, ...]
     likeness: Likeness
-    told: Told
+    report: Report
 
 
 def built(units: Sequence[Unit], fleet: Fleet, view: str, reader: Callable[[], Read]) -> Built:
     """Read the robots of some units."""
     read = reader()
     alike = likeness(group for unit in units for group in unit.groups)
-    some: list[Some] = []
-    told = Told()
+    placed: list[Some] = []
+    reports = [Report()]
     for unit in units:
         try:
             members = [(group, read(group.robots[0])) for group in unit.groups]
-            placed = [replace(member, robot=robot) for group, member in members for robot in group.placed]
-            one = place_some(fleet, placed, view, own=False)
+            robots = [replace(member, robot=robot) for group, member in members for robot in group.placed]
+            placed.append(place_some(fleet, robots, view, own=False))
         except InputErrors as error:
-            told = replace(told, problems=(*told.problems, *problems_of(error)))
+            reports.append(Report(problems=problems_of(error)))
             continue
-        some.append(one)
-        told = _with(told, fleet, unit.name, one, [member for _, member in members], alike)
-    return Built(tuple(unit.name for unit in units), tuple(some), alike, told)
+        naming = _naming(fleet, unit.name, placed[-1], alike)
+        reports.append(replace(report_of(placed[-1], [member for _, member in members]), naming=naming))
+    return Built(tuple(unit.name for unit in units), tuple(placed), alike, joined(reports))
 
 
-def _with(told: Told, fleet: Fleet, name: str, one: Some, members: Sequence[Member], likeness: Likeness) -> Told:
-    ends: dict[tuple[Lines, int], dict[str, int]] = {}
+def _naming(fleet: Fleet, unit: str, placed: Some, likeness: Likeness) -> frozenset[tuple[Lines, int, str, int]]:
+    """Which lines name how many elements of a unit."""
+    weights: Counter[tuple[Lines, int]] = Counter()
     for side in (0, 1):
-        for element, lines in named(one, crossing_lines(fleet), side).items():
-            units = ends.setdefault((lines, side), {})
-            units[name] = units.get(name, 0) + likeness.weight(element.robot)
-    return joined(told, replace(told_of(one, members), named=ends))
+        for element, lines in naming_lines(placed, crossing_lines(fleet), side).items():
+            weights[lines, side] += likeness.weight(element.robot)
+    return frozenset((lines, side, unit, weight) for (lines, side), weight in weights.items())
 
 
-def told_of(one: Some, members: Sequence[Member]) -> Told:
-    """Return what robots tell that were placed together; a pin of nothing may be one of a robot in another part."""
+def report_of(placed: Some, members: Sequence[Member]) -> Report:
+    """Return what robots report that were placed together; a pin of nothing may be one of a robot in another part."""
     files = [labels for member in members for labels in member.files]
-    return Told(
-        emitted=frozenset(emitted(one.part.elements.values())),
+    diagnostics = (said for member in members for said in member.diagnostics if said.code != PIN_OF_NOTHING)
+    return Report(
+        emitted=frozenset(emitted(placed.part.elements.values())),
         sources=frozenset(s for member in members for policy in member.policies for s in policy.sources),
         labels=frozenset((file.file, file.sha256, file.shipped) for file in files),
-        diagnostics=tuple(
-            dict.fromkeys(d for member in members for d in member.diagnostics if d.code != PIN_OF_NOTHING)
-        ),
+        diagnostics=tuple(dict.fromkeys(diagnostics)),
         limits=frozenset(limit for file in files for limit in file.limits),
-        countries=any(facts.country for facts in one.part.outside.values()),
-        found=tuple((bool(sources), bool(targets)) for sources, targets in one.ends),
-        restated=one.restated,
-        met=one.met,
+        countries=any(facts.country for facts in placed.part.outside.values()),
+        ends=frozenset((i, side) for i, ends in enumerate(placed.ends) for side in (0, 1) if ends[side]),
+        restated=placed.restated,
+        met=placed.met,
         contexts=frozenset(
             (element.kind, element.name, context)
-            for element, where in one.part.surroundings.items()
+            for element, where in placed.part.surroundings.items()
             for context in where.contexts
         ),
         types=frozenset(replace(file, channels=()) for member in members for file in member.types),
-        typed=any(one.part.types.values()),
-        letting_out=let_out(one.part.elements.items()),
+        typed=any(placed.part.types.values()),
+        letting_out=let_out(placed.part.elements.items()),
     )
 
 
-def joined(one: Told, other: Told) -> Told:
-    """Put together what two tell."""
-    ends = {key: dict(units) for key, units in one.named.items()}
-    for key, units in other.named.items():
-        ends.setdefault(key, {}).update(units)
-    found = (
-        tuple((a or c, b or d) for (a, b), (c, d) in zip(one.found, other.found, strict=True))
-        if one.found and other.found
-        else one.found or other.found
-    )
-    return Told(
-        problems=(*one.problems, *other.problems),
-        emitted=one.emitted | other.emitted,
-        sources=one.sources | other.sources,
-        labels=one.labels | other.labels,
-        diagnostics=tuple(dict.fromkeys((*one.diagnostics, *other.diagnostics))),
-        limits=one.limits | other.limits,
-        countries=one.countries or other.countries,
-        found=found,
-        named=ends,
-        restated=(*one.restated, *other.restated),
-        met=one.met | other.met,
-        contexts=one.contexts | other.contexts,
-        types=one.types | other.types,
-        typed=one.typed or other.typed,
-        letting_out=one.letting_out | other.letting_out,
-    )
+def joined(reports: Iterable[Report]) -> Report:
+    """Put reports together: each of their attributes by its kind."""
+    columns = zip(*(map(partial(getattr, report), NAMES) for report in reports), strict=True)
+    return Report(**dict(zip(NAMES, map(_union, columns), strict=True)))
+
+
+NAMES = tuple(column.name for column in fields(Report))
+
+
+def _union(values: Sequence[Any]) -> Any:
+    """What several reports hold of one attribute: whether any does, all of it once, or a set of it."""
+    if isinstance(values[0], tuple):
+        return tuple(dict.fromkeys(item for value in values for item in value))
+    return reduce(or_, values)
 
 
 def names_on(part: Built, robots: frozenset[str]) -> frozenset[str]:
     """Return the names of the elements that are on some robots, for messages."""
-    return frozenset(e.name for some in part.units for e in some.part.elements if e.robot in robots)
+    return frozenset(e.name for placed in part.units for e in placed.part.elements if e.robot in robots)
 
 
-def told(part: Built) -> Told:
-    """Return what a part tells."""
-    return part.told
+def report(part: Built) -> Report:
+    """Return what a part reports."""
+    return part.report

@@ -38,15 +38,15 @@ BETWEEN = ("flows", "derived", "carried", "findings")  # begin and end at elemen
 SCALARS = (str, int, float, bool, type(None))
 
 
-def robot_rows(row: dict[str, Any], fail: Callable[[str], RosPrivacyError], again: str) -> RobotRows:
+def robot_rows(row: dict[str, Any], fail: Callable[[str], RosPrivacyError], hint: str) -> RobotRows:
     """Return the rows of a robot, or of what one part has of something shared.
 
     Parameters
     ----------
     fail
         Makes the error from the problem.
-    again
-        How to get such a file: the hint of JSON that cannot be read.
+    hint
+        How to get such a file, where JSON cannot be read.
 
     Raises
     ------
@@ -56,7 +56,7 @@ def robot_rows(row: dict[str, Any], fail: Callable[[str], RosPrivacyError], agai
     for column, kind in (("robot", str), ("shared", bool), ("part", int)):
         if not isinstance(row[column], kind) or row[column] == "":
             raise fail(f"a row without {column}")
-    values = {column: _value(column, row[column], fail, again) for column in (*SHAPES, "roles", "properties")}
+    values = {column: _value(column, row[column], fail, hint) for column in (*SHAPES, "roles", "properties")}
     problem = next(_misfits(values), "")
     if problem:
         raise fail(problem)
@@ -87,10 +87,10 @@ def check_ends(rows: RobotRows, fail: Callable[[str], RosPrivacyError]) -> Robot
     return rows
 
 
-def _value(column: str, text: str | None, fail: Callable[[str], RosPrivacyError], again: str) -> Any:
+def _value(column: str, text: str | None, fail: Callable[[str], RosPrivacyError], hint: str) -> Any:
     if text is None:
         raise fail(f"{column}: nothing")
-    return parsed(text.encode(), lambda _, problem, __: fail(f"{column}: {problem}"), again)
+    return parsed(text.encode(), lambda _, problem, __: fail(f"{column}: {problem}"), hint)
 
 
 def _misfits(values: dict[str, Any]) -> Iterator[str]:
@@ -106,11 +106,11 @@ def _misfits(values: dict[str, Any]) -> Iterator[str]:
         yield from _misfit(f"roles.{role}", some, END)
 
 
-def _misfit(column: str, some: Any, shape: dict[str, str]) -> Iterator[str]:
-    if not isinstance(some, list):
+def _misfit(column: str, rows: Any, shape: dict[str, str]) -> Iterator[str]:
+    if not isinstance(rows, list):
         yield f"{column}: not a list"
         return
-    for index, row in enumerate(some):
+    for index, row in enumerate(rows):
         if not isinstance(row, dict) or row.keys() != shape.keys():
             yield f"{column}[{index}]: not {', '.join(shape)}"
         else:

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.errors import ClusterError, GraphError, InputError, InputErrors, reason, shown
 from rosprivacy.ingest.database.rows import RobotRows
 from rosprivacy.parts.checked_rows import check_ends, robot_rows
-from rosprivacy.parts.session import scatter, told
+from rosprivacy.parts.session import cluster_errors, scatter
 from rosprivacy.parts.unit_rows import Plan, core_rows, put_together, unit_rows
 from rosprivacy.report.compare.earlier import document_of
 from rosprivacy.report.installing import command_for
@@ -37,7 +37,7 @@ ROBOTS = "robot string, verdict string, model string, shared boolean, part int, 
 )
 ANSWER = "format string, document string"
 WHOLE = "name a folder that analyze --results has written to its end"
-AGAIN = "analyse again, with analyze --results and another folder"
+ANALYSE_AGAIN = "analyse again, with analyze --results and another folder"
 LISTS = ("carries", "pseudonymised", "begins", "leaks", "sanitizes", "open")
 ELEMENTS = "robot string, id string, kind string, name string, leg string, " + ", ".join(
     f"{name} array<string>" for name in LISTS
@@ -75,7 +75,7 @@ def write(spark: SparkSession, folder: str, units: Sequence[Unit], plan: Plan, d
     names = frozenset(rows.robot for rows in shared)
     parts = scatter(spark, units).rdd.zipWithIndex().flatMap(partial(_rows, plan=plan, core=names))
     robots = core.union(parts).persist(StorageLevel.MEMORY_AND_DISK)
-    with told():
+    with cluster_errors():
         spark.createDataFrame(robots, ROBOTS).write.parquet(f"{place}/robots")
         spark.createDataFrame(robots.flatMap(_elements), ELEMENTS).write.parquet(f"{place}/elements")
         answer = [(FORMAT, json.dumps(document, sort_keys=True))]
@@ -124,10 +124,10 @@ def read(folder: str) -> tuple[Mapping[str, Any], Iterator[RobotRows]]:
     if answer.column("format").to_pylist() != [FORMAT] or answer.column("document").null_count:
         raise InputErrors([GraphError(folder, 0, f"no results ({FORMAT})", WHOLE)])
     _check_columns(folder, robots.schema, ROBOTS)
-    with _damages(folder, "damaged: ", AGAIN):
+    with _damages(folder, "damaged: ", ANALYSE_AGAIN):
         text = answer.column("document").to_pylist()[0]
     try:
-        document = document_of(text.encode(), f"{folder}/answer", AGAIN)
+        document = document_of(text.encode(), f"{folder}/answer", ANALYSE_AGAIN)
     except InputError as error:
         raise InputErrors([error]) from None
     _check_all(folder, document, robots, dataset)
@@ -135,7 +135,7 @@ def read(folder: str) -> tuple[Mapping[str, Any], Iterator[RobotRows]]:
 
 
 @contextmanager
-def _damages(folder: str, what: str, hint: str) -> Iterator[None]:
+def _damages(folder: str, problem: str, hint: str) -> Iterator[None]:
     """What the library says of files that are not Parquet, or not to their end; it raises all these."""
     from pyarrow import ArrowException  # noqa: PLC0415 - an extra
 
@@ -143,20 +143,20 @@ def _damages(folder: str, what: str, hint: str) -> Iterator[None]:
         yield
     except (OSError, ArrowException, ValueError) as error:
         why = reason(error).partition(". ")[0]
-        raise InputErrors([GraphError(folder, 0, f"{what}{shown(why)}", hint)]) from None
+        raise InputErrors([GraphError(folder, 0, f"{problem}{shown(why)}", hint)]) from None
 
 
-def _check_columns(folder: str, schema: Any, wanted: str) -> None:
+def _check_columns(folder: str, schema: Any, columns: str) -> None:
     """Refuse tables with other columns than those that are written."""
     from pyarrow import types  # noqa: PLC0415 - an extra
 
     known = {"string": types.is_string, "boolean": types.is_boolean, "int": types.is_int32}
-    for column in wanted.split(", "):
+    for column in columns.split(", "):
         name, kind = column.split(" ")
         if schema.get_field_index(name) < 0:  # none, or several
-            raise InputErrors([GraphError(folder, 0, "results of an earlier version", AGAIN)])
+            raise InputErrors([GraphError(folder, 0, "results of an earlier version", ANALYSE_AGAIN)])
         if not known[kind](schema.field(name).type):
-            raise InputErrors([GraphError(folder, 0, f"the column {name} is no {kind}", AGAIN)])
+            raise InputErrors([GraphError(folder, 0, f"the column {name} is no {kind}", ANALYSE_AGAIN)])
 
 
 def _check_all(folder: str, document: Mapping[str, Any], robots: Any, dataset: Any) -> None:
@@ -169,43 +169,43 @@ def _check_all(folder: str, document: Mapping[str, Any], robots: Any, dataset: A
     if twice or lost:
         raise _problem(folder, f"robot {shown((twice or lost)[0])} is {'there twice' if twice else 'not there'}")
     parts: dict[str, list[int]] = {}
-    for row in _each(folder, robots, None, columns=["robot", "part"]):
+    for row in _batched(folder, robots, None, columns=["robot", "part"]):
         parts.setdefault(row["robot"], []).append(row["part"])
     whole = list(range(max(map(max, parts.values()), default=0) + 1))
     if any(0 in numbers and sorted(numbers) != whole for numbers in parts.values()):
         raise _problem(folder, "a part of what robots share is not there, or there twice")
 
 
-def _problem(folder: str, what: str) -> InputErrors:
-    return InputErrors([GraphError(folder, 0, f"damaged or changed: {what}", AGAIN)])
+def _problem(folder: str, problem: str) -> InputErrors:
+    return InputErrors([GraphError(folder, 0, f"damaged or changed: {problem}", ANALYSE_AGAIN)])
 
 
 def _read(folder: str, robots: Any, dataset: Any) -> Iterator[RobotRows]:
     """What is shared first."""
 
-    def made(row: dict[str, Any]) -> RobotRows:
+    def checked(row: dict[str, Any]) -> RobotRows:
         def fail(problem: str) -> InputErrors:
             return _problem(folder, f"robot {shown(str(row['robot']))}: {problem}")
 
-        rows = robot_rows(row, fail, AGAIN)
+        rows = robot_rows(row, fail, ANALYSE_AGAIN)
         return rows if row["shared"] else check_ends(rows, fail)
 
     shared: dict[str, list[tuple[int, RobotRows]]] = {}
     is_shared = dataset.field("shared")
-    for row in _each(folder, robots, is_shared.is_null() | is_shared):  # null is refused then
-        shared.setdefault(row["robot"], []).append((row["part"], made(row)))
+    for row in _batched(folder, robots, is_shared.is_null() | is_shared):  # null is refused then
+        shared.setdefault(row["robot"], []).append((row["part"], checked(row)))
     for name, some in sorted(shared.items()):
         rows = put_together([rows for _, rows in sorted(some, key=lambda pair: pair[0])])
         yield check_ends(rows, partial(_shared_problem, folder, name))
-    yield from map(made, _each(folder, robots, ~is_shared))
+    yield from map(checked, _batched(folder, robots, ~is_shared))
 
 
 def _shared_problem(folder: str, name: str, problem: str) -> InputErrors:
     return _problem(folder, f"{shown(name)}, which robots share: {problem}")
 
 
-def _each(folder: str, robots: Any, chosen: Any, columns: list[str] | None = None) -> Iterator[dict[str, Any]]:
+def _batched(folder: str, robots: Any, chosen: Any, columns: list[str] | None = None) -> Iterator[dict[str, Any]]:
     read_ahead = {"batch_readahead": 0, "fragment_readahead": 0}
-    with _damages(folder, "damaged: ", AGAIN):
+    with _damages(folder, "damaged: ", ANALYSE_AGAIN):
         for batch in robots.to_batches(batch_size=16, filter=chosen, columns=columns, **read_ahead):
             yield from batch.to_pylist()

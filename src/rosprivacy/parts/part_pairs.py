@@ -202,14 +202,14 @@ def how(
     ((False, True, False),)
     """
 
-    def there(number: int, at: Indices) -> tuple[Flags, Flags]:
+    def flags_at(number: int, at: Indices) -> tuple[Flags, Flags]:
         flags = category.arriving(*carried[number], at, n, stop=STOPS[number])
         return category.brought(flags, at, sources, numbers)
 
     codes = {}
     for kind, at in ends.items():
-        through = there(1, at)
-        codes[kind] = _codes_of(there(0, at) if kind == DISCLOSURE else through, through)
+        through = flags_at(1, at)
+        codes[kind] = _codes_of(flags_at(0, at) if kind == DISCLOSURE else through, through)
     return codes
 
 

@@ -65,13 +65,13 @@ class Ready:
     ----------
     names
         Of its units.
-    found
+    spread
         What labels mean; None where they contradict each other.
     """
 
     names: tuple[str, ...]
     piece: Piece
-    found: Spread | None
+    spread: Spread | None
     cut: PartNetwork | None
     likeness: Likeness
     problems: tuple[Problem, ...] = ()
@@ -84,15 +84,15 @@ def ready(
     piece = units_piece(fleet, part.units, at, view)
     piece = replace(piece, bound=replace(piece.bound, outside=on_day(piece.bound.outside, today)))
     try:
-        found = meaning(piece.graph, piece.bound, hierarchy, categories)
+        spread = meaning(piece.graph, piece.bound, hierarchy, categories)
     except InputErrors as error:
         return Ready(part.names, piece, None, None, part.likeness, problems_of(error))
-    return Ready(part.names, piece, found, PartNetwork.of(found, piece.border, piece.unit), part.likeness)
+    return Ready(part.names, piece, spread, PartNetwork.of(spread, piece.border, piece.unit), part.likeness)
 
 
 def steps(part: Ready) -> tuple[tuple[Problem, ...], frozenset[tuple[int, int]]]:
     """Return what data is made into other data in a part: bits of the spread."""
-    derives = part.found.derives.values() if part.found else ()
+    derives = part.spread.derives.values() if part.spread else ()
     return part.problems, frozenset(step for some in derives for step in some)
 
 
@@ -113,35 +113,35 @@ class Kernel:
 
 def kernel(part: Ready, forms: Mapping[int, tuple[int, ...]], hierarchy: Hierarchy) -> Kernel:
     """Make the arrays of a part."""
-    found, cut = _known(part)
-    kinds = kinds_of(part.piece, found, hierarchy)
-    crossings = {number: Crossing.of(found, cut, number, some, kinds) for number, some in forms.items()}
+    spread, cut = _spread_and_cut(part)
+    kinds = kinds_of(part.piece, spread, hierarchy)
+    crossings = {number: Crossing.of(spread, cut, number, some, kinds) for number, some in forms.items()}
     return Kernel(part.names, cut, crossings)
 
 
-def kinds_of(piece: Piece, found: Spread, hierarchy: Hierarchy) -> tuple[Concern, ...]:
+def kinds_of(piece: Piece, spread: Spread, hierarchy: Hierarchy) -> tuple[Concern, ...]:
     """Return where each kind of finding can be."""
-    return tuple(concerns(found, piece.bound, hierarchy))
+    return tuple(concerns(spread, piece.bound, hierarchy))
 
 
-def _known(part: Ready) -> tuple[Spread, PartNetwork]:
-    assert part.found is not None
+def _spread_and_cut(part: Ready) -> tuple[Spread, PartNetwork]:
+    assert part.spread is not None
     assert part.cut is not None
-    return part.found, part.cut
+    return part.spread, part.cut
 
 
 Brought = dict[tuple[int, int], str]  # number in the border, bit -> name of the unit
 
 
-def _names(found: Bringer, names: Sequence[str]) -> Brought:
-    return {key: names[unit] for key, unit in found.items()}
+def _names(bringers: Bringer, names: Sequence[str]) -> Brought:
+    return {key: names[unit] for key, unit in bringers.items()}
 
 
-def carried(part: Kernel, leaving: Bits, known: Bits) -> tuple[Bits, Brought]:
+def carried(part: Kernel, leaving: Bits, before: Bits) -> tuple[Bits, Brought]:
     """Return what gets to the border when this leaves it, and who brings what is not known there: one round."""
     arrives, leaves = part.cut.carried(leaving)
     arrived = arrives[part.cut.border]
-    return arrived, _names(part.cut.bringers(leaves, arrived & ~known), part.names)
+    return arrived, _names(part.cut.bringers(leaves, arrived & ~before), part.names)
 
 
 def classes(part: Kernel) -> list[tuple[int, str, int, Class]]:
@@ -154,14 +154,14 @@ def classes(part: Kernel) -> list[tuple[int, str, int, Class]]:
 
 
 def classes_carried(
-    part: Kernel, leaving: Mapping[Run, Bits], known: Mapping[Run, Bits], counts: Mapping[int, int]
+    part: Kernel, leaving: Mapping[Run, Bits], before: Mapping[Run, Bits], counts: Mapping[int, int]
 ) -> dict[Run, tuple[Bits, Brought]]:
     """The same as ``carried`` for the classes of sources: one round of all categories."""
     answers = {}
     for (number, stop), given in leaving.items():
         arrives, leaves = part.categories[number].carried(given, counts[number], stop=stop)
         arrived = arrives[part.cut.border]
-        new = arrived & ~known[number, stop]
+        new = arrived & ~before[number, stop]
         answers[number, stop] = arrived, _names(part.cut.bringers(leaves, new), part.names)
     return answers
 
@@ -220,28 +220,28 @@ class Asked:
 
 def filled(part: Ready, leaving: Bits) -> Spread:
     """Return the spread of a part at the fixpoint, right for all but the border."""
-    found, cut = _known(part)
-    fill(found, *(of_elements(found, rows) for rows in cut.carried(leaving)))
-    return found
+    spread, cut = _spread_and_cut(part)
+    fill(spread, *(of_elements(spread, rows) for rows in cut.carried(leaving)))
+    return spread
 
 
-def answered(part: Ready, forms: Mapping[int, tuple[int, ...]], asked: Asked) -> Answer:
+def answered(part: Ready, forms: Mapping[int, tuple[int, ...]], question: Asked) -> Answer:
     """Return pairs, ends, open elements and counts of a part."""
-    found = filled(part, asked.leaving)
-    cut = _known(part)[1]
+    spread = filled(part, question.leaving)
+    cut = _spread_and_cut(part)[1]
     graph, names = part.piece.graph, part.names
     within: list[Within] = []
     sources: list[Source] = []
     ends: list[End] = []
-    crossings = kernel(part, forms, asked.hierarchy).categories
+    crossings = kernel(part, forms, question.hierarchy).categories
     for number, crossing in crossings.items():
-        name, n = found.categories[number], asked.counts[number]
+        name, n = spread.categories[number], question.counts[number]
         if not n:
             continue
-        of_source = {vertex: asked.numbers[number][met] for vertex, met in crossing.classes().items()}
+        of_source = {vertex: question.numbers[number][met] for vertex, met in crossing.classes().items()}
         for vertex, klass in of_source.items():
             sources.append(Source(name, graph.elements[vertex], names[int(cut.unit[vertex])], klass))
-        arriving = crossing.arriving((asked.runs[number, True], asked.runs[number, False]), n)
+        arriving = crossing.arriving((question.runs[number, True], question.runs[number, False]), n)
         for kind, source, end, how in crossing.within(arriving, of_source):
             within.append(Within(kind, name, graph.elements[source], graph.elements[end], how))
         for kind, codes in arriving.items():
@@ -249,42 +249,42 @@ def answered(part: Ready, forms: Mapping[int, tuple[int, ...]], asked: Asked) ->
                 vertex = int(crossing.ends[kind][row])
                 unit = names[int(cut.unit[vertex])]
                 ends.append(End(kind, name, graph.elements[vertex], unit, codes[row].tobytes()))
-    on_robots, sets = _open(part, found, asked.mask)
+    on_robots, sets = _open(part, spread, question.mask)
     border = set(part.piece.border)
-    counts = counted(graph, found, part.likeness, border, {v for v in border if graph.elements[v].robot == HUB})
-    closed = doubtful(found, asked.mask, part.piece.border, part.piece.unit)
+    counts = counted(graph, spread, part.likeness, border, {v for v in border if graph.elements[v].robot == HUB})
+    closed = doubtful(spread, question.mask, part.piece.border, part.piece.unit)
     return Answer(
-        tuple(within), tuple(sources), tuple(ends), on_robots, sets, grounds(found, asked.mask), counts, closed
+        tuple(within), tuple(sources), tuple(ends), on_robots, sets, grounds(spread, question.mask), counts, closed
     )
 
 
 def doubtful(
-    found: Spread, mask: int, beyond: Collection[int], unit: Sequence[int] = ()
+    spread: Spread, mask: int, beyond: Collection[int], unit: Sequence[int] = ()
 ) -> tuple[ClosedByShipped, ...]:
     """Return what shipped files alone close, where that is a doubt; what a hub leads to is not worked out here."""
-    rows = (row for row in closed_by_shipped(found, mask, beyond, unit) if row.rank is not None)
+    rows = (row for row in closed_by_shipped(spread, mask, beyond, unit) if row.rank is not None)
     return tuple(row._replace(end=None) if row.end and row.end.robot == HUB else row for row in rows)
 
 
 def _open(
-    part: Ready, found: Spread, mask: int
+    part: Ready, spread: Spread, mask: int
 ) -> tuple[dict[str, int], tuple[frozenset[tuple[Element, tuple[str, ...]]], ...]]:
     """What is open on each robot, where many have the same."""
     by_robot: dict[str, set[tuple[Element, tuple[str, ...]]]] = {}
-    for element, names in open_elements(part.piece, found, mask).items():
+    for element, names in open_elements(part.piece, spread, mask).items():
         by_robot.setdefault(element.robot, set()).add((part.likeness.alike(element), names))
     numbers: dict[frozenset[tuple[Element, tuple[str, ...]]], int] = {}
     on_robots = {robot: numbers.setdefault(frozenset(some), len(numbers)) for robot, some in sorted(by_robot.items())}
     return on_robots, tuple(numbers)
 
 
-def open_elements(piece: Piece, found: Spread, mask: int) -> dict[Element, tuple[str, ...]]:
+def open_elements(piece: Piece, spread: Spread, mask: int) -> dict[Element, tuple[str, ...]]:
     """Return the open elements of a piece, without its border, and the categories for which they are (rule S11)."""
     elements, border = piece.graph.elements, set(piece.border)
     unknown = unanswered(elements, piece.bound.outside)
     merged: dict[tuple[str, str, str, str], tuple[Element, tuple[str, ...]]] = {}
-    for vertex, bits in sorted(open_bits(found, unknown).items()):
-        element, names = elements[vertex], found.names(bits & mask)
+    for vertex, bits in sorted(open_bits(spread, unknown).items()):
+        element, names = elements[vertex], spread.names(bits & mask)
         if names and vertex not in border:
             first, known = merged.get(element.shown_as, (element, ()))  # the other side of a wildcard
             merged[element.shown_as] = first, tuple(sorted({*known, *names}))
