@@ -16,7 +16,7 @@ import numpy as np
 from rosprivacy.analysis.fleet.source_leak_pairs import CategoryRun
 from rosprivacy.analysis.kernel.fixpoint import WORD
 from rosprivacy.parts import workers
-from rosprivacy.parts.part_pairs import STOPS, ends_of, how
+from rosprivacy.parts.border import STOPS, ends_of, how
 from rosprivacy.parts.part_patterns import CORE, End, Source
 
 if TYPE_CHECKING:
@@ -28,8 +28,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Element
-    from rosprivacy.parts.border import Core
-    from rosprivacy.parts.part_pairs import Class
+    from rosprivacy.parts.border import Class, Core
     from rosprivacy.parts.units import Piece
     from rosprivacy.parts.workers import Brought, Parts, Run
 

@@ -28,7 +28,7 @@ from rosprivacy.analysis.non_ros import on_day
 from rosprivacy.ingest.fleet.alike_robots import COLON, chosen, known_to_flows
 from rosprivacy.ingest.fleet.fleet_graph import likeness, no_robot, nowhere, place_some
 from rosprivacy.ingest.fleet.joins import joins_nothing
-from rosprivacy.parts import building, workers
+from rosprivacy.parts import workers
 from rosprivacy.parts.border import Core
 from rosprivacy.parts.classes import Classes, first_of
 from rosprivacy.parts.part_patterns import Crossed
@@ -49,9 +49,8 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.fleet.alike_robots import Alike
     from rosprivacy.ingest.fleet.fleet_file import Fleet
     from rosprivacy.ingest.fleet.fleet_graph import Some
-    from rosprivacy.parts.building import Read, Report
     from rosprivacy.parts.units import Border, Lines, Piece
-    from rosprivacy.parts.workers import Parts
+    from rosprivacy.parts.workers import Parts, Read, Report
 
     Bits = NDArray[np.uint64]
     Indices = NDArray[np.int64]
@@ -172,10 +171,10 @@ class _Run:
         members = [replace(read(group.robots[0]), robot=robot) for group in fixed for robot in group.placed]
         core = place_some(fleet, members, task.view, own=True)
         built = self._scatter(units).map(
-            partial(building.built, fleet=alone, view=task.view, reader=task.reader),
+            partial(workers.built, fleet=alone, view=task.view, reader=task.reader),
             keep=True,
         )
-        report = building.joined([building.report_of(core, members), *built.map(building.report).collect()])
+        report = workers.joined([workers.report_of(core, members), *built.map(workers.report).collect()])
         self._check(report, core, built)
         joins = joins_nothing(fleet, task.groups, report.met, report.letting_out)
         report = replace(report, diagnostics=(*report.diagnostics, *joins))
@@ -209,9 +208,9 @@ class _Run:
         answers = ready.map(partial(workers.answered, forms=ways, question=asked)).collect()
         return self._put_together(answers, classes, report, at, piece, ours, wanted, mask, leaving, ready)
 
-    def _check(self, report: Report, core: Some, built: Parts[building.Built]) -> None:
+    def _check(self, report: Report, core: Some, built: Parts[workers.Built]) -> None:
         """Raise what is wrong with the input."""
-        building.raised(report.problems)
+        workers.raised(report.problems)
         problems: list[InputError] = []
         for number, flow in enumerate(self._fleet.flows):
             for side, end in enumerate(flow.ends):
@@ -227,22 +226,22 @@ class _Run:
         if problems:
             raise InputErrors(problems)
 
-    def _names(self, end: str, core: Some, built: Parts[building.Built]) -> list[str]:
+    def _names(self, end: str, core: Some, built: Parts[workers.Built]) -> list[str]:
         """The names that the end of a flow could mean."""
         if COLON not in end:
             return sorted(element.name for element in core.part.elements if element.robot == self._fleet.name)
         robots = frozenset(chosen(end, known_to_flows(self._fleet)))
         there = {element.name for element in core.part.elements if element.robot in robots}
-        return sorted(there.union(*built.map(partial(building.names_on, robots=robots)).collect()))
+        return sorted(there.union(*built.map(partial(workers.names_on, robots=robots)).collect()))
 
     def _steps(self, ours: Spread, ready: Parts[workers.Ready]) -> set[tuple[int, int]]:
         """What data is made into other data anywhere."""
         found = {step for some in ours.derives.values() for step in some}
-        problems: list[building.Problem] = []
+        problems: list[workers.Problem] = []
         for wrong, some in ready.map(workers.steps).collect():
             problems += wrong
             found |= some
-        building.raised(problems)
+        workers.raised(problems)
         return found
 
     def _carry(self, middle: Core, kernels: Parts[workers.Kernel], ours: Spread) -> Bits:

@@ -40,10 +40,10 @@ if TYPE_CHECKING:
 
     from rosprivacy.ingest.fleet.dds_domains import Member
     from rosprivacy.ingest.fleet.fleet_file import Fleet, Robot
-    from rosprivacy.parts.building import Read
     from rosprivacy.parts.distributed import Found
     from rosprivacy.parts.shown_robots import Shown
     from rosprivacy.parts.units import Unit
+    from rosprivacy.parts.workers import Read
     from rosprivacy.question import Question
     from rosprivacy.result import Result
     from rosprivacy.settings import Settings

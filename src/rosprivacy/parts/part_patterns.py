@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.fleet.tallies import Count, Form, Pair, Tallies
-from rosprivacy.parts.part_pairs import forms_of
+from rosprivacy.parts.border import forms_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -25,7 +25,7 @@ CORE = ""  # in place of the name of a unit
 
 @dataclass(frozen=True, slots=True)
 class Within:
-    """A pair of one unit; ``how`` is a code of ``crossing``, of one finding or of two that stand beside each other."""
+    """A pair of one unit; ``how`` is a code of ``border.py``, of one finding or of two that stand beside each other."""
 
     kind: str
     category: str

@@ -39,8 +39,8 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.fleet.dds_domains import Member
     from rosprivacy.ingest.fleet.fleet_file import Fleet
     from rosprivacy.ingest.fleet.fleet_graph import Placed
-    from rosprivacy.parts.building import Read
     from rosprivacy.parts.units import Unit
+    from rosprivacy.parts.workers import Read
     from rosprivacy.settings import Settings
 
 AT_ONCE = 25  # units that are placed in one graph
