@@ -170,8 +170,8 @@ def parse(stem: str, text: str) -> Query:
     fields: dict[str, list[Field]] = {"param": [], "returns": []}
     problems: list[str] = []
 
-    def problem(what: str) -> None:
-        problems.append(f"{stem}.cypher: {what}")
+    def problem(message: str) -> None:
+        problems.append(f"{stem}.cypher: {message}")
 
     for line in header:
         match = _LINE.fullmatch(line)
