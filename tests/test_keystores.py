@@ -12,7 +12,6 @@ import rosprivacy
 from rosprivacy.analysis.model import ACCESS_GAP
 from rosprivacy.reading.granted import read_granted
 from rosprivacy.settings import Settings
-from tests.helpers.command import cli
 from tests.helpers.keystores import Keystore, governance, grant, permissions, rule, topic_rule
 
 if TYPE_CHECKING:
@@ -20,7 +19,6 @@ if TYPE_CHECKING:
 
     from tests.helpers.command import Cli
 
-__all__ = ["cli"]
 
 LABELS = "labels: 1\nnodes: {/camera: {source: [Video]}, /uplink: {leak: [Video]}}\n"
 POLICY = """<policy version="0.2.0"><enclaves>

@@ -12,14 +12,12 @@ import pytest
 
 from rosprivacy.analysis.model import ACCESS_GAP
 from rosprivacy.ingest.deployed.zenoh_grants import read_zenoh
-from tests.helpers.command import cli
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from tests.helpers.command import Cli
 
-__all__ = ["cli"]
 LABELS = "labels: 1\nnodes: {/camera: {source: [Video]}, /uplink: {leak: [Video]}}\n"
 BOTH = ("--view", "both", "--format", "json")
 

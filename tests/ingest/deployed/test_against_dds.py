@@ -6,14 +6,12 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import pytest
 
-from tests.helpers.command import cli
 from tests.helpers.secured_rows import ARRIVES, CHATTER, FLOW, ROWS, STRANGERS, TOLD, TRIALS, enforced, ours
 
 if TYPE_CHECKING:
     from tests.helpers.command import Cli
     from tests.helpers.secured_dds import Outcome
 
-__all__ = ["cli"]
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("dds")]
 
 

@@ -12,7 +12,6 @@ import rosprivacy
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.model import ACCESS_GAP
 from rosprivacy.ingest.deployed.deployed_inputs import read_deployed
-from tests.helpers.command import cli
 from tests.helpers.keystores import Keystore, governance, grant, permissions, rule, topic_rule
 
 if TYPE_CHECKING:
@@ -22,7 +21,6 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.deployed.deployed_inputs import Read
     from tests.helpers.command import Cli
 
-__all__ = ["cli"]
 
 LABELS = (
     "labels: 1\nnodes: {/camera: {source: [Video]}, /uplink: {leak: [Video]}}\n"
