@@ -35,7 +35,6 @@ from tests.helpers.graphs import dump
 from tests.helpers.parts import ASKED, FLEET, documents, fleet_file, same
 from tests.helpers.paths import ROOT
 from tests.helpers.random_fleets import Case, fleets
-from tests.helpers.written_systems import Written, written
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -86,39 +85,6 @@ def test_random_fleets(session: SparkSession) -> None:
 
     check()
     assert seen == 4
-
-
-OF_TWO = """fleet: 1
-robots:
-  one: {policies: one.xml, labels: one.yaml}
-  two: {policies: two.xml, labels: two.yaml}
-elements: {cloud: {kind: external-system, country: US}}
-flows: [{from: "*:/n1", to: cloud}, {from: cloud, to: "two:/n2"}]
-"""
-
-
-@pytest.mark.usefixtures("session")
-def test_the_document_of_random_fleets(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Findings, patterns, assumptions, diagnostics and verdict are those in memory."""
-    monkeypatch.chdir(tmp_path)
-    write("f.yaml", OF_TWO)
-    seen = 0
-
-    @settings(max_examples=12, derandomize=True, database=None, phases=[Phase.generate], deadline=None)
-    @given(written(), written())
-    def check(one: Written, two: Written) -> None:
-        nonlocal seen
-        one.write(tmp_path, "one")
-        two.write(tmp_path, "two")
-        try:
-            answer_fleet("f.yaml", Settings())
-        except InputErrors:
-            return
-        documents("f.yaml", partial(run_on_spark, settings=ASKED))
-        seen += 1
-
-    check()
-    assert seen >= 4
 
 
 WORK = """fleet: 1

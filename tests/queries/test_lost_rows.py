@@ -72,6 +72,17 @@ def test_data_of_a_broader_kind_may_fall_under_an_article(
     assert (shown["category"], shown["verdict"], shown["may_be"]) == row
 
 
+def test_what_carries_a_broader_kind_may_carry_two(driver: Driver, tmp_path: Path) -> None:
+    """Rules S7 and S11."""
+    load_robot(
+        driver, tmp_path, "labels: 1\nnodes: {/camera: {source: [PersonalData]}, /uplink: {leak: [Biometric]}}\n"
+    )
+    shown = ask(driver, "carrying-both", first="Biometric", second="Location")
+    assert [(row["element"], row["may_be"]) for row in shown] == [
+        ("/camera", True), ("/uplink", True), ("/video", True),
+    ]  # fmt: skip
+
+
 CLEAN = (
     "labels: 1\nnodes: {/camera: {source: [Video]}, /uplink: {leak: none, conduit: [Video]}}\n"
     "channels: {/video: sensitive}\n"
