@@ -25,9 +25,12 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.findings.concerns import Concern
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Bound, Element, NonRosFacts
+    from rosprivacy.ingest.fleet.alike_robots import Alike
     from rosprivacy.ingest.fleet.dds_domains import Member
+    from rosprivacy.ingest.fleet.fleet_file import Fleet
     from rosprivacy.ingest.fleet.fleet_graph import Placed
     from rosprivacy.parts.distributed import Found, Task
+    from rosprivacy.parts.workers import Read
 
 Choice = dict[int, set[tuple[str, int, int, bool]]]
 
@@ -59,10 +62,7 @@ def shown(task: Task, whole: Found, paths: str, max_paths: int) -> Shown:
     fixed, units = split(task.groups)
     needed = whole.units or {unit.name for unit in units[:1]}
     groups = [*fixed, *(group for unit in units if unit.name in needed for group in unit.groups)]
-    read = task.reader()
-    members = {group.robots[0].id: read(group.robots[0]) for group in groups}
-    placed = place_chosen(task.fleet, groups, members, task.view)
-    placed = replace(placed, bound=limited(placed, whole.shared))
+    placed, members = place_groups(task.fleet, groups, task.reader(), task.view, whole.shared)
     placed = replace(placed, bound=surrounded(placed, whole.report.contexts))
 
     def choose(spread: Spread, kinds: Sequence[Concern], mask: int) -> Choice:
@@ -86,11 +86,15 @@ def shown(task: Task, whole: Found, paths: str, max_paths: int) -> Shown:
     return Shown(analysis, view, placed, members)
 
 
-def limited(placed: Placed, shared: Mapping[Element, NonRosFacts]) -> Bound:
-    """Return what is said, where for what is shared the limits of every robot hold, also of those not placed."""
+def place_groups(
+    fleet: Fleet, groups: Sequence[Alike], read: Read, view: str, shared: Mapping[Element, NonRosFacts]
+) -> tuple[Placed, dict[str, Member]]:
+    """Place some robots; for what is shared the limits of every robot hold, also of those that are not placed."""
+    members = {group.robots[0].id: read(group.robots[0]) for group in groups}
+    placed = place_chosen(fleet, groups, members, view)
     elements = placed.graph.elements
     outside = {vertex: shared.get(elements[vertex], facts) for vertex, facts in placed.bound.outside.items()}
-    return replace(placed.bound, outside=outside)
+    return replace(placed, bound=replace(placed.bound, outside=outside)), members
 
 
 def surrounded(placed: Placed, contexts: Iterable[tuple[str, str, str]]) -> Bound:

@@ -19,9 +19,8 @@ from rosprivacy.assumptions import assumptions_of, files_read, remembered, types
 from rosprivacy.ingest.database.fleet_rows import FleetRows
 from rosprivacy.ingest.database.rows import rows_of
 from rosprivacy.ingest.fleet.dds_domains import is_domain, pseudo_robot
-from rosprivacy.ingest.fleet.fleet_graph import place_chosen
 from rosprivacy.ontology.vocabulary import load
-from rosprivacy.parts.shown_robots import limited
+from rosprivacy.parts.shown_robots import Choice, place_groups
 from rosprivacy.parts.units import unit_of
 from rosprivacy.question import Question
 from rosprivacy.robot_doubts import breaking, doubt_lines, doubts_by_robot
@@ -44,7 +43,6 @@ if TYPE_CHECKING:
     from rosprivacy.settings import Settings
 
 AT_ONCE = 25  # units that are placed in one graph
-Choice = dict[int, set[tuple[str, int, int, bool]]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,9 +133,7 @@ def _placed(units: Sequence[Unit], plan: Plan, read: Read) -> tuple[Placed, dict
     names = {unit.name for unit in units}
     others = [unit for unit in plan.examples if unit.name not in names]
     groups = [*plan.fixed, *(group for unit in (*units, *others) for group in unit.groups)]
-    members = {group.robots[0].id: read(group.robots[0]) for group in groups}
-    placed = place_chosen(plan.fleet, groups, members, plan.settings.view)
-    return replace(placed, bound=limited(placed, plan.shared)), members
+    return place_groups(plan.fleet, groups, read, plan.settings.view, plan.shared)
 
 
 def _each_finding(part: Pairs) -> Iterator[tuple[int, int, bool, bool, bool]]:
