@@ -350,8 +350,8 @@ def _backups(written: Any) -> Duration | bool | None:
     return _duration(f"backups {written!r}", str(written))
 
 
-def _duration(what: str, text: str) -> Duration:
+def _duration(name: str, text: str) -> Duration:
     try:
         return parse(text)
     except ValueError as error:
-        raise ValueError(f"{what} is {error}") from None
+        raise ValueError(f"{name} is {error}") from None

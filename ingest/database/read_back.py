@@ -165,9 +165,9 @@ class _Reader:
     def problem(self, problem: str, hint: str) -> None:
         self.problems.append(GraphError(DATABASE, 0, problem, hint))
 
-    def not_understood(self, what: str, error: Exception, of: str) -> None:
+    def not_understood(self, place: str, error: Exception, of: str) -> None:
         """Note what properties cannot be read."""
-        self.problem(f"{what} cannot be understood: {shown(str(error))}", f"see docs/database.md for what {of} has")
+        self.problem(f"{place} cannot be understood: {shown(str(error))}", f"see docs/database.md for what {of} has")
 
     def elements(self, records: Iterable[Record]) -> None:
         for record in records:

@@ -67,13 +67,13 @@ class Difference(NamedTuple):
 
 
 def differences(
-    stated: Iterable[Policy], deployed: Iterable[Policy], who: Callable[[Grant], str] = lambda grant: grant.enclave
+    stated: Iterable[Policy], deployed: Iterable[Policy], name_of: Callable[[Grant], str] = lambda grant: grant.enclave
 ) -> tuple[Difference, ...]:
     """Return what differs, by enclave.
 
     Parameters
     ----------
-    who
+    name_of
         Under which name a grant of the policy is compared.
 
     Notes
@@ -82,7 +82,7 @@ def differences(
     """
     ours, theirs = (
         {name: _Rights(grants) for name, grants in _by_name(policies, by).items()}
-        for policies, by in ((stated, who), (deployed, lambda grant: grant.enclave))
+        for policies, by in ((stated, name_of), (deployed, lambda grant: grant.enclave))
     )
     found: set[Difference] = set()
     for enclave in sorted({*ours, *theirs}):
@@ -95,11 +95,11 @@ def differences(
     return tuple(sorted(found))
 
 
-def _by_name(policies: Iterable[Policy], who: Callable[[Grant], str]) -> dict[str, list[Grant]]:
+def _by_name(policies: Iterable[Policy], name_of: Callable[[Grant], str]) -> dict[str, list[Grant]]:
     grants: dict[str, list[Grant]] = defaultdict(list)
     for policy in policies:
         for grant in policy.grants:
-            grants[who(grant)].append(grant)
+            grants[name_of(grant)].append(grant)
     return grants
 
 
@@ -168,13 +168,16 @@ class Loss(NamedTuple):
 
 
 def generator_losses(
-    stated: Iterable[Policy], deployed: Iterable[Policy], differences: Iterable[Difference], who: Callable[[Grant], str]
+    stated: Iterable[Policy],
+    deployed: Iterable[Policy],
+    differences: Iterable[Difference],
+    name_of: Callable[[Grant], str],
 ) -> tuple[Loss, ...]:
     """Return the differences that the known generator makes, by the line that does not hold.
 
     Parameters
     ----------
-    who
+    name_of
         The name of the list that a grant of the policy is held to.
 
     Notes
@@ -189,7 +192,7 @@ def generator_losses(
     for one in differences:
         (missing if one.stated else more)[one.enclave].append(one)
     losses: list[Loss] = list(_profiles(stated, files))
-    for name, grants in _by_name(stated, who).items():
+    for name, grants in _by_name(stated, name_of).items():
         if name in files:
             deny = (_deny(grant, grants, more[name]) for grant in grants if not grant.allow)
             lost = (_lost(grant, missing[name], grants, lists[name], files[name]) for grant in grants if grant.allow)
@@ -268,13 +271,13 @@ def _other_role(line: Grant, grant: Grant) -> bool:
     )  # fmt: skip
 
 
-def _of_grant(grant: Grant, fault: str, what: str) -> Loss:
+def _of_grant(grant: Grant, fault: str, message: str) -> Loss:
     line = f"line {_at(grant.place)} {'ALLOW' if grant.allow else 'DENY'} {grant.role} {grant.kind} {shown(grant.name)}"
-    return _loss(grant.place, fault, f"{line}: {what}")
+    return _loss(grant.place, fault, f"{line}: {message}")
 
 
-def _of_profile(profile: Profile, fault: str, what: str) -> Loss:
-    return _loss(profile.place, fault, f"line {_at(profile.place)} profile {shown(profile.node)}: {what}")
+def _of_profile(profile: Profile, fault: str, message: str) -> Loss:
+    return _loss(profile.place, fault, f"line {_at(profile.place)} profile {shown(profile.node)}: {message}")
 
 
 def _loss(place: Place, fault: str, message: str) -> Loss:

@@ -188,9 +188,9 @@ def enclave_of(subject: str) -> str:
     return name if name.startswith("/") and "," not in name else subject
 
 
-def which_domain(place: Place, what: str) -> InputErrors:
+def which_domain(place: Place, message: str) -> InputErrors:
     """Return the error that what is read is about several domains, and none is given."""
-    return InputErrors([PolicyError(place.file, place.line, what, "say which with --domain N")])
+    return InputErrors([PolicyError(place.file, place.line, message, "say which with --domain N")])
 
 
 def dds_grant(

@@ -142,9 +142,9 @@ class Source:
         """Return file and line of an element."""
         return Place(self.file, self.before + (element.sourceline or 0))
 
-    def problem(self, element: etree._Element, what: str, hint: str) -> None:
+    def problem(self, element: etree._Element, message: str, hint: str) -> None:
         """Note what is wrong at an element, once: its children are gone through for each name."""
-        error = PolicyError(self.file, self.place(element).line, what, hint)
+        error = PolicyError(self.file, self.place(element).line, message, hint)
         if str(error) not in map(str, self.problems):
             self.problems.append(error)
 

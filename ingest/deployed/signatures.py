@@ -99,7 +99,7 @@ class Authority(NamedTuple):
     fingerprints: tuple[str, ...]
 
 
-def read_authority(file: str, what: str) -> Authority:
+def read_authority(file: str, subject: str) -> Authority:
     """Read the certificates of a CA: all of them, since a middleware takes each; ``what`` names it in the error.
 
     Raises
@@ -113,7 +113,7 @@ def read_authority(file: str, what: str) -> Authority:
     except binascii.Error:
         found = []
     if not found:
-        raise PolicyError(file, 0, f"no certificate of {what}", "name a certificate in PEM, or correct the keystore")
+        raise PolicyError(file, 0, f"no certificate of {subject}", "name a certificate in PEM, or correct the keystore")
     pem = "".join(map(ssl.DER_cert_to_PEM_cert, found)).encode()
     fingerprints = (hashlib.sha256(one).hexdigest() for one in found)
     return Authority(file, pem, hashlib.sha256(data).hexdigest(), tuple(fingerprints))

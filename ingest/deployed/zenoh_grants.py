@@ -169,11 +169,11 @@ def _of_deny(rule: AccessRule, keys: Keys, remarks: list[Diagnostic], late: froz
             why = "" if some.whole else "it does not take a whole channel"
             if some.whole and late is None:
                 why = "it does not hold for everybody"
-            elif some.what in (OTHERS, TOKENS) and not DATA.issubset(rule.messages):
+            elif some.sort in (OTHERS, TOKENS) and not DATA.issubset(rule.messages):
                 why = why or "of keys that are no ROS channel it does not name put, query and reply"
             for flow, message in product(rule.flows, rule.messages):
                 role = ROLES[flow]
-                served = some.what == MESSAGES and message == "put" and role in (late or ())
+                served = some.sort == MESSAGES and message == "put" and role in (late or ())
                 if not why and served and "reply" not in rule.messages:
                     remarks.append(_nothing(key, place, f"{LATE[role]} by reply all the same; deny both in one rule"))
                 elif not why:
@@ -189,7 +189,7 @@ def _late(rules: Iterable[AccessRule], keys: Keys) -> frozenset[str]:
         for rule in rules
         if rule.allow and "query" in rule.messages
         for key, _ in rule.key_expressions
-        if any(some.what == HISTORY for some in channels(key, keys))
+        if any(some.sort == HISTORY for some in channels(key, keys))
         for flow in rule.flows
     )
 
@@ -202,12 +202,12 @@ def _of_message(channels: Channels, message: str, role: str) -> Iterator[tuple[s
     """
     if message not in LEGS:
         return
-    if channels.what == MESSAGES:
+    if channels.sort == MESSAGES:
         begins, ends = LEGS[message]
         yield from ((role, f"{begins}{name}{ends}") for name in channels.names)
-    elif channels.what == HISTORY:
+    elif channels.sort == HISTORY:
         yield from ((OTHER_WAY[role], f"rt{name}") for name in channels.names if message == "query")
-    elif not (channels.what == TOKENS and message == "reply"):
+    elif not (channels.sort == TOKENS and message == "reply"):
         yield from ((role, name) for name in channels.names)
 
 
@@ -251,18 +251,22 @@ def open_remarks(files: Mapping[AccessFile, Keys]) -> Iterator[Diagnostic]:
             what = " and ".join(words.format(counted(len(some), "name")) for words, some in names if some)
         else:
             what = "send this process all that no deny names, and get it from there"
-        message = f"{_who(access, known)} may {what}: what such a session does is not known; the declared view takes "
+        message = (
+            f"{_senders(access, known)} may {what}: what such a session does is not known; the declared view takes "
+        )
         message += "each process to keep to its own list (rule S6)"
         yield _warning(access.place, message, ACCESS_GAP)
 
 
-def _left_to(who: str, access: AccessFile, keys: Keys, processes: Collection[str]) -> Iterable[Right]:
+def _left_to(process: str, access: AccessFile, keys: Keys, processes: Collection[str]) -> Iterable[Right]:
     """What passes to and from a process by its name, or those that are not told apart."""
     of_all = identities(access) if access.decides else {}
     held = {
-        identity: rules for identity, rules in of_all.items() if who in (_processes_named(identity, processes) or {""})
+        identity: rules
+        for identity, rules in of_all.items()
+        if process in (_processes_named(identity, processes) or {""})
     }
-    if not held and (who or (access.enabled and not access.allow)):
+    if not held and (process or (access.enabled and not access.allow)):
         return ()
     return rights(access, held, keys, [])
 
@@ -273,7 +277,7 @@ def _processes_named(identity: Identity, processes: Collection[str]) -> set[str]
     return names if names <= set(processes) else set()
 
 
-def _who(access: AccessFile, processes: Collection[str]) -> str:
+def _senders(access: AccessFile, processes: Collection[str]) -> str:
     """Who is not told apart."""
     open_to = [identity for identity in identities(access) if not _processes_named(identity, processes)]
     names = sorted({name for identity in open_to for at in _NAMES if (name := identity[at]) is not None})

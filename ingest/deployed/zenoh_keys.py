@@ -119,7 +119,7 @@ class Channels(NamedTuple):
 
     Attributes
     ----------
-    what
+    sort
         ``MESSAGES`` of ROS channels, their ``HISTORY`` for late joiners, ``TOKENS`` of the graph, or ``OTHERS``.
     names
         With wildcards as policies have them: of ROS channels such as ``/camera``, of others as DDS names.
@@ -127,7 +127,7 @@ class Channels(NamedTuple):
         Whether it is about nothing less than all of each.
     """
 
-    what: str
+    sort: str
     names: tuple[str, ...]
     whole: bool
 
@@ -138,11 +138,11 @@ def channels(key: str, keys: Keys) -> Iterator[Channels]:
     Examples
     --------
     >>> list(channels("0/camera/image/*/*", Keys("0")))
-    [Channels(what='messages', names=('/camera/image',), whole=True)]
+    [Channels(sort='messages', names=('/camera/image',), whole=True)]
     >>> list(channels("robot/0/camera/*/*/@adv/**", Keys("0", ("robot",))))
-    [Channels(what='history', names=('/camera',), whole=False)]
+    [Channels(sort='history', names=('/camera',), whole=False)]
     >>> list(channels("fleet/*/battery", Keys("0")))
-    [Channels(what='others', names=('zenoh/fleet/*/battery',), whole=False)]
+    [Channels(sort='others', names=('zenoh/fleet/*/battery',), whole=False)]
     """
     chunks = key.split("/")
     if _TOKENS in chunks:
@@ -185,13 +185,13 @@ def domain_of(key: str, namespaces: Iterable[str]) -> str:
 
 def _of_ros(rests: list[list[str]], domain: str) -> Iterator[Channels]:
     for rest in rests:
-        what, names, exact = _names(rest)
+        sort, names, exact = _names(rest)
         if names and (rest[0] == domain or _is_wild(rest[0]) or (domain == ONE and rest[0].isdigit())):
-            yield Channels(what, names, exact and rest[0] in (ONE, ANY, domain))
+            yield Channels(sort, names, exact and rest[0] in (ONE, ANY, domain))
 
 
 def _names(rest: list[str]) -> tuple[str, tuple[str, ...], bool]:
-    """(what, names of channels, whether all of each) of a key behind its namespace."""
+    """(sort, names of channels, whether all of each) of a key behind its namespace."""
     at = _verbatim(rest)
     if at is None:
         return MESSAGES, *ros_names("/".join(rest))
@@ -234,7 +234,7 @@ def _verbatim(chunks: list[str]) -> int | None:
     return next((i for i, chunk in enumerate(chunks) if chunk.startswith(VERBATIM)), None)
 
 
-def _other_dds_names(what: str, chunks: list[str]) -> Channels:
+def _other_dds_names(sort: str, chunks: list[str]) -> Channels:
     """The DDS names that stand for keys of no ROS channel."""
     begins = NON_ROS_KEYS[_verbatim(chunks) is not None]
     first = chunks.index(ANY) if ANY in chunks else len(chunks)
@@ -243,8 +243,8 @@ def _other_dds_names(what: str, chunks: list[str]) -> Channels:
     exact = first == len(chunks) or (first == len(chunks) - 1 and _verbatim(chunks) is None)  # ** takes no other @…
     whole = exact and not any(map(_is_wild, chunks[:first]))
     if first == len(chunks):
-        return Channels(what, (written,), whole)
-    return Channels(what, (written, f"{written}/*") if base else (f"{begins}*",), whole)
+        return Channels(sort, (written,), whole)
+    return Channels(sort, (written, f"{written}/*") if base else (f"{begins}*",), whole)
 
 
 def _is_wild(chunk: str) -> bool:

@@ -1,10 +1,11 @@
 """A fleet in parts against the same in one graph: whatever travels between parts, the answer is the same.
 
-Here the parts are in a list; ``spark/test_spark.py`` has them on Spark.
+Here the parts are in a list; ``test_spark.py`` has them on Spark.
 """
 
 from __future__ import annotations
 
+from contextlib import chdir
 from functools import partial
 from pathlib import Path
 
@@ -19,6 +20,7 @@ from tests.helpers.fleet_files import policy, write
 from tests.helpers.parts import FLEET, documents, fleet_file, in_list, same, scattered
 from tests.helpers.paths import ROOT
 from tests.helpers.random_fleets import Case, fleets
+from tests.helpers.written_systems import Written, written
 
 __all__ = ["fleet_file"]
 
@@ -44,6 +46,30 @@ def test_the_example(monkeypatch: pytest.MonkeyPatch) -> None:
     documents("fleet.yaml", in_list)
 
 
+OF_TWO = """fleet: 1
+robots:
+  one: {policies: one.xml, labels: one.yaml}
+  two: {policies: two.xml, labels: two.yaml}
+elements: {cloud: {kind: external-system, country: US}}
+flows: [{from: "*:/n1", to: cloud}, {from: cloud, to: "two:/n2"}]
+"""
+
+
+@given(written(), written())
+def test_the_document_of_random_fleets(tmp_path_factory: pytest.TempPathFactory, one: Written, two: Written) -> None:
+    """Findings, patterns, assumptions, diagnostics and verdict are those in memory."""
+    folder = tmp_path_factory.mktemp("fleet")
+    one.write(folder, "one")
+    two.write(folder, "two")
+    with chdir(folder):
+        write("f.yaml", OF_TWO)
+        try:
+            answer_fleet("f.yaml", Settings())
+        except InputErrors:
+            return
+        documents("f.yaml", in_list)
+
+
 @pytest.mark.parametrize(
     ("old", "new"),
     [
@@ -57,10 +83,14 @@ def test_the_example(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_bad_fleets_are_refused_alike(fleet_file: str, old: str, new: str) -> None:
     """Also what only the parts know: names that are on no robot, labels that name what is not there."""
     write(fleet_file, FLEET.replace(old, new, 1))
+    refused_alike(fleet_file)
+
+
+def refused_alike(file: str) -> None:
     problems = []
-    for run in (lambda file: answer_fleet(file, Settings()), in_list):
+    for run in (lambda name: answer_fleet(name, Settings()), in_list):
         with pytest.raises(InputErrors) as caught:
-            run(fleet_file)
+            run(file)
         problems.append(str(caught.value))
     assert problems[0] == problems[1]
 
@@ -68,12 +98,7 @@ def test_bad_fleets_are_refused_alike(fleet_file: str, old: str, new: str) -> No
 def test_labels_that_contradict_each_other_are_refused_alike(fleet_file: str) -> None:
     write("odd.yaml", "labels: 1\nnodes: {/camera: conduit}\n")
     write("eye.yaml", "labels: 1\nnodes: {/camera: {source: [Video], sanitizer: {Video: drop}}}\n")
-    problems = []
-    for run in (lambda file: answer_fleet(file, Settings()), in_list):
-        with pytest.raises(InputErrors) as caught:
-            run(fleet_file)
-        problems.append(str(caught.value))
-    assert problems[0] == problems[1]
+    refused_alike(fleet_file)
 
 
 def test_a_flow_that_is_stated_twice_with_different_limits_is_refused(fleet_file: str) -> None:

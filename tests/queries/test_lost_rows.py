@@ -1,6 +1,6 @@
-"""What a question must not lose: what ends at a robot, what may be of a kind, infrastructure, a slip (S11, S12).
+"""What a question must not lose: what may fall under an article, a slip of a person, rows that are cut (S11, S12).
 
-From policies, labels and fleet files to rows.
+What ends at a robot or at infrastructure, and what may be of a kind, is held by ``test_pack_on_fleets.py``.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from rosprivacy.reading.stored_system import answer_stored
 from rosprivacy.settings import Settings
 from tests.helpers.daily import one_in
 from tests.helpers.fleet_files import policy
-from tests.helpers.fleet_rows import VOCABULARY, rows
+from tests.helpers.fleet_rows import VOCABULARY
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -30,19 +30,6 @@ if TYPE_CHECKING:
     from tests.helpers.command import Cli
 
 pytestmark = pytest.mark.database
-CAMERA, UPLINK = policy("/camera>/video"), policy("/uplink</video")
-SOURCE = "labels: 1\nnodes: {/camera: {source: [Video]}}\nchannels: {/video: sensitive}\n"
-LEAK = "labels: 1\nnodes: {/uplink: {leak: [Video]}}\n"
-ROBOTS = "fleet: 1\nrobots: {a: {policies: [a.xml], domain: lab, labels: [l.yaml]}"
-TWO = f"{ROBOTS}, b: {{policies: [b.xml], domain: lab, labels: [m.yaml]}}}}\n"
-BASE = f"{ROBOTS}}}\ninfrastructure: {{base: {{policies: [b.xml], domain: lab, labels: [m.yaml]}}}}\n"
-IN_B = [
-    ("findings", {}), ("leak-paths", {}), ("findings-by-robot", {}), ("reaching-leak", {"leak": "/uplink"}),
-    ("lines-behind-findings", {}), ("leak-path-graph", {}), ("data-graph", {}), ("findings-by-data-type", {}),
-    ("findings-by-identity-factor", {}), ("findings-under-article", {}), ("shared-channels", {"least": "1"}),
-    ("path-between", {"from": "/camera", "to": "/uplink"}), ("reach-of-source", {"source": "/camera"}),
-    ("sources-of-element", {"element": "/uplink"}), ("category-overview", {}),
-]  # fmt: skip
 
 
 @pytest.fixture
@@ -56,11 +43,6 @@ def write(folder: Path, **files: str) -> None:
         (folder / name.replace("_", ".")).write_text(text, "utf-8")
 
 
-def load_fleet(driver: Driver, folder: Path, fleet: str, base: str = UPLINK, said: str = LEAK) -> None:
-    write(folder, a_xml=CAMERA, l_yaml=SOURCE, b_xml=base, m_yaml=said, fleet_yaml=fleet)
-    load(driver, rows("fleet.yaml"), VOCABULARY)
-
-
 def load_robot(driver: Driver, folder: Path, labels: str, text: str = "") -> None:
     write(folder, p_xml=text or policy("/camera>/video", "/uplink</video"), l_yaml=labels)
     load(driver, [robot_of("x", rosprivacy.analyze("p.xml", "l.yaml"))], VOCABULARY)
@@ -72,73 +54,33 @@ def ask(driver: Driver, name: str, **given: str) -> list[dict[str, Any]]:
     return [dict(zip(found.columns, row, strict=True)) for row in found.rows]
 
 
-class TestWhatEndsAtARobot:
-    @pytest.mark.parametrize("fleet", ["b", "base"])
-    def test_it_is_shown_there(self, driver: Driver, tmp_path: Path, fleet: str) -> None:
-        load_fleet(driver, tmp_path, TWO if fleet == "b" else BASE)
-        for name, given in IN_B:
-            assert ask(driver, name, robot=fleet, **given), name
-        (row,) = ask(driver, "findings", robot=fleet)
-        assert (row["robot"], row["leak_robot"]) == ("a", fleet)
-        (row,) = ask(driver, "findings-by-robot", robot=fleet)
-        assert (row["robot"], row["findings"], row["ending"]) == (fleet, 1, 1)
-        assert [row["findings"] for row in ask(driver, "robots")] == [1, 1, 0]  # a, b or base, the domain
-
-    def test_a_line_about_a_shared_channel_is_one_of_the_node_s_robot(self, driver: Driver, tmp_path: Path) -> None:
-        """Nothing goes along it: the subscriber's line is unused, though the flow begins at the domain's channel."""
-        load_fleet(driver, tmp_path, TWO, policy("/uplink</other", "/gauge>/other"), said=LEAK)
-        assert {row["node"] for row in ask(driver, "unused-grants", robot="b", mundane="true")} == {"/uplink", "/gauge"}
-
-
-class TestVerdicts:
-    def test_infrastructure_has_a_row_and_a_domain_none(self, driver: Driver, tmp_path: Path) -> None:
-        both = "labels: 1\nnodes: {/camera: {source: [Video]}, /uplink: {leak: [Video]}}\n"
-        write(tmp_path, c_yaml="labels: 1\nnodes: {/camera: conduit}\nchannels: {/video: sensitive}\n")
-        load_fleet(driver, tmp_path, BASE.replace("l.yaml", "c.yaml"), policy("/camera>/video", "/uplink</video"), both)
-        shown = {(row["part"], row["verdict"], *row["some_robots"]) for row in ask(driver, "verdicts")}
-        assert ("infrastructure", "leak", "base") in shown
-        assert len(shown) == 2  # the robot's own, and no row of the domain
-        assert {row["robot"]: row["verdict"] for row in ask(driver, "robots")}["domain lab"] is None
-        answer_stored(driver, Settings())
-        assert {row["robot"]: row["verdict"] for row in ask(driver, "robots")}["domain lab"] is None
-
-    def test_an_open_channel_of_a_domain_is_open_on_its_robots(self, driver: Driver, tmp_path: Path) -> None:
-        """Rules S11 and S12: no verdict on the domain must not make the others look settled."""
-        write(tmp_path, o_yaml=SOURCE.partition("channels")[0])
-        load_fleet(driver, tmp_path, TWO.replace("l.yaml", "o.yaml"), said="labels: 1\nnodes: {/uplink: conduit}\n")
-        shown = [(row["part"], row["verdict"], row["robots"]) for row in ask(driver, "verdicts")]
-        assert shown == [("robot", "undetermined", 2)]
+@pytest.mark.parametrize(
+    ("source", "may", "row"),
+    [
+        ("PersonalData", "true", ("PersonalData", "may-reveal", True)),
+        ("PersonalData", "false", ("PersonalData", "may-reveal", True)),
+        ("FaceTemplate", "false", ("FaceTemplate", "conditional", False)),
+    ],
+)
+def test_data_of_a_broader_kind_may_fall_under_an_article(
+    driver: Driver, tmp_path: Path, source: str, may: str, row: tuple[str, str, bool]
+) -> None:
+    """Rules S7 and S11."""
+    nodes = f"{{/camera: {{source: [{source}]}}, /uplink: {{leak: [Biometric]}}}}"
+    load_robot(driver, tmp_path, f"labels: 1\nnodes: {nodes}\n")
+    (shown,) = ask(driver, "findings-under-article", article="9", may=may)
+    assert (shown["category"], shown["verdict"], shown["may_be"]) == row
 
 
-class TestKinds:
-    """S7, S11: data of a broader kind may be of the kind that is asked for."""
-
-    LABELS = "labels: 1\nnodes: {{/camera: {{source: [{}]}}, /uplink: {{leak: [Biometric]}}}}\n"
-
-    @pytest.mark.parametrize("name", ["findings", "leak-paths", "leak-paths-of-category", "findings-by-pattern",
-                                      "leak-path-graph"])  # fmt: skip
-    def test_what_may_be_of_it_is_shown_as_such(self, driver: Driver, tmp_path: Path, name: str) -> None:
-        load_robot(driver, tmp_path, self.LABELS.format("PersonalData"))
-        shown = ask(driver, name, category="Biometric")
-        assert [(row["category"], row["may_be"]) for row in shown] == [("PersonalData", True)]
-        shown = ask(driver, name, category="PersonalData")
-        assert [(row["category"], row["may_be"]) for row in shown] == [("PersonalData", False)]
-
-    def test_an_article(self, driver: Driver, tmp_path: Path) -> None:
-        load_robot(driver, tmp_path, self.LABELS.format("PersonalData"))
-        for may in ("true", "false"):
-            (row,) = ask(driver, "findings-under-article", article="9", may=may)
-            assert (row["category"], row["verdict"], row["may_be"]) == ("PersonalData", "may-reveal", True)
-        load_robot(driver, tmp_path, self.LABELS.format("FaceTemplate"))
-        (row,) = ask(driver, "findings-under-article", article="9", may="false")
-        assert (row["verdict"], row["may_be"]) == ("conditional", False)
-
-    def test_two_kinds(self, driver: Driver, tmp_path: Path) -> None:
-        load_robot(driver, tmp_path, self.LABELS.format("PersonalData"))
-        shown = ask(driver, "carrying-both", first="Biometric", second="Location")
-        assert [(row["element"], row["may_be"]) for row in shown] == [
-            ("/camera", True), ("/uplink", True), ("/video", True),
-        ]  # fmt: skip
+def test_what_carries_a_broader_kind_may_carry_two(driver: Driver, tmp_path: Path) -> None:
+    """Rules S7 and S11."""
+    load_robot(
+        driver, tmp_path, "labels: 1\nnodes: {/camera: {source: [PersonalData]}, /uplink: {leak: [Biometric]}}\n"
+    )
+    shown = ask(driver, "carrying-both", first="Biometric", second="Location")
+    assert [(row["element"], row["may_be"]) for row in shown] == [
+        ("/camera", True), ("/uplink", True), ("/video", True),
+    ]  # fmt: skip
 
 
 CLEAN = (

@@ -16,7 +16,7 @@ import numpy as np
 from rosprivacy.analysis.fleet.source_leak_pairs import CategoryRun
 from rosprivacy.analysis.kernel.fixpoint import WORD
 from rosprivacy.parts import workers
-from rosprivacy.parts.part_pairs import STOPS, ends_of, how
+from rosprivacy.parts.border import STOPS, ends_of, how
 from rosprivacy.parts.part_patterns import CORE, End, Source
 
 if TYPE_CHECKING:
@@ -28,8 +28,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Element
-    from rosprivacy.parts.border import Core
-    from rosprivacy.parts.part_pairs import Class
+    from rosprivacy.parts.border import Class, Core
     from rosprivacy.parts.units import Piece
     from rosprivacy.parts.workers import Brought, Parts, Run
 
@@ -62,10 +61,10 @@ class Classes:
         self._at: dict[Run, tuple[Bits, Bits]] = {}
         self._brought: dict[Run, Brought] = defaultdict(dict)
 
-    def number(self, told: Iterable[Sequence[tuple[int, str, int, Class]]]) -> None:
+    def number(self, listed: Iterable[Sequence[tuple[int, str, int, Class]]]) -> None:
         """Number the classes; sources of the core come after them, each by itself."""
         found: dict[int, set[Class]] = defaultdict(set)
-        for some in told:
+        for some in listed:
             for number, _, _, met in some:
                 found[number].add(met)
         for number in self._ways:
@@ -84,8 +83,8 @@ class Classes:
             if not running:
                 break
             given = {run: self.leaving[run] for run in running}
-            known = {run: arrived[run] for run in running}
-            ask = partial(workers.classes_carried, leaving=given, known=known, counts=self.counts)
+            before = {run: arrived[run] for run in running}
+            ask = partial(workers.classes_carried, leaving=given, before=before, counts=self.counts)
             answers = kernels.map(ask).collect()
             for run in sorted(running):
                 new = np.bitwise_or.reduce([answer[run][0] for answer in answers])

@@ -7,7 +7,7 @@ sources, from which pairs are counted. Ways are looked for in the end, among the
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import Counter, defaultdict
 from dataclasses import dataclass, replace
 from functools import partial, reduce
 from operator import or_
@@ -28,14 +28,14 @@ from rosprivacy.analysis.non_ros import on_day
 from rosprivacy.ingest.fleet.alike_robots import COLON, chosen, known_to_flows
 from rosprivacy.ingest.fleet.fleet_graph import likeness, no_robot, nowhere, place_some
 from rosprivacy.ingest.fleet.joins import joins_nothing
-from rosprivacy.parts import building, workers
+from rosprivacy.parts import workers
 from rosprivacy.parts.border import Core
 from rosprivacy.parts.classes import Classes, first_of
 from rosprivacy.parts.part_patterns import Crossed
 from rosprivacy.parts.units import GATE, HUB, border, core_piece, crossing_lines, split, unit_of, with_limits
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterable, Sequence
 
     from numpy.typing import NDArray
 
@@ -49,9 +49,8 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.fleet.alike_robots import Alike
     from rosprivacy.ingest.fleet.fleet_file import Fleet
     from rosprivacy.ingest.fleet.fleet_graph import Some
-    from rosprivacy.parts.building import Read, Told
-    from rosprivacy.parts.units import Border, Piece
-    from rosprivacy.parts.workers import Parts
+    from rosprivacy.parts.units import Border, Lines, Piece
+    from rosprivacy.parts.workers import Parts, Read, Report
 
     Bits = NDArray[np.uint64]
     Indices = NDArray[np.int64]
@@ -65,7 +64,7 @@ class Task:
     ----------
     reader
         Makes what reads a robot, wherever it is called.
-    asked
+    categories
         Names of categories; None for all.
     today
         As of ``Options``.
@@ -76,7 +75,7 @@ class Task:
     view: str
     reader: Callable[[], Read]
     hierarchy: Hierarchy
-    asked: Collection[str] | None = None
+    categories: Collection[str] | None = None
     today: str = ""
 
 
@@ -90,13 +89,13 @@ class Found:
         What 'no leak found' needs and is missing in the whole fleet.
     groups
         Patterns, without ways.
-    needed
+    units
         Names of the units in which ways of these lie, and of one for each kind of open element.
     examples
         Names of units: with these, data of every source gets to one leak of each name that it gets to.
     leaking
         Robots of the graph from which data gets to a leak or the like, or at which it does.
-    told
+    report
         What the parts rest on, put together.
     leaving
         What leaves each element of the border: bits of the categories.
@@ -117,11 +116,11 @@ class Found:
     lacking: str
     groups: tuple[Group, ...]
     deviants: tuple[Deviant, ...]
-    needed: frozenset[str]
+    units: frozenset[str]
     examples: frozenset[str]
     leaking: frozenset[str]
     counts: Counts
-    told: Told
+    report: Report
     likeness: Likeness
     leaving: Bits
     parts: Parts[workers.Ready]
@@ -151,7 +150,7 @@ def analyse_in_parts(task: Task, scatter: Callable[[Sequence[Any]], Parts[Any]])
     InputErrors
         With every problem of the input, one line each.
     """
-    return _Run(task, scatter).found()
+    return _Run(task, scatter).answer()
 
 
 class _Run:
@@ -162,9 +161,9 @@ class _Run:
         self._fleet = task.fleet
         self._likeness = likeness(task.groups)
         self._scatter = scatter
-        self._needed: set[str] = set()
+        self._units: set[str] = set()
 
-    def found(self) -> Found:
+    def answer(self) -> Found:
         task, fleet = self._task, self._fleet
         fixed, units = split(task.groups)
         alone = replace(fleet, robots=(), infrastructure=())  # what every part needs of it
@@ -172,17 +171,17 @@ class _Run:
         members = [replace(read(group.robots[0]), robot=robot) for group in fixed for robot in group.placed]
         core = place_some(fleet, members, task.view, own=True)
         built = self._scatter(units).map(
-            partial(building.built, fleet=alone, view=task.view, reader=task.reader),
+            partial(workers.built, fleet=alone, view=task.view, reader=task.reader),
             keep=True,
         )
-        told = _together([building.told_of(core, members), *built.map(building.told).collect()])
-        self._check(told, core, built)
-        joins = joins_nothing(fleet, task.groups, told.met, told.letting_out)
-        told = replace(told, diagnostics=(*told.diagnostics, *joins))
-        at = border(core, (lines for lines, side in told.named if side == 0))
-        categories = sorted(told.emitted | emitted(core.part.elements.values()))
+        report = workers.joined([workers.report_of(core, members), *built.map(workers.report).collect()])
+        self._check(report, core, built)
+        joins = joins_nothing(fleet, task.groups, report.met, report.letting_out)
+        report = replace(report, diagnostics=(*report.diagnostics, *joins))
+        at = border(core, {lines for lines, side, *_ in report.naming if side == 0})
+        categories = sorted(report.emitted | emitted(core.part.elements.values()))
         piece, gates = core_piece(core, at, task.view)
-        piece = with_limits(piece, fleet, told.limits)
+        piece = with_limits(piece, fleet, report.limits)
         piece = replace(piece, bound=replace(piece.bound, outside=on_day(piece.bound.outside, task.today)))
         ours = meaning(piece.graph, piece.bound, task.hierarchy, categories)
         network = GraphArrays.of(ours)
@@ -195,7 +194,7 @@ class _Run:
             keep=True,
         )  # fmt: skip
         steps = self._steps(ours, ready)
-        wanted = [c for c in categories if task.asked is None or c in task.asked]
+        wanted = [c for c in categories if task.categories is None or c in task.categories]
         mask = sum(ours.forms_of(category) for category in wanted)
         numbers = [i for i, name in enumerate(categories) if name in wanted]
         ways = {i: forms(i, ours.bits, steps) for i in numbers}
@@ -206,20 +205,20 @@ class _Run:
         classes.number(kernels.map(workers.classes).collect())
         classes.carry(kernels)
         asked = workers.Asked(leaving, classes.leaving, classes.numbers, classes.counts, mask, task.hierarchy)
-        answers = ready.map(partial(workers.answered, forms=ways, asked=asked)).collect()
-        return self._put_together(answers, classes, told, at, piece, ours, wanted, mask, leaving, ready)
+        answers = ready.map(partial(workers.answered, forms=ways, question=asked)).collect()
+        return self._put_together(answers, classes, report, at, piece, ours, wanted, mask, leaving, ready)
 
-    def _check(self, told: Told, core: Some, built: Parts[building.Built]) -> None:
+    def _check(self, report: Report, core: Some, built: Parts[workers.Built]) -> None:
         """Raise what is wrong with the input."""
-        building.raised(told.problems)
+        workers.raised(report.problems)
         problems: list[InputError] = []
         for number, flow in enumerate(self._fleet.flows):
             for side, end in enumerate(flow.ends):
                 problem = no_robot(self._fleet, flow, end.name)
-                if problem is None and not (told.found[number][side] or core.ends[number][side]):
+                if problem is None and not ((number, side) in report.ends or core.ends[number][side]):
                     problem = nowhere(flow, end, self._names(end.name, core, built))
                 problems += [problem] if problem else []
-        for place in told.restated if crossing_lines(self._fleet) else ():
+        for place in report.restated if crossing_lines(self._fleet) else ():
             what = "a flow within a robot, of which a label file says more"
             problems.append(
                 FleetError(place.file, place.line, what, "for --engine spark, say all of it in one of both")
@@ -227,22 +226,22 @@ class _Run:
         if problems:
             raise InputErrors(problems)
 
-    def _names(self, end: str, core: Some, built: Parts[building.Built]) -> list[str]:
+    def _names(self, end: str, core: Some, built: Parts[workers.Built]) -> list[str]:
         """The names that the end of a flow could mean."""
         if COLON not in end:
             return sorted(element.name for element in core.part.elements if element.robot == self._fleet.name)
         robots = frozenset(chosen(end, known_to_flows(self._fleet)))
         there = {element.name for element in core.part.elements if element.robot in robots}
-        return sorted(there.union(*built.map(partial(building.names_on, robots=robots)).collect()))
+        return sorted(there.union(*built.map(partial(workers.names_on, robots=robots)).collect()))
 
     def _steps(self, ours: Spread, ready: Parts[workers.Ready]) -> set[tuple[int, int]]:
         """What data is made into other data anywhere."""
         found = {step for some in ours.derives.values() for step in some}
-        problems: list[building.Problem] = []
+        problems: list[workers.Problem] = []
         for wrong, some in ready.map(workers.steps).collect():
             problems += wrong
             found |= some
-        building.raised(problems)
+        workers.raised(problems)
         return found
 
     def _carry(self, middle: Core, kernels: Parts[workers.Kernel], ours: Spread) -> Bits:
@@ -251,18 +250,18 @@ class _Run:
         while True:
             arrives, leaves = middle.carried(arrived)
             leaving = leaves[middle.border]
-            answers = kernels.map(partial(workers.carried, leaving=leaving, known=arrived)).collect()
+            answers = kernels.map(partial(workers.carried, leaving=leaving, before=arrived)).collect()
             before = arrived.copy()
             for bits, _ in answers:
                 arrived |= bits
-            self._needed |= set(first_of(brought for _, brought in answers).values())
+            self._units |= set(first_of(brought for _, brought in answers).values())
             if np.array_equal(before, arrived):
                 fill(ours, of_elements(ours, arrives), of_elements(ours, leaves))
                 return leaving
 
     def _put_together(
-        self, answers: Sequence[workers.Answer], classes: Classes, told: Told, at: Border, piece: Piece,
-        ours: Spread, wanted: Sequence[str], mask: int, leaving: Bits, ready: Parts[workers.Ready],
+        self, answers: Sequence[workers.Answer], classes: Classes, report: Report, at: Border, piece: Piece,
+        ours: Spread, categories: Sequence[str], mask: int, leaving: Bits, ready: Parts[workers.Ready],
     ) -> Found:  # fmt: skip
         sources = [*classes.own_sources(), *(source for answer in answers for source in answer.sources)]
         crossed = Crossed(self._likeness)
@@ -273,7 +272,7 @@ class _Run:
         mine = {v: e for v, e in enumerate(piece.graph.elements) if e.robot in (HUB, GATE)}
         core_open = workers.open_elements(replace(piece, border=tuple(mine)), ours, mask)
         unit = unit_of(split(self._task.groups)[1])
-        needed = self._needed | classes.bringers(groups, sources)
+        needed = self._units | classes.bringers(groups, sources)
         needed |= {unit[robot] for robot in kinds if robot in unit}
         onward = {
             element
@@ -290,20 +289,20 @@ class _Run:
         verdict = Verdict.of(
             leak=any(group.count.all > group.count.dismissed for group in groups),
             is_open=bool(count or core_open),
-            grounded=not lacking and not unread(told.diagnostics),
+            grounded=not lacking and not unread(report.diagnostics),
         )
         counts = sum((answer.counts for answer in answers), counted(piece.graph, ours, self._likeness, (), mine))
         return Found(
-            emitted=tuple(wanted),
+            emitted=tuple(categories),
             verdict=verdict,
             lacking=lacking,
             groups=groups,
             deviants=different(shares, open_at, self._likeness),
-            needed=frozenset(needed),
+            units=frozenset(needed),
             examples=frozenset(needed | crossed.examples | classes.all_bringers()),
             leaking=frozenset(r for r, some in shares.items() if not all(share.dismissed for share in some)),
-            counts=replace(counts, flows=counts.flows + _flows_between(told)),
-            told=told,
+            counts=replace(counts, flows=counts.flows + _flows_between(report)),
+            report=report,
             likeness=self._likeness,
             leaving=leaving,
             parts=ready,
@@ -313,14 +312,6 @@ class _Run:
             closed=shown,
             broken=frozenset(e.robot for row in closed if row.rank is Rank.BREAKS for e in row.at),
         )
-
-
-def _together(told: Iterable[Told]) -> Told:
-    """What all parts tell."""
-    whole, *others = told
-    for part in others:
-        whole = building.joined(whole, part)
-    return whole
 
 
 def _one_of_each(closed: Iterable[ClosedByShipped], likeness: Likeness) -> tuple[ClosedByShipped, ...]:
@@ -351,17 +342,13 @@ def _opened(
     return open_at, count, set(first.values())
 
 
-def _flows_between(told: Told) -> int:
+def _flows_between(report: Report) -> int:
     """How many flows of the fleet file lead from one unit to another."""
-    sides: tuple[Counter[Any], Counter[Any]] = (Counter(), Counter())
-    in_unit: tuple[dict[Any, Mapping[str, int]], ...] = ({}, {})
-    for (lines, side), units in told.named.items():
-        sides[side][lines] = sum(units.values())
-        in_unit[side][lines] = units
-    count = 0
-    for source, many in sides[0].items():
-        for target, others in sides[1].items():
-            if source & target:
-                same = (w * in_unit[1][target].get(unit, 0) for unit, w in in_unit[0][source].items())
-                count += many * others - sum(same)
-    return count
+    ends: tuple[dict[Lines, Counter[str]], ...] = (defaultdict(Counter), defaultdict(Counter))
+    for lines, side, unit, weight in report.naming:
+        ends[side][lines][unit] += weight
+    pairs = [(many, others) for a, many in ends[0].items() for b, others in ends[1].items() if a & b]
+    return sum(
+        many.total() * others.total() - sum(weight * others[unit] for unit, weight in many.items())
+        for many, others in pairs
+    )

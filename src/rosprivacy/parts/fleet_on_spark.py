@@ -40,10 +40,10 @@ if TYPE_CHECKING:
 
     from rosprivacy.ingest.fleet.dds_domains import Member
     from rosprivacy.ingest.fleet.fleet_file import Fleet, Robot
-    from rosprivacy.parts.building import Read
     from rosprivacy.parts.distributed import Found
     from rosprivacy.parts.shown_robots import Shown
     from rosprivacy.parts.units import Unit
+    from rosprivacy.parts.workers import Read
     from rosprivacy.question import Question
     from rosprivacy.result import Result
     from rosprivacy.settings import Settings
@@ -83,12 +83,12 @@ def run_on_spark(file: str, settings: Settings, master: str | None = None, resul
         check_new(results)
         _check_whole(task)
     with session(master) as spark:
-        found = analyse_in_parts(task, partial(scatter, spark))
-        _note_what_workers_read(found)
-        told = shown(task, found, settings.paths, settings.max_paths)
-        answer = result(task, found, told, question)
+        whole = analyse_in_parts(task, partial(scatter, spark))
+        _note_what_workers_read(whole)
+        sample = shown(task, whole, settings.paths, settings.max_paths)
+        answer = result(task, whole, sample, question)
         if results:
-            plan, units = plan_of(task, found, answer, plain)
+            plan, units = plan_of(task, whole, answer, plain)
             write(spark, results, units, plan, answer.document())
         return answer
 
@@ -110,26 +110,26 @@ def contexts_of(fleet: Fleet, question: Question) -> frozenset[str]:
     return frozenset(found.union(fleet.surroundings.contexts))
 
 
-def _note_what_workers_read(found: Found) -> None:
+def _note_what_workers_read(whole: Found) -> None:
     """Workers are processes of their own, whose notes nobody sees here: what they have read is no output either."""
-    for name in (*(file for file, _ in found.told.sources), *(file for file, *_ in found.told.labels)):
+    for name in (*(file for file, _ in whole.report.sources), *(file for file, *_ in whole.report.labels)):
         if Path(name).is_file():
             note(name, Path(name).stat())
 
 
-def plan_of(task: Task, found: Found, answer: Result, settings: Settings) -> tuple[Plan, tuple[Unit, ...]]:
+def plan_of(task: Task, whole: Found, answer: Result, settings: Settings) -> tuple[Plan, tuple[Unit, ...]]:
     """Return what the rows of units are made with, and the units."""
     fixed, units = split(task.groups)
-    examples = tuple(unit for unit in units if unit.name in found.examples)
+    examples = tuple(unit for unit in units if unit.name in whole.examples)
     fleet = replace(task.fleet, robots=(), infrastructure=())
     assumptions = answer.assumptions
-    joins = tuple(said for said in found.told.diagnostics if said.code in OF_FLEET)
-    likeness = found.likeness
+    joins = tuple(said for said in whole.report.diagnostics if said.code in OF_FLEET)
+    likeness = whole.likeness
     core = (one for one in answer.doubts if one.element and not likeness.is_robot(one.element.robot))
     doubts = (*core, *(one for one in answer.doubts if one.name == IN_PARTS))
     plan = Plan(
-        fleet, fixed, examples, found.shared, found.leaking, found.lacking, assumptions, settings, task.reader, joins,
-        found.broken, doubts,
+        fleet, fixed, examples, whole.shared, whole.leaking, whole.lacking, assumptions, settings, task.reader, joins,
+        whole.broken, doubts,
     )  # fmt: skip
     return plan, units
 
@@ -137,7 +137,7 @@ def plan_of(task: Task, found: Found, answer: Result, settings: Settings) -> tup
 def _check_whole(task: Task) -> None:
     """Refuse results that would not say everything, or have a flow for each pair of robots."""
     problems: list[InputError] = []
-    if task.asked is not None:
+    if task.categories is not None:
         what = "results are about all categories"
         hint = "leave out --categories, --article9, --data-type and --identity-factor, or --results"
         problems.append(FleetError("--results", 0, what, hint))
@@ -149,35 +149,35 @@ def _check_whole(task: Task) -> None:
         raise InputErrors(problems)
 
 
-def result(task: Task, found: Found, told: Shown, question: Question) -> Result:
+def result(task: Task, whole: Found, sample: Shown, question: Question) -> Result:
     """Put together what a report says."""
     rests_on = {
-        **({"countries_as_of": countries().as_of} if found.told.countries else {}),
-        **named_files(sorted(found.told.sources), sorted(found.told.labels), question.settings),
+        **({"countries_as_of": countries().as_of} if whole.report.countries else {}),
+        **named_files(sorted(whole.report.sources), sorted(whole.report.labels), question.settings),
         "fleet": [{"file": name, "sha256": digest} for name, digest in task.fleet.sources],
         "engine": "spark",
-        **types_read(sorted(found.told.types, key=lambda file: file.file)),
-        **({"type_limits": None} if found.told.typed else {}),
+        **types_read(sorted(whole.report.types, key=lambda file: file.file)),
+        **({"type_limits": None} if whole.report.typed else {}),
     }
     bounds = (
-        f"analysed in parts, {found.open:,} open elements in the whole fleet: ways and distances are the shortest "
+        f"analysed in parts, {whole.open:,} open elements in the whole fleet: ways and distances are the shortest "
         "among the robots that are shown, and what is told element by element is told of these: open elements, "
         "unknown ends, what is denied, sanitized, derived, taken away, stated of purposes and bases, or not stated, "
         "and what the answer hangs on"
     )
     engine = Place("--engine spark", 0)
-    said = found.told.diagnostics
-    if found.told.typed and question.type_limits:
+    said = whole.report.diagnostics
+    if whole.report.typed and question.type_limits:
         unlimited = "message types limit nothing on Spark: in memory there can be fewer findings"
         said += (Diagnostic(engine, Severity.NOTICE, unlimited),)
     said += (Diagnostic(engine, Severity.WARNING, bounds, IN_PARTS),)
-    policies = {policy.file: policy for member in told.members.values() for policy in member.policies}
-    labels = {file.file: file for member in told.members.values() for file in member.files}
+    policies = {policy.file: policy for member in sample.members.values() for policy in member.policies}
+    labels = {file.file: file for member in sample.members.values() for file in member.files}
     system = System(
-        told.placed.graph, told.placed.bound, question.vocabulary, said, rests_on,
-        tuple(policies.values()), tuple(labels.values()), found.likeness, is_fleet=True,
+        sample.placed.graph, sample.placed.bound, question.vocabulary, said, rests_on,
+        tuple(policies.values()), tuple(labels.values()), whole.likeness, is_fleet=True,
     )  # fmt: skip
-    return concluded(system, question, told.analysis, told.view, Options(), found.counts)
+    return concluded(system, question, sample.analysis, sample.view, Options(), whole.counts)
 
 
 def file_reader(settings: Settings, folder: str, root: str) -> Read:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.fleet.tallies import Count, Form, Pair, Tallies
-from rosprivacy.parts.part_pairs import forms_of
+from rosprivacy.parts.border import forms_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -25,7 +25,7 @@ CORE = ""  # in place of the name of a unit
 
 @dataclass(frozen=True, slots=True)
 class Within:
-    """A pair of one unit; ``how`` is a code of ``crossing``, of one finding or of two that stand beside each other."""
+    """A pair of one unit; ``how`` is a code of ``border.py``, of one finding or of two that stand beside each other."""
 
     kind: str
     category: str
@@ -66,7 +66,7 @@ class _Many:
         self.elements.append((element, unit))
         self.weights[unit] += weight
 
-    def beside(self, other: _Many) -> Iterator[tuple[Element, str]]:
+    def apart_from(self, other: _Many) -> Iterator[tuple[Element, str]]:
         """Those that have one of another unit in ``other``; the core is beside itself."""
         units = set(other.weights)
         return ((e, unit) for e, unit in self.elements if unit == CORE or units - {unit})
@@ -117,19 +117,19 @@ class Crossed:
             for number, how in enumerate(codes):
                 for some in by_class.get((category, number), {}).values() if how else ():
                     for form, beside in _forms(how):
-                        self._between(kind, category, form, some, leaks, beside=beside)
+                        self._between(kind, category, form, some, leaks, second=beside)
 
-    def _between(self, kind: str, category: str, form: Form, sources: _Many, leaks: _Many, *, beside: bool) -> None:
+    def _between(self, kind: str, category: str, form: Form, sources: _Many, leaks: _Many, *, second: bool) -> None:
         both = sum(weight * leaks.weights[unit] for unit, weight in sources.weights.items() if unit != CORE)
         count = sources.weights.total() * leaks.weights.total() - both
         if not count:
             return
-        begin, end = list(sources.beside(leaks)), list(leaks.beside(sources))
+        begin, end = list(sources.apart_from(leaks)), list(leaks.apart_from(sources))
         self.examples |= {*list(dict.fromkeys(unit for _, unit in end))[:2]} - {CORE}
         source, unit = begin[0]
         leak = next(element for element, other in end if other != unit or unit == CORE)
         across = self._likeness.is_robot(source.robot) and self._likeness.is_robot(leak.robot)
-        pair = Pair(kind, category, source, leak, beside)
+        pair = Pair(kind, category, source, leak, second)
         where = {element.robot for element, _ in (begin if self._likeness.is_robot(source.robot) else end)}
         key = self.tallies.add(pair, form, Count.of(count, form), where)
         self.tallies.share(key, {e.robot for e, _ in begin}, {e.robot for e, _ in end}, form, across=across)

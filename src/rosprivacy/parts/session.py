@@ -76,7 +76,7 @@ class Partitions:
 
     def collect(self) -> list[Any]:
         """Bring what comes of all parts to the driver."""
-        with told():
+        with cluster_errors():
             return self.rdd.collect()
 
 
@@ -133,7 +133,7 @@ def session(master: str | None) -> Iterator[SparkSession]:
         builder = SparkSession.builder.master(master).appName("rosprivacy")
         for key, value in settings.items():
             builder = builder.config(key, value)
-        with told(master):
+        with cluster_errors(master):
             spark = builder.getOrCreate()
         try:
             yield spark
@@ -142,7 +142,7 @@ def session(master: str | None) -> Iterator[SparkSession]:
 
 
 @contextmanager
-def told(master: str = "") -> Iterator[None]:
+def cluster_errors(master: str = "") -> Iterator[None]:
     """Say in one line what goes wrong on the cluster; an error of our own in a worker is none of the cluster's."""
     from py4j.protocol import Py4JError  # noqa: PLC0415 - an extra
     from pyspark.errors import PySparkException  # noqa: PLC0415 - an extra
@@ -158,14 +158,14 @@ def told(master: str = "") -> Iterator[None]:
         raise ClusterError(f"{where} fails: {what}; see the log of its driver and workers") from error
 
 
-def _our_own(said: str) -> bool:
+def _our_own(message: str) -> bool:
     r"""Whether a worker's traceback ends in an exception that neither its machine nor what is installed there makes.
 
     >>> said = "Traceback (most recent call last):\n  File '/rosprivacy/a.py'\n{}: x\n\n\tat org.apache"
     >>> _our_own(said.format("KeyError")), _our_own(said.format("ModuleNotFoundError"))
     (True, False)
     """
-    trace = said.partition("Traceback (most recent call last):\n")[2].partition("\n\tat ")[0]
+    trace = message.partition("Traceback (most recent call last):\n")[2].partition("\n\tat ")[0]
     kinds = re.findall(r"^([\w.]+)(?::|$)", trace, re.MULTILINE)
     kind = getattr(builtins, kinds[-1], None) if kinds else None
     theirs = (ImportError, OSError, MemoryError, EOFError)

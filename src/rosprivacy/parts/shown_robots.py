@@ -25,11 +25,14 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.findings.concerns import Concern
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Bound, Element, NonRosFacts
+    from rosprivacy.ingest.fleet.alike_robots import Alike
     from rosprivacy.ingest.fleet.dds_domains import Member
+    from rosprivacy.ingest.fleet.fleet_file import Fleet
     from rosprivacy.ingest.fleet.fleet_graph import Placed
     from rosprivacy.parts.distributed import Found, Task
+    from rosprivacy.parts.workers import Read
 
-Wanted = dict[int, set[tuple[str, int, int, bool]]]
+Choice = dict[int, set[tuple[str, int, int, bool]]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +51,7 @@ class Shown:
     members: dict[str, Member]
 
 
-def shown(task: Task, found: Found, paths: str, max_paths: int) -> Shown:
+def shown(task: Task, whole: Found, paths: str, max_paths: int) -> Shown:
     """Look for the ways of what is shown.
 
     Notes
@@ -57,40 +60,41 @@ def shown(task: Task, found: Found, paths: str, max_paths: int) -> Shown:
     shared, and what is shared.
     """
     fixed, units = split(task.groups)
-    needed = found.needed or {unit.name for unit in units[:1]}
+    needed = whole.units or {unit.name for unit in units[:1]}
     groups = [*fixed, *(group for unit in units if unit.name in needed for group in unit.groups)]
-    read = task.reader()
-    members = {group.robots[0].id: read(group.robots[0]) for group in groups}
-    placed = place_chosen(task.fleet, groups, members, task.view)
-    placed = replace(placed, bound=limited(placed, found.shared))
-    placed = replace(placed, bound=surrounded(placed, found.told.contexts))
+    placed, members = place_groups(task.fleet, groups, task.reader(), task.view, whole.shared)
+    placed = replace(placed, bound=surrounded(placed, whole.report.contexts))
 
-    def choose(spread: Spread, kinds: Sequence[Concern], mask: int) -> Wanted:
+    def choose(spread: Spread, kinds: Sequence[Concern], mask: int) -> Choice:
         del kinds, mask
         vertex = {element: number for number, element in enumerate(spread.graph.elements)}
-        wanted: Wanted = defaultdict(set)
-        for group in found.groups:
+        wanted: Choice = defaultdict(set)
+        for group in whole.groups:
             kind, category, source, leak, beside = group.pair
             wanted[vertex[source]].add((kind, vertex[leak], spread.categories.index(category), beside))
         return dict(wanted)
 
-    options = Options(task.asked, paths, max_paths, choose=choose, today=task.today, bounds=task.fleet.bounds)
+    options = Options(task.categories, paths, max_paths, choose=choose, today=task.today, bounds=task.fleet.bounds)
     analysis = analyse(placed.graph, placed.bound, task.hierarchy, options)
-    view = FleetView(found.likeness, patterns_of(found.groups, analysis.findings), found.deviants)
+    view = FleetView(whole.likeness, patterns_of(whole.groups, analysis.findings), whole.deviants)
     told = tuple(said for said in analysis.diagnostics if said.code != analysis.lacking or not said.code)
-    if found.verdict is Verdict.UNDETERMINED and not found.open:
-        told += lacking(found.lacking, restricted=task.asked is not None)
-    analysis = replace(analysis, verdict=found.verdict, emitted=found.emitted, lacking=found.lacking, diagnostics=told)
-    known = {row.channel.identity: row for row in (*found.closed, *analysis.closed_by_shipped)}
+    if whole.verdict is Verdict.UNDETERMINED and not whole.open:
+        told += lacking(whole.lacking, restricted=task.categories is not None)
+    analysis = replace(analysis, verdict=whole.verdict, emitted=whole.emitted, lacking=whole.lacking, diagnostics=told)
+    known = {row.channel.identity: row for row in (*whole.closed, *analysis.closed_by_shipped)}
     analysis = replace(analysis, closed_by_shipped=tuple(known[key] for key in sorted(known)))
     return Shown(analysis, view, placed, members)
 
 
-def limited(placed: Placed, shared: Mapping[Element, NonRosFacts]) -> Bound:
-    """Return what is said, where for what is shared the limits of every robot hold, also of those not placed."""
+def place_groups(
+    fleet: Fleet, groups: Sequence[Alike], read: Read, view: str, shared: Mapping[Element, NonRosFacts]
+) -> tuple[Placed, dict[str, Member]]:
+    """Place some robots; for what is shared the limits of every robot hold, also of those that are not placed."""
+    members = {group.robots[0].id: read(group.robots[0]) for group in groups}
+    placed = place_chosen(fleet, groups, members, view)
     elements = placed.graph.elements
     outside = {vertex: shared.get(elements[vertex], facts) for vertex, facts in placed.bound.outside.items()}
-    return replace(placed.bound, outside=outside)
+    return replace(placed, bound=replace(placed.bound, outside=outside)), members
 
 
 def surrounded(placed: Placed, contexts: Iterable[tuple[str, str, str]]) -> Bound:

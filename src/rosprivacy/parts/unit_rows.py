@@ -19,9 +19,8 @@ from rosprivacy.assumptions import assumptions_of, files_read, remembered, types
 from rosprivacy.ingest.database.fleet_rows import FleetRows
 from rosprivacy.ingest.database.rows import rows_of
 from rosprivacy.ingest.fleet.dds_domains import is_domain, pseudo_robot
-from rosprivacy.ingest.fleet.fleet_graph import place_chosen
 from rosprivacy.ontology.vocabulary import load
-from rosprivacy.parts.shown_robots import limited
+from rosprivacy.parts.shown_robots import Choice, place_groups
 from rosprivacy.parts.units import unit_of
 from rosprivacy.question import Question
 from rosprivacy.robot_doubts import breaking, doubt_lines, doubts_by_robot
@@ -39,12 +38,11 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.fleet.dds_domains import Member
     from rosprivacy.ingest.fleet.fleet_file import Fleet
     from rosprivacy.ingest.fleet.fleet_graph import Placed
-    from rosprivacy.parts.building import Read
     from rosprivacy.parts.units import Unit
+    from rosprivacy.parts.workers import Read
     from rosprivacy.settings import Settings
 
 AT_ONCE = 25  # units that are placed in one graph
-Wanted = dict[int, set[tuple[str, int, int, bool]]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,9 +118,9 @@ def _rows(units: Sequence[Unit], plan: Plan, read: Read) -> Iterator[RobotRows]:
         yield from (_ending_at(rows, mine, whole=False) for rows in fleet_rows.of(owner))
 
 
-def _ids(some: Iterable[RobotRows]) -> set[str]:
+def _ids(robots: Iterable[RobotRows]) -> set[str]:
     """The ids of elements, and of their intakes."""
-    return {row["id"] for rows in some for row in (*rows.elements, *rows.intakes)}
+    return {row["id"] for rows in robots for row in (*rows.elements, *rows.intakes)}
 
 
 def _core(plan: Plan) -> list[str]:
@@ -135,9 +133,7 @@ def _placed(units: Sequence[Unit], plan: Plan, read: Read) -> tuple[Placed, dict
     names = {unit.name for unit in units}
     others = [unit for unit in plan.examples if unit.name not in names]
     groups = [*plan.fixed, *(group for unit in (*units, *others) for group in unit.groups)]
-    members = {group.robots[0].id: read(group.robots[0]) for group in groups}
-    placed = place_chosen(plan.fleet, groups, members, plan.settings.view)
-    return replace(placed, bound=limited(placed, plan.shared)), members
+    return place_groups(plan.fleet, groups, read, plan.settings.view, plan.shared)
 
 
 def _each_finding(part: Pairs) -> Iterator[tuple[int, int, bool, bool, bool]]:
@@ -154,12 +150,12 @@ def _fleet_rows(placed: Placed, members: Mapping[str, Member], plan: Plan, mine:
     vocabulary = load(ontologies=plan.settings.ontologies)
     unit = {**unit_of(plan.examples), **mine}
 
-    def choose(found: Spread, kinds: Sequence[Concern], mask: int) -> Wanted:
-        elements = found.graph.elements
+    def choose(spread: Spread, kinds: Sequence[Concern], mask: int) -> Choice:
+        elements = spread.graph.elements
         owner = [unit.get(element.robot, "") for element in elements]
         ours = [element.robot in mine for element in elements]
-        wanted: Wanted = {}
-        for part in pairs(found, kinds, mask):
+        wanted: Choice = {}
+        for part in pairs(spread, kinds, mask):
             beyond: dict[tuple[int, Element, bool], tuple[bool, bool, int]] = {}
             for source, leak, dismissed, hidden, beside in _each_finding(part):
                 if owner[source] == owner[leak] or not owner[source] or not owner[leak]:
@@ -180,7 +176,7 @@ def _fleet_rows(placed: Placed, members: Mapping[str, Member], plan: Plan, mine:
     )
     told = _doubts(placed, members, analysis, plan, mine)
     said: dict[str, dict[str, str | list[str]]] = {
-        name: _more(member, analysis, plan, vocabulary, told[name]) for name, member in members.items()
+        name: _properties(member, analysis, plan, vocabulary, told[name]) for name, member in members.items()
     }
     everything = {**plan.assumptions, "policies": [], "labels": [], "types": []}
     said |= {name: {"doubts": doubt_lines(some)} for name, some in told.items() if name not in said}
@@ -208,8 +204,8 @@ def _doubts(
     return doubts_by_robot([*some, *plan.doubts], names, placed.graph, placed.likeness, lambda element: element.robot)
 
 
-def _more(
-    member: Member, analysis: Analysis, plan: Plan, vocabulary: Any, told: list[Doubt]
+def _properties(
+    member: Member, analysis: Analysis, plan: Plan, vocabulary: Any, of_robot: list[Doubt]
 ) -> dict[str, str | list[str]]:
     files = {**files_read(member.policies, member.files, plan.settings), **types_read(member.types)}
     question = Question(plan.settings, vocabulary, None, None, plan.settings.today or "")
@@ -219,13 +215,13 @@ def _more(
         robots = [spread.graph.elements[vertex] for vertex in spread.standard]
         taken = {element.identity for element in robots if element.robot == member.robot.id}
         said["standard_channels"] = {**said["standard_channels"], "taken": len(taken)}
-    return remembered(said, member.diagnostics, doubt_lines(told))
+    return remembered(said, member.diagnostics, doubt_lines(of_robot))
 
 
-def _derived_at(rows: RobotRows, known: Collection[str]) -> RobotRows:
+def _derived_at(rows: RobotRows, ids: Collection[str]) -> RobotRows:
     """Without what is made of the data of other units."""
     parts = parts_of(rows)
-    parts["derived"] = [row for row in rows.derived if row["target"] in known]
+    parts["derived"] = [row for row in rows.derived if row["target"] in ids]
     return rows_of(rows.robot, own_properties(rows.properties), _with_foreign(parts, rows))
 
 
@@ -253,9 +249,9 @@ def _with_foreign(parts: dict[str, Any], rows: RobotRows) -> dict[str, Any]:
     return {**parts, "foreign": [row for row in rows.foreign if row["id"] in named]}
 
 
-def put_together(some: Sequence[RobotRows]) -> RobotRows:
+def put_together(shares: Sequence[RobotRows]) -> RobotRows:
     """Return the rows of what is shared, made of those that parts have of it; the first says what it is."""
-    first, *others = some
+    first, *others = shares
     parts = parts_of(first)
     for rows in others:
         for name in ("flows", "derived", "carried", "findings", "across", "foreign"):

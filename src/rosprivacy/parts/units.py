@@ -112,11 +112,11 @@ def crossing_lines(fleet: Fleet) -> Lines:
     return frozenset(i for i, flow in enumerate(fleet.flows) if COLON in flow.source and COLON in flow.target)
 
 
-def named(some: Some, lines: Lines, side: int) -> dict[Element, Lines]:
+def naming_lines(placed: Some, lines: Lines, side: int) -> dict[Element, Lines]:
     """Return, for the elements that these lines name as source (side 0) or target (1), which do."""
     found: dict[Element, set[int]] = defaultdict(set)
     for line in lines:
-        for element in some.ends[line][side]:
+        for element in placed.ends[line][side]:
             found[element].add(line)
     return {element: frozenset(which) for element, which in found.items()}
 
@@ -142,9 +142,9 @@ def units_piece(fleet: Fleet, units: Sequence[Some], at: Border, view: str) -> P
             pairs = [*((a, b) for a in sources for b in to_core), *((a, b) for a in from_core for b in targets)]
             for a, b in pairs:
                 flow_said(flow, (a, b, FLOW), lines, whole.flow_statements)
-        for element, which in named(some, crossing, 0).items():
+        for element, which in naming_lines(some, crossing, 0).items():
             whole.flows[element, at.hubs[which], FLOW] = ()
-        for element, which in named(some, crossing, 1).items():
+        for element, which in naming_lines(some, crossing, 1).items():
             for others, hub in at.hubs.items():
                 for line in sorted(which & others):
                     flow_said(fleet.flows[line], (hub, element, FLOW), lines, whole.flow_statements)

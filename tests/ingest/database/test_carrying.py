@@ -1,7 +1,7 @@
 """A path over CARRIES_… from a source to a leak is there if, and only if, the data gets there (rules S7, S8, S10).
 
 The naive query is walked here as Neo4j would: from each element with the label ``…Source``, along relationships of one
-type, to each with the label ``…Leak``. ``tests/queries/test_naive_cypher.py`` asks Neo4j itself.
+type, to each with the label ``…Leak``. ``tests/queries/test_cypher.py`` asks Neo4j itself.
 """
 
 from __future__ import annotations

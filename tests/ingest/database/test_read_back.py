@@ -46,6 +46,16 @@ pytestmark = pytest.mark.database
 VOCABULARY = load_vocabulary()
 
 
+def same_from_the_database(driver: Driver, result: Any) -> Any:
+    """Load a robot, and check that the database gives the document of its files; return that answer."""
+    load(driver, [robot_of("r", result)], VOCABULARY)
+    stored = answer_stored(driver, Settings())
+    document = stored.document()
+    assert document["assumptions"].pop("database") == {"robots": 1}
+    assert document == result.document()
+    return stored
+
+
 def ways(result: Any) -> set[tuple[str, ...]]:
     return {(f.category, *(element.name for element in f.witness)) for f in result.analysis.findings}
 
@@ -59,9 +69,7 @@ def test_the_document_is_that_of_the_files(
     result = rosprivacy.analyze(given["policies"], given["labels"], **given.get("options", {}))
     load(driver, [robot_of("r", result)], VOCABULARY)
     before = dump(driver, without=("digest", "version"))
-    document = answer_stored(driver, Settings()).document()
-    assert document["assumptions"].pop("database") == {"robots": 1}
-    assert document == result.document()
+    same_from_the_database(driver, result)
     assert dump(driver, without=("digest", "version")) == before
 
 
@@ -76,13 +84,9 @@ def test_what_is_pinned_comes_back(driver: Driver, tmp_path: Path, pins: str) ->
     labels += f'flows: [{{from: "/fil*", to: /b, never: [Voice]}}]\npins: {pins}\n'
     (tmp_path / "l.yaml").write_text(labels)
     result = rosprivacy.analyze([str(tmp_path / "p.xml")], [str(tmp_path / "l.yaml")])
-    load(driver, [robot_of("r", result)], VOCABULARY)
-    stored = answer_stored(driver, Settings())
+    stored = same_from_the_database(driver, result)
     assert {s.pinned for said in stored.bound.elements.values() for s in said} >= {None, ()}
     assert [s.pinned for said in stored.bound.flows.values() for s in said] == [()]
-    document = stored.document()
-    assert document["assumptions"].pop("database") == {"robots": 1}
-    assert document == result.document()
 
 
 RULES = {  # S7, S13: labels of a system with a wildcard, a log and a channel outside its standard place -> verdict
@@ -111,10 +115,7 @@ def test_sharpened_rules_mean_the_same_from_the_database(
     (tmp_path / "2.yaml").write_text(f"labels: 1\nnodes: {nodes}\nchannels: {{'/v*': sensitive}}")
     result = rosprivacy.analyze("p.xml", ["1.yaml", "2.yaml"])
     assert str(result.analysis.verdict) == verdict
-    load(driver, [robot_of("r", result)], VOCABULARY)
-    document = answer_stored(driver, Settings()).document()
-    assert document["assumptions"].pop("database") == {"robots": 1}
-    assert document == result.document()
+    same_from_the_database(driver, result)
     assert verdicts(driver) == {"r": verdict}
 
 
@@ -169,20 +170,14 @@ TWO_RANKS = {  # what labels of a higher and of a lower rank say of one flow
 class TestWhatIsSaidOfAFlow:
     """A statement keeps its rank in the database, so that it decides as in the file (rule S7)."""
 
-    @pytest.fixture(params=one_in(4, TWO_RANKS))
-    def result(self, request: pytest.FixtureRequest, examples: Path, tmp_path: Path) -> Any:
-        kind, high, low = TWO_RANKS[request.param]
+    @pytest.mark.parametrize("case", one_in(4, TWO_RANKS))
+    def test_it_is_decided_as_in_the_file(self, driver: Driver, case: str, examples: Path, tmp_path: Path) -> None:
+        kind, high, low = TWO_RANKS[case]
         file = tmp_path / "flow.labels.yaml"
         low = f"{TO.replace('/camera,', '/cam*,')}, {low} }}"
         nodes = f"{{ /camera: {{ source: [{kind}] }}, /blur: {{ leak: [{kind}] }} }}"
         file.write_text(f"labels: 1\nnodes: {nodes}\nflows:\n  - {high}\n  - {low}\n", "utf-8")
-        return rosprivacy.analyze(examples / "care-home" / "care-home.policy.xml", file)
-
-    def test_it_is_decided_as_in_the_file(self, driver: Driver, result: Any) -> None:
-        load(driver, [robot_of("r", result)], VOCABULARY)
-        document = answer_stored(driver, Settings()).document()
-        document["assumptions"].pop("database")
-        assert document == result.document()
+        same_from_the_database(driver, rosprivacy.analyze(examples / "care-home" / "care-home.policy.xml", file))
 
     def test_every_word_comes_back(self, driver: Driver) -> None:
         """Two statements about each of some flows: every pair of words, ranks and ways of naming that may stand."""
@@ -201,13 +196,12 @@ class TestWhatIsSaidOfAFlow:
             load(driver, [robot_rows("r", home.analysis, bound, VOCABULARY)], VOCABULARY)
             assert read_stored(driver, VOCABULARY).bound.flows == bound.flows
 
-    def test_a_changed_list_is_a_later_word(self, driver: Driver) -> None:
+    def test_a_changed_list_is_a_later_word(self, care: Driver) -> None:
         """It outranks what files say by the other word, which stays."""
-        load(driver, [rows_of("care", care_home())], VOCABULARY)
         file = next(iter(care_home().bound.flows.values()))
         for change, words in (("f.only = ['Voice']", {"only": HAND, "never": 1}), ("f.never = NULL", {"only": HAND})):
-            driver.execute_query(f"MATCH ()-[f:FLOWS_TO]->() WHERE f.said_at IS NOT NULL SET {change}")
-            said = next(iter(read_stored(driver, VOCABULARY).bound.flows.values()))
+            care.execute_query(f"MATCH ()-[f:FLOWS_TO]->() WHERE f.said_at IS NOT NULL SET {change}")
+            said = next(iter(read_stored(care, VOCABULARY).bound.flows.values()))
             assert {one.role: one.rank[0] for one in said} == words
             assert all(one in file or one.categories == ("Voice",) for one in said)
 
@@ -219,43 +213,42 @@ def _agree(pair: Sequence[Statement]) -> bool:
         return False
 
 
-VIDEO = ("PersonImage", "PersonalData", "Video")  # with the broader ones
+VIDEO = ["PersonImage", "PersonalData", "Video"]  # with the broader ones
+
+
+@pytest.fixture
+def care(driver: Driver) -> Driver:
+    """A database with the care home."""
+    load(driver, [rows_of("care", care_home())], VOCABULARY)
+    return driver
 
 
 class TestWhatPeopleAdd:
-    def test_a_storage_behind_a_node_is_found(self, driver: Driver) -> None:
+    def test_a_storage_behind_a_node_is_found(self, care: Driver) -> None:
         """The example of docs/database.md; the recorder is no longer the leak, the bucket is."""
-        load(driver, [rows_of("care", care_home())], VOCABULARY)
-        driver.execute_query(ADD_STORAGE)
-        driver.execute_query("MATCH (:RosNode {name: '/recorder'})-[l:LEAKS]->() DELETE l")
-        result = answer_stored(driver, Settings())
-        found = [f for f in result.analysis.findings if f.leak.kind == "storage"]
+        care.execute_query(ADD_STORAGE)
+        care.execute_query("MATCH (:RosNode {name: '/recorder'})-[l:LEAKS]->() DELETE l")
+        first = answer_stored(care, Settings())
+        found = [f for f in first.analysis.findings if f.leak.kind == "storage"]
         assert [[e.name for e in f.witness][-2:] for f in found] == [["/recorder", "footage bucket"]]
-        rows = driver.execute_query(
+        (row,) = care.execute_query(
             "MATCH (:RosNode {name: '/recorder'})-[f:FLOWS_TO]->(b:Element:VideoLeak:Video) "
             "MATCH (x:Finding)-[:TO]->(b) RETURN b.kind, b.carries, f.carries, x.source"
         ).records
-        assert [list(record) for record in rows] == [["storage", [*VIDEO], [*VIDEO], "/camera"]]
-        assert not driver.execute_query("MATCH (n:VideoLeak:RosNode) RETURN n").records
+        assert list(row) == ["storage", VIDEO, VIDEO, "/camera"]
+        assert not care.execute_query("MATCH (n:VideoLeak:RosNode) RETURN n").records
+        assert load(care, [rows_of("care", care_home())], VOCABULARY).written == 1  # after that it is still there
+        assert ways(answer_stored(care, Settings())) > ways(first)
 
-    def test_a_storage_of_which_nothing_is_said_keeps_for_ever_and_nobody_knows_where(self, driver: Driver) -> None:
+    def test_a_storage_of_which_nothing_is_said_keeps_for_ever_and_nobody_knows_where(self, care: Driver) -> None:
         """Rules S10 and S11."""
-        load(driver, [rows_of("care", care_home())], VOCABULARY)
-        driver.execute_query(ADD_STORAGE.replace(", retention: 'P30D', country: 'DE'", ""))
-        result = answer_stored(driver, Settings())
-        (kept,) = [f for f in result.analysis.findings if f.kind == "storage-limitation"]
-        assert (kept.leak.name, kept.reason) == ("footage bucket", "no retention is stated")
+        care.execute_query(ADD_STORAGE.replace(", retention: 'P30D', country: 'DE'", ""))
+        result = answer_stored(care, Settings())
+        (finding,) = [f for f in result.analysis.findings if f.kind == "storage-limitation"]
+        assert (finding.leak.name, finding.reason) == ("footage bucket", "no retention is stated")
         assert [q.element.name for q in result.analysis.open if q.missing] == ["footage bucket"]
-        rows = driver.execute_query("MATCH (f:Finding {kind: 'storage-limitation'})-[:TO]->(b) RETURN b.name, f.reason")
+        rows = care.execute_query("MATCH (f:Finding {kind: 'storage-limitation'})-[:TO]->(b) RETURN b.name, f.reason")
         assert [list(record) for record in rows.records] == [["footage bucket", "no retention is stated"]]
-
-    def test_it_is_there_after_the_next_load_and_found_again(self, driver: Driver) -> None:
-        load(driver, [rows_of("care", care_home())], VOCABULARY)
-        driver.execute_query(ADD_STORAGE)
-        first = ways(answer_stored(driver, Settings()))
-        assert load(driver, [rows_of("care", care_home())], VOCABULARY).written == 1
-        assert ways(answer_stored(driver, Settings())) == first
-        assert any(way[-1] == "footage bucket" for way in first)
 
     @pytest.mark.parametrize(
         ("change", "gone"),
@@ -271,43 +264,41 @@ class TestWhatPeopleAdd:
             ],
         ),
     )
-    def test_a_changed_label_or_flow_counts(self, driver: Driver, change: str, gone: str) -> None:
-        load(driver, [rows_of("care", care_home())], VOCABULARY)
-        before = ways(answer_stored(driver, Settings()))
-        driver.execute_query(change)
-        after = ways(answer_stored(driver, Settings()))
+    def test_a_changed_label_or_flow_counts(self, care: Driver, change: str, gone: str) -> None:
+        before = ways(answer_stored(care, Settings()))
+        care.execute_query(change)
+        after = ways(answer_stored(care, Settings()))
         assert after < before
         assert {way[-1] for way in before - after} == {gone}
 
-    def test_one_word_by_hand_outranks_the_file(self, driver: Driver) -> None:
+    def test_one_word_by_hand_outranks_the_file(self, care: Driver) -> None:
         """The file says that /display is a conduit for everything."""
-        load(driver, [rows_of("care", care_home())], VOCABULARY)
-        driver.execute_query(
+        care.execute_query(
             "MATCH (n {name: '/navigator'}), (c:DataCategory {name: 'PersonTrack'}) CREATE (n)-[:LEAKS]->(c)"
         )
-        assert ("PersonTrack", "/navigator") in {(way[0], way[-1]) for way in ways(answer_stored(driver, Settings()))}
+        assert ("PersonTrack", "/navigator") in {(way[0], way[-1]) for way in ways(answer_stored(care, Settings()))}
 
-    def test_two_robots_meet_at_a_storage(self, driver: Driver) -> None:
+    def test_two_robots_meet_at_a_storage(self, care: Driver) -> None:
         """Data that one writes and the other reads flows on, across robots (rule S9)."""
-        load(driver, [rows_of("care", care_home()), rows_of("factory", factory(5))], VOCABULARY)
-        assert not [f for f in answer_stored(driver, Settings()).analysis.findings if f.leak.robot == "factory"]
-        driver.execute_query(
+        load(care, [rows_of("factory", factory(5))], VOCABULARY)
+
+        def on_the_factory() -> list[list[tuple[str, str]]]:
+            findings = answer_stored(care, Settings()).analysis.findings
+            return [[(e.robot, e.name) for e in f.witness] for f in findings if f.leak.robot == "factory"]
+
+        assert on_the_factory() == []
+        care.execute_query(
             "MATCH (a:RosNode {robot: 'care', name: '/camera'}), "
             "(b:RosNode {robot: 'factory', name: '/archive_server'}) "
             "CREATE (a)-[:FLOWS_TO]->(:Storage {name: 'shared'})-[:FLOWS_TO]->(b)"
         )
-        found = [f for f in answer_stored(driver, Settings()).analysis.findings if f.leak.robot == "factory"]
-        assert [[(e.robot, e.name) for e in f.witness] for f in found] == [
-            [("care", "/camera"), ("", "shared"), ("factory", "/archive_server")]
-        ]
-        verdicts = driver.execute_query("MATCH (r:Robot) RETURN r.verdict ORDER BY r.name").records
-        assert [record[0] for record in verdicts] == ["leak", "leak"]
+        assert on_the_factory() == [[("care", "/camera"), ("", "shared"), ("factory", "/archive_server")]]
+        assert verdicts(care) == {"care": "leak", "factory": "leak"}
 
-    def test_the_answer_may_be_about_some_categories_but_all_are_written(self, driver: Driver) -> None:
-        load(driver, [rows_of("care", care_home())], VOCABULARY)
-        result = answer_stored(driver, Settings(categories=("Voice",)))
+    def test_the_answer_may_be_about_some_categories_but_all_are_written(self, care: Driver) -> None:
+        result = answer_stored(care, Settings(categories=("Voice",)))
         assert {f.category for f in result.analysis.findings} == {"Voice"}
-        assert driver.execute_query("MATCH (f:Finding) RETURN count(f)").records[0][0] == 3
+        assert care.execute_query("MATCH (f:Finding) RETURN count(f)").records[0][0] == 3
 
 
 class TestProblems:
@@ -353,15 +344,14 @@ class TestProblems:
             ),
         ]),
     )  # fmt: skip
-    def test_each_is_a_line_and_nothing_is_written(self, driver: Driver, damage: str, message: str) -> None:
-        load(driver, [rows_of("care", care_home())], VOCABULARY)
-        driver.execute_query(damage.replace("DELETE r", "DETACH DELETE r"))
-        before = driver.execute_query("MATCH (r:Robot) RETURN collect(r.version)").records[0][0]
+    def test_each_is_a_line_and_nothing_is_written(self, care: Driver, damage: str, message: str) -> None:
+        care.execute_query(damage.replace("DELETE r", "DETACH DELETE r"))
+        versions = "MATCH (r:Robot) RETURN collect(r.version)"
+        before = care.execute_query(versions).records[0][0]
         with pytest.raises(InputErrors, match=message) as error:
-            answer_stored(driver, Settings())
-        for line in str(error.value).splitlines():
-            assert line.startswith("the database: ") or ":" in line
-        assert driver.execute_query("MATCH (r:Robot) RETURN collect(r.version)").records[0][0] == before
+            answer_stored(care, Settings())
+        assert all(":" in line for line in str(error.value).splitlines())
+        assert care.execute_query(versions).records[0][0] == before
 
     def test_a_robot_that_is_loaded_meanwhile_is_not_written_over(self, driver: Driver) -> None:
         load(driver, [rows_of("r", factory(2))], VOCABULARY)

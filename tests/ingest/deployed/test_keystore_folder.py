@@ -99,6 +99,10 @@ REFUSED: dict[str, tuple[Callable[[Keystore], object], list[tuple[str, str]]]] =
         [(PERMISSIONS, f"it was signed by somebody else than {CA}")],
     ),
     "missing": (lambda made: (made.folder / PERMISSIONS).unlink(), [(PERMISSIONS, "file not found")]),
+    "governance missing": (
+        lambda made: (made.folder / "enclaves/camera/governance.p7s").unlink(),
+        [("enclaves/camera/governance.p7s", "file not found")],
+    ),
     "swapped between enclaves": (
         swapped,
         [
@@ -121,6 +125,9 @@ def test_what_does_not_hold_is_refused_by_name(keystore: Keystore, how: str) -> 
     damage, problems = REFUSED[how]
     damage(keystore)
     assert refused(keystore) == problems
+    if "missing" in how:  # also where nothing has to be signed
+        with pytest.raises(InputErrors, match="file not found"):
+            read(keystore, allow_unsigned=True)
 
 
 def test_what_is_not_signed_is_refused_and_read_only_where_that_is_asked_for(keystore: Keystore) -> None:
@@ -131,13 +138,6 @@ def test_what_is_not_signed_is_refused_and_read_only_where_that_is_asked_for(key
     assert [d.message for d in said if d.code != SIGNED_BY] == [
         "not verified: not signed; read all the same, as --allow-unsigned asks"
     ]
-
-
-def test_a_file_that_is_missing_is_an_error_also_where_nothing_has_to_be_signed(keystore: Keystore) -> None:
-    (keystore.folder / "enclaves/camera/governance.p7s").unlink()
-    assert refused(keystore) == [("enclaves/camera/governance.p7s", "file not found")]
-    with pytest.raises(InputErrors, match="file not found"):
-        read(keystore, allow_unsigned=True)
 
 
 def test_an_expired_certificate_and_an_expired_grant_are_told_and_read(keystore: Keystore) -> None:

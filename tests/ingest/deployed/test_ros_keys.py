@@ -71,7 +71,7 @@ def test_channels_are_those_whose_keys_zenoh_says_an_expression_has(spaces: tupl
         theirs, ours = zenoh.KeyExpr(expression), list(channels(expression, keys))
         for space in spaces:
             for what, name, of_it in names(keys, space):
-                said = [one for one in ours if one.what == what and any(covers(had, name) for had in one.names)]
+                said = [one for one in ours if one.sort == what and any(covers(had, name) for had in one.names)]
                 meets = any(theirs.intersects(zenoh.KeyExpr(key)) for key in of_it)
                 assert said or not meets, (expression, of_it, ours)
                 if any(one.whole for one in said):

@@ -13,7 +13,6 @@ from rosprivacy.private_neo4j import connection
 from rosprivacy.reading.robot_system import robot_of
 from rosprivacy.reading.stored_system import answer_stored
 from rosprivacy.settings import Settings
-from tests.helpers.command import run
 from tests.helpers.observed import endpoint, saw
 from tests.helpers.written_systems import told
 
@@ -21,6 +20,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from rosprivacy.private_neo4j.connection import Connection
+    from tests.helpers.command import Cli
 
 NAME = "participant_010f"
 SAID = f'<participant node="/_no_node/{NAME}"/>'
@@ -101,10 +101,10 @@ def test_its_types_are_known(robot: Path) -> None:
 
 
 @pytest.mark.parametrize("labels", [SOURCE, LEAK, CLOUD], ids=["not labelled", "a leak", "another kind"])
-def test_a_saved_graph_and_a_fleet_say_the_same(robot: Path, labels: str) -> None:
+def test_a_saved_graph_and_a_fleet_say_the_same(cli: Cli, robot: Path, labels: str) -> None:
     (robot / "l.yaml").write_text(labels)
     expected = told(rosprivacy.analyze("p.xml", "l.yaml"))
-    assert run("analyze", "p.xml", "--save-graph", "g.json", cwd=robot).returncode == 4
+    assert cli("analyze", "p.xml", "--save-graph", "g.json", cwd=robot).returncode == 4
     assert told(rosprivacy.analyze(labels="l.yaml", add="g.json")) == expected
     assert told(rosprivacy.analyze_fleet("f.yaml")) == expected
 
@@ -144,20 +144,16 @@ def test_the_database_says_the_same(robot: Path, neo4j_server: Connection) -> No
     ("words", "code"),
     [
         ("analyze p.xml -l l.yaml -f turtle: Participant", 4),
-        ("analyze p.xml -l l.yaml -f json-ld: Participant", 4),
-        ("analyze p.xml -l l.yaml --lang de: Programm ohne ROS-Knoten", 4),
-        ("analyze p.xml -l l.yaml --lang fr: programme sans nœud ROS", 4),
         (f"graph p.xml -l l.yaml -f dot: {NAME}", 0),
-        (f"graph p.xml -l l.yaml -f mermaid: {NAME}", 0),
         ("report p.xml -l l.yaml -f markdown: program without a ROS node", 0),
         (f"labels --init p.xml: {NAME}: {{kind: participant}}  # writes /shape; reads /image", 0),
         (f"labels --next p.xml -l l.yaml: elements: {{{NAME}: {{kind: external-system}}}}", 0),
     ],
 )
-def test_every_output_shows_it_as_what_it_is(robot: Path, words: str, code: int) -> None:
+def test_every_output_shows_it_as_what_it_is(cli: Cli, robot: Path, words: str, code: int) -> None:
     (robot / "l.yaml").write_text(SOURCE)
     asked, said = words.split(": ", 1)
-    done = run(*asked.split(), cwd=robot)
+    done = cli(*asked.split(), cwd=robot)
     answer = done.stdout + done.stderr
     assert (done.returncode, said in answer) == (code, True), answer
     assert NAME in answer.replace("\\", "")
