@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from rosprivacy.analysis.model import FALLBACK_TAKEN
 from tests.helpers.includes import (
     CHILDREN,
     HIDDEN,
@@ -36,6 +37,7 @@ def test_both_namespaces_are_read_with_their_fallback(tmp_path: Path, namespace:
     assert names(read(policy(tmp_path, include("f.xml", namespace=namespace)))) == ["/x"]
     result = read(policy(tmp_path, missing(f"\n{topic('b')}", namespace)))
     assert (names(result), places(result, tmp_path)) == (["/b"], ["p.xml:2"])
+    assert [(d.code, d.place.line) for d in result.diagnostics] == [(FALLBACK_TAKEN, 1)]
 
 
 def test_a_grant_of_an_include_names_its_file_and_line_and_is_of_the_profile_that_includes(tmp_path: Path) -> None:
