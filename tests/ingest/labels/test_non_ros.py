@@ -77,24 +77,32 @@ class TestTakingPart:
         ("more", "expected"),
         [
             (  # what goes into a storage comes out of it
-                "elements:\n  bucket: {kind: storage, country: DE, retention: P1D}\n"
-                "  cloud: {kind: external-system, country: FR}\n"
-                "flows: [{from: /recorder, to: bucket}, {from: bucket, to: /trainer}, {from: /trainer, to: cloud}]\n",
+                (
+                    "elements:\n  bucket: {kind: storage, country: DE, retention: P1D}\n"
+                    "  cloud: {kind: external-system, country: FR}\n"
+                    "flows: [{from: /recorder, to: bucket}, {from: bucket, to: /trainer}, {from: /trainer, to: cloud}]\n"
+                ),
                 ["disclosure Video /camera /image /recorder bucket /trainer cloud"],
             ),
             (  # a label outranks what is taken by kind
-                "elements: {screen: {kind: display, conduit: [Video]}}\n"
-                "flows: [{from: /viewer, to: screen}, {from: /recorder, to: screen}]\n",
+                (
+                    "elements: {screen: {kind: display, conduit: [Video]}}\n"
+                    "flows: [{from: /viewer, to: screen}, {from: /recorder, to: screen}]\n"
+                ),
                 ["disclosure Voice /microphone /sound /viewer screen"],
             ),
             (  # a device is a source by itself
-                "elements: {badge reader: {kind: device, source: [Location]}, screen: {kind: display}}\n"
-                "flows: [{from: badge reader, to: /trainer}, {from: /trainer, to: screen}]\n",
+                (
+                    "elements: {badge reader: {kind: device, source: [Location]}, screen: {kind: display}}\n"
+                    "flows: [{from: badge reader, to: /trainer}, {from: /trainer, to: screen}]\n"
+                ),
                 ["disclosure Location badge reader /trainer screen"],
             ),
             (  # a side channel joins nodes in both directions
-                "elements:\n  ring: {kind: shared-memory, between: [/recorder, /trainer]}\n  screen: {kind: display}\n"
-                "flows: [{from: /trainer, to: screen}]\n",
+                (
+                    "elements:\n  ring: {kind: shared-memory, between: [/recorder, /trainer]}\n  screen: {kind: display}\n"
+                    "flows: [{from: /trainer, to: screen}]\n"
+                ),
                 ["disclosure Video /camera /image /recorder ring /trainer screen"],
             ),
             (  # only some kinds go along a flow
