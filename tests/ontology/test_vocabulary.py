@@ -6,10 +6,9 @@ import hashlib
 import re
 import subprocess
 import sys
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
-from rdflib import RDF, SKOS, Graph
 
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.hierarchy import Hierarchy
@@ -17,50 +16,22 @@ from rosprivacy.analysis.model import Category
 from rosprivacy.ontology import vocabulary
 from rosprivacy.ontology.vocabulary import load
 
-
-def test_the_shipped_categories() -> None:
-    found = load()
-    assert set(found.categories) >= {
-        "PersonalData", "Biometric", "FaceTemplate", "FaceImage", "Video", "Voice", "Location", "PersonTrack", "Health",
-    }  # fmt: skip
-    for category in found.categories.values():
-        assert category.iri.startswith("urn:x-rosprivacy:")
-        assert re.fullmatch(r"[A-Z][A-Za-z]+", category.label)
-        assert category.definition.endswith(".")
-        assert "PersonalData" in found.hierarchy.ancestors[category.name]
-    assert len({c.label for c in found.categories.values()}) == len(found.categories)
-
-
-@pytest.mark.slow
-def test_every_foreign_iri_is_one_of_dpv(corpus: Path) -> None:
-    """DPV 2.3; the files stay where they are."""
-    dpv = Graph()
-    for file in ("pd.ttl", "dpv.ttl"):
-        dpv.parse(corpus.parent / "dpv" / file)
-    ours = Graph().parse(Path(vocabulary.__file__).with_name("categories.ttl"))
-    named = {o for p in (SKOS.broadMatch, SKOS.exactMatch) for o in ours.objects(None, p)}
-    foreign = {iri for iri in named if "w3id.org/dpv" in str(iri)}
-    assert foreign
-    assert all((iri, RDF.type, None) in dpv for iri in foreign)
+if TYPE_CHECKING:
+    from pathlib import Path
 
 
 @pytest.mark.parametrize(
     "text",
     [
-        "FaceTemplate",
-        "facetemplate",
-        "face template",
-        "Face Embedding",
-        "urn:x-rosprivacy:FaceTemplate",
-        "https://w3id.org/rosprivacy#FaceTemplate",
-        "https://w3id.org/rosprivacy#facetemplate",
-        "rp:FaceTemplate",
+        "FaceTemplate", "facetemplate", "face template", "Face Embedding", "urn:x-rosprivacy:FaceTemplate",
+        "https://w3id.org/rosprivacy#FaceTemplate", "https://w3id.org/rosprivacy#facetemplate", "rp:FaceTemplate",
     ],
-)
+)  # fmt: skip
 def test_a_category_is_found_by_name_title_synonym_and_iri(text: str) -> None:
     category = load().find(text)
     assert category is not None
     assert category.name == "FaceTemplate"
+    assert category.iri == "urn:x-rosprivacy:FaceTemplate"
 
 
 def test_one_that_is_not_there_is_not_found_but_its_neighbours_are() -> None:
@@ -140,56 +111,13 @@ class TestOwnOntology:
         [
             ("skos:broader rp:Health", "skos:broader :PulseCurve", "is broader than itself"),
             ("skos:broader rp:Health", "skos:broader :B . :B a skos:Concept ; skos:broader :PulseCurve", "than itself"),
-            (
-                'rp:label "WardBadge"',
-                'rp:label "PulseCurve"',
-                "has the name 'PulseCurve', and so has <urn:example:clinic:PulseCurve> ",
-            ),
-            (
-                'rp:label "PulseCurve"',
-                'rp:label "Video"',
-                "has the name 'Video', and so has <https://w3id.org/rosprivacy#Video>, ",
-            ),
-            (
-                ":PulseCurve a",
-                "<urn:example:other/Video> a",
-                "has the name 'Video', and so has <https://w3id.org/rosprivacy#Video>, ",
-            ),
-            (
-                '    skos:definition "The pulse of a patient over time."@en ;\n',
-                "",
-                "PulseCurve> has no English definition",
-            ),
+            ('"WardBadge"', '"PulseCurve"', "has the name 'PulseCurve', and so has <urn:example:clinic:PulseCurve> "),
             ('skos:prefLabel "pulse curve"@en , "Pulskurve"@de ;', "", "PulseCurve> has no English name"),
-            ('"pulse curve"@en , "Pulskurve"@de', '"Pulskurve"@de', "PulseCurve> has no English name"),
-            (
-                "skos:broader rp:Health",
-                "skos:broader rp:Helth",
-                "has the unknown parent <https://w3id.org/rosprivacy#Helth>",
-            ),
+            ("rp:Health", "rp:Helth", "has the unknown parent <https://w3id.org/rosprivacy#Helth>"),
             ("skos:broader rp:Health ;", "", "has no parent among the categories"),
             ("skos:broader rp:Health", "skos:broader pd:Purchase", "leads to none of the shipped categories"),
-            ('rp:label "PulseCurve"', 'rp:label "Pulse curve"', "label"),
             ('rp:label "PulseCurve"', 'rp:label "X`) DETACH DELETE n //"', "label"),
-            ('rp:label "PulseCurve" ;', "", "label"),
-            ('rp:dataType "number"', 'rp:dataType "numbre"', "data type"),
-            (
-                '"physiological"',
-                '"physiologic"',
-                "PulseCurve> has an unknown identity factor; write one of name, number",
-            ),
-            ('rp:article9 "no" ; rp:reason "it says who works here, nothing else"@en', 'rp:article9 "no"', "reason"),
-            ('rp:article9 "no"', 'rp:article9 "never"', "article9"),
-            (
-                'rp:dataType "number"',
-                'rp:fallsUnder [ rp:provision rp:GDPR-9-1-health ; rp:verdict "perhaps" ]',
-                "verdict",
-            ),
-            (
-                'rp:dataType "number"',
-                'rp:fallsUnder [ rp:provision rp:GDPR-9-1-helth ; rp:verdict "always" ]',
-                "provision",
-            ),
+            ('"physiological"', '"physiologic"', "PulseCurve> has an unknown identity factor; write one of name"),
             (":PulseCurve a skos:Concept ;", ":PulseCurve a skos:Concept", "not Turtle"),
             (":PulseCurve a", "rp:Video a", "is there already; what is there is not changed"),
             (":PulseCurve a", "[] a", "has no IRI of its own"),
@@ -197,7 +125,7 @@ class TestOwnOntology:
             (MINE, "", "has no category"),
         ],
     )
-    def test_each_fault_is_one_line_with_the_subject_and_what_to_do(
+    def test_each_fault_is_one_line_with_the_subject_and_what_to_do(  # what shapes refuse: test_shapes
         self, mine: Path, tmp_path: Path, old: str, new: str, problem: str
     ) -> None:
         assert old in MINE
@@ -211,9 +139,8 @@ class TestOwnOntology:
 
     def test_the_line_is_that_of_the_subject(self, mine: Path, tmp_path: Path) -> None:
         mine.write_text(MINE.replace("rp:PersonalData , pd:OfficialID", "pd:Purchase"), "utf-8")
-        with pytest.raises(
-            InputErrors, match=rf"mine\.ttl:{MINE.splitlines().index(':WardBadge a skos:Concept ;') + 1}: "
-        ):
+        line = MINE.splitlines().index(":WardBadge a skos:Concept ;") + 1
+        with pytest.raises(InputErrors, match=rf"mine\.ttl:{line}: "):
             load(tmp_path / "cache", [str(mine)])
 
     @pytest.mark.parametrize(

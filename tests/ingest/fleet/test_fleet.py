@@ -36,6 +36,12 @@ EXAMPLES = ROOT / "examples"
 INCLUDE = '<xi:include xmlns:xi="http://www.w3.org/2001/XInclude" href="f.xml"><xi:fallback/></xi:include>'
 
 
+BUCKET = (
+    "elements: {bucket: {kind: storage, country: DE, retention: P1D}}\n"
+    "flows: [{from: 'eye_*:/uplink', to: bucket}, {from: bucket, to: 'wall_*:/receiver'%s}]\n"
+)
+
+
 def run(text: str, **options: Any) -> Result:
     write("f.yaml", "fleet: 1\n" + MODELS + text)
     return answer_fleet("f.yaml", Settings(**options))
@@ -139,10 +145,8 @@ class TestAlike:
     def test_equal_files_and_equal_flows_are_read_once(self) -> None:
         write("copy.xml", Path("eye.xml").read_text("utf-8"))
         fleet = read(
-            "fleet: 1\n"
-            + MODELS
-            + "groups: [{robots: 5, model: eye}]\nmodels_: \n".replace("models_: \n", "")
-            + "robots: {x: {model: eye}, y: {model: wall}}\n"
+            f"fleet: 1\n{MODELS}"
+            "groups: [{robots: 5, model: eye}]\nrobots: {x: {model: eye}, y: {model: wall}}\n"
             "elements: {bucket: {kind: storage}}\n"
             "flows: [{from: '*:/uplink', to: bucket}, {from: 'eye_2:/camera', to: bucket}]\n"
         )
@@ -167,70 +171,65 @@ class TestAlike:
 
 
 class TestSharing:
-    def test_robots_of_their_own_domains_share_nothing(self) -> None:
-        """Rule S1: as if each was analysed by itself."""
-        assert (
-            found("robots: {a: {policies: [eye.xml, wall.xml], labels: [eye.yaml, wall.yaml]}, b: {model: wall}}\n")
-            == {}
-        )
+    SCREEN = "labels: 1\nnodes: {/screen: {leak: [Video]}}\n"
+    CAMERA = "labels: 1\nnodes: {/camera: {source: [Video]}}\n"
+    TWO = "robots: {a: {model: eye, domain: %s}, b: {model: wall, domain: %s}}\n"
+    GROUPS = "groups: [{robots: 3, model: eye}, {robots: 2, model: wall}]\n"
 
-    def test_a_storage_joins_them(self) -> None:
-        text = (
-            "groups: [{robots: 3, model: eye}, {robots: 2, model: wall}]\n"
-            "elements: {bucket: {kind: storage, country: DE, retention: P1D}}\n"
-            "flows: [{from: 'eye_*:/uplink', to: bucket}, {from: bucket, to: 'wall_*:/receiver'}]\n"
-        )
-        assert found(text) == {"/camera -> /screen across": 6}
-        assert found(text.replace("wall_*:/receiver'", "wall_2:/receiver', never: [Video]")) == {}
-
-    def test_a_flow_goes_from_robot_to_robot(self) -> None:
-        groups = "groups: [{robots: 3, model: eye}, {robots: 2, model: wall}]\n"
-        assert found(groups + "flows: [{from: 'eye_2:/uplink', to: '*:/receiver'}]\n") == {
-            "/camera -> /screen across": 2
-        }
+    @pytest.mark.parametrize(
+        ("text", "expected"),
+        [
+            # of their own domains they share nothing (rule S1): as if each was analysed by itself
+            ("robots: {a: {policies: [eye.xml, wall.xml], labels: [eye.yaml, wall.yaml]}, b: {model: wall}}\n", {}),
+            # a storage joins them
+            (GROUPS + BUCKET % "", {"/camera -> /screen across": 6}),
+            (GROUPS + BUCKET % ", never: [Video]", {}),
+            # a flow goes from robot to robot
+            (GROUPS + "flows: [{from: 'eye_2:/uplink', to: '*:/receiver'}]\n", {"/camera -> /screen across": 2}),
+        ],
+    )
+    def test_what_a_fleet_file_states_joins_robots(self, text: str, expected: dict[str, int]) -> None:
+        assert found(text) == expected
 
     def test_robots_of_one_domain_share_channels_by_name(self) -> None:
         write("wall.xml", policy("/screen</image"))
-        write("wall.yaml", "labels: 1\nnodes: {/screen: {leak: [Video]}}\n")
-        robots = "groups: [{robots: 3, model: eye, domain: %s}, {robots: 2, model: wall, domain: %s}]\n"
-        assert found(robots % ("7", "7")) == {"/camera -> /screen across": 6}
-        assert found(robots % ("7", "8")) == {}
-        result = run(robots % ("hall", "hall"))
-        channels = {e for e in result.analysis.graph.elements if e.is_channel}
-        assert {(e.robot, e.name) for e in channels} == {("domain hall", "/image")}
+        write("wall.yaml", self.SCREEN)
+        groups = "groups: [{robots: 3, model: eye, domain: hall}, {robots: 2, model: wall, domain: hall}]\n"
+        assert found(groups) == {"/camera -> /screen across": 6}
+        result = run(groups)
+        channels = {(e.robot, e.name) for e in result.analysis.graph.elements if e.is_channel}
+        assert channels == {("domain hall", "/image")}
         assert result.document()["elements"] == 3 * 2 + 2 + 1
 
-    def test_what_labels_say_of_a_shared_channel_holds_for_all(self) -> None:
-        write("wall.xml", policy("/screen</image"))
-        write("wall.yaml", "labels: 1\nnodes: {/screen: {leak: [Video]}}\nchannels: {/image: {never: [Video]}}\n")
-        write("eye.yaml", "labels: 1\nnodes: {/camera: {source: [Video]}}\n")
-        assert found("robots: {a: {model: eye, domain: 1}, b: {model: wall, domain: 1}}\n") == {}
-
-    def test_a_wildcard_reaches_the_other_robots_of_the_domain(self) -> None:
-        """Rule S4."""
-        write("wall.xml", policy("/screen</im*"))
-        write("wall.yaml", "labels: 1\nnodes: {/screen: {leak: [Video]}}\n")
-        assert found("robots: {a: {model: eye, domain: 1}, b: {model: wall, domain: 1}}\n") == {
-            "/camera -> /screen across": 1
-        }
-        assert found("robots: {a: {model: eye}, b: {model: wall, domain: 1}}\n") == {}
-
-    def test_a_deny_holds_for_its_own_robot(self) -> None:
-        """Rule S5; both enclaves have one path."""
-        write("eye.xml", policy("/camera>/image,!/image"))
-        write("eye.yaml", "labels: 1\nnodes: {/camera: {source: [Video]}}\n")
-        write("wall.xml", policy("/mirror>/image<x", "/screen</image"))
-        write("wall.yaml", "labels: 1\nnodes: {/mirror: {source: [Voice]}, /screen: {leak: [Voice, Video]}}\n")
-        assert found("robots: {a: {model: eye, domain: 1}, b: {model: wall, domain: 1}}\n") == {"/mirror -> /screen": 1}
-
-    def test_the_enforced_view_takes_enclaves_of_two_robots_for_two(self) -> None:
-        """Rule S6."""
-        write("eye.xml", policy("/camera>/image"))
-        write("eye.yaml", "labels: 1\nnodes: {/camera: {source: [Video]}}\n")
-        write("wall.xml", policy("/screen</picture"))
-        write("wall.yaml", "labels: 1\nnodes: {/screen: {leak: [Video]}}\n")
-        robots = "robots: {a: {model: eye, domain: 1}, b: {model: wall, domain: 1}}\n"
-        assert found(robots, view="enforced") == {}
+    @pytest.mark.parametrize(
+        ("files", "options", "expected"),
+        [
+            # what labels say of a shared channel holds for all
+            ({"wall.yaml": SCREEN + "channels: {/image: {never: [Video]}}\n"}, {}, {}),
+            # rule S4: a wildcard reaches the other robots of the domain
+            ({"wall.xml": policy("/screen</im*")}, {}, {"/camera -> /screen across": 1}),
+            # rule S5: a DENY holds for its own robot; both enclaves have one path
+            (
+                {
+                    "eye.xml": policy("/camera>/image,!/image"),
+                    "wall.xml": policy("/mirror>/image<x", "/screen</image"),
+                    "wall.yaml": "labels: 1\nnodes: {/mirror: {source: [Voice]}, /screen: {leak: [Voice, Video]}}\n",
+                },
+                {},
+                {"/mirror -> /screen": 1},
+            ),
+            # rule S6: the enforced view takes enclaves of two robots for two
+            ({"eye.xml": policy("/camera>/image"), "wall.xml": policy("/screen</picture")}, {"view": "enforced"}, {}),
+        ],
+    )
+    def test_what_robots_of_one_domain_say(
+        self, files: dict[str, str], options: dict[str, str], expected: dict[str, int]
+    ) -> None:
+        base = {"eye.yaml": self.CAMERA, "wall.xml": policy("/screen</image"), "wall.yaml": self.SCREEN}
+        for name, text in (base | files).items():
+            write(name, text)
+        assert found(self.TWO % (1, 1), **options) == expected
+        assert "/camera -> /screen across" not in found(self.TWO % (1, 2), **options)
 
     @pytest.mark.parametrize(("key", "space"), [("strip", "/{}/"), ("add", "")])
     def test_a_namespace_keeps_the_channels_of_robots_apart(self, key: str, space: str) -> None:
@@ -337,52 +336,52 @@ class TestRefusals:
     @pytest.mark.parametrize(
         ("text", "problem"),
         [
-            ("robots: {a: {policies: eye.xml}}\n", "1: no 'fleet: 1'; say so on the first line"),
-            ("fleet: 2\nrobots: {a: {policies: eye.xml}}\n", "1: fleet format '2'; this reads 'fleet: 1'"),
-            ("", "1: the file is empty; write at least 'fleet: 1'"),
-            ("fleet: 1\n", "1: a fleet without robots; name some under robots or groups"),
+            ("robots: {a: {policies: eye.xml}}\n", "1: no 'fleet: 1'"),
+            ("fleet: 2\nrobots: {a: {policies: eye.xml}}\n", "1: fleet format '2'"),
+            ("", "1: the file is empty"),
+            ("fleet: 1\n", "1: a fleet without robots"),
             ("fleet: 1\nrobos: {}\n", "2: unknown key 'robos'; did you mean 'robots'?"),
-            ("fleet: 1\nrobots: {a: {}}\n", "2: robot 'a' has no policies; name some, or a model"),
-            ("fleet: 1\nrobots: {a: {policies: no.xml}}\n", "2: no.xml: file not found; correct it"),
+            ("fleet: 1\nrobots: {a: {}}\n", "2: robot 'a' has no policies"),
+            ("fleet: 1\nrobots: {a: {policies: no.xml}}\n", "2: no.xml: file not found"),
             ("fleet: 1\nrobots: {a: {policies: eye.xml, labels: no.yaml}}\n", "2: no.yaml: file not found"),
             ("fleet: 1\nmodels: {m: {policies: no.xml}}\nrobots: {a: {model: m}}\n", "2: no.xml: file not found"),
             ("fleet: 1\nrobots: {a: {model: m}}\n", "2: unknown model 'm'; models: there is none"),
-            ("fleet: 1\nrobots: {a b: {policies: eye.xml}}\n", "2: 'a b' cannot name a robot or model; use letters"),
+            ("fleet: 1\nrobots: {a b: {policies: eye.xml}}\n", "2: 'a b' cannot name a robot or model"),
             ("fleet: 1\nrobots: {shared: {policies: eye.xml}}\n", "2: robot 'shared' has the name of what is shared"),
             ("fleet: 1\nname: a\nrobots: {a: {policies: eye.xml}}\n", "3: robot 'a' has the name of what is shared"),
             ("fleet: 1\nrobots: [a]\n", "2: robots is a map, not a list"),
             ("fleet: 1\nrobots: {a: {policies: eye.xml, domain: 'x y'}}\n", "2: 'x y' cannot be a domain"),
             ("fleet: 1\nrobots: {a: {policies: eye.xml, namespace: /a}}\n", "2: namespace takes strip or add"),
             ("fleet: 1\nrobots: {a: {policies: eye.xml, namespace: {strip: a}}}\n", "2: 'a' cannot be a namespace"),
+            ("fleet: 1\nrobots:\n  a: {policies: eye.xml}\n  a: {}\n", "4: 'a' again, first in line 3"),
         ],
     )
     def test_each_is_a_line(self, text: str, problem: str) -> None:
-        lines = refused(text)
-        assert [line[: len(problem)] for line in lines] == [problem]
+        (line,) = refused(text)
+        assert line.startswith(problem)
 
     @pytest.mark.parametrize(
         ("more", "problem"),
         [
             # the same robot twice
-            (
-                "groups:\n  - {robots: 1, model: eye, id: 'a*'}\n  - {robots: 1, model: eye, id: 'a*'}\n",
-                "6: robot 'a1' again, first at f.yaml:5; rename one",
-            ),
+            ("groups:\n" + "  - {robots: 1, model: eye, id: 'a*'}\n" * 2, "6: robot 'a1' again"),
             ("infrastructure: {a: {model: eye}}\n", "4: robot 'a' again, first at f.yaml:3"),
             ("models_again: {}\n", "4: unknown key 'models_again'"),
             # groups
             ("groups: [{robots: 0, model: eye}]\n", "4: robots: '0'; write a whole number above 0"),
-            ("groups: [{robots: many, model: eye}]\n", "4: robots: 'many'; write a whole number above 0"),
-            ("groups: [{robots: 2, model: eye, id: x}]\n", "4: 'x' cannot be the ids of a group; write one with a *"),
+            ("groups: [{robots: many, model: eye}]\n", "4: robots: 'many'"),
+            ("groups: [{robots: 2, model: eye, id: x}]\n", "4: 'x' cannot be the ids of a group"),
             ("groups: [{model: eye}]\n", "4: a group takes either a number of robots or policies with a *"),
             ("groups: [{robots: 2, policies: '*.xml'}]\n", "4: a group takes either a number of robots or"),
-            ("groups: [{policies: 'no/*.xml'}]\n", "4: 'no/*.xml' matches no file; correct the pattern"),
+            ("groups: [{policies: 'no/*.xml'}]\n", "4: 'no/*.xml' matches no file"),
             ("groups: [{policies: '*/*.xml'}]\n", "4: '*/*.xml' has more than one *"),
             ("groups: {}\n", "4: groups is a list, not a map"),
             # includes
-            ("include: no.yaml\n", "4: no.yaml: file not found; correct the path"),
-            ("include: f.yaml\n", "4: f.yaml includes itself, on a ring; remove one of the includes"),
-            ("include: [1]\n", "4: include: a number; name files, relative"),
+            ("include: no.yaml\n", "4: no.yaml: file not found"),
+            ("include: f.yaml\n", "4: f.yaml includes itself, on a ring"),
+            ("include: [1]\n", "4: include: a number"),
+            ("include: ring.yaml\n", "ring2.yaml:3: ring.yaml includes itself, on a ring"),
+            ("include: a.yaml\n", "a.yaml:3: robot 'a' again, first at f.yaml:3"),
             # elements
             ("elements: {b: {kind: storage, retention: 1 month}}\n", "4: '1 month' is not an ISO 8601 duration"),
             ("elements: {b: {kind: storage, country: Germany}}\n", "4: 'Germany' is not an ISO 3166-1 country code"),
@@ -390,44 +389,26 @@ class TestRefusals:
             # flows
             ("flows: [{from: 'b:/uplink', to: 'a:/camera'}]\n", "4: a flow names the robot 'b', which is not there"),
             ("flows: [{from: 'b*:/uplink', to: 'a:/camera'}]\n", "4: a flow names the robot 'b*', which is not"),
-            (
-                "flows: [{from: 'a:/uplnk', to: 'a:/camera'}]\n",
-                "4: a flow names '/uplnk', which is not there; did you mean /uplink",
-            ),
-            (
-                "flows: [{from: /uplink, to: 'a:/camera'}]\n",
-                "4: a flow names '/uplink' and does not say on which robots; write *:/uplink",
-            ),
-            (
-                "flows: [{from: 'a:/uplink', to: bucket}]\n",
-                "4: a flow names 'bucket', which is not there; define it under elements",
-            ),
+            ("flows: [{from: 'a:/uplnk', to: 'a:/camera'}]\n", "4: a flow names '/uplnk', which is not there"),
+            ("flows: [{from: /uplink, to: 'a:/camera'}]\n", "4: a flow names '/uplink' and does not say on which"),
+            ("flows: [{from: 'a:/uplink', to: bucket}]\n", "4: a flow names 'bucket', which is not there"),
             ("flows: [{from: 'a:/uplink'}]\n", "4: a flow needs from and to"),
         ],
     )
     def test_each_beside_a_robot(self, more: str, problem: str) -> None:
-        lines = refused(self.ROBOT + more)
-        assert [line[: len(problem)] for line in lines] == [problem]
+        write("ring.yaml", "fleet: 1\ninclude: ring2.yaml\n")
+        write("ring2.yaml", "fleet: 1\n\ninclude: ring.yaml\n")
+        write("a.yaml", "fleet: 1\n\nrobots: {a: {policies: wall.xml}}\n")
+        (line,) = refused(self.ROBOT + more)
+        assert line.startswith(problem)
 
     def test_an_element_twice_with_different_facts(self) -> None:
         write("g.yaml", "fleet: 1\nelements: {b: {kind: storage, country: DE}}\n")
         text = self.ROBOT + "include: g.yaml\nelements: {b: {kind: storage, country: FR}}\n"
-        assert refused(text) == ["g.yaml:2: element 'b' again, with other facts than at f.yaml:5; define it once"]
+        (line,) = refused(text)
+        assert line.startswith("g.yaml:2: element 'b' again, with other facts than at f.yaml:5")
         write("g.yaml", "fleet: 1\nelements: {b: {kind: storage, country: FR}}\n")
         assert answer_fleet(_written(text), Settings())
-
-    def test_a_ring_of_includes(self) -> None:
-        write("g.yaml", "fleet: 1\ninclude: h.yaml\n")
-        write("h.yaml", "fleet: 1\n\ninclude: g.yaml\n")
-        assert refused(self.ROBOT + "include: g.yaml\n") == [
-            "h.yaml:3: g.yaml includes itself, on a ring; remove one of the includes"
-        ]
-
-    def test_a_robot_twice_whatever_the_file(self) -> None:
-        write("g.yaml", "fleet: 1\n\nrobots: {a: {policies: wall.xml}}\n")
-        assert refused(self.ROBOT + "include: g.yaml\n") == ["g.yaml:3: robot 'a' again, first at f.yaml:3; rename one"]
-        (line,) = refused("fleet: 1\nrobots:\n  a: {policies: eye.xml}\n  a: {policies: wall.xml}\n")
-        assert line.startswith("4: 'a' again, first in line 3;")
 
     def test_all_problems_of_all_files_at_once(self) -> None:
         write("g.yaml", "fleet: 1\nlimits: {Video: x}\n")
@@ -439,11 +420,8 @@ class TestRefusals:
         write("wall.xml", "<policy/>")
         with pytest.raises(InputErrors) as caught:
             run("robots: {a: {model: eye}, b: {model: wall}, c: {model: eye, domain: 1}}\n")
-        assert [line.partition(": ")[0] for line in str(caught.value).splitlines()] == [
-            "eye.yaml:2",
-            "wall.xml:1",
-            "wall.xml:1",
-        ]
+        places = [line.partition(": ")[0] for line in str(caught.value).splitlines()]
+        assert places == ["eye.yaml:2", "wall.xml:1", "wall.xml:1"]
 
 
 FULL: dict[str, Any] = {

@@ -16,42 +16,32 @@ if TYPE_CHECKING:
 
 from tests.helpers.label_files import SYSTEM, VIDEO, analyse, wrong
 
+TWO = ("1.yaml:3", "2.yaml:3")
+
+
+def both(text: str, *values: str) -> list[str]:
+    """A label file for each value."""
+    return [text % value for value in values]
+
 
 @pytest.mark.parametrize(
     ("labels", "places"),
     [
-        # in two files
+        # in two files, and in one file by globs of the same rank
         (["nodes:\n  /filter: {leak: [Video]}", "\nnodes:\n  /filter: {conduit: [Video]}"], ("1.yaml:3", "2.yaml:4")),
-        # in one file, by globs of the same rank
         (["nodes:\n  '/fil*': {leak: [Video]}\n  '*lter': {conduit: [Video]}"], ("1.yaml:3", "1.yaml:4")),
         # S10: source and sanitizer of one category
         (["nodes:\n  /filter:\n    source: [Video]\n    sanitizer: {Video: drop}"], ("1.yaml:4", "1.yaml:5")),
         (["nodes:\n  /filter:\n    source: [Video]\n    conduit: [Video]"], ("1.yaml:4", "1.yaml:5")),
         (["nodes:\n  /filter:\n    sanitizer: [Video]\n    conduit: [Video]"], ("1.yaml:4", "1.yaml:5")),
-        # one sanitizer, two methods
-        (
-            ["nodes:\n  /filter: {sanitizer: {Video: drop}}", "nodes:\n  /filter: {sanitizer: {Video: anonymise}}"],
-            ("1.yaml:3", "2.yaml:3"),
-        ),
-        (
-            ["nodes:\n  /filter: {sanitizer: {Video: drop}}", "nodes:\n  /filter: {sanitizer: [Video]}"],
-            ("1.yaml:3", "2.yaml:3"),
-        ),
-        # one source, through one channel and through all
-        (
-            ["nodes:\n  /filter: {source: {Video: [/clean]}}", "nodes:\n  /filter: {source: [Video]}"],
-            ("1.yaml:3", "2.yaml:3"),
-        ),
-        (["channels:\n  /image: {only: [Video]}", "channels:\n  /image: {only: [Voice]}"], ("1.yaml:3", "2.yaml:3")),
+        # one sanitizer, two methods; one source, through one channel and through all
+        (both("nodes:\n  /filter: {sanitizer: {Video: %s}}", "drop", "anonymise"), TWO),
+        (both("nodes:\n  /filter: {sanitizer: %s}", "{Video: drop}", "[Video]"), TWO),
+        (both("nodes:\n  /filter: {source: %s}", "{Video: [/clean]}", "[Video]"), TWO),
+        (both("channels:\n  /image: {only: [%s]}", "Video", "Voice"), TWO),
         # S7: `never` of the same or a broader kind than an `only` names
         (["channels:\n  /image:\n    only: [Video]\n    never: [PersonImage]"], ("1.yaml:4", "1.yaml:5")),
-        (
-            [
-                "flows:\n  - {from: /camera, to: /image, only: [Video]}",
-                "flows:\n  - {from: /camera, to: /image, only: [Voice]}",
-            ],
-            ("1.yaml:3", "2.yaml:3"),
-        ),
+        (both("flows:\n  - {from: /camera, to: /image, only: [%s]}", "Video", "Voice"), TWO),
     ],
 )
 def test_labels_of_one_rank_that_contradict_each_other_are_refused_with_both_lines(

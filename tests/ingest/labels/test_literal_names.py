@@ -172,12 +172,12 @@ def test_the_bare_line_of_an_older_template_is_answered_with_what_to_write() -> 
     result = analyze(f'{ENDS}channels: {{"/*": mundane}}\n')
     (warning,) = [d for d in result.diagnostics if d.code == "glob-like-a-wildcard"]
     assert (str(warning.place), warning.severity) == ("l.yaml:5", "warning")
-    assert "it means the wildcard of that name and 2 more elements" in warning.message
     assert 'write "=/*"' in warning.message
-    both = analyze(f'{ENDS}topics: {{"/*": sensitive, "=/*": mundane}}\n')  # the file tells them apart
-    assert not [d for d in both.diagnostics if d.code == "glob-like-a-wildcard"]
-    quiet = analyze(f'{ENDS}channels: {{"/*": }}\n')  # the line as the template had it, not filled in
-    assert not [d for d in quiet.diagnostics if d.code == "glob-like-a-wildcard"]
+    for other in (  # the file tells them apart; and the line as the template had it, not filled in
+        'topics: {"/*": sensitive, "=/*": mundane}',
+        'channels: {"/*": }',
+    ):
+        assert not [d for d in analyze(f"{ENDS}{other}\n").diagnostics if d.code == "glob-like-a-wildcard"]
 
 
 def globs(labels: str) -> list[dict[str, Any]]:
@@ -205,11 +205,8 @@ def test_each_glob_says_what_it_decides_and_closes() -> None:
             "last-path",
             {"/*", "/copy", "/image", "/relay", "/root", "/uplink"},
         ),
-        (
-            'nodes:\n  /camera: {source: [Video]}\n  "/[!c]*": conduit',
-            "",
-            {"/relay", "/root", "/uplink"},
-        ),  # channels are open
+        # channels are open
+        ('nodes:\n  /camera: {source: [Video]}\n  "/[!c]*": conduit', "", {"/relay", "/root", "/uplink"}),
         ('nodes:\n  /camera: {source: [Video]}\n  /uplink: {leak: [Video]}\n  "/rel*": conduit', "", {"/relay"}),
         ('nodes:\n  /camera: {source: [Video]}\n  "/r*": {sanitizer: {Video: drop}}', "", {"/relay", "/root"}),
         ('topics: {"/*": sensitive}', "", {"/*", "/copy", "/image"}),  # it closes nothing
@@ -223,9 +220,7 @@ def test_what_only_a_glob_answers_for_is_in_doubt_and_the_last_path_a_warning(
     assert {doubt.element.name for doubt in result.doubts if doubt.name == BY_GLOBS and doubt.element} == doubted
     rows = result.document()["assumptions"]["globs"]
     assert warning in {row["warning"] for row in rows}
-    assumed = result.to("text").partition("\nAssumed\n")[2]
-    assert ("   warning: the glob at l.yaml:" in assumed) == bool(warning)
-    assert ("Warning: " in result.to("markdown")) == bool(warning)
+    assert ("   warning: the glob at l.yaml:" in result.to("text").partition("\nAssumed\n")[2]) == bool(warning)
 
 
 def test_a_line_about_flows_with_a_glob_says_what_it_decides_and_closes(robot: Path) -> None:
@@ -235,27 +230,16 @@ def test_a_line_about_flows_with_a_glob_says_what_it_decides_and_closes(robot: P
     (row,) = globs(labels)
     assert (row["line"], row["says"], row["elements"], row["closed"]) == (7, ["never"], 0, 0)
     assert (row["flows"], row["flows_closed"], row["leak"]["name"], row["warning"]) == (1, 1, "/uplink", "")
-    result = analyze(labels)
-    line = "the glob at l.yaml:7 (never) decides 1 flow, ends data along 1 flow (behind it: the leak /uplink"
-    assert f"\nGlobs of label files: 1\n   {line}" in result.to("text", verbose=True)
+    assert "\nGlobs of label files: 1\n   the glob at l.yaml:7 (never)" in analyze(labels).to("text", verbose=True)
     reviewed = labels.replace("/relay: conduit", "/relay: conduit\nchannels: {/image: sensitive}")
     (row,) = globs(reviewed)
     assert row["warning"] == "last-path"  # nothing else is open
-    result = analyze(reviewed)
-    assert "   warning: the glob at l.yaml:8 (never) decides 1 flow, ends data along 1 flow " in result.to("text")
-    assert "decides 1 flow; data ends for it along 1 of them. Warning: without it" in result.to("markdown")
     assert globs(labels.replace("/im*", "/image").replace('"*"', "/relay")) == []  # no glob
     (row,) = globs(f"{labels}  - {{from: /image, to: /relay, only: [Video]}}\n")
     assert (row["flows"], row["flows_closed"], row["leak"], row["warning"]) == (0, 0, None, "")  # a name outranks it
     (robot / "p.xml").write_text(policy({**three, "logger": ("", "image")}))
     (row,) = globs(labels)
     assert (row["flows"], row["flows_closed"], row["warning"]) == (2, 2, "")
-
-
-@pytest.mark.usefixtures("robot")
-def test_verbose_lists_every_glob() -> None:
-    text = analyze(f'{ENDS}topics: {{"/im*": mundane}}\n').to("text", verbose=True)
-    assert "Globs of label files: 1\n   the glob at l.yaml:5 (mundane) decides 1 element, ends data at 1" in text
 
 
 # ---------------------------------------------------------------- every line that is offered

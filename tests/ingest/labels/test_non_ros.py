@@ -69,14 +69,58 @@ def refused(more: str) -> list[str]:
     return [line.removeprefix("l.yaml:") for line in lines]
 
 
+SCREEN = "elements: {screen: {kind: display}}\n"
+
+
 class TestTakingPart:
-    def test_what_goes_into_a_storage_comes_out_of_it(self) -> None:
-        more = (
-            "elements:\n  bucket: {kind: storage, country: DE, retention: P1D}\n"
-            "  cloud: {kind: external-system, country: FR}\n"
-            "flows: [{from: /recorder, to: bucket}, {from: bucket, to: /trainer}, {from: /trainer, to: cloud}]\n"
-        )
-        assert found(more) == ["disclosure Video /camera /image /recorder bucket /trainer cloud"]
+    @pytest.mark.parametrize(
+        ("more", "expected"),
+        [
+            (  # what goes into a storage comes out of it
+                (
+                    "elements:\n  bucket: {kind: storage, country: DE, retention: P1D}\n"
+                    "  cloud: {kind: external-system, country: FR}\n"
+                    "flows: [{from: /recorder, to: bucket}, {from: bucket, to: /trainer}, {from: /trainer, to: cloud}]\n"
+                ),
+                ["disclosure Video /camera /image /recorder bucket /trainer cloud"],
+            ),
+            (  # a label outranks what is taken by kind
+                (
+                    "elements: {screen: {kind: display, conduit: [Video]}}\n"
+                    "flows: [{from: /viewer, to: screen}, {from: /recorder, to: screen}]\n"
+                ),
+                ["disclosure Voice /microphone /sound /viewer screen"],
+            ),
+            (  # a device is a source by itself
+                (
+                    "elements: {badge reader: {kind: device, source: [Location]}, screen: {kind: display}}\n"
+                    "flows: [{from: badge reader, to: /trainer}, {from: /trainer, to: screen}]\n"
+                ),
+                ["disclosure Location badge reader /trainer screen"],
+            ),
+            (  # a side channel joins nodes in both directions
+                (
+                    "elements:\n  ring: {kind: shared-memory, between: [/recorder, /trainer]}\n  screen: {kind: display}\n"
+                    "flows: [{from: /trainer, to: screen}]\n"
+                ),
+                ["disclosure Video /camera /image /recorder ring /trainer screen"],
+            ),
+            (  # only some kinds go along a flow
+                f"{SCREEN}flows: [{{from: /viewer, to: screen, only: [Voice]}}]\n",
+                ["disclosure Voice /microphone /sound /viewer screen"],
+            ),
+            (  # a glob names nodes
+                f"{SCREEN}flows: [{{from: '/*er', to: screen, only: [Video]}}]\n",
+                ["disclosure Video /camera /image /recorder screen"],
+            ),
+            (  # and where there are none, channels
+                f"{SCREEN}flows: [{{from: '/imag?', to: screen}}]\n",
+                ["disclosure Video /camera /image screen"],
+            ),
+        ],
+    )
+    def test_what_gets_where(self, more: str, expected: list[str]) -> None:
+        assert found(more) == expected
 
     def test_a_step_keeps_the_line_that_states_it(self) -> None:
         finding = analysed(CLOUD % "country: DE").analysis.findings[0]
@@ -86,51 +130,16 @@ class TestTakingPart:
     @pytest.mark.parametrize(
         ("kind", "leaks"),
         [
-            ("external-system", True),
-            ("display", True),
-            ("person", True),
-            ("storage", False),
-            ("shared-memory", False),
-            ("side-channel", False),
+            ("external-system", True), ("display", True), ("person", True),
+            ("storage", False), ("shared-memory", False), ("side-channel", False),
         ],
-    )
-    def test_what_is_taken_by_kind(self, kind: str, leaks: bool) -> None:  # noqa: FBT001
+    )  # fmt: skip
+    def test_what_is_taken_by_kind(self, kind: str, *, leaks: bool) -> None:
         more = "elements: {it: {kind: %s, country: DE}}\nflows: [{from: /recorder, to: it}]\n" % kind  # noqa: UP031 - braces
         result = analysed(more)
         assert [f.leak.name for f in result.analysis.findings if f.kind == "disclosure"] == ["it"] * leaks
         assert result.document()["assumptions"]["taken_by_kind"] == {kind: "leak" if leaks else "conduit"}
         assert not result.analysis.open
-
-    def test_a_label_outranks_what_is_taken_by_kind(self) -> None:
-        more = (
-            "elements: {screen: {kind: display, conduit: [Video]}}\n"
-            "flows: [{from: /viewer, to: screen}, {from: /recorder, to: screen}]\n"
-        )
-        assert found(more) == ["disclosure Voice /microphone /sound /viewer screen"]
-
-    def test_a_device_is_a_source_by_itself(self) -> None:
-        more = (
-            "elements: {badge reader: {kind: device, source: [Location]}, screen: {kind: display}}\n"
-            "flows: [{from: badge reader, to: /trainer}, {from: /trainer, to: screen}]\n"
-        )
-        assert found(more) == ["disclosure Location badge reader /trainer screen"]
-
-    def test_a_side_channel_joins_nodes_in_both_directions(self) -> None:
-        more = (
-            "elements:\n  ring: {kind: shared-memory, between: [/recorder, /trainer]}\n  screen: {kind: display}\n"
-            "flows: [{from: /trainer, to: screen}]\n"
-        )
-        assert found(more) == ["disclosure Video /camera /image /recorder ring /trainer screen"]
-
-    def test_only_some_kinds_go_along_a_flow(self) -> None:
-        more = "elements: {screen: {kind: display}}\nflows: [{from: /viewer, to: screen, only: [Voice]}]\n"
-        assert found(more) == ["disclosure Voice /microphone /sound /viewer screen"]
-
-    def test_a_glob_names_nodes_and_where_there_are_none_channels(self) -> None:
-        more = "elements: {screen: {kind: display}}\nflows: [{from: '/*er', to: screen}]\n"
-        assert {way.split()[-2] for way in found(more)} == {"/recorder", "/viewer"}
-        more = "elements: {tap: {kind: display}}\nflows: [{from: '/imag?', to: tap}]\n"
-        assert found(more) == ["disclosure Video /camera /image tap"]
 
     def test_the_same_element_in_two_files_is_one(self, folder: Path) -> None:
         (folder / "a.yaml").write_text(LABELS + CLOUD % "country: DE", "utf-8")
@@ -166,10 +175,9 @@ class TestStorageLimitation:
         ],
     )
     def test_how_long_it_is_kept(self, facts: str, limits: str, reason: str | None) -> None:
-        (why, *more) = [*reasons(BUCKET % facts + f"limits: {limits}\n"), None]
-        assert not more[:-1]
-        assert (why is None) == (reason is None)
-        assert reason is None or reason in str(why)
+        why = reasons(BUCKET % facts + f"limits: {limits}\n")
+        assert len(why) == (reason is not None)
+        assert not why or str(reason) in why[0]
 
     def test_what_may_be_a_narrower_kind_is_held_against_its_limit(self) -> None:
         more = BUCKET % "retention: P1Y" + "limits: {FaceTemplate: P1D}\n"
@@ -232,17 +240,13 @@ class TestThirdCountries:
         ],
     )
     def test_where_it_lies(self, facts: str, reason: str | None) -> None:
-        (why, *more) = [*reasons(CLOUD % facts), None]
-        assert not more[:-1]
-        assert (why is None) == (reason is None)
-        assert reason is None or reason in str(why)
+        why = reasons(CLOUD % facts)
+        assert len(why) == (reason is not None)
+        assert not why or str(reason) in why[0]
 
     @pytest.mark.parametrize("text", [CLOUD, BUCKET.replace(", country: DE", "")])
     def test_where_nobody_says_it_is_open(self, text: str) -> None:
-        result = analysed(text % "operator: x")
-        assert [(q.element.name, q.missing) for q in result.analysis.open] == [
-            (result.analysis.open[0].element.name, ("country",))
-        ]
+        assert [q.missing for q in analysed(text % "operator: x").analysis.open] == [("country",)]
         assert not analysed(text % "transfer: standard-clauses").analysis.open
 
     @pytest.mark.parametrize("place", ["", "country: US, ", "country: CN, "])
@@ -268,25 +272,18 @@ class TestThirdCountries:
         analysis = analysed(CLOUD % f"conduit: [PersonalData], {stated}").analysis
         assert (analysis.findings, analysis.open, analysis.verdict) == ((), (), "no-leak-found")
 
-    def test_the_question_stands_in_every_format(self) -> None:
-        result = analysed(CLOUD % "conduit: [PersonalData], country: CN, transfer: derogation")
-        document = result.document()
+    def test_the_question_is_in_the_document(self) -> None:
+        document = analysed(CLOUD % "conduit: [PersonalData], country: CN, transfer: derogation").document()
         (row,) = document["outside"]
         assert (row["missing"], row["file"], row["line"]) == (["occasional"], "l.yaml", 9)
         assert [question.get("missing") for question in document["open"]] == [["occasional"]]
-        assert "it rests on a derogation (Article 49): is it occasional?" in result.to("text")
-        assert "derogation (Article 49), whether the transfer is occasional: not stated" in result.to("markdown")
-        assert "the transfer rests on a derogation (Article 49): is it occasional? The analysis" in result.to("sarif")
-        assert 'rp:notStated "occasional"' in result.to("turtle")
 
     def test_that_there_is_no_basis_is_a_statement(self) -> None:
         """A finding all the same, and told as stated."""
         said, silent = (analysed(CLOUD % f"country: CN{more}") for more in (", transfer: none", ""))
         assert [f.kind for f in said.analysis.findings] == [f.kind for f in silent.analysis.findings]
         assert [result.document()["outside"][0].get("transfer") for result in (said, silent)] == ["none", None]
-        (row,) = (row for row in said.to("article30").splitlines() if "cloud" in row)
-        assert "CN: no basis, as stated" in row
-        assert "basis of a transfer: no basis, as stated" in said.to("cnil-pia")
+        assert "CN: no basis, as stated" in said.to("article30")
         assert "basis of a transfer: not stated" in silent.to("cnil-pia")
 
     def test_without_a_finding_the_verdict_is_undetermined(self) -> None:
@@ -326,10 +323,7 @@ class TestRefusals:
         ("flow", "problem"),
         [
             ("{from: /recorder, to: buket}", "10: a flow names 'buket', which is not there; did you mean bucket?"),
-            (
-                "{from: /recordr, to: bucket}",
-                "10: a flow names '/recordr', which is not there; did you mean /recorder",
-            ),
+            ("{from: /recordr, to: bucket}", "10: a flow names '/recordr', which is not there; did you mean /rec"),
             ("{from: '/x*', to: bucket}", "10: a flow names '/x*', which is not there; see the names with"),
             ("{from: bucket}", "10: a flow needs from and to"),
             ("{from: /recorder, to: /trainer}", "10: a flow between nodes and channels needs only or never"),

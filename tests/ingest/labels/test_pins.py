@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -18,8 +19,6 @@ from tests.helpers.label_files import validator
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from rosprivacy.result import Result
     from tests.helpers.command import Cli
 
@@ -35,6 +34,16 @@ channels:
   /image: sensitive
   /cmd: mundane
 """
+
+
+AT_NODE = """\
+labels: 1
+nodes: {/camera: {source: [Video]}, /recorder: {leak: [Video]}, "/p*": %s}
+channels: {/image: sensitive, /cmd: sensitive}
+"""
+ENDS = "labels: 1\nnodes: {/camera: {source: [Video]}, /planner: conduit, /recorder: {leak: [Video]}}\n"
+AT_CHANNEL = ENDS + 'topics: {/image: sensitive, "/c*": %s}\n'
+AT_FLOW = ENDS + 'topics: {/image: sensitive, /cmd: sensitive}\nflows: [{from: "/p*", to: /cmd, never: [Video]}]\n'
 
 
 def analysed(folder: Path, labels: str, text: str = SEEN, **options: Any) -> Result:
@@ -69,37 +78,25 @@ class TestMeaning:
         assert questions(result) == {"/planner": ("Video",)}
 
     @pytest.mark.parametrize(
-        "label", ["{sanitizer: {Video: drop}}", "{absent: a test tool}", "{sanitizer: {PersonalData: anonymise}}"]
-    )
-    def test_what_a_glob_takes_away_at_a_node_goes_on(self, tmp_path: Path, label: str) -> None:
-        labels = (
-            f'labels: 1\nnodes:\n  /camera: {{source: [Video]}}\n  /recorder: {{leak: [Video]}}\n  "/p*": {label}\n'
-        )
-        labels += "channels: {/image: sensitive, /cmd: sensitive}\n"
+        ("labels", "pin", "question"),
+        [
+            *((AT_NODE % label, "nodes: {/planner: [Video]}", "/planner")
+              for label in ("{sanitizer: {Video: drop}}", "{absent: sold}", "{sanitizer: {PersonalData: drop}}")),
+            *((AT_CHANNEL % label, "topics: {/cmd: [Video]}", "/cmd")
+              for label in ("mundane", "{never: [Video]}", "{only: [Voice]}")),
+            (AT_FLOW, "flows: [{from: {node: /planner}, to: {topic: /cmd}, kinds: [Video]}]", ""),
+        ],
+    )  # fmt: skip
+    def test_what_a_glob_takes_away_goes_on_where_it_is_not_pinned(
+        self, tmp_path: Path, labels: str, pin: str, question: str
+    ) -> None:
         assert ways(analysed(tmp_path, labels)) == set()
-        assert ways(analysed(tmp_path, labels + "pins: {nodes: {/planner: [Video]}}\n")) == set()
-        unseen = analysed(tmp_path, labels + "pins: {}\n")
-        assert ways(unseen) == {("Video", "/camera", "/recorder")}
-        assert questions(unseen) == {"/planner": ("Video",)}
-
-    @pytest.mark.parametrize("label", ["mundane", "{never: [Video]}", "{only: [Voice]}"])
-    def test_what_a_glob_takes_away_at_a_channel_goes_on(self, tmp_path: Path, label: str) -> None:
-        labels = "labels: 1\nnodes: {/camera: {source: [Video]}, /planner: conduit, /recorder: {leak: [Video]}}\n"
-        labels += f'topics: {{/image: sensitive, "/c*": {label}}}\n'
-        assert ways(analysed(tmp_path, labels)) == set()
-        assert ways(analysed(tmp_path, labels + "pins: {topics: {/cmd: [Video]}}\n")) == set()
-        for other in ("", "nodes: {/cmd: [Video]}", "services: {/cmd: [Video]}", "topics: {/cmd: [Voice]}"):
+        assert ways(analysed(tmp_path, f"{labels}pins: {{{pin}}}\n")) == set()
+        others = ["nodes: {/cmd: [Video]}", "services: {/cmd: [Video]}", "topics: {/cmd: [Voice]}"]
+        for other in ("", *(others if question == "/cmd" else [])):
             unseen = analysed(tmp_path, f"{labels}pins: {{{other}}}\n")
             assert ways(unseen) == {("Video", "/camera", "/recorder")}
-            assert questions(unseen) == {"/cmd": ("Video",)}
-
-    def test_a_flow(self, tmp_path: Path) -> None:
-        labels = "labels: 1\nnodes: {/camera: {source: [Video]}, /planner: conduit, /recorder: {leak: [Video]}}\n"
-        labels += 'topics: {/image: sensitive, /cmd: sensitive}\nflows: [{from: "/p*", to: /cmd, never: [Video]}]\n'
-        assert ways(analysed(tmp_path, labels)) == set()
-        pin = "{from: {node: /planner}, to: {topic: /cmd}, kinds: [Video]}"
-        assert ways(analysed(tmp_path, f"{labels}pins: {{flows: [{pin}]}}\n")) == set()
-        assert ways(analysed(tmp_path, labels + "pins: {}\n")) == {("Video", "/camera", "/recorder")}
+            assert questions(unseen) == ({question: ("Video",)} if question else {})
 
     def test_a_source_a_leak_and_a_derivation_of_a_glob_need_no_pin(self, tmp_path: Path) -> None:
         labels = 'labels: 1\nnodes:\n  "/cam*": {source: [Video]}\n  "/rec*": {leak: [FaceTemplate]}\n'
@@ -137,79 +134,80 @@ class TestMeaning:
 class TestCommand:
     """``labels --pin``."""
 
-    def test_a_new_node_is_no_longer_let_through(self, cli: Cli, tmp_path: Path) -> None:
-        for name, text in (("g.xml", SEEN), ("g2.xml", MORE), ("l.yaml", LABELS)):
-            (tmp_path / name).write_text(text)
-        done = cli("labels", "--pin", "g.xml", "-l", "l.yaml", cwd=tmp_path)
-        assert (done.returncode, done.stdout, done.stderr) == (0, "", "l.yaml: 3 lines changed\n")
-        assert (tmp_path / "l.yaml").read_text() == LABELS + "pins:\n  nodes:\n    /planner: [Video]\n"
-        assert cli("analyze", "g.xml", "-l", "l.yaml", cwd=tmp_path).returncode == 0
-        assert cli("analyze", "g2.xml", "-l", "l.yaml", cwd=tmp_path).returncode == 4
-        done = cli("labels", "--pin", "g.xml", "-l", "l.yaml", cwd=tmp_path)
-        assert done.stderr == "l.yaml: 0 lines changed\n"
+    @pytest.fixture(autouse=True)
+    def _here(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.chdir(tmp_path)
+        for name, text in (("p.xml", SEEN), ("g2.xml", MORE), ("l.yaml", LABELS)):
+            Path(name).write_text(text)
 
-    def test_the_next_pin_drops_what_matches_nothing_and_keeps_every_comment(self, cli: Cli, tmp_path: Path) -> None:
-        (tmp_path / "g2.xml").write_text(MORE)
+    def pin(self, cli: Cli, file: str = "p.xml", *options: str) -> str:
+        """What is said on standard error."""
+        done = cli("labels", "--pin", file, "-l", "l.yaml", *options)
+        assert (done.returncode, done.stdout) == (0, "")
+        return done.stderr
+
+    def test_a_new_node_is_no_longer_let_through(self, cli: Cli) -> None:
+        assert self.pin(cli) == "l.yaml: 3 lines changed\n"
+        assert Path("l.yaml").read_text() == LABELS + "pins:\n  nodes:\n    /planner: [Video]\n"
+        assert cli("analyze", "p.xml", "-l", "l.yaml").returncode == 0
+        assert cli("analyze", "g2.xml", "-l", "l.yaml").returncode == 4
+        assert self.pin(cli) == "l.yaml: 0 lines changed\n"
+
+    def test_the_next_pin_drops_what_matches_nothing_and_keeps_every_comment(self, cli: Cli) -> None:
         nodes = "  nodes:\n    /gone: [Video]\n    /planner: [Voice]  # why\n"
         pins = f"# seen in May\npins:\n{nodes}  topics: {{/x: [Video]}}\n"
-        (tmp_path / "l.yaml").write_text(LABELS + pins)
-        done = cli("labels", "--pin", "g2.xml", "-l", "l.yaml", cwd=tmp_path)
-        assert "1 comment" in done.stderr
-        text = (tmp_path / "l.yaml").read_text()
+        Path("l.yaml").write_text(LABELS + pins)
+        assert "1 comment" in self.pin(cli, "g2.xml")
+        text = Path("l.yaml").read_text()
         assert text.startswith(LABELS + "# seen in May\n")
         assert "# why" in text
-        assert pins_in(tmp_path / "l.yaml") == {"nodes": {"/planner": ["Video"], "/uploader": ["Video"]}}
+        assert pins_in(Path("l.yaml")) == {"nodes": {"/planner": ["Video"], "/uploader": ["Video"]}}
 
-    def test_what_ends_at_a_glob_is_pinned_there_and_nothing_behind_it(self, cli: Cli, tmp_path: Path) -> None:
-        (tmp_path / "p.xml").write_text(SEEN)
-        (tmp_path / "l.yaml").write_text('labels: 1\nnodes: {/camera: {source: [Video]}}\ntopics: {"/*": mundane}\n')
-        assert cli("labels", "--pin", "p.xml", "-l", "l.yaml", cwd=tmp_path).returncode == 0
-        assert pins_in(tmp_path / "l.yaml") == {"topics": {"/image": ["Video"]}}
+    def test_what_ends_at_a_glob_is_pinned_there_and_nothing_behind_it(self, cli: Cli) -> None:
+        Path("l.yaml").write_text('labels: 1\nnodes: {/camera: {source: [Video]}}\ntopics: {"/*": mundane}\n')
+        self.pin(cli)
+        assert pins_in(Path("l.yaml")) == {"topics": {"/image": ["Video"]}}
 
-    def test_names_with_glob_signs_and_flows(self, cli: Cli, tmp_path: Path) -> None:
-        (tmp_path / "p.xml").write_text(policy("/camera>/image/*", "/planner>/cmd</image/*"))
+    def test_names_with_glob_signs_and_flows(self, cli: Cli) -> None:
+        Path("p.xml").write_text(policy("/camera>/image/*", "/planner>/cmd</image/*"))
         labels = 'labels: 1\nnodes: {/camera: {source: [Video]}, "/p*": conduit}\ntopics: {"/image/*": sensitive}\n'
         labels += 'flows: [{from: /planner, to: "/c*", never: [Video]}, {from: /camera, to: "/im*", only: [Video]}]\n'
-        (tmp_path / "l.yaml").write_text(labels)
-        assert cli("labels", "--pin", "p.xml", "-l", "l.yaml", cwd=tmp_path).returncode == 0
-        assert pins_in(tmp_path / "l.yaml") == {
+        Path("l.yaml").write_text(labels)
+        self.pin(cli)
+        assert pins_in(Path("l.yaml")) == {
             "nodes": {"/planner": ["Video"]},
             "topics": {"=/image/*": ["Video"]},
             "flows": [{"from": {"node": "/planner"}, "to": {"topic": "/cmd"}, "kinds": ["Video"]}],
         }
-        assert validator().is_valid(yaml.safe_load((tmp_path / "l.yaml").read_text()))
-        assert not questions(rosprivacy.analyze([str(tmp_path / "p.xml")], [str(tmp_path / "l.yaml")]))
+        assert validator().is_valid(yaml.safe_load(Path("l.yaml").read_text()))
+        assert not questions(rosprivacy.analyze(["p.xml"], ["l.yaml"]))
 
-    def test_a_file_without_such_globs_gets_none_and_loses_those_that_it_has(self, cli: Cli, tmp_path: Path) -> None:
-        (tmp_path / "p.xml").write_text(SEEN)
-        (tmp_path / "l.yaml").write_text("labels: 1\nnodes: {/camera: {source: [Video]}}\npins: {}\n")
-        (tmp_path / "m.yaml").write_text('labels: 1\nnodes: {"/rec*": {leak: [Video]}}\n')
-        done = cli("labels", "--pin", "p.xml", "-l", "l.yaml", "-l", "m.yaml", cwd=tmp_path)
-        assert done.stderr == "l.yaml: 1 line changed\n"
-        assert pins_in(tmp_path / "l.yaml") is None
+    def test_a_file_without_such_globs_gets_none_and_loses_those_that_it_has(self, cli: Cli) -> None:
+        Path("l.yaml").write_text("labels: 1\nnodes: {/camera: {source: [Video]}}\npins: {}\n")
+        Path("m.yaml").write_text('labels: 1\nnodes: {"/rec*": {leak: [Video]}}\n')
+        assert self.pin(cli, "p.xml", "-l", "m.yaml") == "l.yaml: 1 line changed\n"
+        assert pins_in(Path("l.yaml")) is None
 
-    def test_json_has_them_too_and_the_papers_six_lists_have_no_place(self, cli: Cli, tmp_path: Path) -> None:
-        (tmp_path / "p.xml").write_text(SEEN)
-        (tmp_path / "l.json").write_text(json.dumps(yaml.safe_load(LABELS), indent=1))
-        assert cli("labels", "--pin", "p.xml", "-l", "l.json", cwd=tmp_path).returncode == 0
-        assert json.loads((tmp_path / "l.json").read_text())["pins"] == {"nodes": {"/planner": ["Video"]}}
-        (tmp_path / "six.json").write_text('{"source": ["/camera"], "leak": ["/recorder"], "mundane": ["/c*"]}')
-        done = cli("labels", "--pin", "p.xml", "-l", "six.json", cwd=tmp_path)
+    def test_json_has_them_too_and_the_papers_six_lists_have_no_place(self, cli: Cli) -> None:
+        Path("l.json").write_text(json.dumps(yaml.safe_load(LABELS), indent=1))
+        assert cli("labels", "--pin", "p.xml", "-l", "l.json").returncode == 0
+        assert json.loads(Path("l.json").read_text())["pins"] == {"nodes": {"/planner": ["Video"]}}
+        Path("six.json").write_text('{"source": ["/camera"], "leak": ["/recorder"], "mundane": ["/c*"]}')
+        done = cli("labels", "--pin", "p.xml", "-l", "six.json")
         assert done.returncode == 2
         assert "has no place for pins" in done.stderr
 
-    def test_other_writers_keep_them(self, cli: Cli, tmp_path: Path) -> None:
-        (tmp_path / "g2.xml").write_text(MORE)
+    def test_other_writers_keep_them(self, cli: Cli) -> None:
         pins = "pins:\n  nodes:\n    /planner: [Video]\n"
-        (tmp_path / "l.yaml").write_text(LABELS.replace("1\n", "1\nauthor: Ada\n", 1) + pins)
+        Path("l.yaml").write_text(LABELS.replace("1\n", "1\nauthor: Ada\n", 1) + pins)
         for words in (["--next"], ["--update"]):
-            assert cli("labels", *words, "g2.xml", "-l", "l.yaml", cwd=tmp_path).returncode == 0
-        assert cli("suggest", "g2.xml", "-l", "l.yaml", "--into", "l.yaml", cwd=tmp_path).returncode == 0
-        assert cli("labels", "--accept", "/uploader", "g2.xml", "-l", "l.yaml", cwd=tmp_path).returncode == 0
-        text = (tmp_path / "l.yaml").read_text()
+            assert cli("labels", *words, "g2.xml", "-l", "l.yaml").returncode == 0
+        assert cli("suggest", "g2.xml", "-l", "l.yaml", "--into", "l.yaml").returncode == 0
+        assert cli("labels", "--accept", "/uploader", "g2.xml", "-l", "l.yaml").returncode == 0
+        text = Path("l.yaml").read_text()
         assert pins in text
-        assert cli("labels", "--pin", "g2.xml", "-l", "l.yaml", cwd=tmp_path).returncode == 0
-        assert pins_in(tmp_path / "l.yaml") == {"nodes": {"/planner": ["Video"]}}  # a name answers for the other now
+        self.pin(cli, "g2.xml")
+        assert pins_in(Path("l.yaml")) == {"nodes": {"/planner": ["Video"]}}  # a name answers for the other now
 
 
 def test_a_session_of_the_explorer_keeps_them(tmp_path: Path) -> None:
