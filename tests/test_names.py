@@ -34,7 +34,7 @@ OLDER = {
     "analysis.findings": 2,
     "analysis.kernel": 1,
     "analysis.model": 3,
-    "analysis.suggesting": 56,
+    "analysis.suggesting": 41,
     "cli": 6,
     "explorer": 35,
     "explorer.web": 30,

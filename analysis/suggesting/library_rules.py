@@ -14,15 +14,19 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.model import Confidence
+from rosprivacy.analysis.suggesting.evidence import CODE, Evidence
+from rosprivacy.analysis.suggesting.weighing import weaker
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.model import Place
+    from rosprivacy.analysis.suggesting.evidence import Label
 
 PYTHON, CPP = "python", "c++"
 PROGRAM = "$ "  # before the name of a program that code starts
 ADDRESS = "@ "  # before an address that stands in code
+_VERBS = {PROGRAM: "starts", ADDRESS: "names"}  # what code does with a thing of such a name
 _END = re.compile(r"(?:\.|::|[(]| )[^.:( ]*$")  # of a name: its last part, with the sign before it
 
 
@@ -82,6 +86,21 @@ class LibraryRule(NamedTuple):
         return (self, writing) if writing else (self._replace(confidence=Confidence.MAY), uses[0])
 
 
+class RuleOfUse(NamedTuple):
+    """A rule, and the use that it speaks about and that shows it best."""
+
+    rule: LibraryRule
+    use: NodeUse
+
+    def evidence(self, label: Label, sure: Confidence, then: str = "") -> Evidence:
+        """Return what it says for a label: no surer than the rule."""
+        name = self.use.name
+        verb = next((verb for sign, verb in _VERBS.items() if name.startswith(sign)), "")
+        what = f"{verb} {name[2:]}" if verb else f"uses {name}"
+        reason = f"{what} ({self.use.place}): {self.rule.why}{then}"
+        return Evidence(label, CODE, weaker(sure, self.rule.confidence), reason, self.use.place, alone=self.rule.alone)
+
+
 class Names(NamedTuple):
     """Rules by name; by what names begin with (written with ``*`` at its end); by a part of an address.
 
@@ -131,6 +150,17 @@ class LibraryRules(NamedTuple):
         name, rule = found
         quiet = self.silent.get(use.language, frozenset())
         return None if any(above in quiet for above in _above(use.name) if len(above) >= len(name)) else rule
+
+    def of_node(self, uses: Sequence[NodeUse]) -> dict[str, list[RuleOfUse]]:
+        """Return by section the rules that speak about the uses of a node."""
+        found: dict[str, list[RuleOfUse]] = {}
+        for name in ("brings_in", "makes", "lets_out"):
+            speaking: dict[LibraryRule, list[NodeUse]] = {}
+            for use in uses:
+                if rule := self.spoken(getattr(self, name), use):
+                    speaking.setdefault(rule, []).append(use)
+            found[name] = [RuleOfUse(*rule.of_uses(of_rule)) for rule, of_rule in speaking.items()]
+        return found
 
     def speaks(self, use: NodeUse) -> bool:
         """Return whether any rule speaks about a use."""

@@ -57,18 +57,11 @@ class NameRules:
     becomes: Mapping[str, Mapping[str, NameRule]] = field(default_factory=dict)
     tells: Mapping[str, Mapping[str, NameRule]] = field(default_factory=dict)
     silent: frozenset[Phrase] = frozenset()  # suggest nothing wherever they stand last, such as camera_info
-    wanted: frozenset[Phrase] = frozenset()  # what a topic with them last carries is wished, such as goal_pose
     neutral: frozenset[str] = frozenset()  # words that say nothing by themselves, such as raw
-    commanding: frozenset[str] = frozenset()  # a topic that begins so in its last part is a command, such as cmd_audio
-    reworked: frozenset[str] = frozenset()  # a topic with one carries what was made of other data, such as debug
-    reworking: frozenset[str] = frozenset()  # a node with one works on what others bring in, such as detector
     simulated: frozenset[str] = frozenset()  # a node or topic with one stands for what nobody measured
     understood: frozenset[str] = frozenset()  # a topic with one carries what somebody wants, if its writer reads speech
-    driving: frozenset[str] = frozenset()  # a node with one talks with its own device
     computed: frozenset[str] = frozenset()  # categories that programs work out, so that who writes them is no source
     not_by_type: frozenset[str] = frozenset()  # of which a type that says no more than may makes no source by itself
-    entered: frozenset[str] = frozenset()  # that somebody enters, where a service is asked for that is called so
-    broadened: frozenset[str] = frozenset()  # that are asked about wherever a narrower one is
 
 
 class Spoken(NamedTuple):
@@ -105,22 +98,7 @@ def of_topic(name: str, rules: NameRules) -> Spoken | None:
     parts = name.split("/")[::-1]
     part = _speaking(parts, rules)
     spoken = _last(part, rules.carries, rules.silent)
-    if spoken is None or (part[0] in rules.commanding and not spoken.rule.any_type):
-        return None
-    return _instead(spoken, parts, rules)
-
-
-def is_silent(name: str, rules: NameRules) -> bool:
-    """Return whether a topic is called like a command or a state of the machine.
-
-    >>> from rosprivacy.analysis.suggesting.example_names import NAMES
-    >>> [is_silent(name, NAMES) for name in ("/camera/info", "/robot/cmd_vel", "/camera/image_raw", "/other")]
-    [True, True, False, False]
-    """
-    part = _speaking(name.split("/")[::-1], rules)
-    if not part or of_topic_nothing(name, rules):
-        return bool(part)
-    return part[0] in rules.commanding or not rules.silent.isdisjoint(_last_phrases(part))
+    return _instead(spoken, parts, rules) if spoken else None
 
 
 def of_topic_nothing(name: str, rules: NameRules) -> Spoken | None:
@@ -132,16 +110,6 @@ def of_topic_nothing(name: str, rules: NameRules) -> Spoken | None:
     """
     part = _own(name)
     return Spoken(rules.nothing[part], part) if part in rules.nothing else None
-
-
-def ends_with(name: str, phrases: frozenset[Phrase]) -> bool:
-    """Return whether the last words of a name are one of some phrases.
-
-    >>> ends_with("/nav/goal_pose", frozenset([("goal", "pose")])), ends_with("/goal/x", frozenset([("goal",)]))
-    (True, False)
-    """
-    part = _own(name)
-    return not phrases.isdisjoint(_last_phrases(part))
 
 
 def has_word(name: str, some: frozenset[str]) -> bool:

@@ -47,22 +47,42 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.suggesting.evidence import Identity, Label
 
 
-class Weight(NamedTuple):
-    """Of a role: the grounds that are as sure as they say, those of which two agree, and how sure any can make it."""
+class Row(NamedTuple):
+    """A row of the table of weighing: of these grounds together, where the surest is at least ``floor``, what follows.
 
-    alone: frozenset[str]
-    together: frozenset[str] = frozenset()
-    most: Confidence = Confidence.CERTAIN
+    Without ``agreed`` that is what the surest says, and no more than ``ceiling``.
+    """
+
+    grounds: frozenset[str]
+    floor: Confidence = Confidence.MAY
+    ceiling: Confidence = Confidence.CERTAIN
+    agreed: Confidence | None = None
 
 
-_ALL, _BY_PACKAGES = frozenset(GROUNDS), Weight(frozenset([PACKAGE]), most=Confidence.LIKELY)
-_AGREEING = Weight(_ALL, frozenset([CODE, TYPE, NAMED]))  # the others know types and names, or are drawn from them
-WEIGHTS = {
-    SOURCE: _AGREEING,
-    SENSITIVE: _AGREEING,
-    LEAK: Weight(_ALL),  # a name that says cloud, and code that writes a file, speak of two ways out
-    DERIVATION: Weight(_ALL),  # the name of a package and the library that it stands on say the same thing once
-    **dict.fromkeys((SANITIZER, CONDUIT, MUNDANE, NEVER), _BY_PACKAGES),  # what could hide a leak
+def _alone(
+    *grounds: str, floor: Confidence = Confidence.MAY, ceiling: Confidence = Confidence.CERTAIN
+) -> tuple[Row, ...]:
+    return tuple(Row(frozenset([ground]), floor, ceiling) for ground in grounds)
+
+
+def _together(*grounds: str) -> Row:
+    return Row(frozenset(grounds), agreed=Confidence.LIKELY)
+
+
+WEIGHING = {  # what is in no row is may
+    SOURCE: (
+        *_alone(PACKAGE, NAMED),
+        *_alone(TYPE, floor=Confidence.CERTAIN),
+        _together(TYPE, NAMED),
+        _together(TYPE, CODE),
+        _together(NAMED, CODE),
+    ),
+    SENSITIVE: (*_alone(TYPE, NAMED), _together(TYPE, NAMED)),
+    LEAK: _alone(PACKAGE, CODE, NAMED),
+    DERIVATION: _alone(PACKAGE, CODE, DATA_FLOW),
+    **dict.fromkeys(
+        (SANITIZER, CONDUIT, MUNDANE, NEVER), _alone(PACKAGE, ceiling=Confidence.LIKELY)
+    ),  # could hide a leak
 }
 SURENESS = {confidence: place for place, confidence in enumerate(Confidence)}  # the surest first
 
@@ -123,12 +143,17 @@ def closes_finding(label: Label, known: Collection[str]) -> bool:
 
 
 def _weighed(label: Label, reasons: Sequence[Evidence], known: Collection[str]) -> Confidence:
-    weight = WEIGHTS[label.role]
     if closes_finding(label, known):
         return Confidence.MAY
-    surest = next((one.confidence for one in reasons if one.ground in weight.alone), Confidence.MAY)
-    agreeing = {one.ground for one in reasons if not one.alone} & weight.together
-    return Confidence.LIKELY if surest is Confidence.MAY and len(agreeing) > 1 else weaker(surest, weight.most)
+    return min((_row(row, reasons) for row in WEIGHING[label.role]), key=SURENESS.__getitem__)
+
+
+def _row(row: Row, reasons: Sequence[Evidence]) -> Confidence:
+    """What a row of the table says of reasons: may, if not all of its grounds are there."""
+    speaking = [one for one in reasons if one.ground in row.grounds and not (row.agreed and one.alone)]
+    if {one.ground for one in speaking} != row.grounds or surer(row.floor, speaking[0].confidence):
+        return Confidence.MAY
+    return row.agreed or weaker(row.ceiling, speaking[0].confidence)
 
 
 def _order(label: Label) -> tuple[object, ...]:

@@ -237,9 +237,9 @@ def common_words(rules: NameRules, types: Iterable[str]) -> frozenset[str]:
     ['laser', 'msg', 'msgs', 'raw', 'scan', 'sensor']
     """
     of_types = (word.lower() for name in types for word in _WORD.findall(name) if word.isalpha())
-    phrases = (rules.carries, rules.nothing, rules.brings_in, rules.lets_out, rules.silent, rules.wanted)
+    phrases = (rules.carries, rules.nothing, rules.brings_in, rules.lets_out, rules.silent, rules.unprompted)
     of_rules = (word for some in phrases for phrase in some for word in phrase)
-    return frozenset([*of_rules, *rules.neutral, *rules.reworked, *rules.simulated, *of_types])
+    return frozenset([*of_rules, *rules.neutral, *rules.simulated, *of_types])
 
 
 class Question(NamedTuple):

@@ -57,7 +57,7 @@ def test_every_shipped_rule_names_its_page_and_none_is_certain() -> None:
         ("brings_in", "@ rtsp://10.0.0.1/live", ("Video", "")),
         ("lets_out", "@ https://api.telegram.org/bot", ("PersonalData", "network")),
         ("lets_out", "@ https://example.org", ()),
-        ("makes", "whisper.load_model", ("Voice", "SpeechTranscript", "VoiceCommand", "")),
+        ("makes", "whisper.load_model", ("Voice", "CommunicationContent", "")),
         ("makes", "face_recognition.face_locations", ("Video", "FaceImage", "PersonDetection", "")),
     ],
 )
