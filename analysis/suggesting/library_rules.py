@@ -10,18 +10,19 @@ an address that stands in it as ``@ https://api.openai.com/v1``. A rule about ad
 from __future__ import annotations
 
 import re
-from types import MappingProxyType
+from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
-from rosprivacy.analysis.model import Confidence
 from rosprivacy.analysis.suggesting.evidence import CODE, Evidence
 from rosprivacy.analysis.suggesting.weighing import weaker
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from rosprivacy.analysis.model import Place
+    from rosprivacy.analysis.model import Confidence, Place
     from rosprivacy.analysis.suggesting.evidence import Label
+    from rosprivacy.analysis.suggesting.name_rules import Rule
 
 PYTHON, CPP = "python", "c++"
 PROGRAM = "$ "  # before the name of a program that code starts
@@ -38,58 +39,10 @@ class NodeUse(NamedTuple):
     place: Place
 
 
-class LibraryRule(NamedTuple):
-    """What the use of a library suggests of a node.
-
-    Attributes
-    ----------
-    kinds
-        Names of categories: what it brings in, or lets out; of what it makes something.
-    to
-        The categories that are made; none where it makes nothing.
-    where
-        Of what lets data out: where they go.
-    any_type
-        Whether it can have any form, a flag or a velocity, so that no message type speaks against it.
-    by_itself
-        Of what makes something: whether it reads ROS by itself, as a listener of transforms does.
-    alone
-        Of what brings something in: whether it agrees with nothing, as a window does that is called so.
-    writes
-        Of what lets data out: last parts of names by which it does, if it can also be asked only. Where nothing of it
-        is used that is called so, it may be.
-    """
-
-    kinds: tuple[str, ...]
-    confidence: Confidence
-    why: str
-    place: Place
-    to: tuple[str, ...] = ()
-    where: str = ""
-    any_type: bool = False
-    by_itself: bool = False
-    alone: bool = False
-    writes: tuple[str, ...] = ()
-
-    def of_uses(self, uses: Sequence[NodeUse]) -> tuple[LibraryRule, NodeUse]:
-        """Return what the rule says of the uses that it speaks about, and the one that shows it best.
-
-        >>> from rosprivacy.analysis.model import Confidence, Place
-        >>> rule = LibraryRule((), Confidence.LIKELY, "a database", Place("libraries.yaml", 1), writes=("commit",))
-        >>> uses = [NodeUse(f"sqlite3.connect.{name}", "python", Place("a.py", 1)) for name in ("cursor", "commit")]
-        >>> [(str(one.confidence), use.name) for one, use in (rule.of_uses(uses), rule.of_uses(uses[:1]))]
-        [('likely', 'sqlite3.connect.commit'), ('may', 'sqlite3.connect.cursor')]
-        """
-        if not self.writes:
-            return self, uses[0]
-        writing = next((use for use in uses if use.name.rpartition(".")[2] in self.writes), None)
-        return (self, writing) if writing else (self._replace(confidence=Confidence.MAY), uses[0])
-
-
 class RuleOfUse(NamedTuple):
-    """A rule, and the use that it speaks about and that shows it best."""
+    """A rule, and the first use that it speaks about."""
 
-    rule: LibraryRule
+    rule: Rule
     use: NodeUse
 
     def evidence(self, label: Label, sure: Confidence, then: str = "") -> Evidence:
@@ -101,31 +54,40 @@ class RuleOfUse(NamedTuple):
         return Evidence(label, CODE, weaker(sure, self.rule.confidence), reason, self.use.place, alone=self.rule.alone)
 
 
-class Names(NamedTuple):
-    """Rules by name; by what names begin with (written with ``*`` at its end); by a part of an address.
+@dataclass(frozen=True)
+class Names:
+    """Rules by name, by what names begin with (written with ``*`` at its end), and by a part of an address.
 
     >>> from rosprivacy.analysis.model import Confidence, Place
-    >>> rule = LibraryRule(("Voice",), Confidence.LIKELY, "a microphone", Place("libraries.yaml", 1))
-    >>> names = Names({"sounddevice.InputStream": rule}, {"Pa_Open": rule}, {"api.openai.com": rule})
+    >>> from rosprivacy.analysis.suggesting.name_rules import Rule
+    >>> rule = Rule(("Voice",), Confidence.LIKELY, "a microphone", Place("libraries.yaml", 1))
+    >>> names = Names(dict.fromkeys(["sounddevice.InputStream", "Pa_Open*", "@ api.openai.com"], rule))
     >>> asked = ("sounddevice.InputStream.read", "sounddevice.play", "Pa_OpenStream", "@ https://api.openai.com/v1")
     >>> [bool(names.of(name)) for name in asked]
     [True, False, True, True]
     """
 
-    rules: Mapping[str, LibraryRule]
-    starred: Mapping[str, LibraryRule]
-    addresses: Mapping[str, LibraryRule] = MappingProxyType({})
+    rules: Mapping[str, Rule]
 
-    def of(self, name: str) -> tuple[str, LibraryRule] | None:
+    @cached_property
+    def _starred(self) -> list[str]:
+        return sorted((name[:-1] for name in self.rules if name.endswith("*")), key=len, reverse=True)
+
+    @cached_property
+    def _parts(self) -> list[str]:
+        parts = (name.removeprefix(ADDRESS) for name in self.rules if name.startswith(ADDRESS))
+        return sorted(parts, key=len, reverse=True)
+
+    def of(self, name: str) -> tuple[str, Rule] | None:
         """Return the longest name that is this one, or above it, with its rule; of an address the longest part."""
         if name.startswith(ADDRESS):
-            part = max((one for one in self.addresses if one in name), key=len, default="")
-            return (part, self.addresses[part]) if part else None
+            part = next((one for one in self._parts if one in name), None)
+            return (part, self.rules[ADDRESS + part]) if part else None
         for above in _above(name):
             if above in self.rules:
                 return above, self.rules[above]
-        longest = max((own for own in self.starred if name.startswith(own)), key=len, default="")
-        return (longest, self.starred[longest]) if longest else None
+        start = next((one for one in self._starred if name.startswith(one)), None)
+        return (start, self.rules[f"{start}*"]) if start else None
 
 
 class LibraryRules(NamedTuple):
@@ -142,7 +104,7 @@ class LibraryRules(NamedTuple):
     makes: Mapping[str, Names]
     silent: Mapping[str, frozenset[str]]
 
-    def spoken(self, section: Mapping[str, Names], use: NodeUse) -> LibraryRule | None:
+    def spoken(self, section: Mapping[str, Names], use: NodeUse) -> Rule | None:
         """Return the rule of a section that speaks about a use, if there is one."""
         found = section[use.language].of(use.name) if use.language in section else None
         if found is None:
@@ -155,11 +117,11 @@ class LibraryRules(NamedTuple):
         """Return by section the rules that speak about the uses of a node."""
         found: dict[str, list[RuleOfUse]] = {}
         for name in ("brings_in", "makes", "lets_out"):
-            speaking: dict[LibraryRule, list[NodeUse]] = {}
+            speaking: dict[Rule, NodeUse] = {}
             for use in uses:
                 if rule := self.spoken(getattr(self, name), use):
-                    speaking.setdefault(rule, []).append(use)
-            found[name] = [RuleOfUse(*rule.of_uses(of_rule)) for rule, of_rule in speaking.items()]
+                    speaking.setdefault(rule, use)
+            found[name] = [RuleOfUse(rule, use) for rule, use in speaking.items()]
         return found
 
     def speaks(self, use: NodeUse) -> bool:

@@ -22,25 +22,37 @@ _HUMP = re.compile("([a-z])([A-Z])")
 _NO_LETTERS = re.compile("[^a-z]+")
 
 
-class NameRule(NamedTuple):
-    """What some words of a name suggest.
+class Rule(NamedTuple):
+    """What some words of a name, or the use of a library, suggest.
 
     Attributes
     ----------
     kinds
         Names of categories; none where the words say that data leave the robot, or that a topic carries none.
+    to
+        The categories that are made of these.
     instead_of
         Categories: where another word of the name suggests one of these, it is the kinds of this rule instead.
+    where
+        Of what lets data out: where they go.
     any_type
         Whether it can have any form, a flag or a velocity, so that no message type speaks against it.
+    alone
+        Whether it agrees with nothing, as a window does with a node that is called gui.
+    by_itself
+        Of what makes something: whether it reads ROS by itself, as a listener of transforms does.
     """
 
     kinds: tuple[str, ...]
     confidence: Confidence
     why: str
     place: Place
+    to: tuple[str, ...] = ()
     instead_of: tuple[str, ...] = ()
+    where: str = ""
     any_type: bool = False
+    alone: bool = False
+    by_itself: bool = False
 
 
 @dataclass(frozen=True)
@@ -48,14 +60,14 @@ class NameRules:
     """The rules of all files; a field is a section of the file, which says what it means (docs/suggestions.md)."""
 
     # phrase -> rule: of topics what is sent through them, and that nothing is; of nodes what they bring in or let out
-    carries: Mapping[Phrase, NameRule] = field(default_factory=dict)
-    nothing: Mapping[Phrase, NameRule] = field(default_factory=dict)
-    brings_in: Mapping[Phrase, NameRule] = field(default_factory=dict)
-    lets_out: Mapping[Phrase, NameRule] = field(default_factory=dict)
-    unprompted: Mapping[Phrase, NameRule] = field(default_factory=dict)  # what who writes such a topic, and reads none
+    carries: Mapping[Phrase, Rule] = field(default_factory=dict)
+    nothing: Mapping[Phrase, Rule] = field(default_factory=dict)
+    brings_in: Mapping[Phrase, Rule] = field(default_factory=dict)
+    lets_out: Mapping[Phrase, Rule] = field(default_factory=dict)
+    unprompted: Mapping[Phrase, Rule] = field(default_factory=dict)  # what who writes such a topic, and reads none
     # category -> category -> rule: what nodes make of it; what of persons a node may tell that takes such data
-    becomes: Mapping[str, Mapping[str, NameRule]] = field(default_factory=dict)
-    tells: Mapping[str, Mapping[str, NameRule]] = field(default_factory=dict)
+    becomes: Mapping[str, Mapping[str, Rule]] = field(default_factory=dict)
+    tells: Mapping[str, Mapping[str, Rule]] = field(default_factory=dict)
     silent: frozenset[Phrase] = frozenset()  # suggest nothing wherever they stand last, such as camera_info
     neutral: frozenset[str] = frozenset()  # words that say nothing by themselves, such as raw
     simulated: frozenset[str] = frozenset()  # a node or topic with one stands for what nobody measured
@@ -67,7 +79,7 @@ class NameRules:
 class Spoken(NamedTuple):
     """A rule that speaks about a name, and the words of the name that it is about."""
 
-    rule: NameRule
+    rule: Rule
     words: Phrase
 
     @property
@@ -121,7 +133,7 @@ def has_word(name: str, some: frozenset[str]) -> bool:
     return not some.isdisjoint(_own(name))
 
 
-def of_node(name: str, rules: Mapping[Phrase, NameRule], silent: frozenset[Phrase] = frozenset()) -> Spoken | None:
+def of_node(name: str, rules: Mapping[Phrase, Rule], silent: frozenset[Phrase] = frozenset()) -> Spoken | None:
     """Return the rule that speaks about a node of this name, by its own part of the name.
 
     Parameters
@@ -145,7 +157,7 @@ def _speaking(parts: Sequence[str], rules: NameRules) -> Phrase:
     return next((part for part in map(words, parts) if not rules.neutral.issuperset(part)), ())
 
 
-def _last(part: Phrase, rules: Mapping[Phrase, NameRule], silent: frozenset[Phrase]) -> Spoken | None:
+def _last(part: Phrase, rules: Mapping[Phrase, Rule], silent: frozenset[Phrase]) -> Spoken | None:
     """The rule about the last words of a part that a rule is about; of several phrases there the longest."""
     for phrase in _phrases(part):
         if phrase in silent:

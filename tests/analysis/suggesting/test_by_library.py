@@ -200,19 +200,6 @@ def test_of_a_broker_nobody_knows_what_it_gets(call: str) -> None:
     assert "leak PersonalData may" in said("", "Image", f"paho.mqtt.client.Client().{call}")
 
 
-@pytest.mark.parametrize(
-    ("calls", "sure"),
-    [
-        (["sqlite3.connect('a.db').execute('select 1').fetchone()"], "may"),  # it asks only
-        (["sqlite3.connect('a.db').execute('x')", "sqlite3.connect('a.db').commit()"], "may"),  # of whom, nobody knows
-        (["firebase_admin.db.reference('/a').get()"], "may"),
-        (["firebase_admin.db.reference('/a').set(x)"], "likely"),
-    ],
-)
-def test_who_only_asks_a_store_may_let_data_out(calls: list[str], sure: str) -> None:
-    assert f"leak PersonalData {sure}" in said("", "Image", *calls)
-
-
 @pytest.mark.parametrize(("name", "sure"), [("n", "likely"), ("fake_camera", "may"), ("video_file_publisher", "may")])
 def test_what_simulates_measures_nothing(name: str, sure: str) -> None:
     """1. A film that is played is taken by the same call as the pictures of a camera."""
