@@ -45,12 +45,12 @@ class RuleOfUse(NamedTuple):
     rule: Rule
     use: NodeUse
 
-    def evidence(self, label: Label, sure: Confidence, then: str = "") -> Evidence:
+    def evidence(self, label: Label, sure: Confidence, consequence: str = "") -> Evidence:
         """Return what it says for a label: no surer than the rule."""
         name = self.use.name
         verb = next((verb for sign, verb in _VERBS.items() if name.startswith(sign)), "")
         what = f"{verb} {name[2:]}" if verb else f"uses {name}"
-        reason = f"{what} ({self.use.place}): {self.rule.why}{then}"
+        reason = f"{what} ({self.use.place}): {self.rule.why}{consequence}"
         return Evidence(label, CODE, weaker(sure, self.rule.confidence), reason, self.use.place, alone=self.rule.alone)
 
 

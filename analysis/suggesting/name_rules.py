@@ -124,13 +124,13 @@ def of_topic_nothing(name: str, rules: NameRules) -> Spoken | None:
     return Spoken(rules.nothing[part], part) if part in rules.nothing else None
 
 
-def has_word(name: str, some: frozenset[str]) -> bool:
+def has_word(name: str, words: frozenset[str]) -> bool:
     """Return whether the last part of a name has one of some words.
 
     >>> has_word("/sim/fake_camera", frozenset(["fake"])), has_word("/fake/camera", frozenset(["fake"]))
     (True, False)
     """
-    return not some.isdisjoint(_own(name))
+    return not words.isdisjoint(_own(name))
 
 
 def of_node(name: str, rules: Mapping[Phrase, Rule], silent: frozenset[Phrase] = frozenset()) -> Spoken | None:

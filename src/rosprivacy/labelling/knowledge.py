@@ -131,7 +131,7 @@ def what_is_known(vocabulary: Vocabulary, settings: Settings, files: UserFiles =
 
 
 def evidence(
-    analysis: Analysis, bound: Bound, known: Known, uses: Mapping[int, Sequence[NodeUse]]
+    analysis: Analysis, bound: Bound, knowledge: Known, uses: Mapping[int, Sequence[NodeUse]]
 ) -> Iterator[Evidence]:
     """Yield what every provider finds.
 
@@ -142,10 +142,10 @@ def evidence(
     """
     graph, open_ = analysis.graph, analysis.open
     ends = traffic(graph, bound)
-    of_packages = nodes_of_packages(graph, bound.types, known.packages)
-    yield from lasting_evidence(graph, bound, ends, of_packages, known, uses)
-    yield from of_open(open_, graph, bound, ends, known.rules)
-    yield from by_package_types(open_, graph, bound, of_packages, known.rules)
+    of_packages = nodes_of_packages(graph, bound.types, knowledge.packages)
+    yield from lasting_evidence(graph, bound, ends, of_packages, knowledge, uses)
+    yield from of_open(open_, graph, bound, ends, knowledge.rules)
+    yield from by_package_types(open_, graph, bound, of_packages, knowledge.rules)
 
 
 def lasting_evidence(
@@ -153,16 +153,16 @@ def lasting_evidence(
     bound: Bound,
     ends: Traffic,
     of_packages: Sequence[NodeOfPackage],
-    known: Known,
+    knowledge: Known,
     uses: Mapping[int, Sequence[NodeUse]],
 ) -> Iterator[Evidence]:
     """Yield what is found whatever a person has said: of what is bound to the graph, only types are looked at."""
-    rules = known.rules
+    rules = knowledge.rules
     clues = carried_kinds(graph, bound, rules)
     by_packages = tuple(package_evidence(graph, of_packages))
     yield from by_packages
     sources = {one.label.element for one in by_packages if one.label.role == SOURCE}
-    yield from node_evidence(graph, bound, ends, clues, rules, uses, known.libraries, sources)
+    yield from node_evidence(graph, bound, ends, clues, rules, uses, knowledge.libraries, sources)
     yield from of_channels(graph, clues)
 
 
