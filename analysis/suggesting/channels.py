@@ -7,9 +7,7 @@ followed, since a grant for everything says nothing of what a node is for. How t
 2. The name of a topic says no more than ``may`` by itself. It is not asked about services and actions, whose names are
    verbs, nor of a kind that the types cannot carry, nor where the types are known and suggest nothing, unless what the
    name says can have any type.
-3. Where the name says a narrower kind of what the type says, the type says that, too: both agree.
-4. Where the name says that it is something else (a depth image), what the type says of that (video) is ``may``. If
-   the type itself leaves open which of both it is (a place of a person or of the robot), the name says it.
+3. Where the name says that it is something else (a depth image), what the type says of that (video) is ``may``.
 """
 
 from __future__ import annotations
@@ -19,7 +17,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.many_flows import parted
 from rosprivacy.analysis.model import CANNOT, Confidence, interface_of
-from rosprivacy.analysis.suggesting.evidence import ANYTHING, NAMED, TYPE
+from rosprivacy.analysis.suggesting.evidence import NAMED, TYPE
 from rosprivacy.analysis.suggesting.name_rules import of_topic
 
 if TYPE_CHECKING:
@@ -28,7 +26,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.kernel.type_limits import TypeLimit
     from rosprivacy.analysis.model import Bound, Element, FlowGraph, Place, Suggestion
-    from rosprivacy.analysis.suggesting.name_rules import NameRules, Spoken
+    from rosprivacy.analysis.suggesting.name_rules import NameRules
 
     Key = tuple[str, str]  # name of a type, leg
 
@@ -96,9 +94,9 @@ class Rules(NamedTuple):
     names: NameRules
     hierarchy: Hierarchy
 
-    def related_to_one(self, kind: str, others: Iterable[str]) -> bool:
-        """Return whether data of one kind can be of one of the others."""
-        return not self.hierarchy.overlaps[kind].keys().isdisjoint(others)
+    def related_to_one(self, kind: str, kinds: Iterable[str]) -> bool:
+        """Return whether data of one kind can be of one of some others."""
+        return not self.hierarchy.overlaps[kind].keys().isdisjoint(kinds)
 
     def limited(self, kind: str, key: Key) -> bool:
         """Return whether a type cannot carry a kind."""
@@ -163,40 +161,24 @@ def carried_kinds(graph: FlowGraph, bound: Bound, rules: Rules) -> dict[int, tup
 
 
 def _clues(element: Element, types: Mapping[str, Place], rules: Rules) -> tuple[Clue, ...]:
-    spoken = of_topic(element.name, rules.names) if element.kind == "topic" else None
-    if not types:
-        return tuple(dict.fromkeys(_by_name(spoken, element))) if spoken else ()
     by_type = [clue for name, place in sorted(types.items()) for clue in _by_type(name, place, element, rules)]
+    spoken = of_topic(element.name, rules.names) if element.kind == "topic" else None
     keys = [(interface_of(name), "") for name in types]
-    nothing = not by_type and all(key in rules.suggestions for key in keys)
-    if spoken is None or (nothing and not spoken.rule.any_type):
+    looked_at = bool(keys) and not by_type and all(key in rules.suggestions for key in keys)
+    if spoken is None or (looked_at and not spoken.rule.any_type):
         return tuple(dict.fromkeys(by_type))
-    by_name = [one for one in _by_name(spoken, element) if not all(rules.limited(one.kind, key) for key in keys)]
-    kinds = {clue.kind for clue in by_name}
-    others = spoken.rule.instead_of if kinds else ()
-    if any(clue.kind in kinds for clue in by_type):
-        by_type = [one for one in by_type if one.kind not in others or one.confidence is not Confidence.MAY]
-    joined = [one for clue in by_type for one in _with_name(clue, kinds, others, rules.hierarchy)]
-    return tuple(dict.fromkeys([*joined, *by_name]))
+    reason = f"{spoken.quoted} in the name {element.name}"
+    by_name = [
+        Clue(kind, NAMED, spoken.rule.confidence, reason, spoken.rule.place)
+        for kind in spoken.rule.kinds
+        if not keys or not all(rules.limited(kind, key) for key in keys)
+    ]
+    instead_of = spoken.rule.instead_of if by_name else ()
+    by_type = [one._replace(confidence=Confidence.MAY) if one.kind in instead_of else one for one in by_type]
+    return tuple(dict.fromkeys([*by_type, *by_name]))
 
 
 def _by_type(name: str, place: Place, element: Element, rules: Rules) -> Iterator[Clue]:
     for rule in rules.suggestions.get((interface_of(name), element.leg), ()):
         for kind in rule.kinds:
             yield Clue(kind, TYPE, rule.confidence, f"type {name} of {element.name} ({place}): {rule.why}", rule.place)
-
-
-def _by_name(spoken: Spoken, element: Element) -> Iterator[Clue]:
-    for kind in spoken.rule.kinds:
-        reason = f"{spoken.quoted} in the name {element.name}"
-        yield Clue(kind, NAMED, spoken.rule.confidence, reason, spoken.rule.place)
-
-
-def _with_name(clue: Clue, named: set[str], others: Sequence[str], hierarchy: Hierarchy) -> Iterator[Clue]:
-    """What a type says, where the name says some kinds as well, perhaps in place of others."""
-    narrower = [kind for kind in sorted(named) if kind != clue.kind and clue.kind in hierarchy.ancestors[kind]]
-    if narrower:
-        if clue.kind != ANYTHING:
-            yield from (clue._replace(kind=kind, confidence=Confidence.MAY) for kind in narrower)
-    else:
-        yield clue._replace(confidence=Confidence.MAY) if clue.kind in others else clue

@@ -62,8 +62,6 @@ class Evidence(NamedTuple):
         knows them. Of channels of one family it can be said in one list; empty if it is for each by itself.
     alone
         Whether it agrees with no other ground.
-    beside
-        A narrower kind, beside which it is said: who has named that one is not asked.
     """
 
     label: Label
@@ -73,7 +71,6 @@ class Evidence(NamedTuple):
     place: Place
     family: str = ""
     alone: bool = False
-    beside: str = ""
 
 
 class Proposal(NamedTuple):

@@ -145,7 +145,7 @@ def questions(
     proposals: Sequence[Proposal],
     analysis: Analysis,
     bound: Bound,
-    known: Traffic,
+    ends: Traffic,
     hierarchy: Hierarchy,
     refused: Callable[[Label], bool] = lambda _: False,
 ) -> tuple[Question, ...]:
@@ -171,7 +171,7 @@ def questions(
     >>> one.about, [(row.element.name, row.kinds, [reply.key for reply in row.replies]) for row in one.rows]
     ('brings-in', [('/camera', ('FaceImage',), ['y']), ('/camera', ('Voice',), ['y'])])
     """
-    asked = _Asked(proposals, analysis, bound, known, hierarchy, refused)
+    asked = _Asked(proposals, analysis, bound, ends, hierarchy, refused)
     groups = [*asked.ends().items(), (GOES_ON, asked.nodes()), (GOES_THROUGH, asked.channels())]
     return tuple(Question(about, tuple(some)) for about, rows in groups for some in _parted(rows))
 
@@ -253,7 +253,7 @@ class _Asked:
         proposals: Sequence[Proposal],
         analysis: Analysis,
         bound: Bound,
-        known: Traffic,
+        ends: Traffic,
         hierarchy: Hierarchy,
         refused: Callable[[Label], bool],
     ) -> None:
@@ -273,9 +273,7 @@ class _Asked:
             (one.to, one.categories) for said in bound.elements.values() for one in said if one.role == DERIVATION
         }
         self.findings: dict[tuple[str, ...], tuple[str, ...]] = {}  # what is told of findings of such data
-        self.writes = {
-            analysis.graph.elements[vertex].identity for vertex, channels in known.writes.items() if channels
-        }
+        self.writes = {analysis.graph.elements[vertex].identity for vertex, channels in ends.writes.items() if channels}
 
     def ends(self) -> dict[str, list[Row]]:
         """Return what may bring data in; what may let out, or make other data of, what gets to it.
@@ -288,13 +286,13 @@ class _Asked:
             MAKES: [_row(one) for one in self.proposals if one.label.role == DERIVATION and self._gets(one)],
         }
 
-    def _gets(self, one: Proposal) -> bool:
-        there = self.reached.get(one.label.element.identity, ())
-        return any(self.hierarchy.overlap(one.label.kind, kind) is not None for kind in there)
+    def _gets(self, proposal: Proposal) -> bool:
+        there = self.reached.get(proposal.label.element.identity, ())
+        return any(self.hierarchy.overlap(proposal.label.kind, kind) is not None for kind in there)
 
-    def _lets_out(self, there: Sequence[Proposal]) -> Row | None:
-        leaks = _leaks(there)
-        asked_as_open = self._open_kinds(there)
+    def _lets_out(self, proposals: Sequence[Proposal]) -> Row | None:
+        leaks = _leaks(proposals)
+        asked_as_open = self._open_kinds(proposals)
         labels = [one for one in self._unsaid(leaks) if one.kind not in asked_as_open]
         return _leak(labels, _reasons(leaks)) if labels else None
 
@@ -308,13 +306,13 @@ class _Asked:
         labels = [Label(element, LEAK, kind) for kind in sorted(asked)]
         return [one for one in labels if not (spoken_of(one, said, self.hierarchy) or self.refused(one))]
 
-    def _open_kinds(self, there: Sequence[Proposal]) -> tuple[str, ...]:
+    def _open_kinds(self, proposals: Sequence[Proposal]) -> tuple[str, ...]:
         """The kinds of data for which a node is open, and of which it can be asked what it does with them."""
-        asked = self.open.get(there[0].label.element.identity)
+        asked = self.open.get(proposals[0].label.element.identity)
         if asked is None or not asked.element.is_node:
             return ()
-        about = [one for one in there if one.label.role in (CONDUIT, SANITIZER)]
-        out = {one.kind for one in self._unsaid(_leaks(there))}
+        about = [one for one in proposals if one.label.role in (CONDUIT, SANITIZER)]
+        out = {one.kind for one in self._unsaid(_leaks(proposals))}
         return tuple(
             kind for kind in asked.categories if kind in out or any(self._speaks_of(one, kind) for one in about)
         )
@@ -340,10 +338,10 @@ class _Asked:
         numbered = sorted({kind for one, _ in channels for kind in one.categories})
         return [self._channel(one, there, numbered) for one, there in channels]
 
-    def _speaks_of(self, one: Proposal, kind: str) -> bool:
-        return not one.label.kind or self.hierarchy.overlap(one.label.kind, kind) is not None
+    def _speaks_of(self, proposal: Proposal, kind: str) -> bool:
+        return not proposal.label.kind or self.hierarchy.overlap(proposal.label.kind, kind) is not None
 
-    def _channel(self, asked: OpenQuestion, there: Sequence[Proposal], numbered: Sequence[str]) -> Row:
+    def _channel(self, question: OpenQuestion, proposals: Sequence[Proposal], numbered: Sequence[str]) -> Row:
         """One open channel.
 
         Parameters
@@ -351,8 +349,8 @@ class _Asked:
         numbered
             The kinds of which a digit says *this kind at most*, of all rows the same one.
         """
-        about = [one for one in there if one.label.role in (SENSITIVE, NEVER)]
-        return self._through(there[0].label.element, asked.categories, about, numbered)
+        about = [one for one in proposals if one.label.role in (SENSITIVE, NEVER)]
+        return self._through(proposals[0].label.element, question.categories, about, numbered)
 
     def _through(
         self, element: Element, kinds: tuple[str, ...], about: Sequence[Proposal], numbered: Sequence[str]
@@ -376,11 +374,13 @@ class _Asked:
         """Whether a person says what goes through a channel: that one kind at most does would take that away (S7)."""
         return any(one.role == SENSITIVE for one in self.said.get(element.identity, ()))
 
-    def _node(self, there: Sequence[Proposal], kinds: tuple[str, ...]) -> Row:
-        element = there[0].label.element
-        about = [one for kind in kinds for one in self._about(there, kind) if one.label.role in (CONDUIT, SANITIZER)]
+    def _node(self, proposals: Sequence[Proposal], kinds: tuple[str, ...]) -> Row:
+        element = proposals[0].label.element
+        about = [
+            one for kind in kinds for one in self._about(proposals, kind) if one.label.role in (CONDUIT, SANITIZER)
+        ]
         ends = list(dict.fromkeys(one for one in about if one.label.role == SANITIZER))
-        leaks = [one for one in _leaks(there) if any(self._speaks_of(one, kind) for kind in kinds)]
+        leaks = [one for one in _leaks(proposals) if any(self._speaks_of(one, kind) for kind in kinds)]
         out = [one for one in self._unsaid(leaks) if one.kind in kinds]
         why = _reasons(leaks) if out else ()
         doubtful = bool(why or ends) or element.identity not in self.writes
@@ -393,13 +393,13 @@ class _Asked:
             replies.append(Reply(NOTHING, written(ends[0].label), takes_away=True, reasons=_reasons(ends)))
         refused = tuple(_written(element, CONDUIT, [kind]) for kind in kinds)
         refused += tuple(map(written, (*(one.label for one in ends), *out)))
-        each = tuple(self._node(there, (kind,)) for kind in kinds if len(kinds) > 1)
+        each = tuple(self._node(proposals, (kind,)) for kind in kinds if len(kinds) > 1)
         closed = self._closed(kinds) if ends else ()
         reasons = tuple(dict.fromkeys((*why, *_reasons(about))))
         return Row(element, kinds, tuple(replies), reasons, refused, closed, doubtful=doubtful, each=each)
 
-    def _about(self, said: Iterable[Proposal], kind: str) -> list[Proposal]:
-        return [one for one in said if self._speaks_of(one, kind)]
+    def _about(self, proposals: Iterable[Proposal], kind: str) -> list[Proposal]:
+        return [one for one in proposals if self._speaks_of(one, kind)]
 
     def _closed(self, kinds: tuple[str, ...]) -> tuple[str, ...]:
         """Findings of such data, and of what is made of them."""
@@ -424,10 +424,10 @@ class _Asked:
         return any(self.hierarchy.overlap(kind, one) is not None for one in kinds)
 
 
-def _row(one: Proposal) -> Row:
-    label = written(one.label)
-    why = _reasons([one])
-    return Row(one.label.element, (one.label.kind,), (Reply(YES, label, reasons=why),), why, (label,))
+def _row(proposal: Proposal) -> Row:
+    label = written(proposal.label)
+    why = _reasons([proposal])
+    return Row(proposal.label.element, (proposal.label.kind,), (Reply(YES, label, reasons=why),), why, (label,))
 
 
 def _suspected(row: Row) -> bool:
@@ -435,9 +435,9 @@ def _suspected(row: Row) -> bool:
     return any(one.key == OUT and one.reasons for one in row.replies)
 
 
-def _leaks(there: Iterable[Proposal]) -> list[Proposal]:
+def _leaks(proposals: Iterable[Proposal]) -> list[Proposal]:
     """What suggests that one element lets data out; that it is an end of data does not."""
-    return [one for one in there if one.label.role == LEAK and not or_passes_on(one, there)]
+    return [one for one in proposals if one.label.role == LEAK and not or_passes_on(one, proposals)]
 
 
 def _leak(labels: Sequence[Label], reasons: tuple[str, ...]) -> Row:

@@ -22,25 +22,37 @@ _HUMP = re.compile("([a-z])([A-Z])")
 _NO_LETTERS = re.compile("[^a-z]+")
 
 
-class NameRule(NamedTuple):
-    """What some words of a name suggest.
+class Rule(NamedTuple):
+    """What some words of a name, or the use of a library, suggest.
 
     Attributes
     ----------
     kinds
         Names of categories; none where the words say that data leave the robot, or that a topic carries none.
+    to
+        The categories that are made of these.
     instead_of
         Categories: where another word of the name suggests one of these, it is the kinds of this rule instead.
+    where
+        Of what lets data out: where they go.
     any_type
         Whether it can have any form, a flag or a velocity, so that no message type speaks against it.
+    alone
+        Whether it agrees with nothing, as a window does with a node that is called gui.
+    by_itself
+        Of what makes something: whether it reads ROS by itself, as a listener of transforms does.
     """
 
     kinds: tuple[str, ...]
     confidence: Confidence
     why: str
     place: Place
+    to: tuple[str, ...] = ()
     instead_of: tuple[str, ...] = ()
+    where: str = ""
     any_type: bool = False
+    alone: bool = False
+    by_itself: bool = False
 
 
 @dataclass(frozen=True)
@@ -48,33 +60,26 @@ class NameRules:
     """The rules of all files; a field is a section of the file, which says what it means (docs/suggestions.md)."""
 
     # phrase -> rule: of topics what is sent through them, and that nothing is; of nodes what they bring in or let out
-    carries: Mapping[Phrase, NameRule] = field(default_factory=dict)
-    nothing: Mapping[Phrase, NameRule] = field(default_factory=dict)
-    brings_in: Mapping[Phrase, NameRule] = field(default_factory=dict)
-    lets_out: Mapping[Phrase, NameRule] = field(default_factory=dict)
-    unprompted: Mapping[Phrase, NameRule] = field(default_factory=dict)  # what who writes such a topic, and reads none
+    carries: Mapping[Phrase, Rule] = field(default_factory=dict)
+    nothing: Mapping[Phrase, Rule] = field(default_factory=dict)
+    brings_in: Mapping[Phrase, Rule] = field(default_factory=dict)
+    lets_out: Mapping[Phrase, Rule] = field(default_factory=dict)
+    unprompted: Mapping[Phrase, Rule] = field(default_factory=dict)  # what who writes such a topic, and reads none
     # category -> category -> rule: what nodes make of it; what of persons a node may tell that takes such data
-    becomes: Mapping[str, Mapping[str, NameRule]] = field(default_factory=dict)
-    tells: Mapping[str, Mapping[str, NameRule]] = field(default_factory=dict)
+    becomes: Mapping[str, Mapping[str, Rule]] = field(default_factory=dict)
+    tells: Mapping[str, Mapping[str, Rule]] = field(default_factory=dict)
     silent: frozenset[Phrase] = frozenset()  # suggest nothing wherever they stand last, such as camera_info
-    wanted: frozenset[Phrase] = frozenset()  # what a topic with them last carries is wished, such as goal_pose
     neutral: frozenset[str] = frozenset()  # words that say nothing by themselves, such as raw
-    commanding: frozenset[str] = frozenset()  # a topic that begins so in its last part is a command, such as cmd_audio
-    reworked: frozenset[str] = frozenset()  # a topic with one carries what was made of other data, such as debug
-    reworking: frozenset[str] = frozenset()  # a node with one works on what others bring in, such as detector
     simulated: frozenset[str] = frozenset()  # a node or topic with one stands for what nobody measured
     understood: frozenset[str] = frozenset()  # a topic with one carries what somebody wants, if its writer reads speech
-    driving: frozenset[str] = frozenset()  # a node with one talks with its own device
     computed: frozenset[str] = frozenset()  # categories that programs work out, so that who writes them is no source
     not_by_type: frozenset[str] = frozenset()  # of which a type that says no more than may makes no source by itself
-    entered: frozenset[str] = frozenset()  # that somebody enters, where a service is asked for that is called so
-    broadened: frozenset[str] = frozenset()  # that are asked about wherever a narrower one is
 
 
 class Spoken(NamedTuple):
     """A rule that speaks about a name, and the words of the name that it is about."""
 
-    rule: NameRule
+    rule: Rule
     words: Phrase
 
     @property
@@ -105,22 +110,7 @@ def of_topic(name: str, rules: NameRules) -> Spoken | None:
     parts = name.split("/")[::-1]
     part = _speaking(parts, rules)
     spoken = _last(part, rules.carries, rules.silent)
-    if spoken is None or (part[0] in rules.commanding and not spoken.rule.any_type):
-        return None
-    return _instead(spoken, parts, rules)
-
-
-def is_silent(name: str, rules: NameRules) -> bool:
-    """Return whether a topic is called like a command or a state of the machine.
-
-    >>> from rosprivacy.analysis.suggesting.example_names import NAMES
-    >>> [is_silent(name, NAMES) for name in ("/camera/info", "/robot/cmd_vel", "/camera/image_raw", "/other")]
-    [True, True, False, False]
-    """
-    part = _speaking(name.split("/")[::-1], rules)
-    if not part or of_topic_nothing(name, rules):
-        return bool(part)
-    return part[0] in rules.commanding or not rules.silent.isdisjoint(_last_phrases(part))
+    return _instead(spoken, parts, rules) if spoken else None
 
 
 def of_topic_nothing(name: str, rules: NameRules) -> Spoken | None:
@@ -134,26 +124,16 @@ def of_topic_nothing(name: str, rules: NameRules) -> Spoken | None:
     return Spoken(rules.nothing[part], part) if part in rules.nothing else None
 
 
-def ends_with(name: str, phrases: frozenset[Phrase]) -> bool:
-    """Return whether the last words of a name are one of some phrases.
-
-    >>> ends_with("/nav/goal_pose", frozenset([("goal", "pose")])), ends_with("/goal/x", frozenset([("goal",)]))
-    (True, False)
-    """
-    part = _own(name)
-    return not phrases.isdisjoint(_last_phrases(part))
-
-
-def has_word(name: str, some: frozenset[str]) -> bool:
+def has_word(name: str, words: frozenset[str]) -> bool:
     """Return whether the last part of a name has one of some words.
 
     >>> has_word("/sim/fake_camera", frozenset(["fake"])), has_word("/fake/camera", frozenset(["fake"]))
     (True, False)
     """
-    return not some.isdisjoint(_own(name))
+    return not words.isdisjoint(_own(name))
 
 
-def of_node(name: str, rules: Mapping[Phrase, NameRule], silent: frozenset[Phrase] = frozenset()) -> Spoken | None:
+def of_node(name: str, rules: Mapping[Phrase, Rule], silent: frozenset[Phrase] = frozenset()) -> Spoken | None:
     """Return the rule that speaks about a node of this name, by its own part of the name.
 
     Parameters
@@ -177,7 +157,7 @@ def _speaking(parts: Sequence[str], rules: NameRules) -> Phrase:
     return next((part for part in map(words, parts) if not rules.neutral.issuperset(part)), ())
 
 
-def _last(part: Phrase, rules: Mapping[Phrase, NameRule], silent: frozenset[Phrase]) -> Spoken | None:
+def _last(part: Phrase, rules: Mapping[Phrase, Rule], silent: frozenset[Phrase]) -> Spoken | None:
     """The rule about the last words of a part that a rule is about; of several phrases there the longest."""
     for phrase in _phrases(part):
         if phrase in silent:

@@ -57,7 +57,7 @@ def of_channels(graph: FlowGraph, clues: Mapping[int, tuple[Clue, ...]]) -> Iter
 
 
 def of_open(
-    questions: Iterable[OpenQuestion], graph: FlowGraph, bound: Bound, known: Traffic, rules: Rules
+    questions: Iterable[OpenQuestion], graph: FlowGraph, bound: Bound, ends: Traffic, rules: Rules
 ) -> Iterator[Evidence]:
     """Yield what could be said of open elements, for each kind that reaches them.
 
@@ -83,7 +83,7 @@ def of_open(
             at.setdefault(element.shown_as, []).append(vertex)
             legs.setdefault(element.identity, set()).add(element.leg)
 
-    def named(vertices: Iterable[int], ends: Mapping[int, tuple[int, ...]]) -> list[str]:
+    def names(vertices: Iterable[int], ends: Mapping[int, tuple[int, ...]]) -> list[str]:
         return sorted({graph.elements[one].name for vertex in vertices for one in ends.get(vertex, ())})
 
     for question in asked:
@@ -92,19 +92,19 @@ def of_open(
         if element.is_node:
             leaks = [one for vertex in vertices for one in bound.elements.get(vertex, ()) if one.role == LEAK]
             let_out = sorted({kind for one in leaks for kind in one.categories})
-            yield from _at_node(question, let_out, named(vertices, known.writes))
+            yield from _at_node(question, let_out, names(vertices, ends.writes))
         elif element.is_channel:
             types = sorted({one.name for vertex in vertices for one in bound.types.get(vertex, ())})
-            yield from _at_channel(question, types, legs[element.identity], named(vertices, known.writers), rules)
+            yield from _at_channel(question, types, legs[element.identity], names(vertices, ends.writers), rules)
 
 
 def _at_node(question: OpenQuestion, let_out: Sequence[str], written: Sequence[str]) -> Iterator[Evidence]:
     for kind in question.categories:
         roles: tuple[str, ...]
         if let_out:
-            roles, rest = (LEAK,), f"and a label says that it lets {_some(let_out)} out"
+            roles, rest = (LEAK,), f"and a label says that it lets {_first_few(let_out)} out"
         elif written:
-            roles, rest = (CONDUIT,), f"which can go on to {_some(written)}"
+            roles, rest = (CONDUIT,), f"which can go on to {_first_few(written)}"
         else:
             roles, rest = (LEAK, CONDUIT), NOWHERE
         for role in roles:
@@ -120,7 +120,7 @@ def _at_channel(
     for kind in question.categories:
         never = Label(whole(element), NEVER, kind)
         if types and all(rules.no_leg_carries(kind, name, legs) for name in types):
-            reason = f"type {_some(types)} of {element.name} is not made for {kind}"
+            reason = f"type {_first_few(types)} of {element.name} is not made for {kind}"
             place = _place(types, element, rules)
             family = str(place) if all(rules.suggests_nothing(kind, name, legs) for name in types) else ""
             yield Evidence(never, TYPE, Confidence.MAY, reason, place, family)
@@ -128,11 +128,11 @@ def _at_channel(
             reason = f"{nothing.quoted} is its name: {nothing.rule.why}"
             yield Evidence(never, NAMED, Confidence.MAY, reason, nothing.rule.place)
         else:
-            reason = f"neighbour of {_some(writers)}, which {kind} reaches" if writers else f"{kind} reaches it"
+            reason = f"neighbour of {_first_few(writers)}, which {kind} reaches" if writers else f"{kind} reaches it"
             yield Evidence(Label(whole(element), SENSITIVE, kind), NEIGHBOUR, Confidence.MAY, reason, FLOWS)
 
 
-def _some(names: Sequence[str]) -> str:
+def _first_few(names: Sequence[str]) -> str:
     more = f" and {len(names) - SHOWN} more" if len(names) > SHOWN else ""
     return ", ".join(names[:SHOWN]) + more
 

@@ -163,7 +163,7 @@ def nodes_of_packages(
     >>> [(str(one.confidence), one.reason) for one in package_evidence(graph, nodes_of_packages(graph, {}, [camera]))]
     [('likely', 'package camera 1.0: it films (its name, 1 of 1 of its interfaces)')]
     """
-    named = tuple(_named(graph, packages))
+    named = tuple(_of_name(graph, packages))
     channels = _channels(graph, types, {vertex for vertex, _, _ in named})
     found = []
     for vertex, package, node in named:
@@ -174,7 +174,7 @@ def nodes_of_packages(
     return tuple(found)
 
 
-def _named(graph: FlowGraph, packages: Iterable[Package]) -> Iterator[tuple[int, Package, PackageNode]]:
+def _of_name(graph: FlowGraph, packages: Iterable[Package]) -> Iterator[tuple[int, Package, PackageNode]]:
     named: dict[str, list[tuple[Package, PackageNode]]] = defaultdict(list)
     patterns: list[tuple[str, tuple[Package, PackageNode]]] = []
     for package in packages:
@@ -197,13 +197,13 @@ def _named(graph: FlowGraph, packages: Iterable[Package]) -> Iterator[tuple[int,
 _Channels = dict[tuple[str, str], dict[str, tuple[str, ...]]]  # by kind and role of a grant: names -> types
 
 
-def _channels(graph: FlowGraph, types: Mapping[int, Sequence[MessageType]], wanted: set[int]) -> dict[int, _Channels]:
+def _channels(graph: FlowGraph, types: Mapping[int, Sequence[MessageType]], vertices: set[int]) -> dict[int, _Channels]:
     """What the nodes that are looked at do with which channels; wildcards left out."""
     found: dict[int, _Channels] = {}
-    for _, flow in parted(graph.flows)[0] if wanted else ():
+    for _, flow in parted(graph.flows)[0] if vertices else ():
         for vertex, channel in ((flow.source, flow.target), (flow.target, flow.source)):
             element = graph.elements[channel]
-            if vertex in wanted and element.is_channel and not element.pattern:
+            if vertex in vertices and element.is_channel and not element.pattern:
                 known = found.setdefault(vertex, {}).setdefault((element.kind, flow.role), {})
                 names = tuple(one.name for one in types.get(channel, ()))
                 known[element.name] = known.get(element.name, ()) + names

@@ -47,32 +47,52 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.suggesting.evidence import Identity, Label
 
 
-class Weight(NamedTuple):
-    """Of a role: the grounds that are as sure as they say, those of which two agree, and how sure any can make it."""
+class Row(NamedTuple):
+    """A row of the table of weighing: of these grounds together, where the surest is at least ``floor``, what follows.
 
-    alone: frozenset[str]
-    together: frozenset[str] = frozenset()
-    most: Confidence = Confidence.CERTAIN
+    Without ``agreed`` that is what the surest says, and no more than ``ceiling``.
+    """
+
+    grounds: frozenset[str]
+    floor: Confidence = Confidence.MAY
+    ceiling: Confidence = Confidence.CERTAIN
+    agreed: Confidence | None = None
 
 
-_ALL, _BY_PACKAGES = frozenset(GROUNDS), Weight(frozenset([PACKAGE]), most=Confidence.LIKELY)
-_AGREEING = Weight(_ALL, frozenset([CODE, TYPE, NAMED]))  # the others know types and names, or are drawn from them
-WEIGHTS = {
-    SOURCE: _AGREEING,
-    SENSITIVE: _AGREEING,
-    LEAK: Weight(_ALL),  # a name that says cloud, and code that writes a file, speak of two ways out
-    DERIVATION: Weight(_ALL),  # the name of a package and the library that it stands on say the same thing once
-    **dict.fromkeys((SANITIZER, CONDUIT, MUNDANE, NEVER), _BY_PACKAGES),  # what could hide a leak
+def _alone(
+    *grounds: str, floor: Confidence = Confidence.MAY, ceiling: Confidence = Confidence.CERTAIN
+) -> tuple[Row, ...]:
+    return tuple(Row(frozenset([ground]), floor, ceiling) for ground in grounds)
+
+
+def _together(*grounds: str) -> Row:
+    return Row(frozenset(grounds), agreed=Confidence.LIKELY)
+
+
+WEIGHING = {  # what is in no row is may
+    SOURCE: (
+        *_alone(PACKAGE, NAMED),
+        *_alone(TYPE, floor=Confidence.CERTAIN),
+        _together(TYPE, NAMED),
+        _together(TYPE, CODE),
+        _together(NAMED, CODE),
+    ),
+    SENSITIVE: (*_alone(TYPE, NAMED), _together(TYPE, NAMED)),
+    LEAK: _alone(PACKAGE, CODE, NAMED),
+    DERIVATION: _alone(PACKAGE, CODE, DATA_FLOW),
+    **dict.fromkeys(
+        (SANITIZER, CONDUIT, MUNDANE, NEVER), _alone(PACKAGE, ceiling=Confidence.LIKELY)
+    ),  # could hide a leak
 }
 SURENESS = {confidence: place for place, confidence in enumerate(Confidence)}  # the surest first
 
 
-def proposals(evidence: Iterable[Evidence], known: Collection[str] = ()) -> tuple[Proposal, ...]:
+def proposals(evidence: Iterable[Evidence], categories: Collection[str] = ()) -> tuple[Proposal, ...]:
     """Join evidence, in any order, into proposals, one for each label, sorted by element, role and kind.
 
     Parameters
     ----------
-    known
+    categories
         Categories of which a finding is known, with all that are broader or narrower.
 
     Examples
@@ -89,28 +109,28 @@ def proposals(evidence: Iterable[Evidence], known: Collection[str] = ()) -> tupl
     for one in evidence:
         of_labels[one.label].append(one)
     groups = ((label, _in_order(of_labels[label])) for label in sorted(of_labels, key=_order))
-    return tuple(Proposal(label, _weighed(label, reasons, known), reasons) for label, reasons in groups)
+    return tuple(Proposal(label, _weighed(label, reasons, categories), reasons) for label, reasons in groups)
 
 
-def surer(one: Confidence, other: Confidence) -> bool:
+def surer(first: Confidence, second: Confidence) -> bool:
     """Return whether the first is surer than the second.
 
     >>> surer(Confidence.LIKELY, Confidence.MAY), surer(Confidence.MAY, Confidence.MAY)
     (True, False)
     """
-    return SURENESS[one] < SURENESS[other]
+    return SURENESS[first] < SURENESS[second]
 
 
-def weaker(one: Confidence, other: Confidence) -> Confidence:
+def weaker(first: Confidence, second: Confidence) -> Confidence:
     """Return the less sure of two.
 
     >>> str(weaker(Confidence.LIKELY, Confidence.MAY))
     'may'
     """
-    return other if surer(one, other) else one
+    return second if surer(first, second) else first
 
 
-def closes_finding(label: Label, known: Collection[str]) -> bool:
+def closes_finding(label: Label, categories: Collection[str]) -> bool:
     """Return whether a label takes away data of which a finding is known; a conduit takes nothing away.
 
     >>> from rosprivacy.analysis.model import Element
@@ -119,16 +139,21 @@ def closes_finding(label: Label, known: Collection[str]) -> bool:
     >>> [closes_finding(Label(topic, role, "Video"), {"Video"}) for role in ("never", "sensitive")]
     [True, False]
     """
-    return label.role in TAKING_AWAY and bool(known) and (not label.kind or label.kind in known)
+    return label.role in TAKING_AWAY and bool(categories) and (not label.kind or label.kind in categories)
 
 
-def _weighed(label: Label, reasons: Sequence[Evidence], known: Collection[str]) -> Confidence:
-    weight = WEIGHTS[label.role]
-    if closes_finding(label, known):
+def _weighed(label: Label, reasons: Sequence[Evidence], categories: Collection[str]) -> Confidence:
+    if closes_finding(label, categories):
         return Confidence.MAY
-    surest = next((one.confidence for one in reasons if one.ground in weight.alone), Confidence.MAY)
-    agreeing = {one.ground for one in reasons if not one.alone} & weight.together
-    return Confidence.LIKELY if surest is Confidence.MAY and len(agreeing) > 1 else weaker(surest, weight.most)
+    return min((_row(row, reasons) for row in WEIGHING[label.role]), key=SURENESS.__getitem__)
+
+
+def _row(row: Row, reasons: Sequence[Evidence]) -> Confidence:
+    """What a row of the table says of reasons: may, if not all of its grounds are there."""
+    speaking = [one for one in reasons if one.ground in row.grounds and not (row.agreed and one.alone)]
+    if {one.ground for one in speaking} != row.grounds or surer(row.floor, speaking[0].confidence):
+        return Confidence.MAY
+    return row.agreed or weaker(row.ceiling, speaking[0].confidence)
 
 
 def _order(label: Label) -> tuple[object, ...]:
@@ -139,11 +164,11 @@ def _in_order(reasons: Sequence[Evidence]) -> tuple[Evidence, ...]:
     return tuple(reasons) if len(reasons) == 1 else tuple(sorted(dict.fromkeys(reasons), key=_place))
 
 
-def _place(one: Evidence) -> tuple[object, ...]:
-    return (SURENESS[one.confidence], GROUNDS.index(one.ground), one.reason, one.place)
+def _place(reason: Evidence) -> tuple[object, ...]:
+    return (SURENESS[reason.confidence], GROUNDS.index(reason.ground), reason.reason, reason.place)
 
 
-def unsaid(made: Iterable[Proposal], graph: FlowGraph, bound: Bound, hierarchy: Hierarchy) -> tuple[Proposal, ...]:
+def unsaid(proposals: Iterable[Proposal], graph: FlowGraph, bound: Bound, hierarchy: Hierarchy) -> tuple[Proposal, ...]:
     """Return the proposals that ask something: nobody has spoken of it, and no other one answers the same.
 
     >>> from rosprivacy.analysis.example import ARCHIVE, FILTERED, VIDEO, factory
@@ -160,9 +185,9 @@ def unsaid(made: Iterable[Proposal], graph: FlowGraph, bound: Bound, hierarchy: 
     """
     said = said_of(graph, bound)
     by_element: dict[Identity, list[Proposal]] = defaultdict(list)
-    for one in made:
+    for one in proposals:
         identity = one.label.element.identity
-        if identity not in said or not _is_spoken_of(one, said[identity], hierarchy):
+        if identity not in said or not spoken_of(one.label, said[identity], hierarchy):
             by_element[identity].append(_although(one, said.get(identity, ())))
     return tuple(one for together in by_element.values() for one in together if not _outdone(one, together, hierarchy))
 
@@ -182,7 +207,7 @@ def said_of(graph: FlowGraph, bound: Bound) -> dict[Identity, list[Statement]]:
     return said
 
 
-def spoken_of(label: Label, said: Sequence[Statement], hierarchy: Hierarchy) -> bool:
+def spoken_of(label: Label, statements: Sequence[Statement], hierarchy: Hierarchy) -> bool:
     """Return whether a person has spoken of the element for a kind that it may be about; of a source or leak, of all.
 
     Who says that a node lets one kind out has not said that it lets out no other.
@@ -201,7 +226,7 @@ def spoken_of(label: Label, said: Sequence[Statement], hierarchy: Hierarchy) -> 
         or not label.kind
         or one.role == "only"
         or any(near(label.kind, kind) is not None for kind in one.categories)
-        for one in said
+        for one in statements
         if not (label.role == LEAK and _only_passes_on(one))
     )
 
@@ -211,31 +236,24 @@ def _only_passes_on(statement: Statement) -> bool:
     return statement.role == CONDUIT and statement.glob
 
 
-def _although(one: Proposal, said: Iterable[Statement]) -> Proposal:
+def _although(proposal: Proposal, statements: Iterable[Statement]) -> Proposal:
     """The proposal that an element lets data out, with the glob that says otherwise as its first reason."""
-    glob = next(filter(_only_passes_on, said), None) if one.label.role == LEAK else None
+    glob = next(filter(_only_passes_on, statements), None) if proposal.label.role == LEAK else None
     if glob is None:
-        return one
-    reason = f"your glob at {glob.place} calls {one.label.element.name} a conduit"
-    return one._replace(evidence=(Evidence(one.label, GLOBBED, one.confidence, reason, glob.place), *one.evidence))
-
-
-def _is_spoken_of(one: Proposal, said: Sequence[Statement], hierarchy: Hierarchy) -> bool:
-    """Whether a person has spoken of what is proposed, or of all narrower kinds beside which alone it is proposed."""
-    if spoken_of(one.label, said, hierarchy):
-        return True
-    return all(
-        each.beside and spoken_of(one.label._replace(kind=each.beside), said, hierarchy) for each in one.evidence
+        return proposal
+    reason = f"your glob at {glob.place} calls {proposal.label.element.name} a conduit"
+    return proposal._replace(
+        evidence=(Evidence(proposal.label, GLOBBED, proposal.confidence, reason, glob.place), *proposal.evidence)
     )
 
 
-def _outdone(one: Proposal, together: Sequence[Proposal], hierarchy: Hierarchy) -> bool:
+def _outdone(proposal: Proposal, together: Sequence[Proposal], hierarchy: Hierarchy) -> bool:
     """Whether another proposal for the element answers the same question, and hides less."""
-    label = one.label
-    end_or_conduit = label.role == LEAK and or_passes_on(one, together)
+    label = proposal.label
+    end_or_conduit = label.role == LEAK and or_passes_on(proposal, together)
     if (label.role in (SOURCE, LEAK, DERIVATION) and not end_or_conduit) or len(together) == 1:
         return False
-    others = [each for each in together if each is not one and _related(label, each.label, hierarchy)]
+    others = [each for each in together if each is not proposal and _related(label, each.label, hierarchy)]
 
     def of(*roles: str) -> list[Proposal]:
         return [each for each in others if each.label.role in roles]
@@ -248,7 +266,7 @@ def _outdone(one: Proposal, together: Sequence[Proposal], hierarchy: Hierarchy) 
         return bool(of(SOURCE) or leaks)
     if label.role in (NEVER, MUNDANE):
         return any(map(_of_its_own, of(SENSITIVE)))
-    return label.role == SENSITIVE and not _of_its_own(one) and bool(of(NEVER, MUNDANE))
+    return label.role == SENSITIVE and not _of_its_own(proposal) and bool(of(NEVER, MUNDANE))
 
 
 def or_passes_on(leak: Proposal, together: Iterable[Proposal]) -> bool:
@@ -270,9 +288,9 @@ def or_passes_on(leak: Proposal, together: Iterable[Proposal]) -> bool:
     return by_flows and any(one.label.role == CONDUIT and one.label.kind == leak.label.kind for one in together)
 
 
-def _of_its_own(one: Proposal) -> bool:
+def _of_its_own(proposal: Proposal) -> bool:
     """Whether anything of the channel itself says it, and not only what is beside it."""
-    return any(reason.ground != NEIGHBOUR for reason in one.evidence)
+    return any(reason.ground != NEIGHBOUR for reason in proposal.evidence)
 
 
 def _related(label: Label, other: Label, hierarchy: Hierarchy) -> bool:

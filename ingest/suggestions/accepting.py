@@ -81,23 +81,23 @@ class NewLabel(NamedTuple):
 def accept(
     file: str,
     text: str,
-    named: Sequence[str],
-    who: str,
+    names: Sequence[str],
+    person: str,
     day: str,
     vocabulary: Vocabulary,
-    known: Callable[[str], Collection[tuple[str, str]]] | None = None,
+    findings_under: Callable[[str], Collection[tuple[str, str]]] | None = None,
 ) -> Accepted:
     """Make labels of suggestions.
 
     Parameters
     ----------
-    named
+    names
         Confidences, and names of elements; see ``_chosen``.
-    who, day
+    person, day
         For the note.
     vocabulary
         In whose words the file is written.
-    known
+    findings_under
         Returns the findings under a text of the file: (category, what to tell of it); None if nobody can look for any.
         Asked only if it matters, with all that is accepted and takes nothing away.
 
@@ -110,26 +110,26 @@ def accept(
         If the file cannot be changed without losing something.
     """
     _, comments = taken_apart(file, text)
-    chosen_ones, remarks = _chosen(file, comments, named, vocabulary)
+    chosen_ones, remarks = _chosen(file, comments, names, vocabulary)
     limiting = [one for one in chosen_ones if LIMITING & set(one.said)]
     found = None
-    if limiting and known:
-        others = [_accepted(one, who, day) for one in chosen_ones if one not in limiting]
-        found = known(with_labels(file, text, others, vocabulary).text)
+    if limiting and findings_under:
+        others = [_accepted(one, person, day) for one in chosen_ones if one not in limiting]
+        found = findings_under(with_labels(file, text, others, vocabulary).text)
     allowed = []
     for one in chosen_ones:
         refused = _closing(one, found, vocabulary) if one in limiting else ""
         if refused:
             remarks.append(f"{file}:{one.line}: {shown(one.name)} {refused}")
         else:
-            allowed.append(_accepted(one, who, day))
+            allowed.append(_accepted(one, person, day))
     done = with_labels(file, text, allowed, vocabulary)
     return Accepted(done.text, done.labels, (*remarks, *done.remarks))
 
 
-def _accepted(one: Comment, who: str, day: str) -> NewLabel:
-    note = f"accepted by {who} on {day} ({one.confidence}): {one.why}"
-    return NewLabel(one.section, one.name, one.said, note, one.line)
+def _accepted(comment: Comment, person: str, day: str) -> NewLabel:
+    note = f"accepted by {person} on {day} ({comment.confidence}): {comment.why}"
+    return NewLabel(comment.section, comment.name, comment.said, note, comment.line)
 
 
 def with_labels(file: str, text: str, labels: Sequence[NewLabel], vocabulary: Vocabulary) -> Accepted:
@@ -168,28 +168,30 @@ def with_labels(file: str, text: str, labels: Sequence[NewLabel], vocabulary: Vo
     return Accepted(with_comments(new, [*refusals, *left]), tuple(taken), tuple(remarks))
 
 
-def could_close(said: Mapping[str, Any], known: Iterable[tuple[str, str]], vocabulary: Vocabulary) -> tuple[str, ...]:
+def could_close(
+    label: Mapping[str, Any], findings: Iterable[tuple[str, str]], vocabulary: Vocabulary
+) -> tuple[str, ...]:
     """Return what is told of the known findings that a label could close: those of such data.
 
     Parameters
     ----------
-    said
+    label
         One role and what it names.
-    known
+    findings
         The findings: (category, what to tell of it).
     """
-    if LIMITING.isdisjoint(said):
+    if LIMITING.isdisjoint(label):
         return ()
-    (value,) = said.values()
-    return tuple(told for kind, told in known if overlap(value, [kind], vocabulary) or "only" in said)
+    (value,) = label.values()
+    return tuple(told for kind, told in findings if overlap(value, [kind], vocabulary) or "only" in label)
 
 
-def _closing(comment: Comment, known: Collection[tuple[str, str]] | None, vocabulary: Vocabulary) -> str:
+def _closing(comment: Comment, findings: Collection[tuple[str, str]] | None, vocabulary: Vocabulary) -> str:
     """Why what takes data away is not accepted: a finding is known that it could close, or nobody has looked."""
-    if known is None:
+    if findings is None:
         hint = "name the policies as well, so that findings that it could close are known"
         return f"would take data away; {hint}"
-    closed = could_close(comment.said, known, vocabulary)
+    closed = could_close(comment.said, findings, vocabulary)
     if not closed:
         return ""
     return (
@@ -282,9 +284,9 @@ def _flow(value: Any) -> Any:
     return value
 
 
-def _check(file: str, old: str, new: str, taken: Iterable[NewLabel], vocabulary: Vocabulary) -> None:
+def _check(file: str, old: str, new: str, labels: Iterable[NewLabel], vocabulary: Vocabulary) -> None:
     """Hold the new text against the old one: nothing is lost, and only the entries that are meant have changed."""
-    touched = {(SECTIONS[comment.section], comment.name) for comment in taken}
+    touched = {(SECTIONS[comment.section], comment.name) for comment in labels}
 
     def others(text: str) -> list[Any]:
         entries = parse_labels(text, vocabulary, name=file).entries
@@ -306,20 +308,20 @@ def _by_hand(file: str, problem: str) -> LabelError:
 
 
 def _chosen(
-    file: str, comments: Sequence[Comment], named: Sequence[str], vocabulary: Vocabulary
+    file: str, comments: Sequence[Comment], names: Sequence[str], vocabulary: Vocabulary
 ) -> tuple[list[Comment], list[str]]:
     """Return the suggestions that are accepted, in the order of the file, and remarks.
 
     Parameters
     ----------
-    named
+    names
         Confidences, of which all that are as sure or surer are meant; names of elements, of which the surest are
         meant; and names with a kind or a role (``/camera=Video``, ``/uplink=leak``), or with ``*`` for all.
     """
-    least = [Confidence(name) for name in named if name in tuple(Confidence)]
+    least = [Confidence(name) for name in names if name in tuple(Confidence)]
     taken: dict[int, Comment] = {}
     problems: list[LabelError] = []
-    for name in dict.fromkeys(name for name in named if name not in tuple(Confidence)):
+    for name in dict.fromkeys(name for name in names if name not in tuple(Confidence)):
         try:
             taken |= {one.line: one for one in _of_element(file, comments, name, vocabulary)}
         except LabelError as error:
@@ -345,9 +347,9 @@ def overlap(value: Any, other: Any, vocabulary: Vocabulary) -> bool:
     return any(not a or not b or vocabulary.hierarchy.overlap(a.name, b.name) is not None for a, b in pairs)
 
 
-def _of_element(file: str, comments: Sequence[Comment], named: str, vocabulary: Vocabulary) -> list[Comment]:
+def _of_element(file: str, comments: Sequence[Comment], choice: str, vocabulary: Vocabulary) -> list[Comment]:
     """The suggestions that are meant by a name, or a name and what it is."""
-    name, _, what = named.rpartition("=") if named.rfind("=") > 0 else (named, "", "")
+    name, _, what = choice.rpartition("=") if choice.rfind("=") > 0 else (choice, "", "")
     every = [one for one in comments if one.name in (name, literal(name) if name.startswith("/") else name)]
     if not every:
         hint = "name an element of a '# suggest:' line, or certain, likely or may"
@@ -365,27 +367,27 @@ def _of_element(file: str, comments: Sequence[Comment], named: str, vocabulary: 
     return named_so
 
 
-def _surest(there: Sequence[Comment]) -> list[Comment]:
+def _surest(comments: Sequence[Comment]) -> list[Comment]:
     """Of what is as sure what takes data away only when it stands alone."""
-    return [one for one in there if not any(_comes_before(other, one) for other in there)]
+    return [one for one in comments if not any(_comes_before(other, one) for other in comments)]
 
 
-def _say_which(name: str, there: Iterable[Comment]) -> str:
-    first = next(iter(there))
+def _say_which(name: str, comments: Iterable[Comment]) -> str:
+    first = next(iter(comments))
     what = _role(first) if _role(first) in (*BRINGS_OR_LETS_OUT[1:], *PASSES_OR_ENDS) else next(iter(_words(first)))
     return f"say which, such as --accept {shown(name)}={shown(what)}, or remove the lines that are wrong"
 
 
-def _alternatives(one: Comment, other: Comment, vocabulary: Vocabulary) -> bool:
+def _alternatives(comment: Comment, other: Comment, vocabulary: Vocabulary) -> bool:
     """Return whether two suggestions of one element are two answers to one question."""
-    if one.line == other.line or one.name != other.name or one.section != other.section:
+    if comment.line == other.line or comment.name != other.name or comment.section != other.section:
         return False
-    ((role, value),), ((second, instead),) = one.said.items(), other.said.items()
+    ((role, value),), ((second, instead),) = comment.said.items(), other.said.items()
     if role == second:
         return role == "source" or (role in ONE_OF_A_KIND and overlap(value, instead, vocabulary))
     sides = [(first in BRINGS_OR_LETS_OUT, first in PASSES_OR_ENDS) for first in (role, second)]
     against = (sides[0] == (True, False) and sides[1] == (False, True)) or (sides[1] == (True, False) and sides[0][1])
-    against = against or ("sensitive" in (role, second) and (one.takes_away or other.takes_away))
+    against = against or ("sensitive" in (role, second) and (comment.takes_away or other.takes_away))
     return against and overlap(value, instead, vocabulary)
 
 

@@ -50,16 +50,16 @@ class Comment(NamedTuple):
         return self.hides and CONDUIT not in self.said
 
 
-def hides(said: Iterable[str]) -> bool:
+def hides(roles: Iterable[str]) -> bool:
     """Return whether a wrong label of these roles could hide a leak, or that nobody has looked.
 
     >>> hides({"leak": ["Video"]}), hides({"conduit": ["Video"]})
     (False, True)
     """
-    return not ADDING.issuperset(said)
+    return not ADDING.issuperset(roles)
 
 
-def comment_of(one: Proposal) -> str:
+def comment_of(proposal: Proposal) -> str:
     """Return the line of a proposal.
 
     >>> from rosprivacy.analysis.model import Element, Place
@@ -69,10 +69,10 @@ def comment_of(one: Proposal) -> str:
     >>> print(comment_of(Proposal(label, Confidence.LIKELY, (why,))))
     # suggest: likely {"nodes": {"/camera": {"source": ["Video"]}}} because type sensor_msgs/msg/Image of /image
     """
-    at = written(one.label)
+    at = written(proposal.label)
     said = json.dumps({at.section: {at.name: at.said}})
-    reasons = "; ".join(dict.fromkeys(cut(printable(reason.reason), LONGEST_LINE) for reason in one.evidence))
-    return f"{MARK}{one.confidence} {said}{BECAUSE}{blanked(reasons, '?')}"
+    reasons = "; ".join(dict.fromkeys(cut(printable(reason.reason), LONGEST_LINE) for reason in proposal.evidence))
+    return f"{MARK}{proposal.confidence} {said}{BECAUSE}{blanked(reasons, '?')}"
 
 
 def taken_apart(file: str, text: str) -> tuple[str, tuple[Comment, ...]]:
@@ -139,9 +139,9 @@ def refusal_key(label: WrittenLabel) -> str:
     return json.dumps({label.section: {label.name: label.said}}, sort_keys=True)
 
 
-def refusal(label: WrittenLabel, who: str, day: str) -> str:
+def refusal(label: WrittenLabel, person: str, day: str) -> str:
     """Return the line that remembers a no."""
-    return f"{REFUSED}{refusal_key(label)} by {blanked(cut(printable(who), LONGEST_LINE), '?')} on {day}"
+    return f"{REFUSED}{refusal_key(label)} by {blanked(cut(printable(person), LONGEST_LINE), '?')} on {day}"
 
 
 def refusals_in(text: str) -> frozenset[str]:
@@ -178,9 +178,9 @@ def without_refusals(text: str) -> tuple[str, list[str]]:
     return "\n".join(kept), refusals
 
 
-def with_refusals(text: str, more: Iterable[str]) -> str:
+def with_refusals(text: str, lines_to_add: Iterable[str]) -> str:
     """Return a text with lines that remember a no at its end, each once."""
     rest, old = without_refusals(text)
-    lines = list(dict.fromkeys([*old, *more]))
+    lines = list(dict.fromkeys([*old, *lines_to_add]))
     end = "\r\n" if "\r\n" in text else "\n"
     return rest + (end if rest and not rest.endswith("\n") and lines else "") + "".join(f"{one}{end}" for one in lines)

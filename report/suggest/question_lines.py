@@ -132,7 +132,7 @@ def keys_line(question: Question, picked: Collection[int], keys: Collection[str]
     return f"  {of}{', '.join([*said, *more, *letters])}"
 
 
-def _list_line(rows: int, out: Collection[int], said: str) -> str:
+def _list_line(rows: int, out: Collection[int], key: str) -> str:
     """How a list is confirmed.
 
     >>> _list_line(3, {1}, "Video at most").partition(", o ")[0]
@@ -140,7 +140,7 @@ def _list_line(rows: int, out: Collection[int], said: str) -> str:
     """
     left = rows - len(out)
     without = f"without {' '.join(ascii_uppercase[at] for at in sorted(out))}: " if out else ""
-    confirm = f"{left} and Enter for {said} in all {left}, " if left > 1 else ""
+    confirm = f"{left} and Enter for {key} in all {left}, " if left > 1 else ""
     return f"  {without}{confirm}A-Z take out or put back, o not as a list, s later, q stop, ? help"
 
 

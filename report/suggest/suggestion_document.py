@@ -82,20 +82,20 @@ def suggestions_document(
     return document
 
 
-def _proposal(one: Proposal, *, is_open: bool, by_hand: bool) -> ProposalEntry:
-    at = written(one.label)
+def _proposal(proposal: Proposal, *, is_open: bool, by_hand: bool) -> ProposalEntry:
+    at = written(proposal.label)
     return {
-        "robot": one.label.element.robot,
+        "robot": proposal.label.element.robot,
         "section": at.section,
         "name": at.name,
-        "role": one.label.role,
-        "kind": one.label.kind,
-        "confidence": str(one.confidence),
+        "role": proposal.label.role,
+        "kind": proposal.label.kind,
+        "confidence": str(proposal.confidence),
         "open": is_open,
-        "hides": one.label.role in HIDING,
+        "hides": proposal.label.role in HIDING,
         "by_hand": by_hand,
         "label": at.said,
-        "evidence": [_evidence(reason) for reason in one.evidence],
+        "evidence": [_evidence(reason) for reason in proposal.evidence],
     }
 
 

@@ -63,16 +63,16 @@ def _not_looked_at(document: SuggestionsDocument) -> Iterator[str]:
     unplaced = [f"{shown(one['uses'])} ({shown(one['file'])}:{one['line']})" for one in document["unplaced"]]
     if document["of_others"]:
         what = counted(len(document["of_others"]), "folder")
-        told = _some([shown(one) for one in document["of_others"]])
+        told = _first_few([shown(one) for one in document["of_others"]])
         yield f"{what} with code of others that is not looked at (name it with --source to have it read): {told}"
     if unread:
-        yield f"{counted(len(unread), 'problem')} of source code that could not be read: {_some(unread)}"
+        yield f"{counted(len(unread), 'problem')} of source code that could not be read: {_first_few(unread)}"
     if unplaced:
         what = counted(len(unplaced), "use")
-        yield f"{what} of libraries in code that belongs to no node that is known here: {_some(unplaced)}"
+        yield f"{what} of libraries in code that belongs to no node that is known here: {_first_few(unplaced)}"
 
 
-def _some(texts: Sequence[str]) -> str:
+def _first_few(texts: Sequence[str]) -> str:
     more = f" and {len(texts) - SHOWN} more (--format json has all)" if len(texts) > SHOWN else ""
     return ", ".join(texts[:SHOWN]) + more
 
@@ -102,10 +102,10 @@ def notice_lines(notices: Iterable[NoticeEntry]) -> Iterator[str]:
         yield f"notice: {shown(one['file'])}:{one['line']}: {printable(one['message'])}"
 
 
-def _robots(robots: Iterable[RobotEntry], asked: Container[str]) -> Iterator[str]:
+def _robots(robots: Iterable[RobotEntry], names: Container[str]) -> Iterator[str]:
     """What robots that are asked about stand for, where that is more than themselves."""
     for one in robots:
-        if one["robot"] in asked:
+        if one["robot"] in names:
             model = f" of model {shown(one['model'])}" if one["model"] else ""
             alike = f", which stands for {len(one['alike'])} that are alike" if len(one["alike"]) > 1 else ""
             if model or alike:

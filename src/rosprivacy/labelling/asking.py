@@ -39,17 +39,17 @@ if TYPE_CHECKING:
 FROM_AND_TO = 2
 
 
-def asked_now(found: Suggested) -> tuple[Question, ...]:
+def asked_now(suggestions: Suggested) -> tuple[Question, ...]:
     """Return what a person is asked under the labels that there are; no list of channels would close a finding."""
-    result = found.result
+    result = suggestions.result
     graph = result.analysis.graph
     hierarchy = result.vocabulary.hierarchy
     read = traffic(graph, result.bound)
-    made = questions(found.proposals, result.analysis, result.bound, read, hierarchy, refused_in(result).says)
+    made = questions(suggestions.proposals, result.analysis, result.bound, read, hierarchy, refused_in(result).says)
     return tuple(_without_closing(one, result) for one in made)
 
 
-def with_answer(file: str, question: Question, key: str, who: str, day: str, settings: Settings) -> Written:
+def with_answer(file: str, question: Question, key: str, person: str, day: str, settings: Settings) -> Written:
     """Return a label file with what a person has said of all rows of a question.
 
     Raises
@@ -59,17 +59,17 @@ def with_answer(file: str, question: Question, key: str, who: str, day: str, set
     """
     text, vocabulary = _begun(file, settings)
     if key == NO:
-        lines = [refusal(label, who, day) for row in question.rows for label in row.refused]
+        lines = [refusal(label, person, day) for row in question.rows for label in row.refused]
         new = with_refusals(text, lines)
         check_room(file, text, new, vocabulary)
         return Written(file, new, len(lines))
     done = with_labels(
-        file, text, list(_labels(question, key, f"answered by {who} on {day}{_in_list(question)}")), vocabulary
+        file, text, list(_labels(question, key, f"answered by {person} on {day}{_in_list(question)}")), vocabulary
     )
     return Written(file, done.text, done.count, done.remarks)
 
 
-def with_label(file: str, label: WrittenLabel, who: str, day: str, settings: Settings) -> Written:
+def with_label(file: str, label: WrittenLabel, person: str, day: str, settings: Settings) -> Written:
     """Return a label file with a label that a person has typed.
 
     Raises
@@ -78,7 +78,7 @@ def with_label(file: str, label: WrittenLabel, who: str, day: str, settings: Set
         If the file is no label file, or cannot be changed without losing something.
     """
     text, vocabulary = _begun(file, settings)
-    done = with_labels(file, text, [NewLabel(*label, f"typed by {who} on {day}")], vocabulary)
+    done = with_labels(file, text, [NewLabel(*label, f"typed by {person} on {day}")], vocabulary)
     return Written(file, done.text, done.count, done.remarks)
 
 

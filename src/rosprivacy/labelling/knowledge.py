@@ -10,10 +10,9 @@ from collections import defaultdict
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.model import MessageType
-from rosprivacy.analysis.suggesting.by_library import library_evidence
 from rosprivacy.analysis.suggesting.channels import Rules, carried_kinds, traffic
 from rosprivacy.analysis.suggesting.evidence import SOURCE
-from rosprivacy.analysis.suggesting.nodes import broader_sources, of_nodes, of_the_rest, unprompted
+from rosprivacy.analysis.suggesting.nodes import node_evidence
 from rosprivacy.analysis.suggesting.open_elements import of_channels, of_open
 from rosprivacy.analysis.suggesting.packages import by_package_types, nodes_of_packages, package_evidence
 from rosprivacy.ingest.packages.package_folders import read_packages, rests_on
@@ -132,7 +131,7 @@ def what_is_known(vocabulary: Vocabulary, settings: Settings, files: UserFiles =
 
 
 def evidence(
-    analysis: Analysis, bound: Bound, known: Known, uses: Mapping[int, Sequence[NodeUse]]
+    analysis: Analysis, bound: Bound, knowledge: Known, uses: Mapping[int, Sequence[NodeUse]]
 ) -> Iterator[Evidence]:
     """Yield what every provider finds.
 
@@ -143,10 +142,10 @@ def evidence(
     """
     graph, open_ = analysis.graph, analysis.open
     ends = traffic(graph, bound)
-    of_packages = nodes_of_packages(graph, bound.types, known.packages)
-    yield from lasting_evidence(graph, bound, ends, of_packages, known, uses)
-    yield from of_open(open_, graph, bound, ends, known.rules)
-    yield from by_package_types(open_, graph, bound, of_packages, known.rules)
+    of_packages = nodes_of_packages(graph, bound.types, knowledge.packages)
+    yield from lasting_evidence(graph, bound, ends, of_packages, knowledge, uses)
+    yield from of_open(open_, graph, bound, ends, knowledge.rules)
+    yield from by_package_types(open_, graph, bound, of_packages, knowledge.rules)
 
 
 def lasting_evidence(
@@ -154,22 +153,16 @@ def lasting_evidence(
     bound: Bound,
     ends: Traffic,
     of_packages: Sequence[NodeOfPackage],
-    known: Known,
+    knowledge: Known,
     uses: Mapping[int, Sequence[NodeUse]],
 ) -> Iterator[Evidence]:
     """Yield what is found whatever a person has said: of what is bound to the graph, only types are looked at."""
-    rules = known.rules
+    rules = knowledge.rules
     clues = carried_kinds(graph, bound, rules)
-    found = [
-        *of_nodes(graph, bound, ends, clues, rules),
-        *unprompted(graph, ends, rules.names),
-        *package_evidence(graph, of_packages),
-        *library_evidence(graph, bound, ends, clues, uses, rules, known.libraries),
-    ]
-    yield from found
-    yield from broader_sources(found, rules)
-    sources = {one.label.element for one in found if one.label.role == SOURCE}
-    yield from of_the_rest(graph, bound, ends, rules, sources)
+    by_packages = tuple(package_evidence(graph, of_packages))
+    yield from by_packages
+    sources = {one.label.element for one in by_packages if one.label.role == SOURCE}
+    yield from node_evidence(graph, bound, ends, clues, rules, uses, knowledge.libraries, sources)
     yield from of_channels(graph, clues)
 
 

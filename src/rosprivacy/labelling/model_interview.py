@@ -128,7 +128,7 @@ class Asked(NamedTuple):
 def asked_elements(
     graph: FlowGraph,
     bound: Bound,
-    known: Traffic,
+    flows: Traffic,
     places: Mapping[Identity, int],
     comments: Mapping[tuple[str, str], tuple[str, ...]],
 ) -> tuple[Asked, ...]:
@@ -163,8 +163,8 @@ def asked_elements(
             whole(graph.elements[parts[identity][0]]),
             _fit(identity[2]),
             types(identity),
-            channels(identity, known.writes),
-            channels(identity, known.reads),
+            channels(identity, flows.writes),
+            channels(identity, flows.reads),
             tuple(map(_fit, comments.get(identity[1:], ())[:COMMENTS])),
         )
         for identity in wanted
@@ -212,13 +212,13 @@ class Mask:
         """Return a text with the words in place of their placeholders, each as it was first written."""
         return _PLACEHOLDER.sub(lambda found: self._meant.get(found[0], found[0]), text)
 
-    def _hidden(self, found: re.Match[str]) -> str:
-        word = found[0].casefold()
+    def _hidden(self, match: re.Match[str]) -> str:
+        word = match[0].casefold()
         if word in self._words:
-            return found[0]
+            return match[0]
         if word not in self._placeholders:
             made = f"x{len(self._placeholders) + 1}"
-            self._placeholders[word], self._meant[made] = made, found[0]
+            self._placeholders[word], self._meant[made] = made, match[0]
         return self._placeholders[word]
 
 
@@ -237,9 +237,9 @@ def common_words(rules: NameRules, types: Iterable[str]) -> frozenset[str]:
     ['laser', 'msg', 'msgs', 'raw', 'scan', 'sensor']
     """
     of_types = (word.lower() for name in types for word in _WORD.findall(name) if word.isalpha())
-    phrases = (rules.carries, rules.nothing, rules.brings_in, rules.lets_out, rules.silent, rules.wanted)
+    phrases = (rules.carries, rules.nothing, rules.brings_in, rules.lets_out, rules.silent, rules.unprompted)
     of_rules = (word for some in phrases for phrase in some for word in phrase)
-    return frozenset([*of_rules, *rules.neutral, *rules.reworked, *rules.simulated, *of_types])
+    return frozenset([*of_rules, *rules.neutral, *rules.simulated, *of_types])
 
 
 class Question(NamedTuple):
@@ -249,14 +249,14 @@ class Question(NamedTuple):
     body: bytes
 
 
-def questions(elements: Iterable[Asked], kinds: Sequence[Category], model: str, most: int) -> tuple[Question, ...]:
+def questions(elements: Iterable[Asked], kinds: Sequence[Category], model: str, limit: int) -> tuple[Question, ...]:
     """Return all requests, in the order of the elements.
 
     Parameters
     ----------
     model
         Its name, as the server knows it.
-    most
+    limit
         How many requests there may be.
 
     Raises
@@ -273,7 +273,7 @@ def questions(elements: Iterable[Asked], kinds: Sequence[Category], model: str, 
             size = 0
         parts[-1][f"n{number}"] = element
         size += length
-    if len(parts) > most:
+    if len(parts) > limit:
         what = f"there are {counted(sum(map(len, parts)), 'element')} to ask about, in {counted(len(parts), 'request')}"
         raise InputError("--model", 0, what, f"allow them with --model-requests {len(parts)}, or label some by hand")
     return tuple(Question(part, _body(part, kinds, model)) for part in parts)
@@ -311,13 +311,13 @@ def _object(properties: dict[str, Any]) -> dict[str, Any]:
     return {"type": "object", "additionalProperties": False, "required": required, "properties": properties}
 
 
-def _entry(key: str, asked: Asked) -> dict[str, Any]:
+def _entry(key: str, element: Asked) -> dict[str, Any]:
     writes, reads = (
         [{"name": name, "types": types} if types else {"name": name} for name, types in ends]
-        for ends in (asked.writes, asked.reads)
+        for ends in (element.writes, element.reads)
     )
-    more = {"types": asked.types, "writes": writes, "reads": reads, "comments": asked.comments}
-    entry = {"id": key, "is": asked.element.kind, "name": asked.name}
+    more = {"types": element.types, "writes": writes, "reads": reads, "comments": element.comments}
+    entry = {"id": key, "is": element.element.kind, "name": element.name}
     return entry | {name: some for name, some in more.items() if some}
 
 
@@ -330,7 +330,7 @@ class Judged(NamedTuple):
 
 def judged(
     answers: Iterable[Any],
-    asked: Mapping[str, Asked],
+    elements: Mapping[str, Asked],
     kinds: Collection[str],
     model: str,
     shown: Callable[[str], str] = str,
@@ -341,7 +341,7 @@ def judged(
     ----------
     answers
         Values of JSON, of any form.
-    asked
+    elements
         What was sent, by id.
     shown
         What gives back the names behind placeholders.
@@ -359,14 +359,14 @@ def judged(
     dropped: Counter[str] = Counter()
     of_elements: Counter[str] = Counter()
     for answer in answers:
-        wrong = _wrong(answer, asked, kinds)
-        quoted = None if wrong else _quoted(answer["quote"], asked[answer["id"]])
+        wrong = _wrong(answer, elements, kinds)
+        quoted = None if wrong else _quoted(answer["quote"], elements[answer["id"]])
         if wrong or quoted is None:
             dropped[wrong or NO_QUOTE] += 1
             continue
         what, text = quoted
         to = answer["to"] if answer["role"] == DERIVATION else ""
-        label = Label(asked[answer["id"]].element, answer["role"], answer["kind"], to=to)
+        label = Label(elements[answer["id"]].element, answer["role"], answer["kind"], to=to)
         reason = f"language model {model}, by {shown(answer['quote'])!r} in the {what} {shown(text)}"
         made = Evidence(label, MODEL, Confidence.MAY, reason, Place(f"model:{model}", 0))
         if made in evidence:
@@ -379,7 +379,7 @@ def judged(
     return Judged(tuple(evidence), dropped)
 
 
-def _wrong(answer: Any, asked: Mapping[str, Asked], kinds: Collection[str]) -> str:
+def _wrong(answer: Any, elements: Mapping[str, Asked], kinds: Collection[str]) -> str:
     """Why an answer is none of the closed lists; empty if it is."""
     if (
         not isinstance(answer, dict)
@@ -387,9 +387,9 @@ def _wrong(answer: Any, asked: Mapping[str, Asked], kinds: Collection[str]) -> s
         or not all(isinstance(answer[key], str) for key in KEYS)
     ):
         return NO_FORM
-    if answer["id"] not in asked:
+    if answer["id"] not in elements:
         return NO_ELEMENT
-    if answer["role"] not in asked[answer["id"]].roles:
+    if answer["role"] not in elements[answer["id"]].roles:
         return NO_ROLE
     derived = answer["role"] == DERIVATION
     if answer["kind"] not in kinds or (derived and (answer["to"] not in kinds or answer["to"] == answer["kind"])):
@@ -397,11 +397,11 @@ def _wrong(answer: Any, asked: Mapping[str, Asked], kinds: Collection[str]) -> s
     return ""
 
 
-def _quoted(quote: str, asked: Asked) -> tuple[str, str] | None:
+def _quoted(quote: str, element: Asked) -> tuple[str, str] | None:
     """What a quote was taken from, word for word; None if from nothing that was sent of the element."""
     if not _SAYS_SOMETHING.search(quote):
         return None
-    return next(((what, text) for what, text in asked.texts() if quote in text), None)
+    return next(((what, text) for what, text in element.texts() if quote in text), None)
 
 
 class Asking(NamedTuple):

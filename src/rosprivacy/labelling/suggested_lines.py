@@ -50,7 +50,7 @@ HINT = "see whether it is still so"
 LOOK = "name the policies as well, and what of it is on the way is told"
 
 
-def with_suggestions(file: str, found: Suggested) -> Written:
+def with_suggestions(file: str, suggestions: Suggested) -> Written:
     """Return a label file with what is suggested, in place of what was suggested before.
 
     Raises
@@ -60,9 +60,9 @@ def with_suggestions(file: str, found: Suggested) -> Written:
     LabelError
         If the file has no room for comments, as JSON has none.
     """
-    vocabulary = found.result.vocabulary
+    vocabulary = suggestions.result.vocabulary
     text = text_of(file)
-    comments = [comment_of(one) for one in found.proposals if one.label not in found.by_hand]
+    comments = [comment_of(one) for one in suggestions.proposals if one.label not in suggestions.by_hand]
     new = with_comments(taken_apart(file, text)[0], comments)
     check_room(file, text, new, vocabulary)
     return Written(file, new, len(comments))
@@ -85,7 +85,7 @@ def check_room(file: str, text: str, new: str, vocabulary: Vocabulary) -> None:
 
 def with_accepted(
     labels: tuple[str, ...],
-    named: Sequence[str],
+    names: Sequence[str],
     by: str | None,
     settings: Settings,
     policies: tuple[str, ...] = (),
@@ -96,7 +96,7 @@ def with_accepted(
     ----------
     policies
         Without them no findings are known, and so nothing is accepted that takes data away.
-    named
+    names
         Confidences and names of elements.
     by
         Who accepts them; by default the author of the file.
@@ -124,7 +124,7 @@ def with_accepted(
     def known(new: str) -> list[tuple[str, str]]:
         return [(one.category, one_line(one)) for one in result(new).analysis.findings]
 
-    done = accept(file, text, named, who, today(os.environ), vocabulary, known if policies else None)
+    done = accept(file, text, names, who, today(os.environ), vocabulary, known if policies else None)
     new_data = brings(done.labels)
     told: Iterable[str] = ()
     if new_data and policies:
@@ -249,13 +249,13 @@ def _limits_said(accepted: Sequence[NewLabel], files: Iterable[Labels], vocabula
             yield f"{file.file}: {what} is accepted, and such data may be taken away by {', '.join(there)}; {LOOK}"
 
 
-def _limits(said: Statement, label: NewLabel, vocabulary: Vocabulary) -> bool:
+def _limits(statement: Statement, label: NewLabel, vocabulary: Vocabulary) -> bool:
     """Whether a statement may take away data that a label is about."""
-    if said.role == "only":
+    if statement.role == "only":
         kinds = [vocabulary.find(kind) for kind in _kinds(label)]
-        through = set(said.categories)
+        through = set(statement.categories)
         return any(not kind or not through & set(vocabulary.hierarchy.ancestors[kind.name]) for kind in kinds)
-    return not said.categories or overlap(list(said.categories), _kinds(label), vocabulary)
+    return not statement.categories or overlap(list(statement.categories), _kinds(label), vocabulary)
 
 
 def _kinds(label: NewLabel) -> list[str]:

@@ -144,7 +144,7 @@ def suggested(
 
 
 def suggested_by(
-    known: Known, result: Result, sources: Sequence[str] = (), interview: Interview | None = None
+    knowledge: Known, result: Result, sources: Sequence[str] = (), interview: Interview | None = None
 ) -> Suggested:
     """Return what could be said of the elements of an answer, by what is known; parameters as of ``suggest_labels``.
 
@@ -156,7 +156,7 @@ def suggested_by(
     found = with_findings(result)
     basis = basis_of(result, sources)
     places = basis.places
-    said = evidence(result.analysis, basis.bound, known, basis.code.uses)
+    said = evidence(result.analysis, basis.bound, knowledge, basis.code.uses)
     listed = _not_by_code_alone(said, result)
     asked = asked_by(chain(listed, interview.evidence(basis) if interview else ()), result, found, refused_in(result))
     by_hand = frozenset(one.label for one in asked if closes_finding(one.label, found))
@@ -165,32 +165,32 @@ def suggested_by(
         frozenset(places),
         by_hand,
         result,
-        (*known.files, *(interview.rests_on if interview else ())),
+        (*knowledge.files, *(interview.rests_on if interview else ())),
         interview.entry() if interview else None,
-        tuple(use for use in basis.code.unplaced if known.libraries.speaks(use)),
+        tuple(use for use in basis.code.unplaced if knowledge.libraries.speaks(use)),
         basis.code.problems,
         basis.code.of_others,
         (
-            *replacements(known.packages),
-            *_named_alike(basis.code.local, known.libraries),
+            *replacements(knowledge.packages),
+            *_named_alike(basis.code.local, knowledge.libraries),
             *outdated_reasons(result.analysis.graph, result.bound),
         ),
     )
 
 
 def asked_by(
-    said: Iterable[Evidence], result: Result, found: Collection[str], refused: Refused
+    evidence: Iterable[Evidence], result: Result, categories: Collection[str], refused: Refused
 ) -> tuple[Proposal, ...]:
     """Return what a person is asked of what evidence says; of each element it depends on its own evidence alone.
 
     Parameters
     ----------
-    found
+    categories
         As ``with_findings`` returns.
     refused
         What a person has said no to.
     """
-    made = proposals(said, found)
+    made = proposals(evidence, categories)
     if any(refused.of_robots.values()):
         reached = reached_kinds(result.analysis)
         made = tuple(one for one in made if not refused.silences(one.label, reached))
@@ -211,7 +211,7 @@ def basis_of(result: Result, sources: Sequence[str] = ()) -> Basis:
 
 
 def in_review_order(
-    asked: Sequence[Proposal], places: Mapping[Identity, int], categories: Mapping[str, Category]
+    proposals: Sequence[Proposal], places: Mapping[Identity, int], categories: Mapping[str, Category]
 ) -> tuple[Proposal, ...]:
     """Return proposals in the order in which a person reviews them (rule S11).
 
@@ -219,13 +219,13 @@ def in_review_order(
     data that weigh most.
     """
 
-    def place(one: Proposal) -> tuple[int, bool, int, Weight]:
-        label = one.label
+    def place(proposal: Proposal) -> tuple[int, bool, int, Weight]:
+        label = proposal.label
         at = places.get(label.element.identity, NOT_OPEN)
         weight = categories[label.to or label.kind or TOP].weight
-        return at, label.role not in (SOURCE, LEAK), SURENESS[one.confidence], weight
+        return at, label.role not in (SOURCE, LEAK), SURENESS[proposal.confidence], weight
 
-    return tuple(sorted(asked, key=place))  # stable: by element, role and kind within
+    return tuple(sorted(proposals, key=place))  # stable: by element, role and kind within
 
 
 def _named_alike(local: Iterable[Local], libraries: LibraryRules) -> Iterator[Diagnostic]:
@@ -237,25 +237,25 @@ def _named_alike(local: Iterable[Local], libraries: LibraryRules) -> Iterator[Di
         yield Diagnostic(one.use.place, Severity.NOTICE, f"{what}; label the node by hand if the library is meant")
 
 
-def _with_types(bound: Bound, said: Mapping[int, tuple[MessageType, ...]]) -> Bound:
+def _with_types(bound: Bound, types: Mapping[int, tuple[MessageType, ...]]) -> Bound:
     """What is bound to the graph, with the types that source code names for its channels: for suggestions only."""
-    return replace(bound, types={at: (*bound.types.get(at, ()), *said.get(at, ())) for at in {*bound.types, *said}})
+    return replace(bound, types={at: (*bound.types.get(at, ()), *types.get(at, ())) for at in {*bound.types, *types}})
 
 
-def _not_by_code_alone(said: Iterable[Evidence], result: Result) -> Iterator[Evidence]:
+def _not_by_code_alone(evidence: Iterable[Evidence], result: Result) -> Iterator[Evidence]:
     """Put no channel into a list by types that only code names: it may be a test, and others may write another type."""
     typed = {result.analysis.graph.elements[vertex].identity for vertex in result.bound.types}
-    for one in said:
+    for one in evidence:
         by_code = one.ground == TYPE and one.family and one.label.element.identity not in typed
         yield one._replace(family="") if by_code else one
 
 
-def _once(made: tuple[Proposal, ...], result: Result) -> Iterable[Proposal]:
+def _once(proposals: tuple[Proposal, ...], result: Result) -> Iterable[Proposal]:
     """Proposals without those for the second of robots that are alike: the first stands for all (rule S10)."""
     if result.fleet is None:
-        return made
+        return proposals
     second = result.fleet.likeness.second
-    return (one for one in made if one.label.element.robot not in second)
+    return (one for one in proposals if one.label.element.robot not in second)
 
 
 def with_findings(result: Result) -> frozenset[str]:

@@ -50,12 +50,12 @@ class Suggester:
 
     Parameters
     ----------
-    known
+    knowledge
         What suggestions are made by.
     """
 
-    def __init__(self, known: Known) -> None:
-        self.known = known
+    def __init__(self, knowledge: Known) -> None:
+        self.known = knowledge
         self._last: _Lasting | None = None
 
     def under(self, result: Result, order: Mapping[Shown, Behind]) -> Suggestions:
@@ -83,8 +83,8 @@ class Suggester:
 class Suggestions:
     """What could be said of the elements of one answer; made by ``Suggester.under``."""
 
-    def __init__(self, known: Known, lasting: _Lasting, result: Result, order: Mapping[Shown, Behind]) -> None:
-        self._known, self._lasting, self._result, self._order = known, lasting, result, order
+    def __init__(self, knowledge: Known, lasting: _Lasting, result: Result, order: Mapping[Shown, Behind]) -> None:
+        self._known, self._lasting, self._result, self._order = knowledge, lasting, result, order
 
     def of(self, identity: Identity) -> tuple[Proposal, ...]:
         """Return what could be said of one element."""

@@ -1,4 +1,4 @@
-"""What is asked about although nothing names it: a broader kind beside a narrower one, and nodes that get nothing."""
+"""What is asked about although nothing names it: nodes that get nothing."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ from rosprivacy.settings import Settings
 from tests.helpers.fleet_files import policy
 
 OPERATED = ("OperatorInput", "may")
-SPEECH, VIDEO = {"SpeechTranscript": "may", "CommunicationContent": "may"}, {"Video": "may"}
 
 
 @pytest.fixture(autouse=True)
@@ -28,30 +27,6 @@ def sources(node: str, label: str = "", rules: str = "", reader: str = "/m</w") 
     found = suggest_labels(("p.xml",), ("l.yaml",), Settings(), UserFiles(rules=("own.yaml",))).proposals
     own = (one for one in found if one.label.element.name == node.partition(">")[0])
     return {one.label.kind: str(one.confidence) for one in own if one.label.role == "source"}
-
-
-@pytest.mark.parametrize(
-    ("node", "named", "rules", "expected"),
-    [
-        ("speech_recognition", "", "", SPEECH),
-        ("webcam", "", "", VIDEO),  # of which no broader kind is asked about
-        ("webcam", "", "broadened: [PersonImage]", VIDEO | {"PersonImage": "may"}),
-        ("speech_recognition", "CommunicationContent", "", {}),
-        ("speech_recognition", "SpeechTranscript", "", {}),
-        ("speech_recognition", "Video", "", SPEECH),  # other sources of the node are asked about all the same
-        (
-            "desk",
-            "",
-            "brings_in: [{words: [desk], kinds: [SpeechTranscript, VoiceCommand], why: ours}]",
-            SPEECH | {"VoiceCommand": "may"},
-        ),
-    ],
-)
-def test_beside_a_narrower_kind_the_broader_one_is_asked_about(
-    node: str, named: str, rules: str, expected: dict[str, str]
-) -> None:
-    label = f"nodes: {{/{node}: {{source: [{named}]}}}}" if named else ""
-    assert sources(f"/{node}>/w", label, rules) == expected
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""What libraries say of nodes, by what these write and read: the rules of ``by_library.py``."""
+"""What libraries say of nodes, by what these write and read: the rules of ``nodes.py``."""
 
 from __future__ import annotations
 
@@ -66,19 +66,18 @@ HEARD = {"source CommunicationContent may", "source Location may"}
         ("Twist", "", ["input('?')"], {"source OperatorInput may"}),  # often a question when it starts
         # 2. What never comes into ROS is told by what is made of it.
         ("Found", "", [CAMERA], {"source HouseholdObject may", *SEEN}),
-        ("Skeleton2D", "", [CAMERA], {"source BodyPose likely", *SEEN}),  # as its type says
+        ("Skeleton2D", "", [CAMERA], {"source BodyPose may", *SEEN}),
         ("Twist", "", [CAMERA], SEEN),  # it may follow somebody
         ("Twist", "Image", [CAMERA], set()),  # that may be made of what it reads
         ("String", "", [CAMERA], {"source Video may", *SEEN}),
         ("Vector3", "", ["pynmea2.parse(x)"], {"source GnssPosition may"}),  # three numbers, of any sort
         # 3. What makes one kind of another.
         ("Skeleton2D", "Image", [POSE], {"derivation Video BodyPose may"}),  # of pictures it finds what it was taught
-        ("Skeleton2D", "", [CAMERA, POSE], {"source BodyPose likely", "source BodyPose may", *SEEN}),  # 2: by the type
+        ("Skeleton2D", "", [CAMERA, POSE], {"source BodyPose may", *SEEN}),
         ("Skeleton2D", "", [POSE], {"source BodyPose may"}),
         ("Skeleton2D", "Bool", [POSE], {"derivation Video BodyPose may"}),
         ("Twist", "Image", [POSE], set()),
-        ("String", "", [MICROPHONE, "vosk.Model()"],
-         {"source SpeechTranscript may", "source VoiceCommand may", *HEARD}),
+        ("String", "", [MICROPHONE, "vosk.Model()"], {"source Voice may", *HEARD}),
         ("Skeleton2D", "Image", [CAMERA, POSE], {"derivation Video BodyPose may"}),  # and no source of it
         ("String", "Image", ["onnxruntime.InferenceSession('x')"], set()),  # may twice is nothing
         ("Bool", "Image", ["face_recognition.face_locations(x)"], {"derivation Video PersonDetection may"}),  # a flag
@@ -146,7 +145,7 @@ def test_a_library_that_makes_one_of_two_kinds_says_the_broader_one() -> None:
     """3. A recogniser of speech writes a transcript or a command: which, its code does not say."""
     kinds = of_node("speech_recognition", "w", MICROPHONE, "vosk.Model()")
     assert kinds["CommunicationContent"] == "likely"
-    assert kinds["SpeechTranscript"] == kinds["VoiceCommand"] == "may"
+    assert not {"SpeechTranscript", "VoiceCommand"} & kinds.keys()
 
 
 @pytest.mark.parametrize(
@@ -201,19 +200,6 @@ def test_of_a_broker_nobody_knows_what_it_gets(call: str) -> None:
     assert "leak PersonalData may" in said("", "Image", f"paho.mqtt.client.Client().{call}")
 
 
-@pytest.mark.parametrize(
-    ("calls", "sure"),
-    [
-        (["sqlite3.connect('a.db').execute('select 1').fetchone()"], "may"),  # it asks only
-        (["sqlite3.connect('a.db').execute('x')", "sqlite3.connect('a.db').commit()"], "may"),  # of whom, nobody knows
-        (["firebase_admin.db.reference('/a').get()"], "may"),
-        (["firebase_admin.db.reference('/a').set(x)"], "likely"),
-    ],
-)
-def test_who_only_asks_a_store_may_let_data_out(calls: list[str], sure: str) -> None:
-    assert f"leak PersonalData {sure}" in said("", "Image", *calls)
-
-
 @pytest.mark.parametrize(("name", "sure"), [("n", "likely"), ("fake_camera", "may"), ("video_file_publisher", "may")])
 def test_what_simulates_measures_nothing(name: str, sure: str) -> None:
     """1. A film that is played is taken by the same call as the pictures of a camera."""
@@ -255,75 +241,3 @@ def test_a_detector_finds_what_it_was_taught(topic: str) -> None:
     derived = {(one.label.to, str(one.confidence)) for one in found if one.label.role == "derivation"}
     assert {("PersonDetection", "may"), ("HouseholdObject", "may")} <= derived
     assert {sure for _, sure in derived} == {"may"}
-
-
-def entered(service: str, call: str, server: str = "m") -> set[str]:
-    """What a node brings in by its code that asks for a service of another one."""
-    code = f"import tkinter, os\n{HEAD.format(library='time')}{LINE.format(call)}"
-    Path("n.py").write_text(code, "utf-8")
-    enclave = '<enclave path="/{0}"><profiles><profile ns="/" node="{0}"><services {1}="ALLOW"><service>{2}</service>'
-    ends = "</services></profile></profiles></enclave>"
-    enclaves = "".join(
-        enclave.format(node, role, service) + ends for node, role in (("n", "request"), (server, "reply"))
-    )
-    Path("p.xml").write_text(f'<policy version="0.2.0"><enclaves>{enclaves}</enclaves></policy>', "utf-8")
-    found = suggest_labels(("p.xml",), (), Settings(), UserFiles(sources=("n.py",))).proposals
-    return {one.label.kind for one in found if one.label.role == "source" and one.label.element.name == "/n"}
-
-
-@pytest.mark.parametrize(
-    ("service", "call", "kinds"),
-    [
-        ("order_srv", "input('?')", {"OperatorInput", "DeliveryOrder"}),
-        ("llm/chat", "tkinter.Entry()", {"OperatorInput", "ConversationWithModel", "CommunicationContent"}),
-        ("save_map", "input('?')", {"OperatorInput"}),  # nobody enters a map
-        ("order_srv", "os.getcwd()", {"OperatorInput"}),  # its code does not say that anybody acts on it
-    ],
-)
-def test_what_somebody_enters_goes_into_a_request(service: str, call: str, kinds: set[str]) -> None:
-    """6. By the name of the service that is asked for."""
-    assert entered(service, call) == kinds
-
-
-@pytest.mark.parametrize(
-    ("written", "call", "read", "ordered"),
-    [
-        ("/chatter", "input('?')", "/order_status", True),  # it shows what became of them
-        ("/chatter", "input('?')", "/state", False),
-        ("/chatter", "pass", "/order_status", False),  # nobody acts on it
-        ("/chatter", "input('?')", "/state,/orders", True),
-    ],
-)
-def test_an_order_is_entered_at_one_place_and_told_of_at_others(
-    written: str,
-    call: str,
-    read: str,
-    ordered: bool,  # noqa: FBT001 - a row of the table
-) -> None:
-    """6. By what the channels of a node are called."""
-    Path("n.py").write_text(HEAD.format(library="os") + LINE.format(call if call != "pass" else "0"), "utf-8")
-    Path("p.xml").write_text(policy(f"/n>{written}<{read}", f"/m>/order_status,/orders,/state<{written}"), "utf-8")
-    found = suggest_labels(("p.xml",), (), Settings(), UserFiles(sources=("n.py",))).proposals
-    of_n = [one for one in found if one.label.element.name == "/n" and one.label.role == "source"]
-    assert [str(one.confidence) for one in of_n if one.label.kind == "DeliveryOrder"] == ["may"] * ordered
-
-
-@pytest.mark.parametrize(
-    ("call", "kinds"), [("input('?')", {"OperatorInput", "DeliveryOrder"}), ("os.getcwd()", {"OperatorInput"})]
-)
-def test_who_asks_for_a_service_where_a_name_speaks_of_orders_may_order(call: str, kinds: set[str]) -> None:
-    """6. ``/butler`` is asked to bring what was ordered; the name of the service need not say so."""
-    assert entered("butler", call, "order_manager") == kinds
-    assert entered("butler", call) == kinds - {"DeliveryOrder"}
-
-
-def test_what_a_driver_sends_goes_to_its_device() -> None:
-    for name, sure in (("arm_driver", "may"), ("arm", "likely")):
-        code = HEAD.format(library="supabase").replace("'n'", f"'{name}'") + LINE.format(
-            "supabase.create_client('x').table('t').insert(y)"
-        )
-        Path("n.py").write_text(code, "utf-8")
-        Path("p.xml").write_text(policy(f"/{name}>/x</image", "/m>/image</x"), "utf-8")
-        found = suggest_labels(("p.xml",), (), Settings(), UserFiles(sources=("n.py",))).proposals
-        said = {str(one.confidence) for one in found if one.label.role == "leak" and one.evidence[0].ground == CODE}
-        assert said == {sure}, name
