@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal, TypedDict, overload
 
 from rosprivacy.analysis.errors import InputError
@@ -92,9 +92,11 @@ class Result(Answer):
         """The policy files that a user named, without what they include; none of a fleet and of a database."""
         return () if self.fleet else tuple(policy.file for policy in self.policies)
 
-    def proposals(self) -> Mapping[str, Any] | str:
-        """Return what closes the open findings, a mitigation document; or why there is none, a word."""
-        return self.closes(self) if self.closes and not self.fleet else Answer.proposals(self)
+    def with_proposals(self) -> Answer:
+        """Return the answer with what closes the open findings."""
+        if self.closes is None or self.fleet:
+            return Answer.with_proposals(self)
+        return replace(self, proposals=self.closes(self))
 
     def document(self) -> dict[str, Any]:
         """Return the whole JSON document, ``rosprivacy.analysis/1``; ``to("json")`` is the short one, ``/2``."""
