@@ -79,8 +79,8 @@ class Answer:
         Whether ``hangs_on`` is asked for: of a fleet it takes more than the analysis.
     hangs_on_named
         Whether a user asked for it by name, which a short document waits for.
-    proposals
-        What closes the open findings, a mitigation document; or why there is none, a word; None where nobody asked.
+    closes
+        Proposes changes that remove the open findings; None where the policies are not at hand.
     """
 
     analysis: Analysis
@@ -97,7 +97,7 @@ class Answer:
     doubts: tuple[Doubt, ...] = ()
     hangs_on_asked: bool = field(default=True, repr=False, compare=False)
     hangs_on_named: bool = field(default=False, repr=False, compare=False)
-    proposals: Mapping[str, Any] | str | None = field(default=None, repr=False, compare=False)
+    closes: Callable[[Any], Mapping[str, Any] | str] | None = field(default=None, repr=False, compare=False)
 
     @property
     def shown(self) -> Analysis:
@@ -109,9 +109,15 @@ class Answer:
         """The policy files that a user named, without what they include; none where that is not known."""
         return ()
 
-    def with_proposals(self) -> Answer:
-        """Return the answer with what closes the open findings."""
-        return replace(self, proposals="fleet" if self.fleet else "graph")
+    def proposals(self) -> Mapping[str, Any] | str:
+        """Return what closes the open findings, a mitigation document; or why there is none, a word."""
+        if self.fleet:
+            return "fleet"
+        return self.closes(self) if self.closes else "graph"
+
+    def shows(self, robot: str) -> bool:
+        """Return whether no other robot stands for a robot in what readers get."""
+        return robot not in self._robots_not_shown
 
     @cached_property
     def taken_away(self) -> tuple[TakenAway, ...]:

@@ -60,7 +60,7 @@ def told(stored: int, most: int) -> list[str]:
         except RosPrivacyError as error:
             return [str(error)]
         try:
-            proposals = json.dumps(result.with_proposals().proposals)
+            proposals = json.dumps(result.proposals())
         except RosPrivacyError as error:
             proposals = str(error)
         why = [repr(result.why_not("/n0", node)) for node in NODES[1:3]]

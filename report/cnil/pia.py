@@ -59,7 +59,7 @@ def cnil_pia(answer: Answer, created: str, language: str = "en") -> dict[str, An
     accepted = _accepted(answer, told.words)
     known = Known(analysis, kinds, answer.stated, accepted, answer.ways, vocabulary.hierarchy, told, answer.processed)
     measures = list(_measures(known))
-    sentence = verdict_sentence(verdict_facts(answer), told.words)
+    sentence = verdict_sentence(verdict_facts(answer.shown, answer.doubts, assumptions), told.words)
     note = _note(analysis, assumptions, _fleet(view, told) if view else "", sentence, told)
     texts = {
         121: cnil_answers.data(known),

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import Analysis, OpenQuestion
     from rosprivacy.analysis.kernel.overruled import Overruled
-    from rosprivacy.analysis.model import Category, Diagnostic, Element, Flow, FlowGraph
+    from rosprivacy.analysis.model import Category, Diagnostic, Doubt, Element, Flow, FlowGraph
     from rosprivacy.report.answer import Answer
     from rosprivacy.report.contract.analysis import AnalysisDocument, Assumptions, ShortDocument
     from rosprivacy.report.contract.records import (
@@ -326,17 +326,16 @@ def _diagnostic(diagnostic: Diagnostic) -> DiagnosticEntry:
     return shown
 
 
-def verdict_facts(answer: Answer) -> dict[str, Any]:
+def verdict_facts(analysis: Analysis, doubts: Iterable[Doubt], assumptions: Mapping[str, Any]) -> dict[str, Any]:
     """Return what the verdict's sentence is made of, without the rest of the document."""
-    analysis = answer.shown
     return {
         "verdict": str(analysis.verdict),
         "categories": analysis.emitted,
         "open": analysis.open,
         "findings": [{"accepted": finding.accepted} for finding in analysis.findings],
         "diagnostics": [{"code": diagnostic.code} for diagnostic in analysis.diagnostics],
-        "doubts": [doubt_entry(doubt) for doubt in answer.doubts],
-        "assumptions": answer.assumptions,
+        "doubts": [doubt_entry(doubt) for doubt in doubts],
+        "assumptions": assumptions,
     }
 
 

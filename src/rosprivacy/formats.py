@@ -82,8 +82,6 @@ class Format(NamedTuple):
         Whether it tells what the enforced view adds (rule S6).
     page
         What it is called where it is refused at a terminal; empty of what people read there.
-    proposals
-        Whether it tells what closes the findings, which takes longer than to find them.
     """
 
     name: str
@@ -92,7 +90,6 @@ class Format(NamedTuple):
     styles: tuple[str, ...] = ()
     both_views: bool = False
     page: str = ""
-    proposals: bool = False
 
 
 @overload
@@ -121,13 +118,15 @@ def in_pieces(answer: Answer, name: str, style: Style | None = None) -> str | by
     style = style or Style()
     if style.language not in LANGUAGES:
         raise InputError("language", 0, f"unknown language {shown(style.language)!r}", f"one of {', '.join(LANGUAGES)}")
-    return FORMATS[name].write(answer.with_proposals() if FORMATS[name].proposals else answer, style)
+    return FORMATS[name].write(answer, style)
 
 
 def _text(answer: Answer, style: Style) -> str:
     from rosprivacy.report.document.analysis import document, verdict_facts
 
-    return text_of(verdict_facts(answer) if style.quiet else document(answer), style)
+    return text_of(
+        verdict_facts(answer.shown, answer.doubts, answer.assumptions) if style.quiet else document(answer), style
+    )
 
 
 def text_of(document: Mapping[str, Any], style: Style) -> str:
@@ -176,12 +175,13 @@ def _linked_data(form: str) -> Callable[[Answer, Style], str]:
 
 
 def _sarif(answer: Answer, _: Style) -> Iterator[str]:
+    from rosprivacy.documents import document_of
     from rosprivacy.report import json_text
     from rosprivacy.report.sarif.artifacts import repository_root
     from rosprivacy.report.sarif.log import sarif
 
     named = [entry["file"] for kind in ("policies", "labels") for entry in answer.assumptions.get(kind) or ()]
-    return json_text.in_pieces(sarif(answer, repository_root(named)))
+    return json_text.in_pieces(sarif(document_of(answer), repository_root(named)))
 
 
 def _cnil_pia(answer: Answer, style: Style) -> str:
@@ -202,7 +202,7 @@ def _article30(answer: Answer, style: Style) -> str:
 def _markdown(answer: Answer, style: Style) -> str:
     from rosprivacy.report.page.markdown import markdown
 
-    return markdown(_outline(answer, style)[0])
+    return markdown(_outline(answer, style, answer.proposals())[0])
 
 
 def _docx(answer: Answer, style: Style) -> bytes:
@@ -210,7 +210,7 @@ def _docx(answer: Answer, style: Style) -> bytes:
     from rosprivacy.report.docx.document import word_document
     from rosprivacy.report.page.markdown import markdown
 
-    told = _outline(answer, style)[0]
+    told = _outline(answer, style, answer.proposals())[0]
     return word_document(markdown(told), told.title, style.language, today(os.environ))
 
 
@@ -218,22 +218,22 @@ def _html(answer: Answer, style: Style) -> str:
     from rosprivacy.report.page.figures import figures
     from rosprivacy.report.page.html import html
 
-    told, aliases = _outline(answer, style)
+    told, aliases = _outline(answer, style, answer.proposals())
     return html(told, figures(answer, told, aliases))
 
 
 def _works_council(answer: Answer, style: Style) -> str:
     from rosprivacy.report.page.works_council import works_council
 
-    return works_council(_outline(answer, style)[0])
+    return works_council(_outline(answer, style, "graph")[0])
 
 
-def _outline(answer: Answer, style: Style) -> tuple[Outline, Aliases | None]:
+def _outline(answer: Answer, style: Style, proposals: Mapping[str, Any] | str) -> tuple[Outline, Aliases | None]:
     from rosprivacy.report.page.assessment_file import read_answers
     from rosprivacy.report.page.outline import outline
 
     answers = read_answers(style.assessment) if style.assessment else None
-    told, earlier, proposals, aliases = _rendered_parts(answer, style)
+    told, earlier, proposals, aliases = _rendered_parts(answer, style, proposals)
     report = outline(
         told,
         style.language,
@@ -256,13 +256,13 @@ def _title(answer: Answer, style: Style) -> str:
 
 
 def _rendered_parts(
-    answer: Answer, style: Style
+    answer: Answer, style: Style, proposals: Mapping[str, Any] | str = "graph"
 ) -> tuple[Mapping[str, Any], Earlier | None, Mapping[str, Any] | str, Aliases | None]:
     """The document, the earlier one if there is one, proposals, and what elements are called if names are replaced."""
     from rosprivacy.report.compare.earlier import read_earlier
     from rosprivacy.report.document.analysis import document
 
-    told, proposals = document(answer), answer.proposals or "graph"
+    told = document(answer)
     earlier = read_earlier(style.since) if style.since else None
     if not style.redact:
         return told, earlier, proposals, None
@@ -288,9 +288,9 @@ FORMATS = {
         Format("cnil-pia", ".json", _cnil_pia, ("language",)),
         Format("turtle", ".ttl", _linked_data("turtle"), _LINKED),
         Format("json-ld", ".jsonld", _linked_data("json-ld"), _LINKED),
-        Format("html", ".html", _html, _REPORT, both_views=True, proposals=True, page="a page"),
-        Format("markdown", ".md", _markdown, _REPORT, both_views=True, proposals=True),
-        Format("docx", ".docx", _docx, _REPORT, both_views=True, proposals=True, page="a Word document"),
+        Format("html", ".html", _html, _REPORT, both_views=True, page="a page"),
+        Format("markdown", ".md", _markdown, _REPORT, both_views=True),
+        Format("docx", ".docx", _docx, _REPORT, both_views=True, page="a Word document"),
         Format("article30", ".csv", _article30, ("language", "redact")),
         Format("works-council", ".html", _works_council, _REPORT, page="a page"),
     )

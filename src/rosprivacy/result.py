@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal, TypedDict, overload
 
 from rosprivacy.analysis.errors import InputError
 from rosprivacy.analysis.findings.findings import Options
 from rosprivacy.formats import Style, TextFormat, written
 from rosprivacy.report.answer import Answer
-from rosprivacy.report.document.analysis import document
+from rosprivacy.report.document.analysis import document, verdict_facts
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -49,8 +49,6 @@ class Result(Answer):
         What was asked.
     reanalyse
         Analyses the same policies, as they were read, under other labels; None of a fleet and of a database.
-    closes
-        Proposes changes that remove the open findings; None where the policies are not at hand.
     label_files
         Of a fleet: by robot, the label files that it was read with.
     """
@@ -60,7 +58,6 @@ class Result(Answer):
     types: tuple[TypesFile, ...] = ()
     options: Options = field(default_factory=Options)
     reanalyse: Callable[[tuple[str | Labels, ...]], Result] | None = field(default=None, compare=False)
-    closes: Callable[[Result], Mapping[str, Any] | str] | None = field(default=None, compare=False)
     label_files: Mapping[str, tuple[str, ...]] = field(default_factory=dict, compare=False)
 
     def __repr__(self) -> str:
@@ -92,11 +89,9 @@ class Result(Answer):
         """The policy files that a user named, without what they include; none of a fleet and of a database."""
         return () if self.fleet else tuple(policy.file for policy in self.policies)
 
-    def with_proposals(self) -> Answer:
-        """Return the answer with what closes the open findings."""
-        if self.closes is None or self.fleet:
-            return Answer.with_proposals(self)
-        return replace(self, proposals=self.closes(self))
+    def verdict_facts(self) -> dict[str, Any]:
+        """Return what the verdict's sentence is made of, without the rest of the document."""
+        return verdict_facts(self.shown, self.doubts, self.assumptions)
 
     def document(self) -> dict[str, Any]:
         """Return the whole JSON document, ``rosprivacy.analysis/1``; ``to("json")`` is the short one, ``/2``."""
