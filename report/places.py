@@ -72,7 +72,7 @@ class Places:
         return next((Place(file, 1) for file in self.files), NOWHERE)
 
 
-def roles_asked(finding: Finding) -> Iterator[tuple[Shown, str, str]]:
+def roles_of(finding: Finding) -> Iterator[tuple[Shown, str, str]]:
     """Yield (element, role, category) of the labels at the ends of a finding: of the data as they begin, too."""
     yield finding.leak.shown_as, "leak", finding.category
     for category in {finding.category, *(step.category for step in finding.steps[:1])}:

@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.findings.ways import Ways
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.model import Element
+    from rosprivacy.report.cnil.inventory import Kind
     from rosprivacy.report.cnil.told import Told
-    from rosprivacy.report.inventory import Kind
 
     Stated = Mapping[tuple[str, str, str], Mapping[str, str]]
 
@@ -47,7 +47,7 @@ class Known:
     analysis
         Of one robot of those that are alike.
     stated
-        Identity of a storage or recipient -> what people stated of it (``Answer.stated``).
+        Identity of a storage or recipient -> what people stated of it (``Document.stated``).
     accepted
         Id of a finding -> why a person accepted it.
     ways
@@ -69,9 +69,9 @@ class Known:
     words: Told
     processed: tuple[Processed, ...] = ()
 
-    def of(self, element: Element, what: str) -> str:
+    def of(self, element: Element, fact: str) -> str:
         """Return what was stated of an element, empty if nothing."""
-        return self.stated.get(element.identity, {}).get(what, "")
+        return self.stated.get(element.identity, {}).get(fact, "")
 
     def storages_of(self, category: str) -> list[Element]:
         """Return the storages that data of the category itself get to."""
@@ -133,7 +133,7 @@ def _data_of(kind: Kind, facts: Known) -> Iterator[Html]:
     yield bullets(
         [
             *told.lines("cnil.brought", kind.sources),
-            *(told.line("cnil.made", _derivations(element, of, told)) for element, of in kind.made),
+            *(told.line("cnil.made", _derivations(element, of, told)) for element, of in kind.derivations),
             *_law(kind, told),
             told.line("cnil.recipients", _recipients(kind, told)),
             told.line("cnil.kept", told.names_shown(stored) or told("cnil.kept.none")),
@@ -171,7 +171,7 @@ def _life_of(kind: Kind, words: Told) -> Iterator[Html]:
     yield bullets(
         [
             *words.lines("cnil.collection", kind.sources),
-            *(words.line("cnil.made", _derivations(element, of, words)) for element, of in kind.made),
+            *(words.line("cnil.made", _derivations(element, of, words)) for element, of in kind.derivations),
             words.line(
                 "cnil.use", words("cnil.use.of", elements=elements, channels=channels, names=words.names(users))
             ),
@@ -274,9 +274,9 @@ def transfers(facts: Known) -> Html:
     return told.rows(rows, len(recipients)) if rows else paragraph(told("cnil.no.recipient"))
 
 
-def _basis(element: Element, known: Known) -> Html:
+def _basis(element: Element, about: Known) -> Html:
     """On what data leaves the EEA there; that it does not leave it is no transfer of chapter V."""
-    facts, told = known.analysis.outside.get(element), known.words
+    facts, told = about.analysis.outside.get(element), about.words
     if facts and facts.area == INSIDE:
         return joined(Html(", "), told("cnil.inside"))
     if facts and facts.area == ADEQUATE and not facts.basis:

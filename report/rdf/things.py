@@ -5,7 +5,6 @@ In: facts of the model. Out: their IRIs at once, their descriptions at the end.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from rdflib import RDF, Literal, URIRef
@@ -16,10 +15,10 @@ from rosprivacy.report.rdf.individuals import foreign
 from rosprivacy.report.rdf.terms import RP, Triple, about, text
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Mapping
 
-    from rosprivacy.analysis.model import Element, Grant, Legal, Pointer, Surroundings
-    from rosprivacy.ontology.vocabulary import Vocabulary
+    from rosprivacy.analysis.model import Element, Grant, Legal, Pointer
+    from rosprivacy.report.document.contents import Document
     from rosprivacy.report.rdf.individuals import Names
 
 CLASSES = {
@@ -29,7 +28,6 @@ CLASSES = {
 }  # fmt: skip
 
 
-Stated = Mapping[tuple[str, str, str], Mapping[str, str]]
 STATED = {
     "country": RP.country, "encrypted": RP.encrypted, "operator": RP.operator, "role": RP.operatorRole,
     "basis": RP.transferBasis, "contract": RP.contract, "retention": RP.retention,
@@ -45,30 +43,17 @@ class Things:
         Of the individuals.
     files
         Path -> IRIs of the files that were read there.
-    stated
-        (robot, kind, name) -> what people stated of an element.
-    subjects
-        (robot, kind, name) -> groups of persons that the data of a source are about.
-    surroundings
-        (robot, kind, name) -> where an element works.
     """
 
-    def __init__(
-        self,
-        vocabulary: Vocabulary,
-        names: Names,
-        files: Mapping[str, tuple[URIRef, ...]],
-        stated: Stated,
-        subjects: Mapping[tuple[str, str, str], tuple[str, ...]],
-        surroundings: Mapping[tuple[str, str, str], Surroundings],
-    ) -> None:
+    def __init__(self, document: Document, names: Names, files: Mapping[str, tuple[URIRef, ...]]) -> None:
+        vocabulary = document.vocabulary
         self._categories = vocabulary.categories
         self._ancestors = vocabulary.hierarchy.ancestors
         self._names = names
         self._files = files
-        self._stated = stated
-        self._subjects = subjects
-        self._surroundings = surroundings
+        self._stated = document.stated
+        self._subjects = {element.identity: groups for element, groups in document.subjects}
+        self._surroundings = {element.identity: where for element, where in document.surroundings}
         self._pointed = {one.name: one for one in vocabulary.pointed.provisions}
         self._elements: dict[URIRef, Element] = {}
         self._lines: dict[URIRef, Grant] = {}

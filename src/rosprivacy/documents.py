@@ -12,24 +12,24 @@ from rosprivacy.analysis.findings.sanitizing import absent, cleanings, makings, 
 from rosprivacy.analysis.kernel.ranks import in_words
 from rosprivacy.analysis.policy_lines import first_lines, in_a_file
 from rosprivacy.report.document.contents import PROPOSALS, RELIANCE, Document, EnforcedFacts, Lines
-from rosprivacy.report.places import Places, roles_asked, to_review
+from rosprivacy.report.places import Places, roles_of, to_review
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.model import Element, Flow, MessageType, Place, Processing
-    from rosprivacy.report.answer import Answer, Enforced
+    from rosprivacy.answer import Answer, Enforced
     from rosprivacy.report.document.contents import Shown
 
 
-def document_of(answer: Answer, asked: Collection[str] = ()) -> Document:
+def document_of(answer: Answer, fields: Collection[str] = ()) -> Document:
     """Return all that an answer says.
 
     Parameters
     ----------
-    asked
-        ``RELIANCE``, ``PROPOSALS``: fields that take longer than the answer itself. What a user asked for by name is
+    fields
+        ``RELIANCE``, ``PROPOSALS``: what takes longer than the answer itself. What a user asked for by name is
         always there.
     """
     analysis, bound, spread = answer.shown, answer.bound, answer.shown.spread
@@ -67,8 +67,8 @@ def document_of(answer: Answer, asked: Collection[str] = ()) -> Document:
         review_order=answer.review_order,
         lines=_lines(analysis, answer.assumptions),
         enforced=_enforced(answer.enforced) if answer.enforced else None,
-        hangs_on=answer.hangs_on if RELIANCE in asked or answer.hangs_on_named else None,
-        proposals=answer.proposals() if PROPOSALS in asked else None,
+        hangs_on=answer.hangs_on if RELIANCE in fields or answer.hangs_on_named else None,
+        proposals=answer.proposals() if PROPOSALS in fields else None,
     )
 
 
@@ -133,14 +133,14 @@ def _places(analysis: Analysis, assumptions: Mapping[str, Any]) -> Places:
 
 def _roles(analysis: Analysis) -> dict[tuple[Shown, str, str], Place]:
     """The lines of labels at the ends of findings; the statement of the highest rank stands first (rule S7)."""
-    asked = {row for finding in analysis.findings for row in roles_asked(finding)}
-    ends = {shown for shown, _, _ in asked}
+    rows = {row for finding in analysis.findings for row in roles_of(finding)}
+    ends = {shown for shown, _, _ in rows}
     vertices: dict[Shown, list[int]] = {}
     for vertex, element in enumerate(analysis.graph.elements if ends else ()):
         if element.shown_as in ends:
             vertices.setdefault(element.shown_as, []).append(vertex)
     lines: dict[tuple[Shown, str, str], Place] = {}
-    for shown, role, category in asked:
+    for shown, role, category in rows:
         facts = (analysis.spread.facts.get(vertex, {}).get(category) for vertex in vertices.get(shown, ()))
         places = (statement.place for fact in facts if fact for statement in fact.by_role(role))
         if place := next(filter(in_a_file, places), None):

@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING, Any, Literal, TypedDict, overload
 
 from rosprivacy.analysis.errors import InputError
 from rosprivacy.analysis.findings.findings import Options
+from rosprivacy.answer import Answer
+from rosprivacy.documents import document_of
 from rosprivacy.formats import Style, TextFormat, written
-from rosprivacy.report.answer import Answer
-from rosprivacy.report.document.analysis import document, verdict_facts
+from rosprivacy.report.document.analysis import json_document
+from rosprivacy.report.document.contents import RELIANCE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -89,13 +91,9 @@ class Result(Answer):
         """The policy files that a user named, without what they include; none of a fleet and of a database."""
         return () if self.fleet else tuple(policy.file for policy in self.policies)
 
-    def verdict_facts(self) -> dict[str, Any]:
-        """Return what the verdict's sentence is made of, without the rest of the document."""
-        return verdict_facts(self.shown, self.doubts, self.assumptions)
-
     def document(self) -> dict[str, Any]:
         """Return the whole JSON document, ``rosprivacy.analysis/1``; ``to("json")`` is the short one, ``/2``."""
-        return dict(document(self))
+        return {**json_document(document_of(self, (RELIANCE,)))}
 
     @overload
     def to(self, format: Literal["docx"], **how: Unpack[Shown]) -> bytes: ...

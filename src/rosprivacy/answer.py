@@ -1,6 +1,6 @@
-"""The answer as every format gets it: the analysis, and all that a reader has to know beside it.
+"""The answer: the analysis, what it rests on, and what else can be worked out of both.
 
-In: what was found, and what it rests on. Out: ``Answer``. A format is a function of it, so that none can forget a fact.
+In: what was found, and what it rests on. Out: ``Answer``, of which ``documents.py`` makes a ``Document``.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from rosprivacy.analysis.findings.ways import Ways, ways
 from rosprivacy.analysis.fleet.likeness import NO_ROBOTS
 from rosprivacy.analysis.whatif.ledger import GlobUse, globs, ledger
 from rosprivacy.analysis.whatif.reliance import Reliance, reliances
+from rosprivacy.report.document.analysis import verdict_facts
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
@@ -108,6 +109,10 @@ class Answer:
     def named_files(self) -> tuple[str, ...]:
         """The policy files that a user named, without what they include; none where that is not known."""
         return ()
+
+    def verdict_facts(self) -> dict[str, Any]:
+        """Return what the verdict's sentence is made of, without the rest of the document."""
+        return verdict_facts(self.shown, self.doubts, self.assumptions)
 
     def proposals(self) -> Mapping[str, Any] | str:
         """Return what closes the open findings, a mitigation document; or why there is none, a word."""
