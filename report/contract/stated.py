@@ -322,3 +322,22 @@ class OverruledEntry(TypedDict):
     file: str
     line: int
     by: Annotated[OverruledBy, "The label that takes it away, and what that says."]
+
+
+class FactsOfElements(TypedDict):
+    """What is stated or seen of elements, where any of it is."""
+
+    types: Annotated[
+        NotRequired[list[TypesEntry]],
+        "Message types of channels and their legs, as labels state them or as they were observed; where any are known.",
+    ]
+    processing: Annotated[
+        NotRequired[list[ProcessingEntry]],
+        "Who is responsible, what data are processed for and on which basis, as stated of a robot or an element. "
+        "It changes no finding.",
+    ]
+    processed_for: Annotated[
+        NotRequired[list[ProcessedEntry]],
+        "The same for each kind of data where it begins or ends: as stated there, else of the node that makes it, "
+        "of its source, of the robot.",
+    ]

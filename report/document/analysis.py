@@ -29,8 +29,7 @@ from rosprivacy.report.document.stated import (
     situations,
     surroundings,
     taken_by_kind,
-    with_processing,
-    with_types,
+    with_facts_of_elements,
     without_backups,
 )
 from rosprivacy.report.verdict import doubts_of, phrase, verdict_sentence
@@ -65,7 +64,7 @@ SECTIONS = {"node": "nodes", "topic": "topics", "service": "services", "action":
 
 def json_document(document: Document) -> AnalysisDocument:
     """Return all of a document as JSON."""
-    entries = with_types(with_processing(_analysis(document), document), document)
+    entries = with_facts_of_elements(_analysis(document), document)
     if document.decided:
         entries = with_decisions(entries, document.decided)
     if document.fleet and document.counts:

@@ -218,7 +218,12 @@ def _not_known(element: Element, facts: NonRosFacts, holds: tuple[str, ...], hie
     return entry
 
 
-def with_processing(entries: AnalysisDocument, document: Document) -> AnalysisDocument:
+def with_facts_of_elements(entries: AnalysisDocument, document: Document) -> AnalysisDocument:
+    """Return entries with what is stated or seen of elements, where any of it is."""
+    return _with_types(_with_processing(entries, document), document)
+
+
+def _with_processing(entries: AnalysisDocument, document: Document) -> AnalysisDocument:
     """Return entries with what is stated of processing."""
     stated: list[ProcessingEntry] = []
     for robot_or_element, processing in document.processing:
@@ -257,7 +262,7 @@ def _processed(row: Processed) -> ProcessedEntry:
     }
 
 
-def with_types(entries: AnalysisDocument, document: Document) -> AnalysisDocument:
+def _with_types(entries: AnalysisDocument, document: Document) -> AnalysisDocument:
     """Return entries with the types of channels, where any are known, and what only these close."""
     closed = document.analysis.closed
     types: list[TypesEntry] = [
