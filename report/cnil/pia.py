@@ -59,7 +59,7 @@ def cnil_pia(document: Document, created: str, language: str = "en") -> dict[str
     told = Told(Words(language), vocabulary.categories)
     accepted = _accepted(document, told.words)
     known = Known(
-        analysis, kinds, document.stated, accepted, document.ways, vocabulary.hierarchy, told, document.processed
+        analysis, kinds, document.outside, accepted, document.ways, vocabulary.hierarchy, told, document.processed
     )
     measures = list(_measures(known))
     sentence = verdict_sentence(verdict_facts(analysis, document.doubts, assumptions), told.words)
@@ -186,7 +186,7 @@ def _measures(facts: Known) -> Iterator[tuple[str, Html]]:
         if done:
             still = [] if method.ends else [paragraph(told("cnil.recital26"))]
             yield told.bare(f"cnil.title.{method}"), joined(_rows(done, told), *still)
-    encrypted = [element.name for element in facts.storages() if facts.of(element, "encrypted") == "yes"]
+    encrypted = [element.name for element in facts.storages() if facts.of(element).encrypted]
     if encrypted:
         rows = [told.pair(escaped(name), told("cnil.encrypted")) for name in encrypted]
         yield told.bare("cnil.title.encrypted"), _rows(rows, told)

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
         Element,
         Flow,
         MessageType,
+        NonRosFacts,
         Processing,
         Surroundings,
     )
@@ -36,7 +37,6 @@ if TYPE_CHECKING:
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.report.places import Places
 
-    Identity = tuple[str, str, str]  # robot, kind, name
     Shown = tuple[str, str, str, str]  # an element as readers see it: the two sides of a wildcard are one
 
 RELIANCE = "hangs_on"  # fields of ``Document`` that a question asks for
@@ -105,8 +105,8 @@ class Document:
         Which robots stand for which, and how much the whole fleet has; None for a single robot.
     contexts
         Where sources work, and what data may reveal there.
-    stated
-        What people stated of what lies outside ROS: element -> what it is about -> text (rule S9).
+    outside
+        What people stated of what lies outside ROS (rule S9); of every robot, since a way can lead to another one.
     subjects
         Whom the data of a source are about: groups of persons.
     surroundings
@@ -160,7 +160,7 @@ class Document:
     fleet: FleetView | None
     counts: Counts | None
     contexts: Contexts
-    stated: Mapping[Identity, Mapping[str, str]]
+    outside: Mapping[Element, NonRosFacts]
     subjects: tuple[tuple[Element, tuple[str, ...]], ...]
     surroundings: tuple[tuple[Element, Surroundings], ...]
     processing: tuple[tuple[str | Element, Processing], ...]

@@ -13,6 +13,7 @@ from rdflib import RDF, RDFS, Literal
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.findings.processed import Processed
+from rosprivacy.analysis.model import NonRosFacts
 from rosprivacy.analysis.non_ros import EVERY, INSIDE, retention_of
 from rosprivacy.report.rdf.facts import foreign_terms, label_of
 from rosprivacy.report.rdf.individuals import below, foreign
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     from rdflib import URIRef
 
     from rosprivacy.analysis.answer import Finding
-    from rosprivacy.analysis.model import Element, NonRosFacts
+    from rosprivacy.analysis.model import Element
     from rosprivacy.report.document.contents import Document
     from rosprivacy.report.rdf.facts import Change
     from rosprivacy.report.rdf.individuals import Names
@@ -156,7 +157,7 @@ class Processes:
     def _leak(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:
         """Who receives the data, and how they are kept: whoever stands behind a leak, as software receives nothing."""
         leak = finding.leak
-        known, name, at = self.document.stated.get(leak.identity, {}), shown(leak.name), self.things.element(leak)
+        facts, name, at = self.document.outside.get(leak, NonRosFacts()), shown(leak.name), self.things.element(leak)
         if finding.kind != STORED:
             recipient = self.names.of("recipient", *leak.identity)
             anybody = (
@@ -164,9 +165,9 @@ class Processes:
                 if finding.kind == OPEN
                 else f"whoever receives what {name} lets out"
             )
-            label = shown(known["operator"]) if "operator" in known else anybody
+            label = shown(facts.operator) if facts.operator else anybody
             yield iri, DPV.hasRecipient, recipient
-            role = PARTIES.get(known.get("role", ""))
+            role = PARTIES.get(facts.recipient)
             yield from about(recipient, (RDF.type, [DPV.Recipient, *([role] if role else [])]))
             yield from about(recipient, (RDFS.label, [text(label)]), (RP.at, [at]))
             yield from self._country(recipient, leak)

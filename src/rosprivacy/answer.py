@@ -19,17 +19,16 @@ from rosprivacy.analysis.whatif.reliance import Reliance, reliances
 from rosprivacy.report.document.analysis import verdict_facts
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+    from collections.abc import Callable, Collection, Iterable, Mapping
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.case import Case
     from rosprivacy.analysis.decisions import Decided, Decision
-    from rosprivacy.analysis.durations import Duration
     from rosprivacy.analysis.findings.beyond import Added
     from rosprivacy.analysis.findings.processed import Processed
     from rosprivacy.analysis.fleet.counts import Counts
     from rosprivacy.analysis.fleet.patterns import FleetView
-    from rosprivacy.analysis.model import Bound, Diagnostic, Doubt, Element, NonRosFacts, Surroundings
+    from rosprivacy.analysis.model import Bound, Diagnostic, Doubt, Element
     from rosprivacy.analysis.whatif.ledger import TakenAway
     from rosprivacy.ontology.vocabulary import Vocabulary
 
@@ -172,27 +171,6 @@ class Answer:
         return {finding: _why(decision) for finding, decision in held if decision}
 
     @property
-    def stated(self) -> dict[tuple[str, str, str], dict[str, str]]:
-        """What people stated of what lies outside ROS, as texts (rule S9).
-
-        (robot, kind, name) -> ``retention``, ``country``, ``encrypted``, ``operator``, ``role``, ``basis``,
-        ``contract``, whichever are known.
-        """
-        return {element.identity: dict(_stated(facts)) for element, facts in self.analysis.outside.items()}
-
-    @property
-    def subjects(self) -> dict[tuple[str, str, str], tuple[str, ...]]:
-        """Whom the data of a source are about, as labels name them: (robot, kind, name) -> groups of persons."""
-        elements = self.analysis.graph.elements
-        return {elements[vertex].identity: groups for vertex, groups in self.bound.subjects.items()}
-
-    @property
-    def surroundings(self) -> dict[tuple[str, str, str], Surroundings]:
-        """Where elements work, as people state it of them or of their system: by (robot, kind, name)."""
-        elements = self.analysis.graph.elements
-        return {elements[vertex].identity: where for vertex, where in self.bound.surroundings.items()}
-
-    @property
     def contexts(self) -> Contexts:
         """Where sources work, and what data may reveal there."""
         return Contexts.of(self.analysis.graph, self.bound, self.vocabulary.categories, together=self.fleet is not None)
@@ -233,22 +211,3 @@ def _why(decision: Decision) -> str:
     more = [decision.owner, *decision.legal_basis, f"until {decision.expires}" if decision.expires else ""]
     said = ", ".join(part for part in more if part)
     return f"{decision.reason} ({said})" if said else decision.reason
-
-
-def _stated(facts: NonRosFacts) -> Iterator[tuple[str, str]]:
-    kept = (f"{category}: {duration}" if category else str(duration) for category, duration in facts.retention)
-    said = {
-        "retention": _with_backups(kept, facts.backups),
-        "country": facts.country,
-        "encrypted": "" if facts.encrypted is None else ("yes" if facts.encrypted else "no"),
-        "operator": facts.operator,
-        "role": facts.recipient,
-        "basis": facts.basis,
-        "contract": facts.contract,
-    }
-    yield from ((what, value) for what, value in said.items() if value)
-
-
-def _with_backups(categories: Iterable[str], backups: Duration | bool | None) -> str:  # noqa: FBT001 - three values and a length
-    more = "in backups, nobody says for how long" if backups is True else f"in backups {backups} more"
-    return ", ".join([*categories, *([more] if backups else [])])

@@ -466,7 +466,7 @@ def test_what_people_added_in_the_database_is_in_both_formats(neo4j_server: Conn
 def names_in(result: Result) -> list[str]:
     """What users wrote: names, files, groups of persons."""
     elements = {element.name for element in result.analysis.graph.elements}
-    groups = {group for groups in result.subjects.values() for group in groups}
+    groups = {group for groups in result.bound.subjects.values() for group in groups}
     files = {entry["file"] for kind in ("policies", "labels", "fleet") for entry in result.assumptions.get(kind) or ()}
     return [*elements, *groups, *files, *result.vocabulary.categories, *users_texts(result.document())]
 

@@ -41,7 +41,6 @@ from rosprivacy.report.rdf.terms import (
     RISKS,
     RP,
 )
-from rosprivacy.report.rdf.things import STATED
 from tests.helpers.answers import accepting, answer_of
 from tests.helpers.cases import CASES
 from tests.helpers.ontologies import ontology
@@ -552,10 +551,11 @@ class TestOutsideRos:
         assert value(graph, bucket, DPV.hasStorageCondition, RP.stated) is True
         assert value(graph, cloud, DPV.hasRecipient, RDFS.label) == "Cloud Ltd"
         told = {
-            what: value(graph, NAMES.element(CLOUD), STATED[what]) for what in ("operator", "role", "country", "basis")
+            term: value(graph, NAMES.element(CLOUD), RP[term])
+            for term in ("operator", "operatorRole", "country", "transferBasis")
         }
         assert told == {
-            "operator": "Cloud Ltd", "role": "processor", "country": "US", "basis": "standard-clauses",
+            "operator": "Cloud Ltd", "operatorRole": "processor", "country": "US", "transferBasis": "standard-clauses",
         }  # fmt: skip
         assert problems(graph) == ""
 
