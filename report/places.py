@@ -1,6 +1,6 @@
 """Where things stand in files: the policy line of a step, the label line of a role, the line of a finding.
 
-In: an ``Analysis`` and what was said of its elements. Out: places. For readers that show a finding beside a line of a
+In: lines of labels, profiles and channels. Out: places. For readers that show a finding beside a line of a
 file: every finding has a place, whatever it rests on.
 """
 
@@ -10,17 +10,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import Place
-from rosprivacy.analysis.policy_lines import first_lines, in_a_file
+from rosprivacy.analysis.policy_lines import in_a_file
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-    from typing import Any
+    from collections.abc import Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.answer import Analysis, Finding, OpenQuestion, Step
-    from rosprivacy.analysis.kernel.roles import Facts
     from rosprivacy.analysis.model import Element
 
-    Shown = tuple[str, ...]
+    Shown = tuple[str, str, str, str]
 
 NOWHERE = Place("the database", 0)  # what people added there by hand stands in no file
 
@@ -31,10 +29,8 @@ class Places:
 
     Attributes
     ----------
-    facts
-        Vertex -> category -> what labels decide; the statement of the highest rank stands first (rule S7).
-    vertices
-        Element at an end of a finding -> its vertices' numbers; the two sides of a wildcard are one to the reader.
+    roles
+        (element at an end of a finding, role, category) -> the line of the label that says so.
     channels
         Channel to be reviewed -> a policy line that names it.
     profiles
@@ -43,27 +39,10 @@ class Places:
         The label files and policies that the answer rests on: the last resort.
     """
 
-    facts: Mapping[int, Mapping[str, Facts]]
-    vertices: Mapping[Shown, tuple[int, ...]]
-    channels: Mapping[Shown, Place]
+    roles: Mapping[tuple[Shown, str, str], Place]
+    channels: Mapping[tuple[str, ...], Place]
     profiles: Mapping[str, Place]
     files: tuple[str, ...]
-
-    @classmethod
-    def of(cls, analysis: Analysis, assumptions: Mapping[str, Any]) -> Places:
-        """Collect what is looked up, in one pass over elements and, where channels are to be reviewed, over flows."""
-        ends = {element.shown_as for finding in analysis.findings for element in (finding.source, finding.leak)}
-        vertices: dict[Shown, tuple[int, ...]] = {}
-        for vertex, element in enumerate(analysis.graph.elements):
-            if element.shown_as in ends:
-                vertices[element.shown_as] = (*vertices.get(element.shown_as, ()), vertex)
-        profiles: dict[str, Place] = {}
-        for profile in analysis.graph.profiles:
-            if in_a_file(profile.place):
-                profiles.setdefault(profile.node, profile.place)
-        wanted = {question.element.shown_as for question in to_review(analysis) if question.element.is_channel}
-        files = [entry["file"] for kind in ("labels", "policies") for entry in assumptions.get(kind) or ()]
-        return cls(analysis.spread.facts, vertices, first_lines(analysis.graph, wanted), profiles, tuple(files))
 
     def of_finding(self, finding: Finding) -> Place:
         """Return the line that lets the data into the leak; the line of a label where no policy line does (S3)."""
@@ -82,9 +61,7 @@ class Places:
 
     def of_role(self, element: Element, role: str, category: str) -> Place | None:
         """Return the line of the label that gives an element a role for a category, None if no file does."""
-        facts = (self.facts.get(vertex, {}).get(category) for vertex in self.vertices.get(element.shown_as, ()))
-        said = (statement for fact in facts if fact for statement in fact.by_role(role))
-        return next((statement.place for statement in said if in_a_file(statement.place)), None)
+        return self.roles.get((element.shown_as, role, category))
 
     def of_profile(self, element: Element) -> Place | None:
         """Return where a node's profile begins, None if it has none."""
@@ -93,6 +70,13 @@ class Places:
     def last_resort(self) -> Place:
         """Return the first line of a file that the answer rests on."""
         return next((Place(file, 1) for file in self.files), NOWHERE)
+
+
+def roles_of(finding: Finding) -> Iterator[tuple[Shown, str, str]]:
+    """Yield (element, role, category) of the labels at the ends of a finding: of the data as they begin, too."""
+    yield finding.leak.shown_as, "leak", finding.category
+    for category in {finding.category, *(step.category for step in finding.steps[:1])}:
+        yield finding.source.shown_as, "source", category
 
 
 def to_review(analysis: Analysis) -> tuple[OpenQuestion, ...]:

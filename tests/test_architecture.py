@@ -41,6 +41,33 @@ def test_data_flows_one_way(room: str) -> None:
         assert imported_rooms(file) <= ROOMS[room] | {room}, file
 
 
+THINKING = {"kernel", "findings", "whatif", "fleet", "mitigation"}  # wings of analysis that work something out
+
+
+@pytest.mark.parametrize("file", sorted((ROOT / "report").rglob("*.py")), ids=lambda file: str(file.relative_to(ROOT)))
+def test_what_is_written_was_thought_before(file: Path) -> None:
+    """Every output is a function of the ``Document``: reports know the facts and words of analysis, and work out none.
+
+    Pictures look at the graph itself: which of its flows are drawn follows from how many boxes there is room for.
+    """
+    if file.parent.name == "pictures":
+        return
+    tree = parsed(file)
+    for_types = {
+        node
+        for block in ast.walk(tree)
+        if isinstance(block, ast.If) and ast.unparse(block.test) == "TYPE_CHECKING"
+        for node in ast.walk(block)
+    }
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and node not in for_types:
+            parts = f"{node.module}.".split(".")
+            names = [alias.name for alias in node.names]
+            functions = [name for name in names if name[0].islower()]
+            assert not (parts[1] == "analysis" and parts[2] in THINKING and functions), f"{node.module}: {functions}"
+        assert not (isinstance(node, ast.Attribute) and ast.unparse(node) == "analysis.spread"), file
+
+
 def test_one_module_knows_which_bit_is_which() -> None:
     """Bits are numbered by how many categories are emitted; nobody else asks for that number (rule S8)."""
     asking = set()

@@ -23,7 +23,7 @@ SAME_PART = {
         "report/document",
         "report/text",
     },  # the answer about a system: keys, document, lines
-    "answer": {"analysis", "report"},  # the answer, and the one that every format is made of
+    "answer": {"analysis", ""},  # what was found, and all that it rests on
     "bags": {"", "report", "report/contract"},  # the answer about bags, and its keys
     "categories": {"cli", "report/text"},  # the command, and what it prints
     "decisions": {"analysis", "report/document"},  # what they mean, and how the document tells them

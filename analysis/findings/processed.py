@@ -214,12 +214,3 @@ class _Rows:
 
 def _distinct(texts: Iterable[str]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(filter(None, texts)))
-
-
-def of_end(rows: Iterable[Processed]) -> dict[tuple[Element, str], Processed]:
-    """Return rows by element and kind of data.
-
-    >>> of_end([])
-    {}
-    """
-    return {(row.element, row.category): row for row in rows}

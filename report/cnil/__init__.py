@@ -1,1 +1,1 @@
-"""An analysis in, out comes a file that the PIA tool of the CNIL imports."""
+"""A ``Document`` in, out comes a file that the PIA tool of the CNIL imports."""

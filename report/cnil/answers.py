@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.model import KINDS, MAY_REVEAL, NO_BASIS
+from rosprivacy.analysis.model import KINDS, MAY_REVEAL, NO_BASIS, NonRosFacts
 from rosprivacy.analysis.non_ros import ADEQUATE, INSIDE, retention_of
 from rosprivacy.report.catalogs.words import plain, reason_text
 from rosprivacy.report.cnil.lawfulness import purposes_of
@@ -27,10 +27,9 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.findings.ways import Ways
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.model import Element
+    from rosprivacy.report.cnil.inventory import Kind
     from rosprivacy.report.cnil.told import Told
-    from rosprivacy.report.inventory import Kind
 
-    Stated = Mapping[tuple[str, str, str], Mapping[str, str]]
 
 SHOWN = 50  # findings shown with their path, recipients
 THREATS = 100
@@ -46,8 +45,8 @@ class Known:
     ----------
     analysis
         Of one robot of those that are alike.
-    stated
-        Identity of a storage or recipient -> what people stated of it (``Answer.stated``).
+    outside
+        What people stated of storages and recipients.
     accepted
         Id of a finding -> why a person accepted it.
     ways
@@ -62,16 +61,16 @@ class Known:
 
     analysis: Analysis
     kinds: tuple[Kind, ...]
-    stated: Stated
+    outside: Mapping[Element, NonRosFacts]
     accepted: Mapping[str, str]
     ways: tuple[Ways, ...]
     hierarchy: Hierarchy
     words: Told
     processed: tuple[Processed, ...] = ()
 
-    def of(self, element: Element, what: str) -> str:
-        """Return what was stated of an element, empty if nothing."""
-        return self.stated.get(element.identity, {}).get(what, "")
+    def of(self, element: Element) -> NonRosFacts:
+        """Return what was stated of an element."""
+        return self.outside.get(element, NonRosFacts())
 
     def storages_of(self, category: str) -> list[Element]:
         """Return the storages that data of the category itself get to."""
@@ -133,7 +132,7 @@ def _data_of(kind: Kind, facts: Known) -> Iterator[Html]:
     yield bullets(
         [
             *told.lines("cnil.brought", kind.sources),
-            *(told.line("cnil.made", _derivations(element, of, told)) for element, of in kind.made),
+            *(told.line("cnil.made", _derivations(element, of, told)) for element, of in kind.derivations),
             *_law(kind, told),
             told.line("cnil.recipients", _recipients(kind, told)),
             told.line("cnil.kept", told.names_shown(stored) or told("cnil.kept.none")),
@@ -171,7 +170,7 @@ def _life_of(kind: Kind, words: Told) -> Iterator[Html]:
     yield bullets(
         [
             *words.lines("cnil.collection", kind.sources),
-            *(words.line("cnil.made", _derivations(element, of, words)) for element, of in kind.made),
+            *(words.line("cnil.made", _derivations(element, of, words)) for element, of in kind.derivations),
             words.line(
                 "cnil.use", words("cnil.use.of", elements=elements, channels=channels, names=words.names(users))
             ),
@@ -243,7 +242,7 @@ def retention(facts: Known) -> Html:
 def processors(facts: Known) -> Html:
     """Return the answer to 226: who processes on behalf of the controller, as people stated it; empty if nobody did."""
     reached = [carried.element for carried in facts.analysis.carried]
-    named = [element for element in reached if facts.of(element, "role") == PROCESSOR]
+    named = [element for element in reached if facts.of(element).recipient == PROCESSOR]
     told = facts.words
     rows = [told.pair(escaped(told.name(element)), _named_processor(element, facts)) for element in named[:SHOWN]]
     return told.rows(rows, len(named)) if rows else Html("")
@@ -251,9 +250,10 @@ def processors(facts: Known) -> Html:
 
 def _named_processor(element: Element, facts: Known) -> Html:
     told = facts.words
-    who = facts.of(element, "operator") or told("cnil.processor.unnamed")
-    where = f" ({facts.of(element, 'country')})" if facts.of(element, "country") else ""
-    contract = facts.of(element, "contract")
+    who = facts.of(element).operator or told("cnil.processor.unnamed")
+    country = facts.of(element).country
+    where = f" ({country})" if country else ""
+    contract = facts.of(element).contract
     on = told.line("cnil.contract.stated", escaped(contract)) if contract else told("cnil.contract")
     return joined(told("cnil.processor", who=escaped(f"{who}{where}")), Html("; "), on)
 
@@ -267,16 +267,16 @@ def transfers(facts: Known) -> Html:
     rows = [
         told.pair(
             escaped(told.name(element)),
-            joined(_stated("cnil.country", facts.of(element, "country"), told), _basis(element, facts)),
+            joined(_stated("cnil.country", facts.of(element).country, told), _basis(element, facts)),
         )
         for element in list(recipients.values())[:SHOWN]
     ]
     return told.rows(rows, len(recipients)) if rows else paragraph(told("cnil.no.recipient"))
 
 
-def _basis(element: Element, known: Known) -> Html:
+def _basis(element: Element, about: Known) -> Html:
     """On what data leaves the EEA there; that it does not leave it is no transfer of chapter V."""
-    facts, told = known.analysis.outside.get(element), known.words
+    facts, told = about.analysis.outside.get(element), about.words
     if facts and facts.area == INSIDE:
         return joined(Html(", "), told("cnil.inside"))
     if facts and facts.area == ADEQUATE and not facts.basis:
@@ -297,7 +297,7 @@ def threats(about: Known) -> list[str]:
     if about.analysis.open:
         unreviewed = count_elements(question.element for question in about.analysis.open).elements
         said.append(told.bare("cnil.threat.open", elements=told.count(unreviewed, "element")))
-    open_to_all = [element for element in about.storages() if about.of(element, "encrypted") == "no"]
+    open_to_all = [element for element in about.storages() if about.of(element).encrypted is False]
     said += [told.bare("cnil.threat.unencrypted", element=told.name(element)) for element in open_to_all[:THREATS]]
     return said
 

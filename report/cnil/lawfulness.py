@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
     from rosprivacy.analysis.findings.processed import Processed
+    from rosprivacy.report.cnil.inventory import Kind
     from rosprivacy.report.cnil.told import Told
-    from rosprivacy.report.inventory import Kind
 
     Rows = Iterable[Processed]
 
@@ -51,10 +51,10 @@ def _by_kind(rows: Rows, kinds: Iterable[Kind], words: Told, statement: Callable
     return joined(*parts)
 
 
-def _stated(row: Processed, texts: Iterable[str], what: str, words: Told, say: Callable[[str], str]) -> Html:
+def _stated(row: Processed, texts: Iterable[str], fact: str, words: Told, say: Callable[[str], str]) -> Html:
     """What is stated of one end, and whether more is to be completed; empty where nothing is."""
     stated = [escaped(say(one)) for one in texts]
-    more = [words("record.open")] if stated and what in row.missing else []
+    more = [words("record.open")] if stated and fact in row.missing else []
     return Html("; ".join([*stated, *more]))
 
 

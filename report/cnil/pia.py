@@ -1,8 +1,9 @@
-"""Analysis -> the file that the CNIL's PIA tool imports ('Importer un PIA'), for the person who assesses the impact.
+"""A ``Document`` -> the file that the CNIL's PIA tool imports ('Importer un PIA'), for who assesses the impact.
 
-In: an ``Answer``. Out: plain dicts and lists. The questions that the graph can answer are filled: 121 to 123, 213, 215,
-226 where processors are named, 227, 322, 324, and the measures. The others have no answer: the tool counts an empty one
-as work begun. All is for a person to check: no evaluation is filled, no gauge is set, the status is 'in progress'.
+In: a ``Document``. Out: plain dicts and lists. The questions that the graph can answer are filled: 121 to 123, 213,
+215, 226 where processors are named, 227, 322, 324, and the measures. The others have no answer: the tool counts an
+empty one as work begun. All is for a person to check: no evaluation is filled, no gauge is set, the status is 'in
+progress'.
 
 Source: the tool's ``importData``. It needs the four lists, goes through them unguarded, and takes texts as HTML; list
 answers and titles of measures as text in one view and as HTML in another, so these have nothing that HTML reads.
@@ -21,11 +22,11 @@ from rosprivacy.report.catalogs.words import Words, plain
 from rosprivacy.report.cnil import answers as cnil_answers
 from rosprivacy.report.cnil import lawfulness
 from rosprivacy.report.cnil.answers import Known
+from rosprivacy.report.cnil.inventory import kinds_of
 from rosprivacy.report.cnil.markup import Html, escaped, joined, paragraph
 from rosprivacy.report.cnil.told import NAMES, Told
 from rosprivacy.report.document.analysis import verdict_facts
 from rosprivacy.report.element_counts import count_elements
-from rosprivacy.report.inventory import kinds_of
 from rosprivacy.report.verdict import verdict_sentence
 
 if TYPE_CHECKING:
@@ -36,13 +37,13 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.findings.sanitizing import Cleaning
     from rosprivacy.analysis.fleet.patterns import FleetView
     from rosprivacy.analysis.model import FlowGraph
-    from rosprivacy.report.answer import Answer
+    from rosprivacy.report.document.contents import Document
 
 METHODS = (Method.ANONYMISE, Method.AGGREGATE, Method.DROP, Method.PSEUDONYMISE)  # in the order of the measures
 PLACEHOLDER = "measures.default_placeholder"  # the tool's own key
 
 
-def cnil_pia(answer: Answer, created: str, language: str = "en") -> dict[str, Any]:
+def cnil_pia(document: Document, created: str, language: str = "en") -> dict[str, Any]:
     """Return the file's content.
 
     Parameters
@@ -52,14 +53,16 @@ def cnil_pia(answer: Answer, created: str, language: str = "en") -> dict[str, An
     language
         Of the answers: ``en``, ``de`` or ``fr``.
     """
-    view, vocabulary, assumptions = answer.fleet, answer.vocabulary, answer.assumptions
-    analysis = _of_shown_robots(answer.shown, view) if view else answer.shown
-    kinds = kinds_of(analysis, vocabulary.categories, vocabulary.hierarchy)
+    view, vocabulary, assumptions = document.fleet, document.vocabulary, document.assumptions
+    analysis = _of_shown_robots(document.analysis, view) if view else document.analysis
+    kinds = kinds_of(document)
     told = Told(Words(language), vocabulary.categories)
-    accepted = _accepted(answer, told.words)
-    known = Known(analysis, kinds, answer.stated, accepted, answer.ways, vocabulary.hierarchy, told, answer.processed)
+    accepted = _accepted(document, told.words)
+    known = Known(
+        analysis, kinds, document.outside, accepted, document.ways, vocabulary.hierarchy, told, document.processed
+    )
     measures = list(_measures(known))
-    sentence = verdict_sentence(verdict_facts(answer), told.words)
+    sentence = verdict_sentence(verdict_facts(analysis, document.doubts, assumptions), told.words)
     note = _note(analysis, assumptions, _fleet(view, told) if view else "", sentence, told)
     texts = {
         121: cnil_answers.data(known),
@@ -112,10 +115,12 @@ def _of_shown_robots(analysis: Analysis, view: FleetView) -> Analysis:
     return replace(analysis, graph=replace(graph, flows=is_shown(graph.flows), denied=is_shown(graph.denied)))
 
 
-def _accepted(answer: Answer, words: Words) -> dict[str, str]:
+def _accepted(document: Document, words: Words) -> dict[str, str]:
     """Id of a finding -> why a person accepted it: reason, owner, legal basis, until when (rule S10)."""
-    held = ((f.id, answer.decided.valid(f)) for f in answer.analysis.findings if f.accepted) if answer.decided else ()
-    return {finding: _why(decision, words) for finding, decision in held if decision}
+    decided = document.decided
+    accepted = [finding for finding in document.analysis.findings if finding.accepted] if decided else []
+    decisions = {finding.id: decided.valid(finding) for finding in accepted} if decided else {}
+    return {finding: _why(decision, words) for finding, decision in decisions.items() if decision}
 
 
 def _why(decision: Decision, words: Words) -> str:
@@ -181,7 +186,7 @@ def _measures(facts: Known) -> Iterator[tuple[str, Html]]:
         if done:
             still = [] if method.ends else [paragraph(told("cnil.recital26"))]
             yield told.bare(f"cnil.title.{method}"), joined(_rows(done, told), *still)
-    encrypted = [element.name for element in facts.storages() if facts.of(element, "encrypted") == "yes"]
+    encrypted = [element.name for element in facts.storages() if facts.of(element).encrypted]
     if encrypted:
         rows = [told.pair(escaped(name), told("cnil.encrypted")) for name in encrypted]
         yield told.bare("cnil.title.encrypted"), _rows(rows, told)

@@ -46,9 +46,9 @@ class Told:
         """Return one line of a list: what it is about, and what is said of it."""
         return self.pair(self(key), text)
 
-    def pair(self, what: Html, text: Html) -> Html:
+    def pair(self, name: Html, text: Html) -> Html:
         """Return what something is, after its name."""
-        return Html(self.words.pair(what, text))
+        return Html(self.words.pair(name, text))
 
     def lines(self, key: str, elements: Collection[Element]) -> list[Html]:
         """Return one line of names, none without them."""

@@ -37,16 +37,14 @@ from rosprivacy.report.contract.stated import (
     CategoryEntry,
     ContextEntry,
     DerivationEntry,
+    FactsOfElements,
     NonRosEntry,
     OverruledEntry,
     PointerEntry,
-    ProcessedEntry,
-    ProcessingEntry,
     RolesEntry,
     SanitizerEntry,
     SubjectsEntry,
     SurroundingsEntry,
-    TypesEntry,
     WaysEntry,
 )
 
@@ -365,7 +363,7 @@ class HangsOn(TypedDict):
     ]
 
 
-class Answered(HangsOn):
+class Answered(HangsOn, FactsOfElements):
     """What both forms of the document hold."""
 
     verdict: Annotated[
@@ -411,21 +409,7 @@ class Answered(HangsOn):
         NotRequired[list[SurroundingsEntry]],
         "Where the elements that bring data in work, as label and fleet files state it of them or of their system.",
     ]
-    types: Annotated[
-        NotRequired[list[TypesEntry]],
-        "Message types of channels and their legs, as labels state them or as they were observed; where any are known.",
-    ]
     contexts: Annotated[NotRequired[list[ContextEntry]], "The contexts that are stated."]
-    processing: Annotated[
-        NotRequired[list[ProcessingEntry]],
-        "Who is responsible, what data are processed for and on which basis, as stated of a robot or an element. "
-        "It changes no finding.",
-    ]
-    processed_for: Annotated[
-        NotRequired[list[ProcessedEntry]],
-        "The same for each kind of data where it begins or ends: as stated there, else of the node that makes it, "
-        "of its source, of the robot.",
-    ]
     sanitizers: Annotated[list[SanitizerEntry], "Who cleans which category, and what passes all the same."]
     derivations: Annotated[list[DerivationEntry], "Who makes one category of another."]
     enclaves: Annotated[list[EnclaveEntry], "Of the policies, with the nodes in each."]

@@ -4,7 +4,7 @@
 ``NotRequired`` is what a document may do without: where there is nothing to say, or since it is newer than the format.
 """
 
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, Any, TypeVar, get_type_hints
 
 Type = TypeVar("Type")
 SHA256 = "^[0-9a-f]{64}$"
@@ -15,6 +15,28 @@ class Keywords:
 
     def __init__(self, **keywords: object) -> None:
         self.keywords = keywords
+
+
+class Term:
+    """The term of linked data that says what a field says of an element."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.keywords: dict[str, object] = {}
+
+
+def terms_of(entry: type) -> dict[str, str]:
+    """Return the terms of the fields of an entry, of those that have one.
+
+    >>> class Entry:
+    ...     country: Annotated[str, Term("country"), "ISO 3166-1."]
+    >>> terms_of(Entry)
+    {'country': 'country'}
+    """
+    notes = {
+        field: getattr(hint, "__metadata__", ()) for field, hint in get_type_hints(entry, include_extras=True).items()
+    }
+    return {field: note.name for field, of_field in notes.items() for note in of_field if isinstance(note, Term)}
 
 
 def closed(document: type[Type]) -> type[Type]:

@@ -11,6 +11,7 @@ from rosprivacy.report.contract.notation import (
     LawVerdict,
     Method,
     NotStated,
+    Term,
     Texts,
     closed,
     one_of,
@@ -108,8 +109,8 @@ class SurroundingsEntry(TypedDict):
     """Where an element that brings data in works."""
 
     element: ElementEntry
-    contexts: list[Context]
-    country: Annotated[NotRequired[str], "ISO 3166-1 alpha-2."]
+    contexts: Annotated[list[Context], Term("context")]
+    country: Annotated[NotRequired[str], Term("country"), "ISO 3166-1 alpha-2."]
 
 
 class CategoryEntry(TypedDict):
@@ -162,7 +163,7 @@ class SubjectsEntry(TypedDict):
     """Whom the data of a source is about."""
 
     element: ElementEntry
-    subjects: Annotated[list[str], "Groups of persons, such as residents."]
+    subjects: Annotated[list[str], Term("aboutPersons"), "Groups of persons, such as residents."]
 
 
 class ProcessingEntry(TypedDict, total=False):
@@ -271,24 +272,34 @@ class RecordingEntry(TypedDict):
 class NonRosStated(TypedDict, total=False):
     """What is stated of a non-ROS element."""
 
-    retention: Annotated[dict[str, str], "Of a storage: category, or every, and how long it is kept (ISO 8601)."]
+    retention: Annotated[
+        dict[str, str], Term("retention"), "Of a storage: category, or every, and how long it is kept (ISO 8601)."
+    ]
     backups: Annotated[
         bool | str,
         Keywords(type=["boolean", "string"]),
         "How long data stays in backups after it is deleted; true where that is not known.",
     ]
-    encrypted: bool
-    country: Annotated[str, Keywords(pattern="^[A-Z]{2}$"), "ISO 3166-1."]
+    encrypted: Annotated[bool, Term("encrypted")]
+    country: Annotated[str, Keywords(pattern="^[A-Z]{2}$"), Term("country"), "ISO 3166-1."]
     area: Annotated[
         str,
         one_of("eea", "adequate", "partly", "third"),
         "Where the country lies: in the EEA, outside with an adequacy decision, with one for some recipients, "
         "without one.",
     ]
-    operator: str
-    recipient: Annotated[str, one_of("controller", "joint-controller", "processor", "third-party")]
-    transfer: Annotated[str, "Stated basis of a transfer out of the EEA; 'none' where it is stated that there is none."]
-    contract: Annotated[str, "On what it is operated, such as a contract under Article 28, in a person's words."]
+    operator: Annotated[str, Term("operator")]
+    recipient: Annotated[
+        str, one_of("controller", "joint-controller", "processor", "third-party"), Term("operatorRole")
+    ]
+    transfer: Annotated[
+        str,
+        Term("transferBasis"),
+        "Stated basis of a transfer out of the EEA; 'none' where it is stated that there is none.",
+    ]
+    contract: Annotated[
+        str, Term("contract"), "On what it is operated, such as a contract under Article 28, in a person's words."
+    ]
     recording: Annotated[
         RecordingEntry, "Of a storage that is a bag: the bag as the label file names it, and what it says of itself."
     ]
@@ -322,3 +333,22 @@ class OverruledEntry(TypedDict):
     file: str
     line: int
     by: Annotated[OverruledBy, "The label that takes it away, and what that says."]
+
+
+class FactsOfElements(TypedDict):
+    """What is stated or seen of elements, where any of it is."""
+
+    types: Annotated[
+        NotRequired[list[TypesEntry]],
+        "Message types of channels and their legs, as labels state them or as they were observed; where any are known.",
+    ]
+    processing: Annotated[
+        NotRequired[list[ProcessingEntry]],
+        "Who is responsible, what data are processed for and on which basis, as stated of a robot or an element. "
+        "It changes no finding.",
+    ]
+    processed_for: Annotated[
+        NotRequired[list[ProcessedEntry]],
+        "The same for each kind of data where it begins or ends: as stated there, else of the node that makes it, "
+        "of its source, of the robot.",
+    ]

@@ -1,1 +1,1 @@
-"""An analysis in, out comes the JSON document, which is a contract."""
+"""The ``Document``, all that an answer says as typed facts, and the JSON document, which is a contract."""

@@ -1,6 +1,6 @@
-"""An ``Answer`` -> the JSON document ``rosprivacy.analysis/1`` or ``/2``, contracts (``docs/*.schema.json``).
+"""A ``Document`` as JSON, ``rosprivacy.analysis/1`` or ``/2``: contracts (``docs/*.schema.json``).
 
-In: an ``Answer``. Out: plain dicts and lists, sorted, with no time in them (rule S14).
+In: a ``Document``. Out: plain dicts and lists, sorted, with no time in them (rule S14).
 """
 
 from __future__ import annotations
@@ -9,8 +9,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
 from rosprivacy.analysis.findings.review_order import Behind
-from rosprivacy.analysis.findings.sanitizing import absent, cleanings, makings, recognised
-from rosprivacy.analysis.kernel.ranks import in_words
 from rosprivacy.analysis.written_names import literal
 from rosprivacy.report.catalogs.words import IN_ENGLISH
 from rosprivacy.report.document.decisions import enforced_document, with_decisions
@@ -31,8 +29,7 @@ from rosprivacy.report.document.stated import (
     situations,
     surroundings,
     taken_by_kind,
-    with_processing,
-    with_types,
+    with_facts_of_elements,
     without_backups,
 )
 from rosprivacy.report.verdict import doubts_of, phrase, verdict_sentence
@@ -41,9 +38,9 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
 
     from rosprivacy.analysis.answer import Analysis, OpenQuestion
+    from rosprivacy.analysis.findings.sanitizing import Making
     from rosprivacy.analysis.kernel.overruled import Overruled
-    from rosprivacy.analysis.model import Category, Diagnostic, Element, Flow, FlowGraph
-    from rosprivacy.report.answer import Answer
+    from rosprivacy.analysis.model import Diagnostic, Doubt, Element, Flow, FlowGraph
     from rosprivacy.report.contract.analysis import AnalysisDocument, Assumptions, ShortDocument
     from rosprivacy.report.contract.records import (
         DeniedEntry,
@@ -55,6 +52,7 @@ if TYPE_CHECKING:
         Stopped,
     )
     from rosprivacy.report.contract.stated import DerivationEntry, OverruledEntry, SanitizerEntry, WaysEntry
+    from rosprivacy.report.document.contents import Document
 
 FORMAT = "rosprivacy.analysis/1"
 SHORT = "rosprivacy.analysis/2"
@@ -64,21 +62,21 @@ HANGS_ON = "--hangs-on"  # what asks for it
 SECTIONS = {"node": "nodes", "topic": "topics", "service": "services", "action": "actions"}  # of label files
 
 
-def document(answer: Answer, *, reliance: bool = True) -> AnalysisDocument:
-    """Return the JSON document of an answer; without ``reliance`` what it hangs on is not worked out."""
-    made = with_types(with_processing(_analysis(answer, reliance=reliance), answer), answer)
-    if answer.decided:
-        made = with_decisions(made, answer.decided)
-    if answer.fleet:
-        made = fleet_document(made, answer.fleet, answer.fleet_counts(answer.fleet))
-    if answer.enforced:
-        made["enforced"] = enforced_document(answer.enforced)
-    return _with_sentence(made)
+def json_document(document: Document) -> AnalysisDocument:
+    """Return all of a document as JSON."""
+    entries = with_facts_of_elements(_analysis(document), document)
+    if document.decided:
+        entries = with_decisions(entries, document.decided)
+    if document.fleet and document.counts:
+        entries = fleet_document(entries, document.fleet, document.counts)
+    if document.enforced:
+        entries["enforced"] = enforced_document(document.enforced)
+    return _with_sentence(entries)
 
 
-def short_document(answer: Answer) -> ShortDocument:
-    """Return the document without what few read; what the answer hangs on is in it only where a user asked for it."""
-    whole: dict[str, Any] = {**document(answer, reliance=answer.hangs_on_named)}
+def short_document(document: Document) -> ShortDocument:
+    """Return a document as JSON without what few read."""
+    whole: dict[str, Any] = {**json_document(document)}
     short = {key: value for key, value in whole.items() if key not in (*NOT_IN_SHORT, "not_asked")}
     assumed = whole["assumptions"]
     short["format"] = SHORT
@@ -91,19 +89,18 @@ def short_document(answer: Answer) -> ShortDocument:
     return cast("ShortDocument", short)
 
 
-def _analysis(answer: Answer, *, reliance: bool) -> AnalysisDocument:
+def _analysis(document: Document) -> AnalysisDocument:
     """The analysis as one JSON object, without what only some answers have."""
-    analysis, taken = answer.shown, answer.taken_away
-    categories, hierarchy, graph = answer.vocabulary.categories, answer.vocabulary.hierarchy, analysis.graph
-    at_sources = answer.contexts
-    contexts = at_sources.everywhere
-    document: AnalysisDocument = {
+    analysis, vocabulary, graph = document.analysis, document.vocabulary, document.analysis.graph
+    categories, hierarchy = vocabulary.categories, vocabulary.hierarchy
+    contexts = document.contexts.everywhere
+    entries: AnalysisDocument = {
         "format": FORMAT,
         "verdict": str(analysis.verdict),
         "view": graph.view,
         "categories": [category_entry(categories[name], hierarchy, contexts) for name in analysis.emitted],
-        "findings": [finding_entry(finding, at_sources) for finding in analysis.findings],
-        "open": _open(answer, analysis.open),
+        "findings": [finding_entry(finding, document.contexts) for finding in analysis.findings],
+        "open": _open(document),
         "unknown_ends": [
             {
                 "element": element_dict(end.element),
@@ -112,8 +109,8 @@ def _analysis(answer: Answer, *, reliance: bool) -> AnalysisDocument:
             }
             for end in analysis.unknown_ends
         ],
-        "doubts": [doubt_entry(doubt) for doubt in answer.doubts],
-        "taken_away": ledger_rows(taken),
+        "doubts": [doubt_entry(doubt) for doubt in document.doubts],
+        "taken_away": ledger_rows(document.taken_away),
         "carries": [
             {
                 "element": element_dict(carried.element),
@@ -128,17 +125,16 @@ def _analysis(answer: Answer, *, reliance: bool) -> AnalysisDocument:
             for category, roles in sorted(said.items())
             if not element.is_channel
         ],
-        "outside": inventory(analysis, hierarchy),
+        "outside": inventory(document),
         "subjects": [
-            {"element": element_dict(graph.elements[vertex]), "subjects": list(groups)}
-            for vertex, groups in sorted(answer.bound.subjects.items())
+            {"element": element_dict(element), "subjects": list(groups)} for element, groups in document.subjects
         ],
-        "ways": _ways(answer),
-        "surroundings": surroundings(answer),
-        "contexts": situations(answer.vocabulary, contexts),
-        "look_at": pointers(answer.vocabulary, analysis.emitted, contexts),
-        "sanitizers": _sanitizers(analysis, categories),
-        "derivations": _derivations(analysis),
+        "ways": _ways(document),
+        "surroundings": surroundings(document),
+        "contexts": situations(vocabulary, contexts),
+        "look_at": pointers(vocabulary, analysis.emitted, contexts),
+        "sanitizers": _sanitizers(document),
+        "derivations": _derivations(document.derivations),
         "unreached": _unreached(analysis),
         "enclaves": _enclaves(graph),
         "flows": len(graph.flows),
@@ -146,10 +142,10 @@ def _analysis(answer: Answer, *, reliance: bool) -> AnalysisDocument:
         "denied": [_denied(flow, graph) for flow in graph.denied],
         "elements": len({element.identity for element in graph.elements}),
         "standard_channels": analysis.standard_channels,
-        "diagnostics": [_diagnostic(d) for d in (*answer.diagnostics, *analysis.diagnostics)],
+        "diagnostics": [_diagnostic(d) for d in (*document.diagnostics, *analysis.diagnostics)],
         "assumptions": {
-            **cast("Assumptions", answer.assumptions),
-            "taken_away_by": counts_of(taken),
+            **cast("Assumptions", document.assumptions),
+            "taken_away_by": counts_of(document.taken_away),
             "taken_by_kind": taken_by_kind(analysis),
             "backups_taken_as_none": [element_dict(element) for element in without_backups(analysis)],
             "sanitizers_without_method": [
@@ -160,17 +156,16 @@ def _analysis(answer: Answer, *, reliance: bool) -> AnalysisDocument:
             "standard_channels_unchanged": [
                 element_dict(replace(element, leg="")) for element in analysis.standard_unchanged
             ],
-            "overruled": [_overruled(one) for one in analysis.spread.overruled],
-            "absent": [{"element": element_dict(element), "why": why} for element, why in absent(answer.bound, graph)],
-            "globs": glob_entries(answer.globs(taken)),
+            "overruled": [_overruled(one, by) for one, by in document.overruled],
+            "absent": [{"element": element_dict(element), "why": why} for element, why in document.absent],
+            "globs": glob_entries(document.globs),
         },
     }
-    hangs_on = answer.hangs_on if reliance else None
-    if hangs_on is None:  # so that nobody takes it for 'hangs on nothing'
-        document["not_asked"] = [{"key": "hangs_on", "option": HANGS_ON}]
+    if document.hangs_on is None:  # so that nobody takes it for 'hangs on nothing'
+        entries["not_asked"] = [{"key": "hangs_on", "option": HANGS_ON}]
     else:
-        document["hangs_on"] = reliance_rows(hangs_on)
-    return document
+        entries["hangs_on"] = reliance_rows(document.hangs_on)
+    return entries
 
 
 def label_key(element: Element) -> LabelKey:
@@ -192,22 +187,22 @@ def _stopped(channel: Element, categories: tuple[str, ...], analysis: Analysis) 
     return stopped
 
 
-def _overruled(overruled: Overruled) -> OverruledEntry:
-    """A source or leak that another statement takes away."""
+def _overruled(overruled: Overruled, by: str) -> OverruledEntry:
+    """A source or leak that another statement takes away, and what that one says."""
     return {
         "role": overruled.role,
         "categories": list(overruled.categories),
         "elements": list(overruled.names),
         "file": overruled.lost.place.file,
         "line": overruled.lost.place.line,
-        "by": {"says": in_words(overruled.by), "file": overruled.by.place.file, "line": overruled.by.place.line},
+        "by": {"says": by, "file": overruled.by.place.file, "line": overruled.by.place.line},
     }
 
 
-def _ways(answer: Answer) -> list[WaysEntry]:
+def _ways(document: Document) -> list[WaysEntry]:
     """What lies on the ways of each kind of data to each place."""
     rows: list[WaysEntry] = []
-    for row in answer.ways:
+    for row in document.ways:
         rows.append(
             {
                 "category": row.category,
@@ -230,10 +225,8 @@ def _ways(answer: Answer) -> list[WaysEntry]:
     return rows
 
 
-def _sanitizers(analysis: Analysis, categories: Mapping[str, Category]) -> list[SanitizerEntry]:
+def _sanitizers(document: Document) -> list[SanitizerEntry]:
     """Who cleans data."""
-    kinds_at = recognised(analysis.spread, categories)
-    recognising = {analysis.graph.elements[vertex]: kinds for vertex, kinds in kinds_at.items()}
     return [
         {
             "element": element_dict(cleaning.element),
@@ -246,13 +239,13 @@ def _sanitizers(analysis: Analysis, categories: Mapping[str, Category]) -> list[
             "beside": [element_dict(element) for element in cleaning.neighbours],
             "cleaning_beside": [element_dict(element) for element in cleaning.cleaning_beside],
             "places": place_entries(cleaning.places),
-            "recognises": list(recognising.get(cleaning.element, ())),
+            "recognises": list(document.recognising.get(cleaning.element, ())),
         }
-        for cleaning in cleanings(analysis.spread, analysis.emitted)
+        for cleaning in document.sanitizers
     ]
 
 
-def _derivations(analysis: Analysis) -> list[DerivationEntry]:
+def _derivations(derivations: Iterable[Making]) -> list[DerivationEntry]:
     """Who makes one kind of another."""
     return [
         {
@@ -261,7 +254,7 @@ def _derivations(analysis: Analysis) -> list[DerivationEntry]:
             "to": making.target,
             "reached": making.reached,
         }
-        for making in makings(analysis.spread, analysis.emitted)
+        for making in derivations
     ]
 
 
@@ -279,10 +272,10 @@ def _enclaves(graph: FlowGraph) -> list[EnclaveEntry]:
     return [{"enclave": enclave, "nodes": sorted(inside)} for enclave, inside in sorted(nodes.items())]
 
 
-def _open(answer: Answer, questions: Iterable[OpenQuestion]) -> list[OpenEntry]:
+def _open(document: Document) -> list[OpenEntry]:
     """Open elements, with what stands behind each."""
-    order = answer.review_order
-    return [_question(q, order.get(q.element.shown_as, Behind()), answer.infrastructure) for q in questions]
+    order, infrastructure = document.review_order, document.infrastructure
+    return [_question(q, order.get(q.element.shown_as, Behind()), infrastructure) for q in document.analysis.open]
 
 
 def _question(question: OpenQuestion, behind: Behind, infrastructure: Collection[tuple[str, str]]) -> OpenEntry:
@@ -326,21 +319,20 @@ def _diagnostic(diagnostic: Diagnostic) -> DiagnosticEntry:
     return shown
 
 
-def verdict_facts(answer: Answer) -> dict[str, Any]:
+def verdict_facts(analysis: Analysis, doubts: Iterable[Doubt], assumptions: Mapping[str, Any]) -> dict[str, Any]:
     """Return what the verdict's sentence is made of, without the rest of the document."""
-    analysis = answer.shown
     return {
         "verdict": str(analysis.verdict),
         "categories": analysis.emitted,
         "open": analysis.open,
         "findings": [{"accepted": finding.accepted} for finding in analysis.findings],
         "diagnostics": [{"code": diagnostic.code} for diagnostic in analysis.diagnostics],
-        "doubts": [doubt_entry(doubt) for doubt in answer.doubts],
-        "assumptions": answer.assumptions,
+        "doubts": [doubt_entry(doubt) for doubt in doubts],
+        "assumptions": assumptions,
     }
 
 
-def _with_sentence(document: AnalysisDocument) -> AnalysisDocument:
+def _with_sentence(entries: AnalysisDocument) -> AnalysisDocument:
     """Return a document with the verdict's sentence; what no reader reported as a diagnostic becomes one, too."""
     more: list[DiagnosticEntry] = [
         {
@@ -350,7 +342,7 @@ def _with_sentence(document: AnalysisDocument) -> AnalysisDocument:
             "message": phrase([doubt], IN_ENGLISH),
             "code": doubt["doubt"],
         }
-        for doubt in doubts_of(document)
+        for doubt in doubts_of(entries)
         if not doubt["message"]
     ]
-    return {**document, "diagnostics": [*document["diagnostics"], *more], "sentence": verdict_sentence(document)}
+    return {**entries, "diagnostics": [*entries["diagnostics"], *more], "sentence": verdict_sentence(entries)}

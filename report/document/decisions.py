@@ -1,6 +1,6 @@
 """What people decided, and what the enforced view adds (rule S6): findings of both views with their decisions.
 
-In: a document and decisions joined to its findings; ``Enforced``. Out: the document with ``decision`` on findings and
+In: entries and decisions joined to their findings; ``EnforcedFacts``. Out: entries with ``decision`` on findings and
 ``decisions``; an ``EnforcedEntry``.
 """
 
@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.decisions import Decided, Decision, State
     from rosprivacy.analysis.findings.beyond import Added, DenyLine, Right
-    from rosprivacy.report.answer import Enforced
     from rosprivacy.report.contract.analysis import AddedEntry, AnalysisDocument, DenyEntry, EnforcedEntry, LostEntry
     from rosprivacy.report.contract.records import ChangedSince, DecisionEntry, FindingEntry, ListedDecision, Target
+    from rosprivacy.report.document.contents import EnforcedFacts
 
 
 def with_decisions(document: AnalysisDocument, decided: Decided) -> AnalysisDocument:
@@ -70,14 +70,13 @@ def _target(entry: Decision) -> Target:
     return target
 
 
-def enforced_document(enforced: Enforced) -> EnforcedEntry:
+def enforced_document(enforced: EnforcedFacts) -> EnforcedEntry:
     """Return what the enforced view adds."""
-    answer = enforced.answer
-    findings = [finding_entry(added.finding, answer.contexts) for added in enforced.added]
-    if answer.decided:
-        findings = decided_findings(findings, answer.decided)
+    findings = [finding_entry(added.finding, enforced.contexts) for added in enforced.added]
+    if enforced.decided:
+        findings = decided_findings(findings, enforced.decided)
     return {
-        "verdict": str(answer.analysis.verdict),
+        "verdict": str(enforced.analysis.verdict),
         "unreviewed": len(enforced.open),
         "open": [element_dict(element) for element in enforced.open],
         "added": [_added(added, finding) for added, finding in zip(enforced.added, findings, strict=True)],

@@ -1,6 +1,6 @@
 """What is stated, in the JSON document: of categories and law by the ontology, of elements by people.
 
-In: an ``Answer``, or its parts. Out: entries, sorted or in the order of the graph. No verdict: national law stands
+In: a ``Document``, or its parts. Out: entries, sorted or in the order of the graph. No verdict: national law stands
 there with its country, and who shows it chooses by the countries that are stated.
 """
 
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     )
     from rosprivacy.analysis.model.recording import Recording
     from rosprivacy.ontology.vocabulary import Vocabulary
-    from rosprivacy.report.answer import Answer
     from rosprivacy.report.contract.analysis import AnalysisDocument, ClosedEntry
     from rosprivacy.report.contract.notation import Texts
     from rosprivacy.report.contract.stated import (
@@ -47,6 +46,7 @@ if TYPE_CHECKING:
         TypeEntry,
         TypesEntry,
     )
+    from rosprivacy.report.document.contents import Document
 
 KEYS = {"name": "provision"}  # what the contract calls otherwise than the model
 
@@ -131,34 +131,31 @@ def pointers(vocabulary: Vocabulary, categories: Iterable[str], contexts: Collec
     ]
 
 
-def surroundings(answer: Answer) -> list[SurroundingsEntry]:
+def surroundings(document: Document) -> list[SurroundingsEntry]:
     """Return where the elements that bring data in work, as people state it of them or of their system."""
-    analysis, bound = answer.shown, answer.bound
-    elements = analysis.graph.elements
-    sources = {element for element, roles in analysis.roles.items() if any("source" in of for of in roles.values())}
+    roles = document.analysis.roles
+    sources = {element for element, of_kinds in roles.items() if any("source" in of for of in of_kinds.values())}
     rows: list[SurroundingsEntry] = []
-    for vertex, where in sorted(bound.surroundings.items()):
-        if elements[vertex] in sources:
-            rows.append({"element": element_dict(elements[vertex]), "contexts": list(where.contexts)})
+    for element, where in document.surroundings:
+        if element in sources:
+            rows.append({"element": element_dict(element), "contexts": list(where.contexts)})
             if where.country:
                 rows[-1]["country"] = where.country
     return rows
 
 
-def inventory(analysis: Analysis, hierarchy: Hierarchy) -> list[NonRosEntry]:
+def inventory(document: Document) -> list[NonRosEntry]:
     """Return every element outside ROS with its facts (rule S9)."""
-    spread = analysis.spread
-    numbers = {element: i for i, element in enumerate(analysis.graph.elements)}
     rows: list[NonRosEntry] = []
-    for element, facts in analysis.outside.items():
-        holds = spread.names(spread.present(numbers[element]))
+    for element, facts in document.analysis.outside.items():
+        holds = document.holds[element]
         row: NonRosEntry = {
             "element": {"robot": element.robot, "kind": element.kind, "name": element.name},
             "file": facts.place.file,
             "line": facts.place.line,
             **_facts(facts),
             "holds": list(holds),
-            **_not_known(element, facts, holds, hierarchy),
+            **_not_known(element, facts, holds, document.vocabulary.hierarchy),
         }
         rows.append(row)
     return rows
@@ -221,24 +218,25 @@ def _not_known(element: Element, facts: NonRosFacts, holds: tuple[str, ...], hie
     return entry
 
 
-def with_processing(document: AnalysisDocument, answer: Answer) -> AnalysisDocument:
-    """Return a document with what is stated of processing; of robots that are alike of one."""
-    not_shown = answer.fleet.likeness.second if answer.fleet else ()
+def with_facts_of_elements(entries: AnalysisDocument, document: Document) -> AnalysisDocument:
+    """Return entries with what is stated or seen of elements, where any of it is."""
+    return _with_types(_with_processing(entries, document), document)
+
+
+def _with_processing(entries: AnalysisDocument, document: Document) -> AnalysisDocument:
+    """Return entries with what is stated of processing."""
     stated: list[ProcessingEntry] = []
-    for robot, processing in answer.bound.of_robots.items():
-        if robot not in not_shown:
-            stated.append(_stated(processing))
-            stated[-1]["robot"] = robot
-    for vertex, processing in sorted(answer.bound.processing.items()):
-        element = answer.analysis.graph.elements[vertex]
-        if element.robot not in not_shown:
-            stated.append(_stated(processing))
-            stated[-1]["element"] = element_dict(element)
+    for robot_or_element, processing in document.processing:
+        stated.append(_stated(processing))
+        if isinstance(robot_or_element, str):
+            stated[-1]["robot"] = robot_or_element
+        else:
+            stated[-1]["element"] = element_dict(robot_or_element)
     if stated:
-        document["processing"] = stated
-    if by_kind := [_processed(row) for row in answer.processed]:
-        document["processed_for"] = by_kind
-    return document
+        entries["processing"] = stated
+    if by_kind := [_processed(row) for row in document.processed]:
+        entries["processed_for"] = by_kind
+    return entries
 
 
 def _stated(stated: Processing) -> ProcessingEntry:
@@ -264,35 +262,21 @@ def _processed(row: Processed) -> ProcessedEntry:
     }
 
 
-def with_types(document: AnalysisDocument, answer: Answer) -> AnalysisDocument:
-    """Return a document with the types of channels, where any are known, and what only these close."""
-    closed = answer.shown.closed
+def _with_types(entries: AnalysisDocument, document: Document) -> AnalysisDocument:
+    """Return entries with the types of channels, where any are known, and what only these close."""
+    closed = document.analysis.closed
     types: list[TypesEntry] = [
-        {"element": element_dict(element), "types": [_type(each) for each in seen]}
-        for element, seen in typed_channels(answer)
+        {"element": element_dict(element), "types": [_type(each) for each in seen]} for element, seen in document.types
     ]
     if types:
-        document["types"] = types
+        entries["types"] = types
     if closed:
-        document["assumptions"]["type_limits_reached"] = [
+        entries["assumptions"]["type_limits_reached"] = [
             {"element": element_dict(element), "categories": list(categories)}
             for element, categories in closed.channels
         ]
-        document["assumptions"]["closed_by_types"] = [_closed(finding) for finding in closed.findings]
-    return document
-
-
-def typed_channels(answer: Answer) -> list[tuple[Element, tuple[MessageType, ...]]]:
-    """Return the types of each channel that has any, in the order of the graph; both sides of a wildcard once."""
-    elements = answer.analysis.graph.elements
-    together: dict[Any, tuple[Element, dict[MessageType, None]]] = {}
-    not_shown = answer.fleet.likeness.second if answer.fleet else ()
-    for vertex, types in answer.bound.types.items():
-        element = elements[vertex]
-        if element.robot in not_shown:
-            continue
-        together.setdefault(element.shown_as, (element, {}))[1].update(dict.fromkeys(types))
-    return [(element, tuple(seen)) for element, seen in together.values()]
+        entries["assumptions"]["closed_by_types"] = [_closed(finding) for finding in closed.findings]
+    return entries
 
 
 def _closed(finding: Finding) -> ClosedEntry:

@@ -1,6 +1,6 @@
 """The pictures of a report: one of each path to assess, as many as a file that can be mailed holds, and their legend.
 
-In: an ``Answer`` and the entries of the report. Out: ``Figures``, which know what is missing, and why.
+In: a ``Document`` and the entries of the report. Out: ``Figures``, which know what is missing, and why.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rosprivacy.analysis.answer import Analysis
-    from rosprivacy.report.answer import Answer
     from rosprivacy.report.catalogs.words import Words
+    from rosprivacy.report.document.contents import Document
     from rosprivacy.report.page.outline import Outline
     from rosprivacy.report.pictures.picture import Key
 
@@ -54,7 +54,7 @@ class Figures:
 
 
 def figures(
-    answer: Answer, report: Outline, aliases: Mapping[Key, tuple[str, str]] | None = None, *, room: int = ROOM
+    document: Document, report: Outline, aliases: Mapping[Key, tuple[str, str]] | None = None, *, room: int = ROOM
 ) -> Figures:
     """Draw the entries of a report, in their order, until there is no more room.
 
@@ -70,7 +70,7 @@ def figures(
     """
     if not available():
         return Figures(installed=False)
-    analysis = answer.analysis
+    analysis = document.analysis
     findings = {finding.id: finding for finding in analysis.findings}
     entries = [entry for entry in report.entries if entry.told and entry.id in findings]
     words = report.words
@@ -90,19 +90,19 @@ def figures(
         if made:
             found[entry.id] = made
     picture, rows = _overview(analysis, report, wishes)
-    return Figures(found, overview=picture, drawn=rows, beyond=_beyond(answer, report, wishes, room))
+    return Figures(found, overview=picture, drawn=rows, beyond=_beyond(document, report, wishes, room))
 
 
-def _beyond(answer: Answer, report: Outline, wishes: Wishes, room: int) -> dict[str, Inline]:
+def _beyond(document: Document, report: Outline, wishes: Wishes, room: int) -> dict[str, Inline]:
     """What only the enforced view has, with the steps marked that no profile allows, while there is room."""
-    if not answer.enforced or not report.beyond or room < 0:
+    if not document.enforced or not report.beyond or room < 0:
         return {}
-    mark, renamed_as = marking(answer), wishes.change
+    mark, renamed_as = marking(document.analysis), wishes.change
     labels = {entry.id: report.words("entry.picture", way=entry.brief) for entry in report.beyond}
     marked = replace(wishes, change=lambda picture: renamed_as(mark(picture)), labels=labels)
-    added = [one.finding for one in answer.enforced.added]
+    added = [one.finding for one in document.enforced.added]
     found = {}
-    for finding, made in zip(added, pictures_of(answer.enforced.answer.analysis, added, marked), strict=True):
+    for finding, made in zip(added, pictures_of(document.enforced.analysis, added, marked), strict=True):
         room -= len(made.svg.encode()) if made else 0
         if room < 0:
             break

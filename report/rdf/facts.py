@@ -13,7 +13,7 @@ from rosprivacy.analysis.errors import shown
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
 
-    from rosprivacy.analysis.answer import Analysis, Finding
+    from rosprivacy.analysis.answer import Finding
     from rosprivacy.analysis.model import Element, Legal
     from rosprivacy.ontology.vocabulary import Vocabulary
 
@@ -66,16 +66,6 @@ def changes(finding: Finding, emitted: Collection[str]) -> list[Change]:
     rows = zip(finding.witness, [first, *kinds[:-1]], kinds, strict=True)
     found = [Change(element, before, after) for element, before, after in rows]
     return [change for change in found if change.derives or change.pseudonymises]
-
-
-def emitted_by(analysis: Analysis) -> dict[Element, set[str]]:
-    """Return for each source the categories that labels say it brings in."""
-    elements = analysis.graph.elements
-    emitted = {
-        elements[vertex]: {category for category, fact in decided.items() if fact.emits}
-        for vertex, decided in analysis.spread.facts.items()
-    }
-    return {element: categories for element, categories in emitted.items() if categories}
 
 
 def legal_of(finding: Finding, vocabulary: Vocabulary) -> tuple[tuple[Legal, tuple[str, ...]], ...]:

@@ -1,6 +1,6 @@
 """Findings -> RDF: each with its path and its law, and the possible process that it is about (``process.py``).
 
-In: an ``Answer``. Out: an rdflib graph without time or chance in it (rule S14),
+In: a ``Document``. Out: an rdflib graph without time or chance in it (rule S14),
 which ``serialise.py`` writes. Nothing here is a legal verdict: a provision is one that a person has to look at.
 """
 
@@ -15,12 +15,10 @@ from rdflib import DCTERMS, OWL, RDF, RDFS, SKOS, XSD, Graph, Literal
 from rdflib.namespace import PROV
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.findings.processed import of_end
-from rosprivacy.report.document.analysis import document
-from rosprivacy.report.document.stated import typed_channels
+from rosprivacy.report.document.analysis import json_document
 from rosprivacy.report.element_counts import count_elements
 from rosprivacy.report.rdf.concepts import texts
-from rosprivacy.report.rdf.facts import changes, emitted_by, kinds_along, label_of, legal_of
+from rosprivacy.report.rdf.facts import changes, kinds_along, label_of, legal_of
 from rosprivacy.report.rdf.individuals import below, entries_of, files_read, names_of
 from rosprivacy.report.rdf.process import Processes
 from rosprivacy.report.rdf.terms import (
@@ -41,10 +39,9 @@ if TYPE_CHECKING:
     from rdflib import URIRef
 
     from rosprivacy.analysis.answer import Analysis, ClosedByTypes, Finding, OpenQuestion
-    from rosprivacy.analysis.contexts import Contexts
     from rosprivacy.analysis.fleet.patterns import FleetView
     from rosprivacy.analysis.model import Element
-    from rosprivacy.report.answer import Answer
+    from rosprivacy.report.document.contents import Document
     from rosprivacy.report.rdf.individuals import Names
 
     Files = Mapping[str, Sequence[URIRef]]  # path -> what was read there
@@ -60,7 +57,7 @@ ROLES = {
 }  # fmt: skip
 
 
-def rdf_graph(answer: Answer, when: datetime | None = None, base: str | None = None) -> Graph:
+def rdf_graph(document: Document, when: datetime | None = None, base: str | None = None) -> Graph:
     """Return the findings of an analysis, its verdict and where they come from, as RDF.
 
     Parameters
@@ -79,24 +76,24 @@ def rdf_graph(answer: Answer, when: datetime | None = None, base: str | None = N
     -----
     Takes time linear in the hops of all witnesses and paths.
     """
-    analysis, told = answer.shown, document(answer)
-    names = names_of(told, base)
-    files = by_path(told["assumptions"], names)
-    things = Things(answer.vocabulary, names, files, answer.stated, answer.subjects, answer.surroundings)
-    findings = _Findings.of(answer, analysis, names, things)
+    analysis, entries = document.analysis, json_document(document)
+    names = names_of(entries, base)
+    files = by_path(entries["assumptions"], names)
+    things = Things(document, names, files)
+    findings = _Findings.of(document, names, things)
     graph = Graph(bind_namespaces="none")
     for prefix, namespace in PREFIXES.items():
         graph.bind(prefix, str(namespace))
-    for triple in provenance(analysis, told, names, things, when):
+    for triple in provenance(analysis, entries, names, things, when):
         graph.add(triple)
     for finding in analysis.findings:
         for triple in findings.triples(finding):
             graph.add(triple)
-    for triple in type_triples(answer, names.of("analysis", digest_of(told)), files, things):
+    for triple in type_triples(document, names.of("analysis", digest_of(entries)), files, things):
         graph.add(triple)
     for triple in things.descriptions():
         graph.add(triple)
-    for triple in _robots(answer.fleet, names) if answer.fleet else ():
+    for triple in _robots(document.fleet, names) if document.fleet else ():
         graph.add(triple)
     return graph
 
@@ -115,41 +112,32 @@ class _Findings:
 
     Attributes
     ----------
-    analysis
-        As it is shown.
-    accepted
-        Of the answer, worked out once.
-    emitted
-        Source -> categories that it brings in.
     unreviewed
         (element as shown, category) where no label covers what arrives.
     processes
         What a finding is about.
     """
 
-    answer: Answer
-    analysis: Analysis
+    document: Document
     names: Names
     things: Things
-    accepted: Mapping[str, str]
-    emitted: Mapping[Element, set[str]]
     unreviewed: frozenset[tuple[object, str]]
     processes: Processes
-    contexts: Contexts
 
     @classmethod
-    def of(cls, answer: Answer, analysis: Analysis, names: Names, things: Things) -> _Findings:
+    def of(cls, document: Document, names: Names, things: Things) -> _Findings:
+        analysis = document.analysis
         unstated = frozenset((element.shown_as, category) for element, category in analysis.unstated)
         unreviewed = frozenset((q.element.shown_as, category) for q in analysis.open for category in q.categories)
-        processes = Processes(answer, names, things, answer.stated, unstated, of_end(answer.processed))
-        rest = emitted_by(analysis), unreviewed, processes, answer.contexts
-        return cls(answer, analysis, names, things, answer.accepted, *rest)
+        processed = {(row.element, row.category): row for row in document.processed}
+        processes = Processes(document, names, things, unstated, processed)
+        return cls(document, names, things, unreviewed, processes)
 
     def triples(self, finding: Finding) -> Iterator[Triple]:
         """Everything about a finding."""
-        iri, things = self.names.finding(finding), self.things
+        iri, things, accepted = self.names.finding(finding), self.things, self.document.accepted
         source, leak = things.element(finding.source), things.element(finding.leak)
-        changed = changes(finding, self.emitted.get(finding.source, ()))
+        changed = changes(finding, self.document.brought_in.get(finding.source, ()))
         yield from about(
             iri,
             (RDF.type, [RP.Finding, PROV.Entity]),
@@ -162,7 +150,7 @@ class _Findings:
             (RP.pseudonymised, [Literal(finding.pseudonymised)]),
             (RP.dismissed, [Literal(finding.dismissed)]),
             (RP.through, [things.element(element) for element in finding.through]),
-            (RP.accepted, [text(self.accepted[finding.id])] if finding.id in self.accepted else []),
+            (RP.accepted, [text(accepted[finding.id])] if finding.id in accepted else []),
             (RP.disjointPaths, [Literal(number)] if (number := finding.number_of_paths) else []),
             (RP.concerns, [self.names.process(finding)]),
             (RP.derivedAt, {things.element(change.element) for change in changed if change.derives}),
@@ -175,7 +163,7 @@ class _Findings:
         yield from self._paths(iri, finding)
 
     def _law(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:
-        for number, (legal, names) in enumerate(legal_of(finding, self.answer.vocabulary), 1):
+        for number, (legal, names) in enumerate(legal_of(finding, self.document.vocabulary), 1):
             link = below(iri, "law", number)
             yield iri, RP.fallsUnder, link
             yield from about(
@@ -188,7 +176,7 @@ class _Findings:
 
     def _contexts(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:
         """What the data may reveal where their source works: a fact about the place, no verdict."""
-        for number, legal in enumerate(self.contexts.revealed(finding), 1):
+        for number, legal in enumerate(self.document.contexts.revealed(finding), 1):
             link = below(iri, "context", number)
             yield iri, RP.inContext, link
             yield from about(
@@ -230,7 +218,7 @@ class _Findings:
 
     def _label_notes(self, hop: URIRef, element: Element, categories: set[str]) -> Iterator[Triple]:
         """What labels say of an element about the data that is there, or that they say nothing."""
-        said = self.analysis.roles.get(element, {})
+        said = self.document.analysis.roles.get(element, {})
         for name in categories:
             category = self.things.categories([name])
             yield from about(hop, *((ROLES[role], category) for role in said.get(name, ()) if role in ROLES))
@@ -372,7 +360,7 @@ def _open(answer: URIRef, number: int, question: OpenQuestion, things: Things) -
     )
 
 
-def type_triples(answer: Answer, iri: URIRef, files: Files, things: Things) -> Iterator[Triple]:
+def type_triples(document: Document, iri: URIRef, files: Files, things: Things) -> Iterator[Triple]:
     """Return the types of each channel, from where each is known; the limits that closed something, and what.
 
     Parameters
@@ -380,7 +368,7 @@ def type_triples(answer: Answer, iri: URIRef, files: Files, things: Things) -> I
     iri
         Of the answer.
     """
-    for number, (channel, types) in enumerate(typed_channels(answer), 1):
+    for number, (channel, types) in enumerate(document.types, 1):
         for position, one in enumerate(types, 1):
             link = below(iri, "type", number, position)
             yield things.element(channel), RP.hasType, link
@@ -393,8 +381,8 @@ def type_triples(answer: Answer, iri: URIRef, files: Files, things: Things) -> I
                 (RP.line, [Literal(one.place.line)]),
                 (RP.inFile, files.get(one.place.file, ())),
             )
-    if answer.shown.closed:
-        yield from _closed(answer.shown.closed, iri, things)
+    if document.analysis.closed:
+        yield from _closed(document.analysis.closed, iri, things)
 
 
 def _closed(closed: ClosedByTypes, iri: URIRef, things: Things) -> Iterator[Triple]:

@@ -13,6 +13,7 @@ from rdflib import RDF, RDFS, Literal
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.findings.processed import Processed
+from rosprivacy.analysis.model import NonRosFacts
 from rosprivacy.analysis.non_ros import EVERY, INSIDE, retention_of
 from rosprivacy.report.rdf.facts import foreign_terms, label_of
 from rosprivacy.report.rdf.individuals import below, foreign
@@ -24,11 +25,11 @@ if TYPE_CHECKING:
     from rdflib import URIRef
 
     from rosprivacy.analysis.answer import Finding
-    from rosprivacy.analysis.model import Element, NonRosFacts
-    from rosprivacy.report.answer import Answer
+    from rosprivacy.analysis.model import Element
+    from rosprivacy.report.document.contents import Document
     from rosprivacy.report.rdf.facts import Change
     from rosprivacy.report.rdf.individuals import Names
-    from rosprivacy.report.rdf.things import Stated, Things
+    from rosprivacy.report.rdf.things import Things
 
 ALWAYS = "always"
 STORED = "storage-limitation"
@@ -50,18 +51,15 @@ class Processes:
 
     Attributes
     ----------
-    stated
-        Of the answer, worked out once.
     unstated
         (element as shown, category) where a method is not stated.
     processed
         (element, category) -> purposes, legal bases and who is responsible, as stated.
     """
 
-    answer: Answer
+    document: Document
     names: Names
     things: Things
-    stated: Stated
     unstated: frozenset[tuple[object, str]]
     processed: Mapping[tuple[Element, str], Processed]
 
@@ -88,13 +86,13 @@ class Processes:
 
     def _data(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:
         """The data as one thing that is of our kind, of DPV's, and pseudonymised: not several kinds side by side."""
-        data, category = below(iri, "data"), self.answer.vocabulary.categories[finding.category]
+        data, category = below(iri, "data"), self.document.vocabulary.categories[finding.category]
         form = "pseudonymised: " if finding.pseudonymised else ""
         yield iri, DPV.hasPersonalData, data
         yield from about(
             data,
             (RDF.type, [DPV.PersonalData, *self.things.categories([finding.category])]),
-            (RDF.type, map(foreign, foreign_terms(finding.category, self.answer.vocabulary))),
+            (RDF.type, map(foreign, foreign_terms(finding.category, self.document.vocabulary))),
             (RDF.type, [DPV.PseudonymisedData] if finding.pseudonymised else []),
             (RDF.type, [DPV.SpecialCategoryPersonalData] if category.article9 == ALWAYS else []),
             (RDFS.label, [text(form + shown(category.title), "en")]),
@@ -102,7 +100,7 @@ class Processes:
 
     def _bases(self, finding: Finding) -> list[URIRef]:
         """The legal bases that label files state or a valid decision records; no word of whether they fit."""
-        decision = self.answer.decided.valid(finding) if self.answer.decided and finding.accepted else None
+        decision = self.document.decided.valid(finding) if self.document.decided and finding.accepted else None
         recorded = decision.legal_basis if decision else ()
         return [term for basis in (*recorded, *self._processed(finding).bases) for term in legal_basis(basis)]
 
@@ -159,7 +157,7 @@ class Processes:
     def _leak(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:
         """Who receives the data, and how they are kept: whoever stands behind a leak, as software receives nothing."""
         leak = finding.leak
-        known, name, at = self.stated.get(leak.identity, {}), shown(leak.name), self.things.element(leak)
+        facts, name, at = self.document.outside.get(leak, NonRosFacts()), shown(leak.name), self.things.element(leak)
         if finding.kind != STORED:
             recipient = self.names.of("recipient", *leak.identity)
             anybody = (
@@ -167,9 +165,9 @@ class Processes:
                 if finding.kind == OPEN
                 else f"whoever receives what {name} lets out"
             )
-            label = shown(known["operator"]) if "operator" in known else anybody
+            label = shown(facts.operator) if facts.operator else anybody
             yield iri, DPV.hasRecipient, recipient
-            role = PARTIES.get(known.get("role", ""))
+            role = PARTIES.get(facts.recipient)
             yield from about(recipient, (RDF.type, [DPV.Recipient, *([role] if role else [])]))
             yield from about(recipient, (RDFS.label, [text(label)]), (RP.at, [at]))
             yield from self._country(recipient, leak)
@@ -178,10 +176,10 @@ class Processes:
 
     def _retention(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:
         """How long a storage keeps the category, and its backups after that: a condition of its own (rule S9)."""
-        leak, facts = finding.leak, self.answer.shown.outside.get(finding.leak)
+        leak, facts = finding.leak, self.document.analysis.outside.get(finding.leak)
         of = () if facts is None or _alike_for_all(facts) else (finding.category,)
         name, what = shown(leak.name), shown(finding.category) if of else "data"
-        kept = retention_of(facts, finding.category, self.answer.vocabulary.hierarchy) if facts else []
+        kept = retention_of(facts, finding.category, self.document.vocabulary.hierarchy) if facts else []
         whole = self.names.of("storage-duration", *leak.identity, *of)
         yield from self._condition(iri, whole, finding, f"{name} keeps {what}", [str(one) for one in kept])
         if kept and facts and facts.backups:
@@ -206,7 +204,7 @@ class Processes:
 
     def _country(self, recipient: URIRef, leak: Element) -> Iterator[Triple]:
         """Where a recipient is, and whether that is a third country (GDPR, chapter V)."""
-        facts = self.answer.shown.outside.get(leak)
+        facts = self.document.analysis.outside.get(leak)
         if facts is None or not facts.country:
             return
         country = self.names.of("country", facts.country)

@@ -1,6 +1,6 @@
 """Linked data that can be shown to others: names replaced as in a redacted report (see ``report/redact.py``).
 
-In: an ``Answer``. Out: its graph, where every IRI of the system and every text about it went through a rule that says
+In: a ``Document``. Out: its graph, where every IRI of the system and every text about it went through a rule that says
 what may stay: ids, hashes, lines, kinds of data, the law, countries, roles, periods. A name is replaced by what stands
 for it in the report; any other text is left out. What an ontology says stays as it is.
 """
@@ -17,7 +17,7 @@ from rdflib.namespace import PROV
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.ontology.turtle import local_name
-from rosprivacy.report.document.analysis import document
+from rosprivacy.report.document.analysis import json_document
 from rosprivacy.report.rdf.findings import rdf_graph
 from rosprivacy.report.rdf.individuals import names_of
 from rosprivacy.report.rdf.terms import DPV, RP, text
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from rdflib.term import Node
 
-    from rosprivacy.report.answer import Answer
+    from rosprivacy.report.document.contents import Document
 
     Change = Callable[[str, str], str]
 
@@ -52,7 +52,7 @@ NAME_PREDICATES = {
 }  # fmt: skip
 
 
-def redacted_graph(answer: Answer, when: datetime | None = None, base: str | None = None) -> Graph:
+def redacted_graph(document: Document, when: datetime | None = None, base: str | None = None) -> Graph:
     """Return the graph of ``rdf_graph`` without names; the parameters are the same, and so are the ids in it.
 
     Raises
@@ -60,9 +60,12 @@ def redacted_graph(answer: Answer, when: datetime | None = None, base: str | Non
     InputError
         If the base is none.
     """
-    told, whole = document(answer), rdf_graph(answer, when)  # no term of others begins with the base by default
-    (copy,), names = redacted([told]), replacements([told])
-    bases = names_of(told).base, names_of(told, base).base
+    entries, whole = (
+        json_document(document),
+        rdf_graph(document, when),
+    )  # no term of others begins with the base by default
+    (copy,), names = redacted([entries]), replacements([entries])
+    bases = names_of(entries).base, names_of(entries, base).base
     seen = _Redaction(whole, *bases, copy["assumptions"], names.see)
     for triple in whole:
         seen.triple(*triple)

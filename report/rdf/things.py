@@ -5,34 +5,28 @@ In: facts of the model. Out: their IRIs at once, their descriptions at the end.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from rdflib import RDF, Literal, URIRef
 from rdflib.namespace import PROV
 
+from rosprivacy.report.contract.notation import terms_of
+from rosprivacy.report.contract.stated import NonRosStated, SubjectsEntry, SurroundingsEntry
 from rosprivacy.report.rdf.concepts import category_triples, provision_triples
 from rosprivacy.report.rdf.individuals import foreign
 from rosprivacy.report.rdf.terms import RP, Triple, about, text
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Mapping
 
-    from rosprivacy.analysis.model import Element, Grant, Legal, Pointer, Surroundings
-    from rosprivacy.ontology.vocabulary import Vocabulary
+    from rosprivacy.analysis.model import Element, Grant, Legal, NonRosFacts, Pointer
+    from rosprivacy.report.document.contents import Document
     from rosprivacy.report.rdf.individuals import Names
 
 CLASSES = {
     "node": RP.RosNode, "topic": RP.Topic, "service": RP.Service, "action": RP.Action, "storage": RP.Storage,
     "external-system": RP.ExternalSystem, "shared-memory": RP.SharedMemory, "side-channel": RP.SideChannel,
     "device": RP.Device, "display": RP.Display, "participant": RP.Participant, "person": RP.Person,
-}  # fmt: skip
-
-
-Stated = Mapping[tuple[str, str, str], Mapping[str, str]]
-STATED = {
-    "country": RP.country, "encrypted": RP.encrypted, "operator": RP.operator, "role": RP.operatorRole,
-    "basis": RP.transferBasis, "contract": RP.contract, "retention": RP.retention,
 }  # fmt: skip
 
 
@@ -45,30 +39,17 @@ class Things:
         Of the individuals.
     files
         Path -> IRIs of the files that were read there.
-    stated
-        (robot, kind, name) -> what people stated of an element.
-    subjects
-        (robot, kind, name) -> groups of persons that the data of a source are about.
-    surroundings
-        (robot, kind, name) -> where an element works.
     """
 
-    def __init__(
-        self,
-        vocabulary: Vocabulary,
-        names: Names,
-        files: Mapping[str, tuple[URIRef, ...]],
-        stated: Stated,
-        subjects: Mapping[tuple[str, str, str], tuple[str, ...]],
-        surroundings: Mapping[tuple[str, str, str], Surroundings],
-    ) -> None:
+    def __init__(self, document: Document, names: Names, files: Mapping[str, tuple[URIRef, ...]]) -> None:
+        vocabulary = document.vocabulary
         self._categories = vocabulary.categories
         self._ancestors = vocabulary.hierarchy.ancestors
         self._names = names
         self._files = files
-        self._stated = stated
-        self._subjects = subjects
-        self._surroundings = surroundings
+        self._outside = document.outside
+        self._subjects = {element.identity: groups for element, groups in document.subjects}
+        self._surroundings = {element.identity: where for element, where in document.surroundings}
         self._pointed = {one.name: one for one in vocabulary.pointed.provisions}
         self._elements: dict[URIRef, Element] = {}
         self._lines: dict[URIRef, Grant] = {}
@@ -113,12 +94,11 @@ class Things:
         """Describe all that was named, and the categories that are broader."""
         for iri, element in self._elements.items():
             yield from _element(iri, element)
-            known = self._stated.get(element.identity, {})
-            yield from about(iri, *((term, [text(known[what])]) for what, term in STATED.items() if known.get(what)))
-            yield from about(iri, (RP.aboutPersons, map(text, self.subjects(element))))
+            if facts := self._outside.get(element):
+                yield from _facts(iri, NonRosStated, _outside(facts))
+            yield from _facts(iri, SubjectsEntry, {"subjects": self.subjects(element)})
             if where := self._surroundings.get(element.identity):
-                country = [text(where.country)] if where.country else []
-                yield from about(iri, (RP.context, map(text, where.contexts)), (RP.country, country))
+                yield from _facts(iri, SurroundingsEntry, {"contexts": where.contexts, "country": (where.country,)})
         for iri, grant in self._lines.items():
             yield from _line(iri, grant, self._files.get(grant.place.file, ()))
         for name in {up for category in self._named for up in self._ancestors[category]}:
@@ -127,6 +107,32 @@ class Things:
             yield from category_triples(category, broader)
             yield from about(foreign(category.iri), (RP.lookAt, self.pointed(category.look_at)))
         yield from provision_triples(self._provisions.values())
+
+
+def _facts(iri: URIRef, entry: type, values: Mapping[str, Iterable[str]]) -> list[Triple]:
+    """What an entry of the document states of an element, in the terms that its fields have."""
+    terms = terms_of(entry).items()
+    return about(iri, *((RP[term], map(text, filter(None, values[field]))) for field, term in terms))
+
+
+def _outside(facts: NonRosFacts) -> dict[str, Iterable[str]]:
+    return {
+        "retention": (_retention(facts),),
+        "encrypted": () if facts.encrypted is None else ("yes" if facts.encrypted else "no",),
+        "country": (facts.country,),
+        "operator": (facts.operator,),
+        "recipient": (facts.recipient,),
+        "transfer": (facts.basis,),
+        "contract": (facts.contract,),
+    }
+
+
+def _retention(facts: NonRosFacts) -> str:
+    """How long it keeps which kind, and its backups after that; empty where nothing is stated (rule S9)."""
+    durations = [f"{category}: {duration}" if category else str(duration) for category, duration in facts.retention]
+    known = facts.backups is not True
+    backups = f"in backups {facts.backups} more" if known else "in backups, nobody says for how long"
+    return ", ".join([*durations, *([backups] if facts.backups else [])])
 
 
 def _element(iri: URIRef, element: Element) -> list[Triple]:

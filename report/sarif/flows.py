@@ -18,12 +18,12 @@ from rosprivacy.report.places import of_step
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
-    from rosprivacy.analysis.answer import Analysis, Finding
+    from rosprivacy.analysis.answer import Finding
     from rosprivacy.analysis.model import Element, Place
     from rosprivacy.report.places import Places
 
     Physical = Callable[[Place], dict[str, Any]]
-    Pair = tuple[tuple[str, ...], tuple[str, ...]]
+    Pair = tuple[tuple[str, str, str, str], tuple[str, str, str, str]]
 
 MAX_FLOWS = 10  # paths of a finding
 MAX_STEPS = 1_000  # locations of a path: what GitHub shows; 10 of them are what it takes
@@ -58,19 +58,6 @@ def logical(element: Element) -> dict[str, str]:
     """Return an element as ``logicalLocation``."""
     kind = "module" if element.is_node else "resource"
     return {"name": shown(element.name), "fullyQualifiedName": shown(element.full_name), "kind": kind}
-
-
-def flows_between(analysis: Analysis) -> dict[Pair, Flow]:
-    """Return the flow behind each step of the further paths that were asked for; O(flows), and nothing without them."""
-    paths = [path for finding in analysis.findings for path in finding.paths]
-    wanted = {(a.shown_as, b.shown_as) for path in paths for a, b in pairwise(path)}
-    elements = analysis.graph.elements
-    found: dict[Pair, Flow] = {}
-    for flow in analysis.graph.flows if wanted else ():
-        pair = (elements[flow.source].shown_as, elements[flow.target].shown_as)
-        if pair in wanted:
-            found.setdefault(pair, flow)
-    return found
 
 
 def further_paths(finding: Finding) -> int:

@@ -1,6 +1,6 @@
 """Analysis -> SARIF 2.1.0, for code scanning and editors: each finding at the line that allows it, with the path there.
 
-In: an ``Answer``. Out: plain dicts and lists, sorted, with no time in them
+In: a ``Document``. Out: plain dicts and lists, sorted, with no time in them
 (rule S14). Nothing is suppressed by itself: only what a person accepted, and that stays in the file.
 
 Limits are those of the viewers (GitHub: 25,000 results in a run, 10,000 locations of paths and 1,000 others in a
@@ -20,9 +20,9 @@ from rosprivacy.analysis.text import counted, utf8
 from rosprivacy.report.catalogs.words import IN_ENGLISH
 from rosprivacy.report.document.analysis import verdict_facts
 from rosprivacy.report.element_counts import ElementCount, count_elements
-from rosprivacy.report.places import Places, to_review
+from rosprivacy.report.places import to_review
 from rosprivacy.report.robots import note, on_robots
-from rosprivacy.report.sarif.flows import flows_between, further_paths, prose, text
+from rosprivacy.report.sarif.flows import further_paths, prose, text
 from rosprivacy.report.sarif.results import FINDING, LAW, ROOT, Files, Results, added_results
 from rosprivacy.report.sarif.rules import (
     BEYOND_PROFILE,
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.fleet.counts import Counts
     from rosprivacy.analysis.fleet.patterns import FleetView, Pattern
     from rosprivacy.analysis.model import Diagnostic, Legal, Pointer
-    from rosprivacy.report.answer import Answer
+    from rosprivacy.report.document.contents import Document
 
 SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 MAX_RESULTS = 25_000
@@ -54,7 +54,7 @@ MAX_NOTIFICATIONS = 1_000
 LEVELS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.NOTICE: "note"}
 
 
-def sarif(answer: Answer, root: Path) -> dict[str, Any]:
+def sarif(document: Document, root: Path) -> dict[str, Any]:
     """Return the analysis as a SARIF log of one run; of a fleet with the robots of each finding.
 
     Parameters
@@ -62,48 +62,48 @@ def sarif(answer: Answer, root: Path) -> dict[str, Any]:
     root
         Absolute folder that files are shown relative to: the root of the repository.
     """
-    log = _log(answer, root)
-    return _with_robots(log, answer.fleet, answer.fleet_counts(answer.fleet)) if answer.fleet else log
+    log = _log(document, root)
+    return _with_robots(log, document.fleet, document.counts) if document.fleet and document.counts else log
 
 
-def _log(answer: Answer, root: Path) -> dict[str, Any]:
-    analysis, categories, assumptions = answer.shown, answer.vocabulary.categories, answer.assumptions
-    files, diagnostics = Files(root), answer.diagnostics
+def _log(document: Document, root: Path) -> dict[str, Any]:
+    analysis, categories, assumptions = document.analysis, document.vocabulary.categories, document.assumptions
+    files, diagnostics = Files(root), document.diagnostics
     law = {name: strongest_first(categories[name].law) for name in analysis.emitted}
-    contexts, pointed = answer.contexts, answer.vocabulary.pointed
+    contexts, pointed = document.contexts, document.vocabulary.pointed
     said: list[Legal | Pointer] = [legal for several in law.values() for legal in several]
     for finding in analysis.findings:
         said += (*contexts.revealed(finding), *pointed.of_finding(finding.kind))
     taxa = sorted({legal.iri: legal for legal in said}.values(), key=lambda legal: legal.name)
     found = (rule_of(finding.kind) for finding in analysis.findings)
-    facts = verdict_facts(answer)
-    rows = zip(answer.doubts, facts["doubts"], strict=True)
+    facts = verdict_facts(analysis, document.doubts, assumptions)
+    rows = zip(document.doubts, facts["doubts"], strict=True)
     in_doubt = tuple((doubt, doubt.message or phrase([row], IN_ENGLISH)) for doubt, row in rows)
-    of_doubts = [rule_of_doubt(doubt.name, breaks=doubt.rank is Rank.BREAKS) for doubt in answer.doubts]
+    of_doubts = [rule_of_doubt(doubt.name, breaks=doubt.rank is Rank.BREAKS) for doubt in document.doubts]
     not_named = [NO_LEAK] if analysis.lacking == NO_LEAK_NAMED else []
-    beyond = [BEYOND_PROFILE] if answer.enforced else []
+    beyond = [BEYOND_PROFILE] if document.enforced else []
     told = (*RULES, *found, UNREVIEWED, NOTHING_FOLLOWED, *not_named, *of_doubts, *beyond)
     rules = {rule.id: rule for rule in told}
     made = Results(
         analysis,
-        Places.of(analysis, assumptions),
+        document.lines.places,
         files,
         categories,
         law,
         taxa={legal.iri: number for number, legal in enumerate(taxa)},
         rules={name: number for number, name in enumerate(rules)},
-        between=flows_between(analysis),
-        accepted=answer.accepted,
+        between=document.lines.flows,
+        accepted=document.accepted,
         contexts=contexts,
         pointed=pointed,
         doubts=in_doubt,
     )
     all_results = made.all()
-    if answer.enforced:
-        all_results = chain(all_results, added_results(answer.enforced, made.rules[BEYOND_PROFILE.id], files))
+    if document.enforced:
+        all_results = chain(all_results, added_results(document.enforced, made.rules[BEYOND_PROFILE.id], files))
     results = list(_within(islice(all_results, MAX_RESULTS)))
     notices = [
-        *_about(answer, results, verdict_sentence(facts)),
+        *_about(document, results, verdict_sentence(facts)),
         *_reading_notes((*diagnostics, *analysis.diagnostics), files),
     ]
     driver = {
@@ -188,15 +188,15 @@ def _unreviewed(analysis: Analysis) -> ElementCount:
     return count_elements(question.element for question in analysis.open)
 
 
-def _about(answer: Answer, results: Sequence[Mapping[str, Any]], sentence: str) -> Iterator[dict[str, Any]]:
+def _about(document: Document, results: Sequence[Mapping[str, Any]], sentence: str) -> Iterator[dict[str, Any]]:
     """The verdict with what is open, and what was left out of the file."""
-    analysis, added = answer.shown, answer.enforced.added if answer.enforced else ()
+    analysis, added = document.analysis, document.enforced.added if document.enforced else ()
     count = _unreviewed(analysis)
     are = "is" if count.elements == 1 else "are"
     unreviewed = f"{counted(count.elements, 'element')} that data reaches {are} not reviewed{count.remark}"
     yield _notice("note" if not analysis.open else "warning", "verdict", f"{sentence}; {unreviewed}. {NO_VERDICT}")
     findings = [*analysis.findings, *(one.finding for one in added)]
-    left_out = len(findings) + len(to_review(analysis)) + len(answer.doubts) - len(results)
+    left_out = len(findings) + len(to_review(analysis)) + len(document.doubts) - len(results)
     if left_out > 0:
         yield _notice("warning", "bound", f"{left_out} results are left out: a viewer takes {MAX_RESULTS} at most.")
     left = sum(1 + further_paths(finding) for finding in findings)

@@ -15,9 +15,9 @@ from rosprivacy.analysis.legal import turned_special
 from rosprivacy.analysis.model import CONCERNS, MAY_REVEAL, NO_LEAK_NAMED, Place, Rank
 from rosprivacy.analysis.policy_lines import in_a_file
 from rosprivacy.report.made_of import making
-from rosprivacy.report.places import NOWHERE, Places, of_step, to_review
+from rosprivacy.report.places import NOWHERE, of_step, to_review
 from rosprivacy.report.sarif.artifacts import uri_of
-from rosprivacy.report.sarif.flows import element_name, flows_between, flows_of, logical, prose, text
+from rosprivacy.report.sarif.flows import element_name, flows_of, logical, prose, text
 from rosprivacy.report.sarif.rules import (
     BEYOND_PROFILE,
     NO_LEAK,
@@ -37,7 +37,8 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.findings.beyond import Added
     from rosprivacy.analysis.model import Category, Doubt, Element, Flow, Legal, Pointer
     from rosprivacy.ontology.pointed import Pointed
-    from rosprivacy.report.answer import Enforced
+    from rosprivacy.report.document.contents import EnforcedFacts
+    from rosprivacy.report.places import Places
 
 ROOT = "%SRCROOT%"
 LAW = "data-protection-law"
@@ -298,7 +299,7 @@ def _to_check(law: Sequence[Legal]) -> list[str]:
     )
 
 
-def added_results(enforced: Enforced, rule: int, files: Files) -> Iterator[dict[str, Any]]:
+def added_results(enforced: EnforcedFacts, rule: int, files: Files) -> Iterator[dict[str, Any]]:
     """Yield a result for each finding that only the enforced view has, at the line of another's profile that it needs.
 
     Parameters
@@ -306,8 +307,7 @@ def added_results(enforced: Enforced, rule: int, files: Files) -> Iterator[dict[
     rule
         Number of ``BEYOND_PROFILE`` among the rules of the log.
     """
-    answer = enforced.answer
-    places, between = Places.of(answer.analysis, answer.assumptions), flows_between(answer.analysis)
+    places, between = enforced.lines
     for one in enforced.added:
         finding = one.finding
         lines = [place for number in one.beyond for place in of_step(finding.steps[number])]

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.fleet.likeness import NO_ROBOTS
 from rosprivacy.analysis.suggesting.evidence import HIDING, written
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable
+    from collections.abc import Collection, Iterable, Mapping
 
     from rosprivacy.analysis.errors import InputError
+    from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.analysis.model import Diagnostic
     from rosprivacy.analysis.suggesting.evidence import Evidence, Label, Proposal
     from rosprivacy.analysis.suggesting.library_rules import NodeUse
-    from rosprivacy.report.answer import Answer
     from rosprivacy.report.contract.suggested import EvidenceEntry, ModelEntry, ProposalEntry, SuggestionsDocument
 
 FORMAT = "rosprivacy.suggestions/1"
@@ -24,7 +23,9 @@ def suggestions_document(
     proposals: Iterable[Proposal],
     open_elements: Collection[tuple[str, str, str]],
     by_hand: Collection[Label],
-    answer: Answer,
+    verdict: str,
+    rests_on: Mapping[str, Any],
+    likeness: Likeness,
     rules: Iterable[tuple[str, str]],
     model: ModelEntry | None = None,
     unplaced: Iterable[NodeUse] = (),
@@ -40,8 +41,10 @@ def suggestions_document(
         Identities of the elements that are open.
     by_hand
         Labels that would take away data of which a finding is known.
-    answer
-        Under the labels that there are; suggestions change nothing of it.
+    verdict, rests_on
+        Of the answer under the labels that there are, with its assumptions; suggestions change nothing of it.
+    likeness
+        Which robots stand for which.
     rules
         (file, SHA-256) of the rules.
     model
@@ -55,8 +58,6 @@ def suggestions_document(
     notices
         What a reader has to know of the packages.
     """
-    rests_on = answer.assumptions
-    likeness = answer.fleet.likeness if answer.fleet else NO_ROBOTS
     read = [one for key in ("policies", "labels", "types") for one in rests_on.get(key, ())]
     document: SuggestionsDocument = {
         "format": FORMAT,
@@ -67,7 +68,7 @@ def suggestions_document(
         "unplaced": [{"uses": one.name, "file": one.place.file, "line": one.place.line} for one in unplaced],
         "unread": [{"file": one.file, "line": one.line, "problem": one.problem} for one in unread],
         "of_others": [*of_others],
-        "verdict": str(answer.analysis.verdict),
+        "verdict": verdict,
         "rules": [{"file": file, "sha256": digest} for file, digest in rules],
         "files": [{"file": one["file"], "sha256": one["sha256"]} for one in read],
         "robots": [

@@ -24,6 +24,7 @@ from rosprivacy.analysis.kernel.states import Net
 from rosprivacy.analysis.many_flows import parted
 from rosprivacy.analysis.model import NON_ROS
 from rosprivacy.analysis.modes import View
+from rosprivacy.answer import Enforced
 from rosprivacy.answering import answer
 from rosprivacy.ingest.deployed.zenoh_grants import ANY_SESSION
 from rosprivacy.ingest.policies.changed_graph import changed_graph
@@ -31,7 +32,6 @@ from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, Change
 from rosprivacy.ingest.policies.names import DDS, is_pattern, writable
 from rosprivacy.question import question_of
 from rosprivacy.reading.robot_system import system_reader
-from rosprivacy.report.answer import Enforced
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence

@@ -1,7 +1,8 @@
 """The formats in which an answer is written: one table of name, suffix and function.
 
-In: an ``Answer``, which holds all facts. Out: text, or the bytes of a Word document. What reports may not ask for
-themselves is found here: the root of the repository, the date. A new format is a folder in ``report/`` and a row here.
+In: an ``Answer``, of which a ``Document`` is made, and each format is a function of that. Out: text, or the bytes of a
+Word document. What reports may not ask for themselves is found here: the root of the repository, the date. A new format
+is a folder in ``report/`` and a row here.
 """
 
 from __future__ import annotations
@@ -15,13 +16,15 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, overload
 from rosprivacy.analysis.errors import InputError, shown
 from rosprivacy.clock import source_date, today
 from rosprivacy.report.catalogs import LANGUAGES
+from rosprivacy.report.document.contents import PROPOSALS, RELIANCE
 from rosprivacy.terminal_width import terminal_width
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
-    from rosprivacy.report.answer import Answer
+    from rosprivacy.answer import Answer
     from rosprivacy.report.compare.earlier import Earlier
+    from rosprivacy.report.document.contents import Document
     from rosprivacy.report.page.outline import Outline
     from rosprivacy.report.pictures.picture import Key
 
@@ -82,14 +85,17 @@ class Format(NamedTuple):
         Whether it tells what the enforced view adds (rule S6).
     page
         What it is called where it is refused at a terminal; empty of what people read there.
+    asks
+        Fields of the document that it needs and that take longer than the answer itself.
     """
 
     name: str
     suffix: str
-    write: Callable[[Answer, Style], str | bytes | Iterator[str]]
+    write: Callable[[Document, Style], str | bytes | Iterator[str]]
     styles: tuple[str, ...] = ()
     both_views: bool = False
     page: str = ""
+    asks: tuple[str, ...] = (RELIANCE,)
 
 
 @overload
@@ -118,13 +124,17 @@ def in_pieces(answer: Answer, name: str, style: Style | None = None) -> str | by
     style = style or Style()
     if style.language not in LANGUAGES:
         raise InputError("language", 0, f"unknown language {shown(style.language)!r}", f"one of {', '.join(LANGUAGES)}")
-    return FORMATS[name].write(answer, style)
+    if name == "text" and style.quiet:
+        return text_of(answer.verdict_facts(), style)
+    from rosprivacy.documents import document_of
+
+    return FORMATS[name].write(document_of(answer, FORMATS[name].asks), style)
 
 
-def _text(answer: Answer, style: Style) -> str:
-    from rosprivacy.report.document.analysis import document, verdict_facts
+def _text(document: Document, style: Style) -> str:
+    from rosprivacy.report.document.analysis import json_document
 
-    return text_of(verdict_facts(answer) if style.quiet else document(answer), style)
+    return text_of(json_document(document), style)
 
 
 def text_of(document: Mapping[str, Any], style: Style) -> str:
@@ -146,95 +156,95 @@ def text_of(document: Mapping[str, Any], style: Style) -> str:
     return report_text(document, words, verbose=style.verbose, quiet=style.quiet)
 
 
-def _json(answer: Answer, _: Style) -> Iterator[str]:
+def _json(document: Document, _: Style) -> Iterator[str]:
     from rosprivacy.report import json_text
-    from rosprivacy.report.document.analysis import document
+    from rosprivacy.report.document.analysis import json_document
 
-    return json_text.in_pieces(document(answer))
+    return json_text.in_pieces(json_document(document))
 
 
-def _short_json(answer: Answer, _: Style) -> Iterator[str]:
+def _short_json(document: Document, _: Style) -> Iterator[str]:
     from rosprivacy.report import json_text
     from rosprivacy.report.document.analysis import short_document
 
-    return json_text.in_pieces(short_document(answer))
+    return json_text.in_pieces(short_document(document))
 
 
-def _linked_data(form: str) -> Callable[[Answer, Style], str]:
-    def write(answer: Answer, style: Style) -> str:
+def _linked_data(form: str) -> Callable[[Document, Style], str]:
+    def write(document: Document, style: Style) -> str:
         from rosprivacy.report.rdf.findings import rdf_graph
         from rosprivacy.report.rdf.redacted import redacted_graph
         from rosprivacy.report.rdf.serialise import SERIALISERS
 
         graph_of = redacted_graph if style.redact else rdf_graph
-        return SERIALISERS[form](graph_of(answer, source_date(os.environ), style.base))
+        return SERIALISERS[form](graph_of(document, source_date(os.environ), style.base))
 
     return write
 
 
-def _sarif(answer: Answer, _: Style) -> Iterator[str]:
+def _sarif(document: Document, _: Style) -> Iterator[str]:
     from rosprivacy.report import json_text
     from rosprivacy.report.sarif.artifacts import repository_root
     from rosprivacy.report.sarif.log import sarif
 
-    named = [entry["file"] for kind in ("policies", "labels") for entry in answer.assumptions.get(kind) or ()]
-    return json_text.in_pieces(sarif(answer, repository_root(named)))
+    named = [entry["file"] for kind in ("policies", "labels") for entry in document.assumptions.get(kind) or ()]
+    return json_text.in_pieces(sarif(document, repository_root(named)))
 
 
-def _cnil_pia(answer: Answer, style: Style) -> str:
+def _cnil_pia(document: Document, style: Style) -> str:
     """Without ``SOURCE_DATE_EPOCH`` the file is dated now, since the tool wants a date (rule S14)."""
     from rosprivacy.report.cnil.pia import cnil_pia
     from rosprivacy.report.json_text import as_text
 
     created = (source_date(os.environ) or datetime.now(UTC)).isoformat(timespec="milliseconds")
-    return as_text(cnil_pia(answer, created.replace("+00:00", "Z"), style.language))
+    return as_text(cnil_pia(document, created.replace("+00:00", "Z"), style.language))
 
 
-def _article30(answer: Answer, style: Style) -> str:
+def _article30(document: Document, style: Style) -> str:
     from rosprivacy.report.page.article30 import record
 
-    return record(_rendered_parts(answer, style)[0], style.language)
+    return record(_rendered_parts(document, style)[0], style.language)
 
 
-def _markdown(answer: Answer, style: Style) -> str:
+def _markdown(document: Document, style: Style) -> str:
     from rosprivacy.report.page.markdown import markdown
 
-    return markdown(_outline(answer, style, answer.proposals())[0])
+    return markdown(_outline(document, style)[0])
 
 
-def _docx(answer: Answer, style: Style) -> bytes:
+def _docx(document: Document, style: Style) -> bytes:
     """Without ``SOURCE_DATE_EPOCH`` the document says that it was made today (rule S14)."""
     from rosprivacy.report.docx.document import word_document
     from rosprivacy.report.page.markdown import markdown
 
-    told = _outline(answer, style, answer.proposals())[0]
+    told = _outline(document, style)[0]
     return word_document(markdown(told), told.title, style.language, today(os.environ))
 
 
-def _html(answer: Answer, style: Style) -> str:
+def _html(document: Document, style: Style) -> str:
     from rosprivacy.report.page.figures import figures
     from rosprivacy.report.page.html import html
 
-    told, aliases = _outline(answer, style, answer.proposals())
-    return html(told, figures(answer, told, aliases))
+    told, aliases = _outline(document, style)
+    return html(told, figures(document, told, aliases))
 
 
-def _works_council(answer: Answer, style: Style) -> str:
+def _works_council(document: Document, style: Style) -> str:
     from rosprivacy.report.page.works_council import works_council
 
-    return works_council(_outline(answer, style, "graph")[0])  # it tells no changes: none are looked for
+    return works_council(_outline(document, style)[0])
 
 
-def _outline(answer: Answer, style: Style, proposals: Mapping[str, Any] | str) -> tuple[Outline, Aliases | None]:
+def _outline(document: Document, style: Style) -> tuple[Outline, Aliases | None]:
     from rosprivacy.report.page.assessment_file import read_answers
     from rosprivacy.report.page.outline import outline
 
     answers = read_answers(style.assessment) if style.assessment else None
-    told, earlier, proposals, aliases = _rendered_parts(answer, style, proposals)
+    told, earlier, proposals, aliases = _rendered_parts(document, style)
     report = outline(
         told,
         style.language,
-        title=style.title or ("" if style.redact else _title(answer, style)),
+        title=style.title or ("" if style.redact else _title(document, style)),
         date=today(os.environ),
         earlier=earlier,
         redacted=style.redact,
@@ -244,22 +254,22 @@ def _outline(answer: Answer, style: Style, proposals: Mapping[str, Any] | str) -
     return report, aliases
 
 
-def _title(answer: Answer, style: Style) -> str:
+def _title(document: Document, style: Style) -> str:
     """The policies that were named, without what they include; empty where that is not known."""
     from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.page.outline import title_of
 
-    return title_of(list(dict.fromkeys(Path(file).name for file in answer.named_files)), Words(style.language))
+    return title_of(list(dict.fromkeys(Path(file).name for file in document.policies)), Words(style.language))
 
 
 def _rendered_parts(
-    answer: Answer, style: Style, proposals: Mapping[str, Any] | str = ""
+    document: Document, style: Style
 ) -> tuple[Mapping[str, Any], Earlier | None, Mapping[str, Any] | str, Aliases | None]:
     """The document, the earlier one if there is one, proposals, and what elements are called if names are replaced."""
     from rosprivacy.report.compare.earlier import read_earlier
-    from rosprivacy.report.document.analysis import document
+    from rosprivacy.report.document.analysis import json_document
 
-    told = document(answer)
+    told, proposals = json_document(document), document.proposals or "graph"
     earlier = read_earlier(style.since) if style.since else None
     if not style.redact:
         return told, earlier, proposals, None
@@ -275,19 +285,20 @@ def _rendered_parts(
 
 _REPORT = ("language", "title", "since", "redact", "assessment")
 _LINKED = ("base", "redact")
+_PAGE = (RELIANCE, PROPOSALS)
 FORMATS = {
     known.name: known
     for known in (
         Format("text", ".txt", _text, ("language", "verbose", "quiet"), both_views=True),
-        Format("json", ".json", _short_json, both_views=True),
+        Format("json", ".json", _short_json, both_views=True, asks=()),
         Format("json1", ".json", _json, both_views=True),
-        Format("sarif", ".sarif", _sarif, both_views=True),
-        Format("cnil-pia", ".json", _cnil_pia, ("language",)),
+        Format("sarif", ".sarif", _sarif, both_views=True, asks=()),
+        Format("cnil-pia", ".json", _cnil_pia, ("language",), asks=()),
         Format("turtle", ".ttl", _linked_data("turtle"), _LINKED),
         Format("json-ld", ".jsonld", _linked_data("json-ld"), _LINKED),
-        Format("html", ".html", _html, _REPORT, both_views=True, page="a page"),
-        Format("markdown", ".md", _markdown, _REPORT, both_views=True),
-        Format("docx", ".docx", _docx, _REPORT, both_views=True, page="a Word document"),
+        Format("html", ".html", _html, _REPORT, both_views=True, page="a page", asks=_PAGE),
+        Format("markdown", ".md", _markdown, _REPORT, both_views=True, asks=_PAGE),
+        Format("docx", ".docx", _docx, _REPORT, both_views=True, page="a Word document", asks=_PAGE),
         Format("article30", ".csv", _article30, ("language", "redact")),
         Format("works-council", ".html", _works_council, _REPORT, page="a page"),
     )

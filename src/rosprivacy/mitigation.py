@@ -14,13 +14,14 @@ from rosprivacy.analysis.findings.doubts import doubts, judged
 from rosprivacy.analysis.mitigation.limits import CHANGES, DENY, Limits
 from rosprivacy.analysis.mitigation.propose import System, mitigate, open_findings
 from rosprivacy.analysis.model import UNPROTECTED
+from rosprivacy.documents import document_of
 from rosprivacy.ingest.deployed.exposures import with_exposed
 from rosprivacy.ingest.labels.binding import join
 from rosprivacy.ingest.mitigation.deny_lines import denials, open_ended, with_denied
 from rosprivacy.ingest.mitigation.deny_patch import Patch, patch
 from rosprivacy.ingest.mitigation.limits_file import read_limits
 from rosprivacy.ingest.policies.flow_graph import build
-from rosprivacy.report.document.analysis import document
+from rosprivacy.report.document.analysis import json_document
 from rosprivacy.report.document.mitigation import mitigation_document
 
 if TYPE_CHECKING:
@@ -69,7 +70,7 @@ class Mitigation:
     def document(self) -> MitigationDocument:
         """Return the JSON document."""
         return mitigation_document(
-            document(self.result), self.result.analysis, self.limits, self.proposals, self.patch.diff,
+            json_document(document_of(self.result)), self.result.analysis, self.limits, self.proposals, self.patch.diff,
             self.patch.why_not, self.unmatched, self.notes,
         )  # fmt: skip
 

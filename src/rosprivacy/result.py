@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING, Any, Literal, TypedDict, overload
 
 from rosprivacy.analysis.errors import InputError
 from rosprivacy.analysis.findings.findings import Options
+from rosprivacy.answer import Answer
+from rosprivacy.documents import document_of
 from rosprivacy.formats import Style, TextFormat, written
-from rosprivacy.report.answer import Answer
-from rosprivacy.report.document.analysis import document
+from rosprivacy.report.document.analysis import json_document
+from rosprivacy.report.document.contents import RELIANCE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -49,8 +51,6 @@ class Result(Answer):
         What was asked.
     reanalyse
         Analyses the same policies, as they were read, under other labels; None of a fleet and of a database.
-    closes
-        Proposes changes that remove the open findings; None where the policies are not at hand.
     label_files
         Of a fleet: by robot, the label files that it was read with.
     """
@@ -60,7 +60,6 @@ class Result(Answer):
     types: tuple[TypesFile, ...] = ()
     options: Options = field(default_factory=Options)
     reanalyse: Callable[[tuple[str | Labels, ...]], Result] | None = field(default=None, compare=False)
-    closes: Callable[[Result], Mapping[str, Any] | str] | None = field(default=None, compare=False)
     label_files: Mapping[str, tuple[str, ...]] = field(default_factory=dict, compare=False)
 
     def __repr__(self) -> str:
@@ -92,13 +91,9 @@ class Result(Answer):
         """The policy files that a user named, without what they include; none of a fleet and of a database."""
         return () if self.fleet else tuple(policy.file for policy in self.policies)
 
-    def proposals(self) -> Mapping[str, Any] | str:
-        """Return what closes the open findings, a mitigation document; or why there is none, a word."""
-        return self.closes(self) if self.closes and not self.fleet else Answer.proposals(self)
-
     def document(self) -> dict[str, Any]:
         """Return the whole JSON document, ``rosprivacy.analysis/1``; ``to("json")`` is the short one, ``/2``."""
-        return dict(document(self))
+        return {**json_document(document_of(self, (RELIANCE,)))}
 
     @overload
     def to(self, format: Literal["docx"], **how: Unpack[Shown]) -> bytes: ...

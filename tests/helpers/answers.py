@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.decisions import Choice, Decided, Decision, Decisions, State
 from rosprivacy.analysis.model import Bound, NonRosFacts, Place
+from rosprivacy.answer import Answer
 from rosprivacy.formats import written
-from rosprivacy.report.answer import Answer
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

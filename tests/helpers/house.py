@@ -77,7 +77,7 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "suggest": {"", "contract"},
         "sarif": {"", "document", "catalogs"},
         "cnil": {"", "document", "catalogs"},
-        "rdf": {"", "document"},
+        "rdf": {"", "contract", "document"},
         "docx": set(),
     },
     "rosprivacy": {

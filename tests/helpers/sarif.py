@@ -17,7 +17,7 @@ from tests.helpers.paths import ROOT
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from rosprivacy.report.answer import Answer
+    from rosprivacy.answer import Answer
     from rosprivacy.result import Result
 
 

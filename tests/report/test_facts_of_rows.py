@@ -16,10 +16,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rosprivacy.analysis.legal import recognises
+from rosprivacy.documents import document_of
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.report.catalogs.words import Words
 from rosprivacy.report.cnil.pia import cnil_pia
-from rosprivacy.report.document.analysis import document
+from rosprivacy.report.document.analysis import json_document
+from rosprivacy.report.document.contents import RELIANCE
 from rosprivacy.report.page import article30
 from tests.helpers.answers import answer_of
 from tests.helpers.systems import analysed, systems
@@ -108,7 +110,7 @@ def check(case: Case) -> None:
     bound = replace(case.system.bound(), subjects=case.persons)
     answer = answer_of(analysis, VOCABULARY, REST, bound=bound)
     columns = {WORDS(f"record.{name}"): name for name in article30.Entry.__dataclass_fields__}
-    text = article30.record(document(answer), "en").removeprefix("\ufeff")
+    text = article30.record(json_document(document_of(answer, (RELIANCE,))), "en").removeprefix("\ufeff")
     vertices = {element.name: vertex for vertex, element in enumerate(case.system.graph().elements)}
     for cells in csv.DictReader(io.StringIO(text)):
         row = {columns[column]: cell for column, cell in cells.items()}
@@ -123,7 +125,9 @@ def check(case: Case) -> None:
         for name, title in DROPPED.findall(row["measures"]) if place is None else ():
             assert title == row["category"]
             assert not any(recognised(s.to) for s in brute.said[vertices[name]] if s.role == "derivation")
-    answers = {one["reference_to"]: one["data"]["text"] for one in cnil_pia(answer, "2026-01-01")["answers"]}
+    answers = {
+        one["reference_to"]: one["data"]["text"] for one in cnil_pia(document_of(answer), "2026-01-01")["answers"]
+    }
     for part in re.split(r"<p><strong>", answers[121])[1:]:
         title = next(title for title in sorted(TITLES, key=len, reverse=True) if part.startswith(title))
         groups = persons_of(TITLES[title], None, case, brute)

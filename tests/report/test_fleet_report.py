@@ -13,6 +13,7 @@ import pytest
 import rdflib
 
 from rosprivacy.analysis.fleet.likeness import Likeness
+from rosprivacy.documents import document_of
 from rosprivacy.formats import written
 from rosprivacy.report.page.figures import figures
 from rosprivacy.report.page.html import html
@@ -120,7 +121,7 @@ def test_deviants_stand_by_themselves_with_links_to_the_ways(language: str) -> N
     assert [(row.shown, len(row.robots)) for row in fleet.alike] == [
         ("carrier_01", 23), ("carrier_lent", 1), ("cleaner_1", 4), ("guide_01", 12),
     ]  # fmt: skip
-    page = html(told(language), figures(found(), told(language)))
+    page = html(told(language), figures(document_of(found()), told(language)))
     text = markdown(told(language))
     for shown in (page, text):
         assert "carrier_lent" in shown.replace("\\", "")

@@ -16,9 +16,11 @@ from rosprivacy.cli.output import emit, not_for_a_terminal
 from rosprivacy.report.pictures.picture import LEGIBLE
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Collection
+
     from rosprivacy.analysis.model import Profile
     from rosprivacy.report.pictures.phrases import Phrases
-    from rosprivacy.report.pictures.picture import Picture
+    from rosprivacy.report.pictures.picture import Key, Picture
     from rosprivacy.result import Result
 
 
@@ -237,7 +239,6 @@ def _view(
 ) -> Picture:
     from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.pictures import narrow, views
-    from rosprivacy.report.pictures.added_flows import with_added
     from rosprivacy.report.pictures.phrases import Phrases
 
     words, kinds = Words(language.value), result.vocabulary.categories
@@ -247,14 +248,22 @@ def _view(
     if show is Shown.privacy:
         if part.finding:
             return _finding(result, part.finding, views.PER_BOX * part.bound if part.bound else None, say)
-        return with_added(result, say, lambda also: views.privacy_view(result.analysis, beside, say, also))
+        return _with_added(result, say, lambda also: views.privacy_view(result.analysis, beside, say, also))
     denials = [grant for policy in result.policies for grant in policy.grants if not grant.allow]
-    picture = with_added(
+    picture = _with_added(
         result,
         say,
         lambda _: views.ros_view(result.analysis, denials, words, standard=standard, robots_not_shown=beside),
     )
     return narrow.carrying(picture, result.analysis) if carried_only else picture
+
+
+def _with_added(result: Result, say: Phrases, draw: Callable[[Collection[Key]], Picture]) -> Picture:
+    from rosprivacy.report.pictures.added_flows import with_added
+
+    if not result.enforced or not result.enforced.added:
+        return draw(())
+    return with_added(result.analysis, result.enforced.answer.analysis, result.enforced.added, say, draw)
 
 
 def _finding(result: Result, id_prefix: str, about: int | None, say: Phrases) -> Picture:
@@ -265,7 +274,7 @@ def _finding(result: Result, id_prefix: str, about: int | None, say: Phrases) ->
     added = [one.finding for one in result.enforced.added] if result.enforced else []
     if result.enforced and any(finding.id.startswith(id_prefix) for finding in added):
         finding = narrow.the_finding(replace(result.analysis, findings=tuple(added)), id_prefix)
-        return marking(result)(views.finding_view(result.enforced.answer.analysis, finding, about, say))
+        return marking(result.analysis)(views.finding_view(result.enforced.answer.analysis, finding, about, say))
     return views.finding_view(result.analysis, narrow.the_finding(result.analysis, id_prefix), about, say)
 
 

@@ -89,9 +89,7 @@ def load(
 
 def _sentence(result: Result) -> str:
     """The verdict in a sentence that names its doubts (rule S11)."""
-    from rosprivacy.report.document.analysis import verdict_facts
-
-    return verdict_sentence(verdict_facts(result))
+    return verdict_sentence(result.verdict_facts())
 
 
 def _counts(result: Result, rows: RobotRows) -> str:

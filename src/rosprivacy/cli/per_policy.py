@@ -38,13 +38,14 @@ def texts(results: Results, style: Style) -> str:
 
 def document(results: Results, *, short: bool) -> dict[str, Any]:
     """Return the documents of all policies in one, each ``rosprivacy.analysis/2`` if ``short``, else ``/1``."""
+    from rosprivacy.documents import document_of
     from rosprivacy.report.document.analysis import short_document
 
     return {
         "format": FORMAT,
         "verdict": worst_of((str(result.analysis.verdict) for _, result in results), WORST_FIRST),
         "policies": [
-            {"policy": file, "analysis": short_document(result) if short else result.document()}
+            {"policy": file, "analysis": short_document(document_of(result)) if short else result.document()}
             for file, result in results
         ],
     }

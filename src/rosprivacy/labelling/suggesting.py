@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import LabelError
 from rosprivacy.analysis.findings.review_order import Behind
+from rosprivacy.analysis.fleet.likeness import NO_ROBOTS
 from rosprivacy.analysis.model import Diagnostic, Severity
 from rosprivacy.analysis.suggesting.evidence import LEAK, SOURCE, TYPE, written
 from rosprivacy.analysis.suggesting.label_questions import narrowed, reached_kinds
@@ -92,7 +93,9 @@ class Suggested:
             self.proposals,
             self.open,
             self.by_hand,
-            self.result,
+            str(self.result.analysis.verdict),
+            self.result.assumptions,
+            self.result.fleet.likeness if self.result.fleet else NO_ROBOTS,
             self.rules,
             self.model,
             self.unplaced,

@@ -21,6 +21,7 @@ from rosprivacy.analysis.durations import parse
 from rosprivacy.analysis.findings.findings import analyse
 from rosprivacy.analysis.model import Bound, Category, Element, Flow, FlowGraph, Method, NonRosFacts, Place, Statement
 from rosprivacy.analysis.non_ros import EVERY
+from rosprivacy.documents import document_of
 from rosprivacy.ingest.database.loading import load as load_robots
 from rosprivacy.ontology.vocabulary import Vocabulary, load
 from rosprivacy.private_neo4j import connection
@@ -192,7 +193,7 @@ def seen(tool: Tool, question: int) -> str:
 
 def file_of(policies: list[str], labels: list[str], **options: Any) -> dict[str, Any]:
     result = analyze(policies, labels, **options)
-    return cnil_pia(result, CREATED)
+    return cnil_pia(document_of(result), CREATED)
 
 
 @pytest.fixture(scope="module")
@@ -315,7 +316,7 @@ def test_storages_and_recipients_with_what_was_stated_of_them() -> None:
         elements[3]: NonRosFacts(retention=((EVERY, parse("P30D")),), country="DE", encrypted=True),
         elements[2]: NonRosFacts(country="US", transfer="standard-clauses"),
     }
-    tool = imported(cnil_pia(answer_of(analysis, vocabulary, {}, outside=outside), CREATED))
+    tool = imported(cnil_pia(document_of(answer_of(analysis, vocabulary, {}, outside=outside)), CREATED))
     assert "Kept in: storage bucket (30 days), storage disk (retention not stated)" in seen(tool, 121)
     assert "/blur: pseudonymise (the data is still personal), taken because the label states no method" in seen(
         tool, 122
@@ -337,7 +338,7 @@ def with_facts(facts: dict[str, NonRosFacts], subjects: tuple[str, ...] = ()) ->
     bound = Bound(said, subjects={0: subjects} if subjects else {})
     analysis = analyse(FlowGraph(elements, flows, (), ()), bound, load().hierarchy)
     outside = {element: facts[element.name] for element in elements[1:]}
-    return imported(cnil_pia(answer_of(analysis, load(), {}, bound=bound, outside=outside), CREATED))
+    return imported(cnil_pia(document_of(answer_of(analysis, load(), {}, bound=bound, outside=outside)), CREATED))
 
 
 def test_a_storage_that_is_not_encrypted_is_a_threat_and_no_measure() -> None:
@@ -401,7 +402,7 @@ def test_a_hostile_name_harms_nothing(tmp_path: Path) -> None:
     why = {finding.id: HOSTILE for finding in analysis.findings}
     outside = {e: NonRosFacts(country=HOSTILE, transfer=HOSTILE) for e in elements}
     answer = answer_of(analysis, result.vocabulary, files, outside=outside)
-    data = cnil_pia(accepting(answer, why), CREATED)
+    data = cnil_pia(document_of(accepting(answer, why)), CREATED)
     tool = imported(data)
     assert "<script>alert(1)</script>" in seen(tool, 121)  # seen as text
     assert "‹script›" in tool.answers[322]["list"][0]
@@ -416,7 +417,7 @@ def test_any_system_with_any_names_is_taken(system: System, suffix: str) -> None
     if analysed(system) is None:
         return
     analysis = analyse(graph, system.bound(), HIERARCHY)
-    tool = imported(cnil_pia(answer_of(analysis, VOCABULARY, {}), CREATED))
+    tool = imported(cnil_pia(document_of(answer_of(analysis, VOCABULARY, {})), CREATED))
     findings = [finding for finding in analysis.findings if not finding.dismissed]
     assert len(tool.answers.get(322, {"list": []})["list"]) == len(findings) + bool(analysis.open)
 
@@ -465,7 +466,7 @@ def test_what_people_added_in_the_database_is_in_both_formats(neo4j_server: Conn
 def names_in(result: Result) -> list[str]:
     """What users wrote: names, files, groups of persons."""
     elements = {element.name for element in result.analysis.graph.elements}
-    groups = {group for groups in result.subjects.values() for group in groups}
+    groups = {group for groups in result.bound.subjects.values() for group in groups}
     files = {entry["file"] for kind in ("policies", "labels", "fleet") for entry in result.assumptions.get(kind) or ()}
     return [*elements, *groups, *files, *result.vocabulary.categories, *users_texts(result.document())]
 
@@ -483,7 +484,7 @@ SYSTEMS: dict[str, Callable[[], Result]] = {
 def test_the_file_is_whole_in_every_language(language: str, system: str) -> None:
     """The users of the tool are French controllers; keys, questions and measures are those in English."""
     result = SYSTEMS[system]()
-    english, data = cnil_pia(result, CREATED), cnil_pia(result, CREATED, language)
+    english, data = cnil_pia(document_of(result), CREATED), cnil_pia(document_of(result), CREATED, language)
     tool = imported(data)
     assert sorted(tool.answers) == sorted(imported(english).answers)
     assert [len(answer["data"]["list"]) for answer in data["answers"]] == [
@@ -498,7 +499,7 @@ def test_the_file_is_whole_in_every_language(language: str, system: str) -> None
 
 def test_the_answers_in_french_are_in_the_terms_of_the_rgpd() -> None:
     result = hospital()
-    tool = imported(cnil_pia(result, CREATED, "fr"))
+    tool = imported(cnil_pia(document_of(result), CREATED, "fr"))
     text = plain(seen(tool, 121))
     assert "Conservées dans : stockage hospital:footage bucket (1 an, dans les sauvegardes 7 jours de plus)" in text
     assert "Droit à examiner : art. 9, par. 1" in text

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from rosprivacy.report.answer import Answer
+from rosprivacy.answer import Answer
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:

@@ -10,6 +10,7 @@ from lxml import etree
 from lxml import html as lxml_html
 
 from rosprivacy.analysis.errors import DrawingError
+from rosprivacy.documents import document_of
 from rosprivacy.report.catalogs.words import Words
 from rosprivacy.report.finding_order import in_order
 from rosprivacy.report.page import figures as module
@@ -132,7 +133,7 @@ def test_only_what_is_known_to_draw_stays() -> None:
 def test_each_way_has_its_picture_and_says_it_in_words() -> None:
     result = care_home()
     told = outline(result.document(), "en")
-    drawn = figures(result, told)
+    drawn = figures(document_of(result), told)
     page = lxml_html.document_fromstring(html(told, drawn))
     pictures = page.xpath("//figure[@class='picture']//*[@role='img']")
     assert [picture.get("aria-label") for picture in pictures] == [
@@ -145,7 +146,7 @@ def test_each_way_has_its_picture_and_says_it_in_words() -> None:
 
 def test_boxes_speak_the_language_of_the_report() -> None:
     result = care_home()
-    drawn = figures(result, outline(result.document(), "de"))
+    drawn = figures(document_of(result), outline(result.document(), "de"))
     said = "\n".join(texts(etree.fromstring(one.svg)) for one in drawn.of.values())
     assert "bringt herein: Video von Personen" in said
     assert "erzeugt Gesichtstemplate aus Video von Personen" in said.replace("\n", " ")
@@ -155,9 +156,9 @@ def test_boxes_speak_the_language_of_the_report() -> None:
 def test_what_has_no_room_is_left_out_in_order_and_it_says_how_many_and_how_to_get_them() -> None:
     result = care_home()
     told = outline(result.document(), "en")
-    every = figures(result, told)
+    every = figures(document_of(result), told)
     first = [entry.id for entry in told.entries][:1]
-    some = figures(result, told, room=len(every.of[first[0]].svg.encode()))
+    some = figures(document_of(result), told, room=len(every.of[first[0]].svg.encode()))
     assert list(some.of) == first
     page = html(told, some)
     assert "2 of the paths below have no picture here" in page
@@ -175,7 +176,7 @@ def test_what_graphviz_cannot_draw_is_left_out_alone(monkeypatch: pytest.MonkeyP
         return "no graph" if broken else real(picture, **options)
 
     monkeypatch.setattr(inline, "dot", dot)
-    drawn = figures(result, told)
+    drawn = figures(document_of(result), told)
     missing = [entry.id for entry in told.entries if entry.id not in drawn.of]
     assert missing
     assert told.entries[1].id in missing
@@ -186,7 +187,7 @@ def test_without_graphviz_the_report_says_in_one_place_how_to_get_pictures(monke
     monkeypatch.setattr(graphviz, "find_spec", lambda _: None)
     result = care_home()
     told = outline(result.document(), "en")
-    drawn = figures(result, told)
+    drawn = figures(document_of(result), told)
     assert drawn == Figures(installed=False)
     page = html(told, drawn)
     assert page.count("the extra [views]") == 1
@@ -200,7 +201,7 @@ def test_a_redacted_report_has_redacted_pictures() -> None:
     document = result.document()
     (copy,) = redacted([document])
     told = outline(copy, "en", redacted=True)
-    drawn = figures(result, told, aliases_of(document, copy))
+    drawn = figures(document_of(result), told, aliases_of(document, copy))
     page = html(told, drawn)
     names = {element.name for element in result.analysis.graph.elements if len(element.name) > 4}
     assert len(drawn.of) == len(told.entries)
@@ -225,7 +226,7 @@ def test_the_legend_explains_every_role_in_both_languages() -> None:
         assert len({words for _, _, words in looks}) == len({look for look, _, _ in looks}) == len(looks)
     result = care_home()
     told = outline(result.document(), "en")
-    page = lxml_html.document_fromstring(html(told, figures(result, told)))
+    page = lxml_html.document_fromstring(html(told, figures(document_of(result), told)))
     samples = page.xpath("//div[@class='legend']//li")
     assert [sample.text_content().strip() for sample in samples] == [w for *_, w in page_legend(Words("en"))]
     assert all(sample.find("svg").get("aria-hidden") == "true" for sample in samples)
@@ -253,7 +254,7 @@ def test_the_room_is_that_of_a_file_that_can_be_mailed() -> None:
 def test_the_first_picture_has_the_shortest_paths_of_what_is_to_be_decided_and_nothing_else() -> None:
     result = care_home()
     told = outline(result.document(), "en")
-    drawn = figures(result, told)
+    drawn = figures(document_of(result), told)
     assert drawn.overview
     assert drawn.drawn == told.opening.count == 3
     page = lxml_html.document_fromstring(html(told, drawn))
@@ -269,6 +270,6 @@ def test_the_first_picture_stays_small_and_says_what_it_leaves_out(monkeypatch: 
     result = care_home()
     told = outline(result.document(), "en")
     monkeypatch.setattr("rosprivacy.report.page.figures.OVERVIEW", 8)
-    drawn = figures(result, told)
+    drawn = figures(document_of(result), told)
     assert drawn.drawn == 1
     assert "The shortest paths of the first 1 of 3 to decide" in html(told, drawn)

@@ -12,6 +12,7 @@ from unicodedata import bidirectional, normalize
 
 import pytest
 
+from rosprivacy.documents import document_of
 from rosprivacy.report.compare.earlier import Earlier
 from rosprivacy.report.page.assessment_file import read_answers
 from rosprivacy.report.page.figures import Figures, figures
@@ -56,10 +57,10 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     said = {
         "care-en": html(outline(care(), "en", date="2026-11-21")),
         "care-de": html(outline(care(), "de", date="2026-11-21")),
-        "all-en": html(all_told, figures(care_home(), all_told)),
-        "open-de": html(open_told, figures(factory(2), open_told)),
+        "all-en": html(all_told, figures(document_of(care_home()), all_told)),
+        "open-de": html(open_told, figures(document_of(factory(2)), open_told)),
         "fleet-en": html(outline(fleet(care(), [f"robot{i:03}" for i in range(300)]), "en")),
-        "hospital-de": html(several, figures(hospital(), several)),
+        "hospital-de": html(several, figures(document_of(hospital()), several)),
         "none-en": html(outline(care() | {"findings": [], "verdict": "no-leak-found"}, "en")),
         "hostile-en": html(outline(harm, "en", title=HOSTILE[0], earlier=Earlier(harm, HOSTILE[1], "0" * 64)), harmful),
         "hostile-de": html(outline(harm, "de")),

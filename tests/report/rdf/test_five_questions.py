@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 import rosprivacy
+from rosprivacy.documents import document_of
 from rosprivacy.report.rdf.findings import rdf_graph
 from tests.helpers.paths import ROOT
 
@@ -26,7 +27,7 @@ RECEIVES = "?r a dpv:Recipient ; rdfs:label ?who . ?p dpv:hasRecipient ?r ."
 @pytest.fixture(scope="module")
 def fleet() -> Graph:
     result: Result = rosprivacy.analyze_fleet(ROOT / "examples" / "fleet" / "fleet.yaml")
-    return rdf_graph(result)
+    return rdf_graph(document_of(result))
 
 
 def asked(graph: Graph, select: str, where: str) -> set[tuple[str, ...]]:

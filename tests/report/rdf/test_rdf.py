@@ -23,6 +23,7 @@ from rosprivacy.analysis.durations import parse
 from rosprivacy.analysis.findings.findings import analyse
 from rosprivacy.analysis.model import Bound, Category, Element, Flow, FlowGraph, Legal, Method, NonRosFacts
 from rosprivacy.analysis.non_ros import EVERY
+from rosprivacy.documents import document_of
 from rosprivacy.formats import written
 from rosprivacy.ontology.iris import as_published
 from rosprivacy.ontology.vocabulary import Vocabulary
@@ -40,7 +41,6 @@ from rosprivacy.report.rdf.terms import (
     RISKS,
     RP,
 )
-from rosprivacy.report.rdf.things import STATED
 from tests.helpers.answers import accepting, answer_of
 from tests.helpers.cases import CASES
 from tests.helpers.ontologies import ontology
@@ -73,7 +73,7 @@ def result_of(case: Path, **options: Any) -> Result:
 
 
 def graph_of_analysis(analysis: Analysis, outside: Mapping[Element, NonRosFacts] | None = None) -> Graph:
-    return rdf_graph(answer_of(analysis, VOCABULARY, REST, outside=outside), base=BASE)
+    return rdf_graph(document_of(answer_of(analysis, VOCABULARY, REST, outside=outside)), base=BASE)
 
 
 @pytest.fixture(scope="module")
@@ -84,7 +84,7 @@ def care_home() -> Result:
 
 @pytest.fixture(scope="module")
 def graph(care_home: Result) -> Graph:
-    return rdf_graph(care_home)
+    return rdf_graph(document_of(care_home))
 
 
 def problems(graph: Graph) -> str:
@@ -140,7 +140,9 @@ class TestTerms:
 
     @pytest.mark.parametrize("case", CASES, ids=lambda path: str(path.name))
     def test_no_other_word_of_it_is_written(self, dpv: Graph, case: Path) -> None:
-        words = {node for triple in rdf_graph(result_of(case)) for node in triple if "w3id.org/dpv" in str(node)}
+        words = {
+            node for triple in rdf_graph(document_of(result_of(case))) for node in triple if "w3id.org/dpv" in str(node)
+        }
         assert words
         assert all((word, RDF.type, None) in dpv for word in words), words
 
@@ -317,14 +319,14 @@ class TestInTheWordsOfDpv:
     def test_a_category_without_terms_takes_those_of_its_nearest_broader_one(self, care_home: Result) -> None:
         findings = [f for f in care_home.analysis.findings if f.category == "FaceTemplate"]
         changed = replace(care_home.analysis, findings=tuple(replace(f, category="VoicePrint") for f in findings))
-        graph = rdf_graph(replace(care_home, analysis=changed))
+        graph = rdf_graph(document_of(replace(care_home, analysis=changed)))
         assert self.data(graph, "VoicePrint") == {RP.VoicePrint, URIRef("https://w3id.org/dpv/pd#Biometric")}
 
     def test_what_is_always_special_is_so_for_a_reader_of_dpv(self, care_home: Result) -> None:
         findings = [f for f in care_home.analysis.findings if f.category == "FaceTemplate"]
         for name, special in (("Ethnicity", True), ("Belief", True), ("FaceTemplate", False)):
             changed = replace(care_home.analysis, findings=tuple(replace(f, category=name) for f in findings))
-            graph = rdf_graph(replace(care_home, analysis=changed))
+            graph = rdf_graph(document_of(replace(care_home, analysis=changed)))
             assert (DPV.SpecialCategoryPersonalData in self.data(graph, name)) is special
             assert ((RP[name], RDF.type, DPV.SpecialCategoryPersonalData) in graph) is special
             assert problems(graph) == ""
@@ -549,10 +551,11 @@ class TestOutsideRos:
         assert value(graph, bucket, DPV.hasStorageCondition, RP.stated) is True
         assert value(graph, cloud, DPV.hasRecipient, RDFS.label) == "Cloud Ltd"
         told = {
-            what: value(graph, NAMES.element(CLOUD), STATED[what]) for what in ("operator", "role", "country", "basis")
+            term: value(graph, NAMES.element(CLOUD), RP[term])
+            for term in ("operator", "operatorRole", "country", "transferBasis")
         }
         assert told == {
-            "operator": "Cloud Ltd", "role": "processor", "country": "US", "basis": "standard-clauses",
+            "operator": "Cloud Ltd", "operatorRole": "processor", "country": "US", "transferBasis": "standard-clauses",
         }  # fmt: skip
         assert problems(graph) == ""
 
@@ -597,7 +600,9 @@ class TestOutsideRos:
 
     def test_what_a_person_accepted(self, analysis: Analysis) -> None:
         finding = analysis.findings[0]
-        graph = rdf_graph(accepting(answer_of(analysis, VOCABULARY, REST), {finding.id: "a contract"}), base=BASE)
+        graph = rdf_graph(
+            document_of(accepting(answer_of(analysis, VOCABULARY, REST), {finding.id: "a contract"})), base=BASE
+        )
         assert set(graph.subject_objects(RP.accepted)) == {(NAMES.finding(finding), Literal("a contract"))}
         assert problems(graph) == ""
 

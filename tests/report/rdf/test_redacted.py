@@ -15,7 +15,6 @@ from rdflib import Graph, Literal, URIRef
 
 import rosprivacy
 from rosprivacy.formats import Style, written
-from rosprivacy.report.document.analysis import document
 from rosprivacy.report.rdf.terms import RP
 from rosprivacy.report.redact import LEFT_OUT, redacted
 from tests.helpers.answers import accepting
@@ -79,7 +78,7 @@ def told(made: Graph) -> str:
 
 @pytest.mark.parametrize("system", SYSTEMS)
 def test_no_name_is_left(system: str) -> None:
-    known = {name for name in names(document(SYSTEMS[system]())) if len(name) > 1}
+    known = {name for name in names(SYSTEMS[system]().document()) if len(name) > 1}
     whole, copy = (told(graph(system, redact=redact)) for redact in (False, True))
     before = {name for name in known if of_ours(name, whole)}
     assert len(before) > 20
@@ -92,7 +91,7 @@ def test_no_name_is_left(system: str) -> None:
 def test_a_name_is_replaced_as_in_the_report(system: str) -> None:
     result = SYSTEMS[system]()
     proposals = result.proposals()  # the page tells them too
-    copy = redacted([document(result), *([] if isinstance(proposals, str) else [proposals])])[0]
+    copy = redacted([result.document(), *([] if isinstance(proposals, str) else [proposals])])[0]
     made = graph(system)
     for finding in copy["findings"]:
         subject = next(made.subjects(RP.id, Literal(finding["id"])))

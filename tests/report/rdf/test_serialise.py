@@ -31,6 +31,7 @@ from rosprivacy.analysis.model import (
     Severity,
 )
 from rosprivacy.clock import source_date
+from rosprivacy.documents import document_of
 from rosprivacy.ontology.vocabulary import Vocabulary
 from rosprivacy.report.rdf.findings import rdf_graph
 from rosprivacy.report.rdf.individuals import Names
@@ -44,7 +45,7 @@ from tests.helpers.systems import statement
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from rosprivacy.report.answer import Answer
+    from rosprivacy.answer import Answer
     from tests.helpers.command import Cli
 
 
@@ -77,7 +78,7 @@ def system(name: str, file: str = "") -> Answer:
 
 
 def text_of(name: str, form: str) -> str:
-    return SERIALISERS[form](rdf_graph(system(name)))
+    return SERIALISERS[form](rdf_graph(document_of(system(name))))
 
 
 def strict(text: str, form: str) -> Graph:
@@ -126,7 +127,7 @@ def test_any_name_stays_a_name(form: str, name: str) -> None:
 @pytest.mark.parametrize("name", ["\ud800", "a\udcff"], ids=["surrogate", "byte"])
 def test_what_utf_8_cannot_say_is_escaped(name: str, form: str) -> None:
     """A file's name can be any bytes."""
-    graph = strict(SERIALISERS[form](rdf_graph(system("tame", name))), form)
+    graph = strict(SERIALISERS[form](rdf_graph(document_of(system("tame", name)))), form)
     assert values(graph, RP.SourceFile, RP.file) == {name.encode("utf-8", "backslashreplace").decode()}
 
 
@@ -172,7 +173,7 @@ def test_no_blank_node_has_a_label_and_no_context_is_elsewhere(form: str) -> Non
 
 @FORMS
 def test_the_order_of_the_triples_does_not_matter(form: str) -> None:
-    graph = rdf_graph(system("tame"))
+    graph = rdf_graph(document_of(system("tame")))
     triples = sorted(graph, key=lambda triple: [str(node) for node in triple])
     texts = set()
     for order in (triples, triples[::-1]):

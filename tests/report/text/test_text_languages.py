@@ -35,7 +35,7 @@ MESSAGE = re.compile(r"(Fehler|Warnung|Hinweis|erreur|avertissement|remarque) ?:
 
 def names_in(result: Result) -> list[str]:
     elements = {element.name for element in result.analysis.graph.elements}
-    groups = {group for groups in result.subjects.values() for group in groups}
+    groups = {group for groups in result.bound.subjects.values() for group in groups}
     files = {entry["file"] for kind in ("policies", "labels", "fleet") for entry in result.assumptions.get(kind) or ()}
     notes = {row.statement.why for row in result.hangs_on or ()} - {""}  # in the words of who wrote the labels
     return [*notes, *elements, *groups, *files, *result.vocabulary.categories]

@@ -21,7 +21,6 @@ from rosprivacy.explorer.web.element_pane import element_pane, is_likely_source
 from rosprivacy.explorer.web.forms import METHODS
 from rosprivacy.explorer.web.panes import Pane, stands_for, title_of
 from rosprivacy.explorer.web.view import ALL
-from rosprivacy.report.document.analysis import verdict_facts
 from rosprivacy.report.finding_order import place_of
 from rosprivacy.report.page.html import in_html
 from rosprivacy.report.page.spaced_templates import CompiledTemplates
@@ -137,7 +136,7 @@ def page_of(standing: Standing, view: View, words: Words) -> Pane:
     return Pane(
         version=standing.version,
         verdict=verdict_of(standing),
-        doubts="; ".join(doubt_phrases(verdict_facts(standing.result), words)),
+        doubts="; ".join(doubt_phrases(standing.result.verdict_facts(), words)),
         left=len(standing.questions),  # as decided and exits, also for kinds of data that are switched off
         decided=len(standing.carried.keys() - standing.open_kinds.keys()),
         exits=len({finding.leak.identity for finding in standing.analysis.findings if finding.stands}),
@@ -153,7 +152,7 @@ def page_of(standing: Standing, view: View, words: Words) -> Pane:
 
 def verdict_of(standing: Standing) -> str:
     """Return the verdict, or what it lacks, where nothing could have been found (rules S11, S12): a key of words."""
-    return verdict_meaning(verdict_facts(standing.result))
+    return verdict_meaning(standing.result.verdict_facts())
 
 
 def _switches(standing: Standing, view: View, words: Words) -> tuple[Pane, ...]:

@@ -1,6 +1,6 @@
 """What an analysis knows of each kind of data, in the words of a record of processing (GDPR, Article 30).
 
-In: an ``Analysis``, its categories, what was said of its elements. Out: one ``Kind`` per emitted category: where it
+In: a ``Document``. Out: one ``Kind`` per emitted category: where it
 comes from, where it gets, who cleans it, where it leaves. Nothing here decides anything.
 """
 
@@ -10,16 +10,16 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.findings.sanitizing import cleanings, makings, recognised
 from rosprivacy.analysis.legal import strongest_first
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable
 
     from rosprivacy.analysis.answer import Analysis, Finding
     from rosprivacy.analysis.findings.sanitizing import Cleaning
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.model import Category, Element, Legal
+    from rosprivacy.report.document.contents import Document
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +32,7 @@ class Kind:
         Provisions that a person has to look at, what holds always first.
     sources
         Elements that bring it in.
-    made
+    derivations
         (element that makes it, category that it is made of).
     reached
         Elements that it gets to, or a narrower kind does, in the order of the graph; the legs of a service are one.
@@ -47,31 +47,31 @@ class Kind:
     category: Category
     law: tuple[Legal, ...]
     sources: tuple[Element, ...]
-    made: tuple[tuple[Element, str], ...]
+    derivations: tuple[tuple[Element, str], ...]
     reached: tuple[Element, ...]
     cleaned: tuple[Cleaning, ...]
     findings: tuple[Finding, ...]
     open: tuple[Element, ...]
 
 
-def kinds_of(analysis: Analysis, categories: Mapping[str, Category], hierarchy: Hierarchy) -> tuple[Kind, ...]:
+def kinds_of(document: Document) -> tuple[Kind, ...]:
     """Return what is known of each emitted category, sorted by its name."""
-    reached = _reached(analysis, hierarchy)
+    analysis, categories = document.analysis, document.vocabulary.categories
+    reached = _reached(analysis, document.vocabulary.hierarchy)
     here = {(name, element.identity) for name, elements in reached.items() for element in elements}
-    spread, shown = analysis.spread, analysis.roles  # not of a robot of a fleet that another one stands for
-    recognising = {spread.graph.elements[vertex] for vertex in recognised(spread, categories)}
+    shown = analysis.roles  # not of a robot of a fleet that another one stands for
     cleaned = [
         c
-        for c in cleanings(spread, analysis.emitted)
-        if (c.category, c.element.identity) in here and c.element not in recognising
+        for c in document.sanitizers
+        if (c.category, c.element.identity) in here and c.element not in document.recognising
     ]
-    made = [making for making in makings(spread, analysis.emitted) if making.element in shown]
+    makings = [making for making in document.derivations if making.element in shown]
     return tuple(
         Kind(
             category=categories[name],
             law=strongest_first(categories[name].law),
             sources=_distinct(e for e, said in analysis.roles.items() if "source" in said.get(name, ())),
-            made=tuple(dict.fromkeys((making.element, making.made_of) for making in made if making.target == name)),
+            derivations=_each_once((making.element, making.made_of) for making in makings if making.target == name),
             reached=_distinct(reached[name]),
             cleaned=tuple(c for c in cleaned if c.category == name and c.element in shown),
             findings=tuple(f for f in analysis.findings if f.category == name and not f.dismissed),
@@ -89,6 +89,10 @@ def _reached(analysis: Analysis, hierarchy: Hierarchy) -> dict[str, list[Element
         for name in {above for narrow in names for above in hierarchy.ancestors[narrow]}:
             found[name].append(carried.element)
     return found
+
+
+def _each_once(rows: Iterable[tuple[Element, str]]) -> tuple[tuple[Element, str], ...]:
+    return tuple(dict.fromkeys(rows))
 
 
 def _distinct(elements: Iterable[Element]) -> tuple[Element, ...]:

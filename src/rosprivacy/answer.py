@@ -1,6 +1,6 @@
-"""The answer as every format gets it: the analysis, and all that a reader has to know beside it.
+"""The answer: the analysis, what it rests on, and what else can be worked out of both.
 
-In: what was found, and what it rests on. Out: ``Answer``. A format is a function of it, so that none can forget a fact.
+In: what was found, and what it rests on. Out: ``Answer``, of which ``documents.py`` makes a ``Document``.
 """
 
 from __future__ import annotations
@@ -16,19 +16,19 @@ from rosprivacy.analysis.findings.ways import Ways, ways
 from rosprivacy.analysis.fleet.likeness import NO_ROBOTS
 from rosprivacy.analysis.whatif.ledger import GlobUse, globs, ledger
 from rosprivacy.analysis.whatif.reliance import Reliance, reliances
+from rosprivacy.report.document.analysis import verdict_facts
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+    from collections.abc import Callable, Collection, Iterable, Mapping
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.case import Case
     from rosprivacy.analysis.decisions import Decided, Decision
-    from rosprivacy.analysis.durations import Duration
     from rosprivacy.analysis.findings.beyond import Added
     from rosprivacy.analysis.findings.processed import Processed
     from rosprivacy.analysis.fleet.counts import Counts
     from rosprivacy.analysis.fleet.patterns import FleetView
-    from rosprivacy.analysis.model import Bound, Diagnostic, Doubt, Element, NonRosFacts, Surroundings
+    from rosprivacy.analysis.model import Bound, Diagnostic, Doubt, Element
     from rosprivacy.analysis.whatif.ledger import TakenAway
     from rosprivacy.ontology.vocabulary import Vocabulary
 
@@ -79,6 +79,8 @@ class Answer:
         Whether ``hangs_on`` is asked for: of a fleet it takes more than the analysis.
     hangs_on_named
         Whether a user asked for it by name, which a short document waits for.
+    closes
+        Proposes changes that remove the open findings; None where the policies are not at hand.
     """
 
     analysis: Analysis
@@ -95,6 +97,7 @@ class Answer:
     doubts: tuple[Doubt, ...] = ()
     hangs_on_asked: bool = field(default=True, repr=False, compare=False)
     hangs_on_named: bool = field(default=False, repr=False, compare=False)
+    closes: Callable[[Any], Mapping[str, Any] | str] | None = field(default=None, repr=False, compare=False)
 
     @property
     def shown(self) -> Analysis:
@@ -106,9 +109,19 @@ class Answer:
         """The policy files that a user named, without what they include; none where that is not known."""
         return ()
 
+    def verdict_facts(self) -> dict[str, Any]:
+        """Return what the verdict's sentence is made of, without the rest of the document."""
+        return verdict_facts(self.shown, self.doubts, self.assumptions)
+
     def proposals(self) -> Mapping[str, Any] | str:
         """Return what closes the open findings, a mitigation document; or why there is none, a word."""
-        return "fleet" if self.fleet else "graph"
+        if self.fleet:
+            return "fleet"
+        return self.closes(self) if self.closes else "graph"
+
+    def shows(self, robot: str) -> bool:
+        """Return whether no other robot stands for a robot in what readers get."""
+        return robot not in self._robots_not_shown
 
     @cached_property
     def taken_away(self) -> tuple[TakenAway, ...]:
@@ -158,27 +171,6 @@ class Answer:
         return {finding: _why(decision) for finding, decision in held if decision}
 
     @property
-    def stated(self) -> dict[tuple[str, str, str], dict[str, str]]:
-        """What people stated of what lies outside ROS, as texts (rule S9).
-
-        (robot, kind, name) -> ``retention``, ``country``, ``encrypted``, ``operator``, ``role``, ``basis``,
-        ``contract``, whichever are known.
-        """
-        return {element.identity: dict(_stated(facts)) for element, facts in self.analysis.outside.items()}
-
-    @property
-    def subjects(self) -> dict[tuple[str, str, str], tuple[str, ...]]:
-        """Whom the data of a source are about, as labels name them: (robot, kind, name) -> groups of persons."""
-        elements = self.analysis.graph.elements
-        return {elements[vertex].identity: groups for vertex, groups in self.bound.subjects.items()}
-
-    @property
-    def surroundings(self) -> dict[tuple[str, str, str], Surroundings]:
-        """Where elements work, as people state it of them or of their system: by (robot, kind, name)."""
-        elements = self.analysis.graph.elements
-        return {elements[vertex].identity: where for vertex, where in self.bound.surroundings.items()}
-
-    @property
     def contexts(self) -> Contexts:
         """Where sources work, and what data may reveal there."""
         return Contexts.of(self.analysis.graph, self.bound, self.vocabulary.categories, together=self.fleet is not None)
@@ -219,22 +211,3 @@ def _why(decision: Decision) -> str:
     more = [decision.owner, *decision.legal_basis, f"until {decision.expires}" if decision.expires else ""]
     said = ", ".join(part for part in more if part)
     return f"{decision.reason} ({said})" if said else decision.reason
-
-
-def _stated(facts: NonRosFacts) -> Iterator[tuple[str, str]]:
-    kept = (f"{category}: {duration}" if category else str(duration) for category, duration in facts.retention)
-    said = {
-        "retention": _with_backups(kept, facts.backups),
-        "country": facts.country,
-        "encrypted": "" if facts.encrypted is None else ("yes" if facts.encrypted else "no"),
-        "operator": facts.operator,
-        "role": facts.recipient,
-        "basis": facts.basis,
-        "contract": facts.contract,
-    }
-    yield from ((what, value) for what, value in said.items() if value)
-
-
-def _with_backups(categories: Iterable[str], backups: Duration | bool | None) -> str:  # noqa: FBT001 - three values and a length
-    more = "in backups, nobody says for how long" if backups is True else f"in backups {backups} more"
-    return ", ".join([*categories, *([more] if backups else [])])

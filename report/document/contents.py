@@ -1,0 +1,184 @@
+"""The ``Document``: all that an answer says, as typed facts. Every output is a function of it and reads nothing else.
+
+It is made whole where the answer is made. What takes longer than the answer itself is None where nobody asked for it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.analysis.contexts import Contexts
+    from rosprivacy.analysis.decisions import Decided
+    from rosprivacy.analysis.findings.beyond import Added
+    from rosprivacy.analysis.findings.processed import Processed
+    from rosprivacy.analysis.findings.review_order import Behind
+    from rosprivacy.analysis.findings.sanitizing import Cleaning, Making
+    from rosprivacy.analysis.findings.ways import Ways
+    from rosprivacy.analysis.fleet.counts import Counts
+    from rosprivacy.analysis.fleet.patterns import FleetView
+    from rosprivacy.analysis.kernel.overruled import Overruled
+    from rosprivacy.analysis.model import (
+        Diagnostic,
+        Doubt,
+        Element,
+        Flow,
+        MessageType,
+        NonRosFacts,
+        Processing,
+        Surroundings,
+    )
+    from rosprivacy.analysis.whatif.ledger import GlobUse, TakenAway
+    from rosprivacy.analysis.whatif.reliance import Reliance
+    from rosprivacy.ontology.vocabulary import Vocabulary
+    from rosprivacy.report.places import Places
+
+    Shown = tuple[str, str, str, str]  # an element as readers see it: the two sides of a wildcard are one
+
+RELIANCE = "hangs_on"  # fields of ``Document`` that a question asks for
+PROPOSALS = "proposals"
+
+
+class Lines(NamedTuple):
+    """Where findings stand in files.
+
+    Attributes
+    ----------
+    places
+        Of roles, profiles and channels.
+    flows
+        (element, element) -> the flow behind that step of a further path.
+    """
+
+    places: Places
+    flows: Mapping[tuple[Shown, Shown], Flow]
+
+
+class EnforcedFacts(NamedTuple):
+    """What the enforced view adds to the declared one, which is the answer of record (rule S6).
+
+    Attributes
+    ----------
+    analysis, contexts, decided, lines
+        Of the enforced view, as those of ``Document``.
+    added
+        The findings that only this view has, in its order; and those in which it alone has plain data.
+    open
+        The elements that are open in this view only, or for more categories: those outside ROS first.
+    """
+
+    analysis: Analysis
+    contexts: Contexts
+    decided: Decided | None
+    lines: Lines
+    added: tuple[Added, ...]
+    open: tuple[Element, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Document:
+    """All that an answer says; of robots that are alike of one.
+
+    Attributes
+    ----------
+    analysis
+        Findings, open elements, what arrives where; pictures are drawn of its graph.
+    vocabulary
+        Kinds of data and law, in which the answer is told.
+    diagnostics
+        Of the inputs; the analysis' own stand there.
+    assumptions
+        What the answer rests on.
+    doubts
+        What is not known, or rests on more than a person's word (rule S11).
+    policies
+        The policy files that a user named, without what they include; none where that is not known.
+    decided
+        What people decided about the findings; None where nobody decided anything.
+    accepted
+        The findings that a valid decision accepts: id -> reason, owner, legal basis, until when (rule S10).
+    fleet, counts
+        Which robots stand for which, and how much the whole fleet has; None for a single robot.
+    contexts
+        Where sources work, and what data may reveal there.
+    outside
+        What people stated of what lies outside ROS (rule S9); of every robot, since a way can lead to another one.
+    subjects
+        Whom the data of a source are about: groups of persons.
+    surroundings
+        Where elements work.
+    processing
+        What is stated of purposes, legal bases and responsible persons, of a robot (its name) or an element.
+    processed
+        The same by kind of data, where data begin and end.
+    types
+        Message types of each channel (rule S15).
+    ways
+        What lies on the ways of each kind of data to each place.
+    sanitizers, derivations
+        Who cleans data, and who makes one kind of another.
+    recognising
+        Who recognises persons or judges them: element -> the kinds of data that it makes.
+    brought_in
+        Source -> the kinds of data that labels say it brings in.
+    holds
+        Element outside ROS -> the kinds of data that get there.
+    absent
+        Nodes that labels say are not on the robot, with the reason.
+    overruled
+        Sources and leaks that one label says and another takes away, with what that one says.
+    infrastructure
+        (kind, name) of open channels that the program's own file proposes to take as mundane (rule S13).
+    taken_away
+        What was taken away on the data's side, and on whose word.
+    globs
+        What each glob of the label files decides and closes.
+    review_order
+        Where data comes to each open element from, and what stands behind it.
+    lines
+        Where findings stand in files.
+    enforced
+        What the enforced view adds; None where nobody asked.
+    hangs_on
+        What the answer hangs on, statement by statement; None where nobody asked.
+    proposals
+        What closes the open findings, a mitigation document; or why there is none, a word; None where nobody asked.
+    """
+
+    analysis: Analysis
+    vocabulary: Vocabulary
+    diagnostics: tuple[Diagnostic, ...]
+    assumptions: Mapping[str, Any]
+    doubts: tuple[Doubt, ...]
+    policies: tuple[str, ...]
+    decided: Decided | None
+    accepted: Mapping[str, str]
+    fleet: FleetView | None
+    counts: Counts | None
+    contexts: Contexts
+    outside: Mapping[Element, NonRosFacts]
+    subjects: tuple[tuple[Element, tuple[str, ...]], ...]
+    surroundings: tuple[tuple[Element, Surroundings], ...]
+    processing: tuple[tuple[str | Element, Processing], ...]
+    processed: tuple[Processed, ...]
+    types: tuple[tuple[Element, tuple[MessageType, ...]], ...]
+    ways: tuple[Ways, ...]
+    sanitizers: tuple[Cleaning, ...]
+    derivations: tuple[Making, ...]
+    recognising: Mapping[Element, tuple[str, ...]]
+    brought_in: Mapping[Element, frozenset[str]]
+    holds: Mapping[Element, tuple[str, ...]]
+    absent: tuple[tuple[Element, str], ...]
+    overruled: tuple[tuple[Overruled, str], ...]
+    infrastructure: frozenset[tuple[str, str]]
+    taken_away: tuple[TakenAway, ...]
+    globs: tuple[GlobUse, ...]
+    review_order: Mapping[Shown, Behind]
+    lines: Lines
+    enforced: EnforcedFacts | None = None
+    hangs_on: tuple[Reliance, ...] | None = None
+    proposals: Mapping[str, Any] | str | None = None
