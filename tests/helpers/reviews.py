@@ -55,9 +55,7 @@ def to_the_end(client: TestClient) -> list[str]:
 def insiders_in(text: str, language: str) -> list[str]:
     """Words on a page that only people know who write policies; names, kinds and lines of files are no words."""
     whole = html.fromstring(text)
-    for left in whole.xpath(
-        "//code | //pre | //*[@lang='en'][not(self::html)] | //select[@name='brings' or @name='makes']"
-    ):
+    for left in whole.xpath(f"{NO_WORDS} | //select[@name='brings' or @name='makes']"):
         left.drop_tree()
     said = whole.text_content().casefold()
     return [word for word in (*EVERYWHERE, *INSIDERS[language]) if word in said]

@@ -129,11 +129,6 @@ def test_deviants_stand_by_themselves_with_links_to_the_ways(language: str) -> N
     assert page.count("<figure") == 6 + 1  # and one of all that is to be decided
 
 
-def test_the_files_of_the_fleet_are_named_with_their_hash() -> None:
-    assert next(file.name.rsplit("/", 1)[-1] for file in told().files) == "fleet.yaml"
-    assert told().title == "fleet.yaml"
-
-
 def test_a_redacted_report_of_a_fleet_names_no_robot_and_no_model() -> None:
     (copy,) = redacted([document()])
     text = json.dumps({key: value for key, value in copy.items() if key != "categories"})  # these are the ontology's
@@ -275,13 +270,6 @@ def test_a_report_to_be_shown_to_others_names_no_robot(cli: Cli, form: str) -> N
     done = cli("report", "--fleet", FLEET, "--format", form, "--redact")
     assert (done.returncode, done.stderr) == (0, "")
     assert not [robot for robot in ("carrier_", "cleaner_", "guide_") if robot in done.stdout]
-
-
-@pytest.mark.parametrize("form", ["sarif", "cnil-pia", "turtle", "json-ld", "json", "text"])
-def test_every_format_is_written_for_a_fleet(cli: Cli, form: str) -> None:
-    done = cli("analyze", "--fleet", FLEET, "--format", form)
-    assert (done.returncode, done.stderr) == (1, "")
-    assert len(done.stdout) > 1000
 
 
 def test_a_fleet_of_one_robot_each_says_nothing_of_others_like_it() -> None:

@@ -44,7 +44,7 @@ def test_documents_hold_no_other_keys(case: Path, monkeypatch: pytest.MonkeyPatc
     monkeypatch.chdir(ROOT / "examples")
     fleet_case = case / "fleet.json"
     given = json.loads((fleet_case if fleet_case.is_file() else case / "case.json").read_text("utf-8"))
-    options = given.get("options", {})
+    options = {"paths": "all", **given.get("options", {})}
     if "fleet" in given:
         validator("analysis").validate(rosprivacy.analyze_fleet(given["fleet"], **options).document())
         return

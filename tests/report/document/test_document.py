@@ -1,38 +1,14 @@
-"""The JSON document: its contract, its schema, and that the same input gives the same bytes (rule S14)."""
+"""The same input gives the same bytes (rule S14); what a document holds is in ``test_contract``."""
 
 from __future__ import annotations
 
-import json
 import os
 import subprocess
 import sys
-from typing import Any
 
-import jsonschema
 import pytest
 
-import rosprivacy
 from tests.helpers.paths import ROOT
-
-CARE_HOME = (["examples/care-home/care-home.policy.xml"], ["examples/care-home/care-home.labels.yaml"])
-
-
-@pytest.fixture(scope="module", params=["witness", "all"])
-def document(request: pytest.FixtureRequest) -> dict[str, Any]:
-    with pytest.MonkeyPatch.context() as patch:
-        patch.chdir(ROOT)
-        return rosprivacy.analyze(*CARE_HOME, paths=request.param).document()
-
-
-def test_it_is_valid_under_its_schema(document: dict[str, Any]) -> None:
-    schema = json.loads((ROOT / "docs" / "analysis.schema.json").read_text())
-    jsonschema.Draft202012Validator.check_schema(schema)
-    jsonschema.Draft202012Validator(schema).validate(document)
-
-
-def test_no_word_of_it_is_a_legal_verdict(document: dict[str, Any]) -> None:
-    text = json.dumps(document).casefold()
-    assert not any(word in text for word in ("compliant", "violation", "illegal", '"safe"'))
 
 
 @pytest.mark.slow

@@ -48,12 +48,6 @@ def test_every_word_of_the_markdown_stands_in_it(care: rosprivacy.Result, langua
         assert words(written) == words(numbered)
 
 
-def test_the_steps_of_a_path_are_counted(care: rosprivacy.Result) -> None:
-    told = text_of(care.to("docx"))
-    assert "1. /microphone" in told
-    assert "2. /audio" in told
-
-
 @given(st.text(st.characters(codec="utf-8"), min_size=1, max_size=60))
 @settings(max_examples=2 * settings().max_examples)
 def test_any_name_stays_text(name: str) -> None:

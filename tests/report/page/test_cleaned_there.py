@@ -35,16 +35,6 @@ def test_the_table_of_recipients_does_not_say_no_path(told: Outline) -> None:
     assert cells["location"] == "no path found"  # a sanitizer of it, too, but none of it gets there
 
 
-def test_the_inventory_says_the_same(told: Outline) -> None:
-    items = {item.name: item for item in told.items}
-    assert items["/uplink"].data == "face template, video of persons (said to be cleaned there), voice"
-    assert "cleans video of persons" in items["/uplink"].said  # not of location, which does not get there
-    assert items["/person_tracker"].said == (
-        "reviewed, passes on location, person track",
-        "makes other data of location",
-    )
-
-
 def test_all_who_read_beside_a_sanitizer_are_named(told: Outline, document: dict[str, Any]) -> None:
     rows = {row.name: row.beside for row in told.cleanings}
     assert rows["/blur"] == (

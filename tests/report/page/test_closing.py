@@ -37,12 +37,6 @@ def test_the_report_tells_each_change_of_the_last_proposal_with_its_policy_lines
     assert "Put a filter between /audio and /uplink that ends voice" in str(written(result, "html"))
 
 
-def test_it_says_what_the_new_analysis_found_and_who_gets_less() -> None:
-    text = str(written(home(), "html"))
-    assert "Paths to a point of exit are then: none found under the labels given." in text
-    assert "These get less than today: /care_planner, /display, /navigator, /recorder, /uplink." in text
-
-
 def test_a_redacted_report_names_nobody_in_it() -> None:
     text = str(written(home(), "markdown", Style(redact=True)))
     assert "Put a filter between /topic-" in text

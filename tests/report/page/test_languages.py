@@ -15,7 +15,7 @@ import rosprivacy
 from rosprivacy.analysis.errors import InputError
 from rosprivacy.analysis.model import REASONS
 from rosprivacy.ingest.labels.countries import countries
-from rosprivacy.report.catalogs.words import Words, plain, table
+from rosprivacy.report.catalogs.words import Words, table
 from rosprivacy.report.page.article30 import record
 from rosprivacy.report.page.markdown import markdown
 from tests.helpers.graphs import care_home, hospital
@@ -172,17 +172,3 @@ def test_the_published_schema_names_every_reason() -> None:
 def test_an_unknown_language_is_refused() -> None:
     with pytest.raises(InputError, match="unknown language 'xx'; one of en, de, fr"):
         care_home().to("html", language="xx")
-
-
-@pytest.mark.parametrize(
-    ("language", "said"),
-    [
-        ("en", "pseudonymisation in the sense of Article 4(5)"),
-        ("de", "Pseudonymisierung im Sinne von Artikel 4 Nummer 5 DSGVO"),
-        ("fr", "pseudonymisation au sens de l'article 4, point 5), du RGPD"),
-    ],
-)
-def test_a_pseudonymised_path_claims_no_pseudonymisation_of_article_4_5(language: str, said: str) -> None:
-    """A blurred picture has no additional information that is kept separately."""
-    entries = [entry for kind in told(care_home().document(), language=language).kinds for entry in kind.entries]
-    assert {entry.leak for entry in entries if any(said in plain(note) for note in entry.notes)} == {"/recorder"}

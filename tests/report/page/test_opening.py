@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosprivacy.report.catalogs.words import plain
 from rosprivacy.report.document.ledger import by_globs
 from tests.helpers.graphs import hospital
 from tests.helpers.pages import page, texts, told
@@ -154,48 +153,6 @@ def test_a_transfer_that_rests_on_article_6_alone_says_what_it_lacks() -> None:
     document["processed_for"] = [based if r is stated else r for r in document["processed_for"]]
     row = next(row for row in told(document).opening.rows if row.leak == "hospital:fleet cloud")
     assert "none of chapter V" not in dict(row.facts)["Legal basis"]
-
-
-def test_what_is_made_on_the_way_is_said_to_be_made_there_and_not_to_come_from_the_source() -> None:
-    """The camera has no face templates."""
-    report = told(care())
-    assert report.opening.rows[0].what == "face template, made of video of persons at /face_recognizer"
-    assert report.opening.rows[1].what == "voice"
-    (faces,) = [entry for kind in report.kinds for entry in kind.entries if entry.category == "FaceTemplate"]
-    assert faces.sentence == (
-        "Face template, made of video of persons of /camera at /face_recognizer, can get to /uplink, which lets it out."
-    )
-    (heading,) = page(care()).xpath("//section[@id='decide']//li[1]/h3")
-    assert heading.text_content() == "face template, made of video of persons at /face_recognizer: /camera → /uplink"
-    for language, said in {
-        "de": "bei /face_recognizer erzeugt aus Daten von /camera",
-        "fr": "produites par /face_recognizer à partir de données de /camera",
-    }.items():
-        entries = [entry for kind in told(care(), language=language).kinds for entry in kind.entries]
-        assert any(said in entry.sentence for entry in entries)
-
-
-def test_words_are_explained_before_they_first_come() -> None:
-    """Declared, profile, enclave, label, wildcard, request; the method stands far below."""
-    document = care()
-    for language, words in {
-        "en": ["declared", "profile", "enclave", "label", "wildcard", "request, response"],
-        "de": ["declared", "Profil", "Enklave", "Angabe (Label)", "Platzhalter", "Anfrage, Antwort"],
-        "fr": ["declared", "profil", "enclave", "annotation", "caractère générique", "requête, réponse"],
-    }.items():
-        report = told(document, language=language)
-        assert report.sections[0][0] == "decide"
-        root = page(document, language=language)
-        assert root.xpath("//section[@id='decide']//dfn/text()") == words
-        (link,) = root.xpath("//section[@id='decide']//a[@href='#method']")
-        assert str(report.number("method")) in link.text_content()
-        for text in texts(document, language=language):
-            assert all(plain(means) in text for _, means in report.glossary)
-    enforced = told({**document, "view": "enforced"})
-    assert enforced.glossary[0] == (
-        "enforced",
-        "the view of this report: each node may do what any profile of its enclave allows",
-    )
 
 
 def test_not_reviewed_is_exact_and_what_only_globs_review_is_counted_beside_it() -> None:

@@ -102,20 +102,6 @@ def test_the_verdict_says_what_was_found_and_what_it_does_not_mean(change: dict[
         assert "This report is no legal verdict" in text
 
 
-def test_where_data_become_special_is_told() -> None:
-    for text in texts(care()):
-        assert (
-            "/face_recognizer makes data of this kind, which can be a special category, of data that are none" in text
-        )
-        assert "can be a special category from here on" in text
-
-
-def test_pseudonymised_data_is_still_personal_and_asks_its_question() -> None:  # recital 26
-    for text in texts(care()):
-        assert "can this recipient do so, alone or with what others hold?" in text
-        assert "pseudonymises: still personal data" in text
-
-
 def test_open_elements_are_told_in_the_order_of_review() -> None:
     document = run(2)
     names = [row["element"]["name"] for row in document["open"]]
@@ -148,12 +134,3 @@ def test_the_elements_that_nothing_reaches_are_told_too() -> None:
         assert all(element["name"] in text for element in document["unreached"])
         assert all(row["element"]["name"] in text for row in document["carries"])
         assert all(row["enclave"] in text for row in document["enclaves"])
-
-
-def test_the_nine_criteria_show_what_is_seen_and_never_that_no_assessment_is_needed() -> None:
-    shown = {row.name: row.shows for row in told(care()).criteria}
-    assert len(shown) == 9
-    assert "/face_recognizer makes face template of video of persons" in shown["Evaluation or scoring"]
-    assert "face template" in shown["Sensitive or highly personal data"]
-    assert shown["Vulnerable persons"] == "Persons that labels name: residents, staff, visitors"
-    assert shown["Automated decisions with legal or similar effect"] == ""

@@ -15,45 +15,6 @@ def cells(table: Any) -> dict[str, dict[str, str]]:
     }
 
 
-def test_whose_data_by_kind() -> None:
-    report = told(care())
-    assert cells(report.subjects) == {
-        "residents": {
-            "face template": "1 path to assess", "location": "–", "person track": "–",
-            "video of persons": "1 path to assess", "voice": "1 path to assess",
-        },
-        "staff": {
-            "face template": "1 path to assess", "location": "–", "person track": "–",
-            "video of persons": "1 path to assess", "voice": "1 path to assess",
-        },
-        "visitors": {
-            "face template": "1 path to assess", "location": "–", "person track": "–",
-            "video of persons": "1 path to assess", "voice": "–",
-        },
-        "persons not stated": {
-            "face template": "–", "location": "brought in, no path found", "person track": "can be made of it",
-            "video of persons": "–", "voice": "–",
-        },
-    }  # fmt: skip
-    assert report.silent == ("/lidar",)
-
-
-def test_who_gets_which_kind() -> None:
-    no = "no path found"
-    assert cells(told(care()).recipients) == {
-        "/recorder": {
-            "face template": no, "location": no, "person track": no,
-            "video of persons": "1 path to assess, pseudonymised", "voice": no,
-        },
-        "/uplink": {
-            "face template": "1 path to assess", "location": no, "person track": no,
-            "video of persons": "reaches it; said to be cleaned there: aggregates, "
-            "examples/care-home/care-home.labels.yaml:22",
-            "voice": "1 path to assess",
-        },
-    }  # fmt: skip
-
-
 def test_a_recipient_that_nothing_reaches_is_a_row_all_the_same() -> None:
     document = care() | {"findings": []}
     assert set(cells(told(document).recipients)) == {"/recorder", "/uplink"}

@@ -11,13 +11,10 @@ from rosprivacy.report.page.assessment_file import Answers
 from rosprivacy.report.page.works_council import works_council
 from tests.helpers.graphs import hospital
 from tests.helpers.pages import LANGUAGES, told
-from tests.helpers.paths import ROOT
 from tests.helpers.reports import HOSTILE, care, hostile, with_outside
 
 if TYPE_CHECKING:
     from pathlib import Path
-
-    from tests.helpers.command import Cli
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
@@ -46,11 +43,3 @@ def test_it_has_no_script_and_no_name_becomes_html(tmp_path: Path) -> None:
     root = lxml_html.document_fromstring(works_council(report))
     assert not list(root.iter("script", "img", "a", "textarea"))
     assert not [name for node in root.iter() for name in node.attrib if name.startswith("on")]
-
-
-def test_the_command_line_writes_it(cli: Cli, tmp_path: Path) -> None:
-    page = tmp_path / "council.html"
-    files = ["examples/care-home/care-home.policy.xml", "-l", "examples/care-home/care-home.labels.yaml"]
-    done = cli("report", *files, "-f", "works-council", "--lang", "de", "-o", str(page), cwd=ROOT)
-    assert (done.returncode, done.stderr) == (0, "")
-    assert "Zusammenfassung für den Betriebsrat" in page.read_text("utf-8")

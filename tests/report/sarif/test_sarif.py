@@ -45,33 +45,23 @@ def in_examples(file: str) -> str:
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda path: str(path.name))
-def test_every_finding_is_at_the_line_that_lets_the_data_into_the_leak(case: Path) -> None:
+def test_every_finding_is_at_the_line_that_lets_the_data_into_the_leak_and_its_witness_is_a_code_flow(
+    case: Path,
+) -> None:
     given_case = json.loads((case / "case.json").read_text())
     result = analyze(given_case["policies"], given_case["labels"], **given_case.get("options", {}))
-    run = checked(log_of(result))
-    findings = result.document()["findings"]
+    run, document = checked(log_of(result)), result.document()
+    assert run["properties"]["verdict"] == document["verdict"]
+    rules = Counter(r["ruleId"] for r in run["results"] if r["ruleId"] in FINDING_KINDS)
+    assert rules == Counter(finding["kind"] for finding in document["findings"])
     results = {r["partialFingerprints"]["rosprivacyFinding/v1"]: r for r in run["results"]}
-    rules = Counter(r["ruleId"] for r in run["results"])
-    assert Counter(finding["kind"] for finding in findings) == Counter(
-        {k: n for k, n in rules.items() if k in FINDING_KINDS}
-    )
-    for finding in findings:
-        lines = [(in_examples(p["file"]), p["line"]) for p in finding["steps"][-1]["policy"]]
-        assert physical(results[finding["id"]]["locations"][0]) == min(lines)
-    assert run["properties"]["verdict"] == result.document()["verdict"]
-
-
-@pytest.mark.parametrize("case", CASES, ids=lambda path: str(path.name))
-def test_the_witness_is_a_code_flow_of_one_thread_element_by_element(case: Path) -> None:
-    given_case = json.loads((case / "case.json").read_text())
-    result = analyze(given_case["policies"], given_case["labels"], **given_case.get("options", {}))
-    results = {r["partialFingerprints"]["rosprivacyFinding/v1"]: r for r in log_of(result)["runs"][0]["results"]}
-    for finding in result.document()["findings"]:
+    for finding in document["findings"]:
+        lines = [[(in_examples(p["file"]), p["line"]) for p in step["policy"]] for step in finding["steps"]]
+        assert physical(results[finding["id"]]["locations"][0]) == min(lines[-1])
         steps = way(results[finding["id"]])
         assert [step["logicalLocations"][0]["name"] for step in steps] == [e["name"] for e in finding["witness"]]
-        for step, place in zip(finding["steps"], steps[1:], strict=True):
-            if step["policy"]:
-                assert physical(place) in [(in_examples(p["file"]), p["line"]) for p in step["policy"]]
+        for allowed, place in zip(lines, steps[1:], strict=True):
+            assert not allowed or physical(place) in allowed
         label = (EXAMPLES.parent / physical(steps[0])[0]).read_text().splitlines()[physical(steps[0])[1] - 1]
         assert finding["source"]["name"] in label  # the way begins where the source is labelled
         assert "source" in label
@@ -239,14 +229,6 @@ def test_undetermined_is_never_an_empty_list(tmp_path: Path) -> None:
     nothing = small_system(tmp_path, {"/a": "conduit"}, last="conduit: [Video]")
     run = checked(log_of(nothing, at=tmp_path))
     assert [(r["ruleId"], r["level"]) for r in run["results"]] == [("no-data-followed", "warning")]
-
-
-def test_no_word_of_it_is_a_legal_verdict() -> None:
-    for labels in ("run1", "run2"):
-        log = log_of(analyze(["factory/before.policy.xml"], [f"factory/{labels}.labels.yaml"]))
-        text = json.dumps(log).casefold()
-        assert not any(word in text for word in ("compliant", "violat", "illegal", '"safe"', "breach"))
-        assert "path to assess" in text
 
 
 # ---------------------------------------------------------------- bounds
