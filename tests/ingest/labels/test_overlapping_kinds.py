@@ -83,7 +83,7 @@ NO_ADDRESS = "{leak: {none: [PostalAddress]}, conduit: [PostalAddress]}\n  /up*:
 )  # fmt: skip
 def test_what_gets_out(cli: Cli, uplink: str, others: dict[str, str], expected: str) -> None:
     labels(uplink, **others)
-    codes = {"nothing": (0, set()), "open": (4, set())}
+    codes: dict[str, tuple[int, set[str]]] = {"nothing": (0, set()), "open": (4, set())}
     assert disclosed(cli) == codes.get(expected, (1, {expected}))
 
 
