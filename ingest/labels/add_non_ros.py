@@ -16,6 +16,7 @@ from rosprivacy.analysis.errors import InputError, InputErrors, LabelError, show
 from rosprivacy.analysis.many_flows import Flows, parted
 from rosprivacy.analysis.model import (
     BAG_GAP,
+    NOWHERE,
     PARTICIPANT,
     RECORDING,
     STATED,
@@ -105,9 +106,9 @@ def merged(
 
 
 def _facts(entry: Stated) -> tuple[object, ...]:
-    said = entry.outside
-    more = (said.encrypted, said.country, said.operator, said.recipient, said.transfer, said.contract)
-    return (entry.kind, said.retention, said.backups, *more, entry.between, entry.bags)
+    """What is stated of an element, but for where; what its bags say of themselves is read after this."""
+    stated = entry.outside._replace(place=NOWHERE, recording=None)
+    return entry.kind, stated, entry.between, entry.bags
 
 
 class Ends:

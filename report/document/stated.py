@@ -48,6 +48,8 @@ if TYPE_CHECKING:
     )
     from rosprivacy.report.document.contents import Document
 
+# Of what is stated of an element outside ROS: what stands in other entries of the document.
+TOLD_ELSEWHERE = ("limits", "adequacy", "until", "place", "day")
 KEYS = {"name": "provision"}  # what the contract calls otherwise than the model
 
 
@@ -173,18 +175,13 @@ def without_backups(analysis: Analysis) -> list[Element]:
 
 def _facts(facts: NonRosFacts) -> NonRosStated:
     backups = facts.backups if isinstance(facts.backups, bool | None) else str(facts.backups)
-    entry: NonRosStated = _present(
-        retention=_durations(facts.retention),
-        backups=backups,
-        encrypted=facts.encrypted,
-        country=facts.country,
-        area=facts.area,
-        operator=facts.operator,
-        recipient=facts.recipient,
-        transfer=facts.transfer,
-        contract=facts.contract,
-        recording=_recording(facts.recording) if facts.recording else None,
-    )
+    as_they_are = {name: value for name, value in facts._asdict().items() if name not in TOLD_ELSEWHERE}
+    written = {
+        "retention": _durations(facts.retention),
+        "backups": backups,
+        "recording": _recording(facts.recording) if facts.recording else None,
+    }
+    entry: NonRosStated = _present(**as_they_are | written)
     return entry
 
 

@@ -116,15 +116,12 @@ def _facts(iri: URIRef, entry: type, values: Mapping[str, Iterable[str]]) -> lis
 
 
 def _outside(facts: NonRosFacts) -> dict[str, Iterable[str]]:
-    return {
+    written: dict[str, Iterable[str]] = {
         "retention": (_retention(facts),),
         "encrypted": () if facts.encrypted is None else ("yes" if facts.encrypted else "no",),
-        "country": (facts.country,),
-        "operator": (facts.operator,),
-        "recipient": (facts.recipient,),
         "transfer": (facts.basis,),
-        "contract": (facts.contract,),
     }
+    return {field: written.get(field, (getattr(facts, field),)) for field in terms_of(NonRosStated)}
 
 
 def _retention(facts: NonRosFacts) -> str:
