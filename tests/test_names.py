@@ -53,14 +53,10 @@ OLDER = {
     "ontology": 2,
     "queries": 1,
     "parts": 60,
-    "report": 1,
     "report.compare": 6,
     "report.page": 27,
     "report.pictures": 4,
-    "report.rdf": 5,
-    "report.sarif": 1,
     "report.suggest": 10,
-    "report.text": 1,
 }
 
 
