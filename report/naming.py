@@ -79,13 +79,13 @@ def line(grant: Mapping[str, Any]) -> str:
     return f"{fit(grant['file'])}:{grant['line']}"
 
 
-def text(of: Mapping[str, Any], what: str, language: str) -> str:
+def text(of: Mapping[str, Any], field: str, language: str) -> str:
     """Return a text of the ontology in a language, in English if there is no translation.
 
     >>> text({"title": "voice", "translations": {"de": {"title": "Stimme"}}}, "title", "de")
     'Stimme'
     """
-    return spaced(printable(of.get("translations", {}).get(language, {}).get(what) or str(of[what])), language)
+    return spaced(printable(of.get("translations", {}).get(language, {}).get(field) or str(of[field])), language)
 
 
 def _full_name(element: Mapping[str, Any]) -> str:

@@ -42,14 +42,10 @@ OLDER = {
     "ingest.types": 3,
     "labelling": 25,
     "ontology": 2,
-    "report": 1,
     "report.compare": 6,
     "report.page": 27,
     "report.pictures": 4,
-    "report.rdf": 5,
-    "report.sarif": 1,
     "report.suggest": 6,
-    "report.text": 1,
 }
 
 

@@ -91,6 +91,9 @@ def short_document(document: Document) -> ShortDocument:
 
 def _analysis(document: Document) -> AnalysisDocument:
     """The analysis as one JSON object, without what only some answers have."""
+    if document.ledger is None:
+        raise ValueError("nobody asked for the ledger, which the JSON document tells")
+    taken_away, globs = document.ledger
     analysis, vocabulary, graph = document.analysis, document.vocabulary, document.analysis.graph
     categories, hierarchy = vocabulary.categories, vocabulary.hierarchy
     contexts = document.contexts.everywhere
@@ -110,7 +113,7 @@ def _analysis(document: Document) -> AnalysisDocument:
             for end in analysis.unknown_ends
         ],
         "doubts": [doubt_entry(doubt) for doubt in document.doubts],
-        "taken_away": ledger_rows(document.taken_away),
+        "taken_away": ledger_rows(taken_away),
         "carries": [
             {
                 "element": element_dict(carried.element),
@@ -145,7 +148,7 @@ def _analysis(document: Document) -> AnalysisDocument:
         "diagnostics": [_diagnostic(d) for d in (*document.diagnostics, *analysis.diagnostics)],
         "assumptions": {
             **cast("Assumptions", document.assumptions),
-            "taken_away_by": counts_of(document.taken_away),
+            "taken_away_by": counts_of(taken_away),
             "taken_by_kind": taken_by_kind(analysis),
             "backups_taken_as_none": [element_dict(element) for element in without_backups(analysis)],
             "sanitizers_without_method": [
@@ -158,7 +161,7 @@ def _analysis(document: Document) -> AnalysisDocument:
             ],
             "overruled": [_overruled(one, by) for one, by in document.overruled],
             "absent": [{"element": element_dict(element), "why": why} for element, why in document.absent],
-            "globs": glob_entries(document.globs),
+            "globs": glob_entries(globs),
         },
     }
     if document.hangs_on is None:  # so that nobody takes it for 'hangs on nothing'

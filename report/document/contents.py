@@ -39,7 +39,8 @@ if TYPE_CHECKING:
 
     Shown = tuple[str, str, str, str]  # an element as readers see it: the two sides of a wildcard are one
 
-RELIANCE = "hangs_on"  # fields of ``Document`` that a question asks for
+LEDGER = "ledger"  # fields of ``Document`` that a question asks for
+RELIANCE = "hangs_on"
 PROPOSALS = "proposals"
 
 
@@ -56,6 +57,21 @@ class Lines(NamedTuple):
 
     places: Places
     flows: Mapping[tuple[Shown, Shown], Flow]
+
+
+class Ledger(NamedTuple):
+    """What was taken away on the data's side.
+
+    Attributes
+    ----------
+    taken_away
+        What it was, and on whose word.
+    globs
+        What each glob of the label files decides and closes.
+    """
+
+    taken_away: tuple[TakenAway, ...]
+    globs: tuple[GlobUse, ...]
 
 
 class EnforcedFacts(NamedTuple):
@@ -133,16 +149,14 @@ class Document:
         Sources and leaks that one label says and another takes away, with what that one says.
     infrastructure
         (kind, name) of open channels that the program's own file proposes to take as mundane (rule S13).
-    taken_away
-        What was taken away on the data's side, and on whose word.
-    globs
-        What each glob of the label files decides and closes.
     review_order
         Where data comes to each open element from, and what stands behind it.
     lines
         Where findings stand in files.
     enforced
         What the enforced view adds; None where nobody asked.
+    ledger
+        What was taken away on the data's side; None where nobody asked.
     hangs_on
         What the answer hangs on, statement by statement; None where nobody asked.
     proposals
@@ -175,10 +189,9 @@ class Document:
     absent: tuple[tuple[Element, str], ...]
     overruled: tuple[tuple[Overruled, str], ...]
     infrastructure: frozenset[tuple[str, str]]
-    taken_away: tuple[TakenAway, ...]
-    globs: tuple[GlobUse, ...]
     review_order: Mapping[Shown, Behind]
     lines: Lines
     enforced: EnforcedFacts | None = None
+    ledger: Ledger | None = None
     hangs_on: tuple[Reliance, ...] | None = None
     proposals: Mapping[str, Any] | str | None = None

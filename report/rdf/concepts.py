@@ -25,9 +25,9 @@ ALWAYS = "always"
 AS_THEY_ARE = (DCTERMS.title, DCTERMS.bibliographicCitation, SKOS.definition, RDFS.seeAlso)
 
 
-def texts(english: str, translations: Mapping[str, Mapping[str, str]], what: str) -> list[Literal]:
+def texts(english: str, translations: Mapping[str, Mapping[str, str]], field: str) -> list[Literal]:
     """Return a text in each language that has it; none where there is no English one."""
-    others = [text(said[what], language) for language, said in sorted(translations.items()) if said.get(what)]
+    others = [text(said[field], language) for language, said in sorted(translations.items()) if said.get(field)]
     return [text(english, "en"), *others] if english else []
 
 

@@ -189,9 +189,11 @@ class Processes:
             )
 
     def _condition(
-        self, iri: URIRef, condition: URIRef, finding: Finding, what: str, durations: list[str]
+        self, iri: URIRef, condition: URIRef, finding: Finding, sentence: str, durations: list[str]
     ) -> Iterator[Triple]:
-        label = f"{what} for {shown(', '.join(durations))}" if durations else f"{what}; for how long is not stated"
+        label = (
+            f"{sentence} for {shown(', '.join(durations))}" if durations else f"{sentence}; for how long is not stated"
+        )
         yield iri, DPV.hasStorageCondition, condition
         yield from about(
             condition,

@@ -87,7 +87,7 @@ class _Redaction:
     ----------
     whole
         The graph with its names.
-    base, wanted
+    base, new_base
         What IRIs of the system begin with: in that graph, and in its copy.
     assumptions
         Of the redacted document.
@@ -97,7 +97,7 @@ class _Redaction:
 
     whole: Graph
     base: str
-    wanted: str
+    new_base: str
     assumptions: Mapping[str, Any]
     change: Change
 
@@ -116,9 +116,9 @@ class _Redaction:
         name = term.removeprefix(self.base)
         kind, *parts = name.split(":")
         if kind in NAMELESS:
-            return URIRef(self.wanted + name)
+            return URIRef(self.new_base + name)
         given = [unquote(part, errors="surrogatepass") for part in parts]
-        return URIRef(self.wanted + ":".join([kind, *(quote(part, safe="/") for part in self._parts(kind, given))]))
+        return URIRef(self.new_base + ":".join([kind, *(quote(part, safe="/") for part in self._parts(kind, given))]))
 
     def _parts(self, kind: str, parts: list[str]) -> list[str]:
         if kind not in PARTS:
@@ -128,8 +128,8 @@ class _Redaction:
             return [self._value("robot", robot), of, self._value(of, name), *more]
         return [self._value(what, part) for what, part in zip(PARTS[kind], parts, strict=True)]
 
-    def _value(self, what: str, name: str) -> str:
-        return name if not (what and name) or (what == "file" and name.startswith(OURS)) else self.change(what, name)
+    def _value(self, kind: str, name: str) -> str:
+        return name if not (kind and name) or (kind == "file" and name.startswith(OURS)) else self.change(kind, name)
 
     def _literal(self, subject: URIRef, predicate: Node, value: Literal) -> Literal:
         if predicate == RDFS.label:

@@ -54,7 +54,7 @@ class Things:
         self._elements: dict[URIRef, Element] = {}
         self._lines: dict[URIRef, Grant] = {}
         self._provisions: dict[URIRef, Legal | Pointer] = {}
-        self._named: set[str] = set()
+        self._kinds: set[str] = set()
 
     def element(self, element: Element) -> URIRef:
         """Return the IRI of an element."""
@@ -87,7 +87,7 @@ class Things:
     def categories(self, names: Iterable[str]) -> list[URIRef]:
         """Return the IRIs of categories, in order of their names."""
         wanted = sorted(names)
-        self._named.update(wanted)
+        self._kinds.update(wanted)
         return [foreign(self._categories[name].iri) for name in wanted]
 
     def descriptions(self) -> Iterator[Triple]:
@@ -101,7 +101,7 @@ class Things:
                 yield from _facts(iri, SurroundingsEntry, {"contexts": where.contexts, "country": (where.country,)})
         for iri, grant in self._lines.items():
             yield from _line(iri, grant, self._files.get(grant.place.file, ()))
-        for name in {up for category in self._named for up in self._ancestors[category]}:
+        for name in {up for category in self._kinds for up in self._ancestors[category]}:
             category = self._categories[name]
             broader = [foreign(self._categories[up].iri) for up in category.broader if up in self._categories]
             yield from category_triples(category, broader)

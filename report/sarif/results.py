@@ -54,19 +54,19 @@ MISSING = {
 class Files:
     """File names as SARIF has them.
 
-    ``known`` and ``places`` save asking twice, and what many results say is in memory once.
+    ``artifacts`` and ``places`` save asking twice, and what many results say is in memory once.
     """
 
     root: Path
-    known: dict[str, dict[str, Any]] = field(default_factory=dict)
+    artifacts: dict[str, dict[str, Any]] = field(default_factory=dict)
     places: dict[Place, dict[str, Any]] = field(default_factory=dict)
 
     def artifact(self, file: str) -> dict[str, Any]:
         """Return the ``artifactLocation`` of a file."""
-        if file not in self.known:
+        if file not in self.artifacts:
             uri, relative = uri_of(file, self.root)
-            self.known[file] = {"uri": uri, **({"uriBaseId": ROOT} if relative else {})}
-        return self.known[file]
+            self.artifacts[file] = {"uri": uri, **({"uriBaseId": ROOT} if relative else {})}
+        return self.artifacts[file]
 
     def physical(self, place: Place) -> dict[str, Any]:
         """Return the ``physicalLocation`` of a place; viewers want a line, so one that has none gets the first."""

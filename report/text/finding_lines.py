@@ -204,9 +204,9 @@ def _law(finding: Mapping[str, Any], kinds: Mapping[str, Mapping[str, Any]], wor
         }
 
 
-def _text(of: Mapping[str, Any], what: str, words: Words, fit: Callable[[str], str] = str) -> str:
+def _text(of: Mapping[str, Any], field: str, words: Words, fit: Callable[[str], str] = str) -> str:
     """A text of the ontology in the reader's language, in English if there is no translation."""
-    text = of.get("translations", {}).get(words.language, {}).get(what) or of[what]
+    text = of.get("translations", {}).get(words.language, {}).get(field) or of[field]
     return spaced(fit(blanked(text)), words.language)
 
 

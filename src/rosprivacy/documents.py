@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.findings.sanitizing import absent, cleanings, makings, recognised
 from rosprivacy.analysis.kernel.ranks import in_words
 from rosprivacy.analysis.policy_lines import first_lines, in_a_file
-from rosprivacy.report.document.contents import PROPOSALS, RELIANCE, Document, EnforcedFacts, Lines
+from rosprivacy.report.document.contents import LEDGER, PROPOSALS, RELIANCE, Document, EnforcedFacts, Ledger, Lines
 from rosprivacy.report.places import Places, roles_of, to_review
 
 if TYPE_CHECKING:
@@ -23,18 +23,17 @@ if TYPE_CHECKING:
     from rosprivacy.report.document.contents import Shown
 
 
-def document_of(answer: Answer, fields: Collection[str] = ()) -> Document:
+def document_of(answer: Answer, fields: Collection[str] = (LEDGER,)) -> Document:
     """Return all that an answer says.
 
     Parameters
     ----------
     fields
-        ``RELIANCE``, ``PROPOSALS``: what takes longer than the answer itself. What a user asked for by name is
-        always there.
+        ``LEDGER``, ``RELIANCE``, ``PROPOSALS``: what takes longer than the answer itself. What a user asked for by
+        name is always there.
     """
     analysis, bound, spread = answer.shown, answer.bound, answer.shown.spread
     elements, kinds = analysis.graph.elements, answer.vocabulary.categories
-    taken = answer.taken_away
     return Document(
         analysis=analysis,
         vocabulary=answer.vocabulary,
@@ -62,11 +61,10 @@ def document_of(answer: Answer, fields: Collection[str] = ()) -> Document:
         absent=absent(bound, analysis.graph),
         overruled=tuple((one, in_words(one.by)) for one in spread.overruled),
         infrastructure=answer.infrastructure,
-        taken_away=taken,
-        globs=answer.globs(taken),
         review_order=answer.review_order,
         lines=_lines(analysis, answer.assumptions),
         enforced=_enforced(answer.enforced) if answer.enforced else None,
+        ledger=Ledger(answer.taken_away, answer.globs(answer.taken_away)) if LEDGER in fields else None,
         hangs_on=answer.hangs_on if RELIANCE in fields or answer.hangs_on_named else None,
         proposals=answer.proposals() if PROPOSALS in fields else None,
     )

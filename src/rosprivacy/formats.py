@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, overload
 from rosprivacy.analysis.errors import InputError, shown
 from rosprivacy.clock import source_date, today
 from rosprivacy.report.catalogs import LANGUAGES
-from rosprivacy.report.document.contents import PROPOSALS, RELIANCE
+from rosprivacy.report.document.contents import LEDGER, PROPOSALS, RELIANCE
 from rosprivacy.terminal_width import terminal_width
 
 if TYPE_CHECKING:
@@ -95,7 +95,7 @@ class Format(NamedTuple):
     styles: tuple[str, ...] = ()
     both_views: bool = False
     page: str = ""
-    asks: tuple[str, ...] = (RELIANCE,)
+    asks: tuple[str, ...] = (LEDGER, RELIANCE)
 
 
 @overload
@@ -285,12 +285,12 @@ def _rendered_parts(
 
 _REPORT = ("language", "title", "since", "redact", "assessment")
 _LINKED = ("base", "redact")
-_PAGE = (RELIANCE, PROPOSALS)
+_PAGE = (LEDGER, RELIANCE, PROPOSALS)
 FORMATS = {
     known.name: known
     for known in (
         Format("text", ".txt", _text, ("language", "verbose", "quiet"), both_views=True),
-        Format("json", ".json", _short_json, both_views=True, asks=()),
+        Format("json", ".json", _short_json, both_views=True, asks=(LEDGER,)),
         Format("json1", ".json", _json, both_views=True),
         Format("sarif", ".sarif", _sarif, both_views=True, asks=()),
         Format("cnil-pia", ".json", _cnil_pia, ("language",), asks=()),
