@@ -12,7 +12,7 @@ import pytest
 
 from rosprivacy.analysis.model import Place
 from rosprivacy.ingest.code.annotation_text import WORDS, Annotation, read_annotation
-from rosprivacy.ingest.code.code_names import CodeEvidence, code_evidence
+from rosprivacy.ingest.code.code_names import code_evidence
 from rosprivacy.ingest.code.source_files import read_sources
 from rosprivacy.ontology.vocabulary import load
 from tests.helpers.command import cli, refused
@@ -179,16 +179,26 @@ def test_names_and_notes_of_strangers_stay_text(tmp_path: Path, cli: Cli) -> Non
 NOT_READ = "not read, as code of others or not built here (name a folder by itself to have it read)"
 
 
+def write(folder: Path, files: dict[str, str]) -> None:
+    for name, text in files.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(text, "utf-8")
+
+
 def test_code_of_others_below_what_is_named_is_left_out_and_told(tmp_path: Path, cli: Cli) -> None:
-    for name in ("own.py", "third_party/lib/x.py", "deep/vendor/y.cpp", "vendor.py"):
-        file = tmp_path / "p" / name
-        file.parent.mkdir(parents=True, exist_ok=True)
-        text = "p" if "/" not in name else "our p"  # others write of privacy, too, and of what they do with it
-        file.write_text(f"{'//' if file.suffix == '.cpp' else '#'} {text}rivacy(/{file.stem}): mundane\n", "utf-8")
-    told = f"{NOT_READ}: p/deep/vendor, p/third_party\n"
+    """Unless its folder is named, too; where there is nothing else, that is an error."""
+    write(tmp_path, {
+        "p/own.py": "# privacy(/own): mundane\n", "p/vendor.py": "# privacy(/vendor): mundane\n",
+        "p/third_party/lib/x.py": "# theirs\n", "p/deep/vendor/y.cpp": "// theirs\n",
+    })  # fmt: skip
     done = cli("annotations", "p", cwd=tmp_path)
-    assert done.stderr == f"2 annotations of 2 elements in 2 files; {told}"
-    assert "/x" not in done.stdout
+    assert done.stderr == f"2 annotations of 2 elements in 2 files; {NOT_READ}: p/deep/vendor, p/third_party\n"
+    (line,) = refused(cli("annotations", "p/deep", cwd=tmp_path))
+    assert line.startswith("p/deep: no Python and no C++ in it ")
+    assert "p/deep/vendor" in line
+    write(tmp_path, {"p/deep/vendor/y.cpp": "// privacy(/y): mundane\n"})
+    done = cli("annotations", "p", "p/deep/vendor", cwd=tmp_path)
+    assert (done.returncode, done.stderr.partition(";")[0]) == (0, "3 annotations of 3 elements in 3 files")
 
 
 LOST = (
@@ -210,10 +220,7 @@ LOST = (
 )
 def test_an_annotation_in_code_of_others_is_an_error(tmp_path: Path, cli: Cli, name: str, line: str) -> None:
     """Somebody wrote it: dropped, it would hide a source."""
-    file = tmp_path / "p" / name
-    file.parent.mkdir(parents=True)
-    file.write_text(f"\n{line}\n", "utf-8")
-    (tmp_path / "p" / "own.py").write_text("# privacy(/x): mundane\n", "utf-8")
+    write(tmp_path, {f"p/{name}": f"\n{line}\n", "p/own.py": "# privacy(/x): mundane\n"})
     done = cli("annotations", "p", cwd=tmp_path)
     folder = name.partition("/")[0]
     assert refused(done) == [f"p/{name}:2: {LOST.format(folder)}"]
@@ -222,33 +229,14 @@ def test_an_annotation_in_code_of_others_is_an_error(tmp_path: Path, cli: Cli, n
     assert cli("annotations", "q", cwd=tmp_path).returncode == 0
 
 
-def test_a_folder_of_code_of_others_is_read_if_it_is_named_too(tmp_path: Path, cli: Cli) -> None:
-    (tmp_path / "p" / "vendor").mkdir(parents=True)
-    (tmp_path / "p" / "vendor" / "x.py").write_text("# privacy(/x): mundane\n", "utf-8")
-    (tmp_path / "p" / "own.py").write_text("# privacy(/y): mundane\n", "utf-8")
-    done = cli("annotations", "p", "p/vendor", cwd=tmp_path)
-    assert (done.returncode, done.stderr.partition(";")[0]) == (0, "2 annotations of 2 elements in 2 files")
-
-
 @pytest.mark.parametrize(
     "line",
     ["# Privacy matters: source code", "# privacy: we keep nothing", "privacy: source Video", "x = 'privacy: 1'"],
 )
 def test_words_of_others_about_privacy_are_no_annotation(tmp_path: Path, cli: Cli, line: str) -> None:
-    (tmp_path / "p" / "vendor").mkdir(parents=True)
-    (tmp_path / "p" / "vendor" / "x.py").write_text(f"{line}\n", "utf-8")
+    write(tmp_path, {"p/vendor/x.py": f"{line}\n", "p/own.py": "# privacy(/y): mundane\n"})
     (tmp_path / "p" / "vendor" / "broken.py").write_bytes(b"privacy \xff\x00 (((\n")
-    (tmp_path / "p" / "own.py").write_text("# privacy(/y): mundane\n", "utf-8")
     assert cli("annotations", "p", cwd=tmp_path).returncode == 0
-
-
-def test_a_folder_with_nothing_but_code_of_others_is_an_error(tmp_path: Path, cli: Cli) -> None:
-    file = tmp_path / "p" / "vendor" / "x.py"
-    file.parent.mkdir(parents=True)
-    file.write_text("# theirs\n", "utf-8")
-    done = cli("annotations", "p", cwd=tmp_path)
-    what = "p: no Python and no C++ in it but what is not read as code of others: p/vendor"
-    assert (done.returncode, done.stderr) == (2, f"{what}; name such a folder by itself to have it read\n")
 
 
 def test_what_a_folder_holds(tmp_path: Path, cli: Cli) -> None:
@@ -292,18 +280,12 @@ def test_cpp_without_its_library_is_told(tmp_path: Path, cli: Cli, monkeypatch: 
 
 def test_types_and_literal_names_are_evidence() -> None:
     found = code_evidence(read_sources([str(EXAMPLE)]).codes)
-    assert [one._replace(place=one.place._replace(file="")) for one in found] == [
-        CodeEvidence(one.place._replace(file=""), "topic", role, name, kind, node)
-        for one, (role, name, kind, node) in zip(
-            found,
-            [
-                ("publish", "/image_blurred", "sensor_msgs/msg/Image", "/blur"),
-                ("publish", "/image", "sensor_msgs/msg/Image", "/camera"),
-                ("publish", "/camera_info", "sensor_msgs/msg/CameraInfo", "/camera"),
-                ("subscribe", "/image_blurred", "sensor_msgs/msg/Image", "/uplink"),
-            ],
-            strict=True,
-        )
+    assert {one.kind for one in found} == {"topic"}
+    assert [(one.role, one.name, one.type, one.node) for one in found] == [
+        ("publish", "/image_blurred", "sensor_msgs/msg/Image", "/blur"),
+        ("publish", "/image", "sensor_msgs/msg/Image", "/camera"),
+        ("publish", "/camera_info", "sensor_msgs/msg/CameraInfo", "/camera"),
+        ("subscribe", "/image_blurred", "sensor_msgs/msg/Image", "/uplink"),
     ]
 
 

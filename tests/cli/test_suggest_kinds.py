@@ -15,7 +15,7 @@ from rosprivacy.labelling.asking import with_answer
 from rosprivacy.labelling.conversation import EACH_KIND, FEWEST, OPEN, QUIT, SKIP, allowed
 from rosprivacy.report.suggest.question_lines import keys_line, question_lines
 from rosprivacy.settings import Settings
-from tests.helpers.asked_by_keys import ask, conversation_in, robot_of
+from tests.helpers.asked_by_keys import Pressing, by_keys, conversation_in, pressing, robot_of, text_of
 from tests.helpers.command import cli
 from tests.helpers.little_robots import policy_of
 
@@ -23,10 +23,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
-    from tests.helpers.command import Cli
+    from tests.helpers.asked_by_keys import ByKeys
     from tests.helpers.little_robots import Nodes
 
-__all__ = ["cli"]
+__all__ = ["by_keys", "cli"]
 
 CHANNELS = ("/a", "/b", "/c", "/d")
 NODES: Nodes = {
@@ -42,23 +42,6 @@ REVIEWED = HEAD + "  /middle: conduit\n  /here: conduit\n"
 @pytest.fixture
 def robot(tmp_path: Path) -> Path:
     return robot_of(tmp_path, NODES, REVIEWED)
-
-
-class Scripted:
-    """Somebody who presses these keys, and then stops; what was asked and told is kept."""
-
-    def __init__(self, *keys: str) -> None:
-        self.keys = [*keys]
-        self.asked: list[Question] = []
-        self.remarks: list[str] = []
-
-    def key(self, question: Question, picked: frozenset[int]) -> str:
-        if not picked:
-            self.asked.append(question)
-        return self.keys.pop(0) if self.keys else QUIT
-
-    def remark(self, remark: str) -> None:
-        self.remarks.append(remark)
 
 
 def found(folder: Path, file: str = "l.yaml") -> set[str]:
@@ -80,7 +63,7 @@ def said(folder: Path, file: str) -> list[tuple[object, ...]]:
 
 
 def test_channels_that_different_data_reach_are_one_question_and_each_row_names_its_own(robot: Path) -> None:
-    person = Scripted()
+    person = pressing()
     conversation_in(robot, person).run()
     (question,) = person.asked
     assert {row.element.name: row.kinds for row in question.rows} == {
@@ -89,7 +72,7 @@ def test_channels_that_different_data_reach_are_one_question_and_each_row_names_
 
 
 def test_a_digit_says_the_same_kind_of_each_row_and_nothing_of_a_row_that_only_one_kind_reaches(robot: Path) -> None:
-    person = Scripted()
+    person = pressing()
     conversation_in(robot, person).run()
     for row in person.asked[0].rows:
         kinds = {one.key: one.label.said["only"] for one in row.replies if "only" in one.label.said}
@@ -125,7 +108,7 @@ class Listing:
 @pytest.mark.parametrize("wrong", ["", "2", "4", "y", "1", "33", QUIT])
 def test_a_list_of_one_kind_at_most_is_confirmed_by_its_number_alone(robot: Path, wrong: str) -> None:
     conversation_in(robot, Listing(["/a", "/b", "/c"], "2", wrong, QUIT)).run()
-    assert (robot / "l.yaml").read_text("utf-8") == REVIEWED
+    assert text_of(robot) == REVIEWED
 
 
 def test_each_label_of_a_list_of_one_kind_at_most_tells_it(robot: Path) -> None:
@@ -134,25 +117,23 @@ def test_each_label_of_a_list_of_one_kind_at_most_tells_it(robot: Path) -> None:
     assert sorted(row.element.name for row in person.lists[0].rows) == ["/a", "/b", "/c"]
     assert "Is it so that of Video and Voice only Voice goes through each of these?" in question_text(person.lists[0])
     assert keys_line(person.lists[0], (), ()).startswith("  3 and Enter for Voice at most in all 3, ")
-    text = (robot / "l.yaml").read_text("utf-8")
+    text = text_of(robot)
     for name in ("/a", "/b", "/c"):
         assert f'  {name}: {{only: [Voice], note: "answered by Ada on 2026-11-23 in a list of 3"}}' in text
     assert "/d:" not in text
 
 
 def test_of_rows_that_nobody_picked_no_kind_is_said_together(robot: Path) -> None:
-    person = Scripted("1", QUIT)
+    person = pressing("1", QUIT)
     conversation_in(robot, person).run()
     assert person.remarks == ["'1' is no answer here"]
-    assert (robot / "l.yaml").read_text("utf-8") == REVIEWED
+    assert text_of(robot) == REVIEWED
 
 
 @pytest.mark.parametrize("keys", ["AB1", "AB12\n", "AB1\n2\n", "1", "AB0"])
-def test_no_digit_of_a_file_of_keys_makes_such_a_list(
-    cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch, keys: str
-) -> None:
-    assert "no more" in ask(cli, robot, keys, monkeypatch).stdout
-    assert (robot / "l.yaml").read_text("utf-8") == REVIEWED
+def test_no_digit_of_a_file_of_keys_makes_such_a_list(robot: Path, by_keys: ByKeys, keys: str) -> None:
+    assert "no more" in by_keys(robot, keys).stdout
+    assert text_of(robot) == REVIEWED
 
 
 def test_the_channel_by_which_alone_a_known_finding_is_left_is_asked_by_itself(robot: Path) -> None:
@@ -176,10 +157,10 @@ def question_text(question: Question) -> str:
 def test_each_kind_is_asked_by_itself_where_a_person_wants_it(robot: Path) -> None:
     """Of one row: one kind can go through, the other cannot; the others are asked as before."""
     name = "/a"
-    first = Scripted()
+    first = pressing()
     conversation_in(robot, first).run()
     at = [row.element.name for row in first.asked[0].rows].index(name)
-    person = Scripted(ascii_uppercase[at], EACH_KIND)
+    person = pressing(ascii_uppercase[at], EACH_KIND)
     conversation_in(robot, person).run()
     rows = {row.kinds: row for row in person.asked[1].rows if row.element.name == name}
     assert list(rows) == [("Video",), ("Voice",)]
@@ -191,20 +172,16 @@ def test_each_kind_is_asked_by_itself_where_a_person_wants_it(robot: Path) -> No
     }
 
 
-def test_one_kind_may_be_let_out_and_the_other_passed_on(
-    cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_one_kind_may_be_let_out_and_the_other_passed_on(robot: Path, by_keys: ByKeys) -> None:
     (robot / "l.yaml").write_text(f"{HEAD}  /here: conduit\n", "utf-8")
-    shown = ask(cli, robot, "k A1 2 q", monkeypatch).stdout
+    shown = by_keys(robot, "k A1 2 q").stdout
     assert "1 lets out (Video and Voice), 2 only passes on or drops (Video and Voice)" in shown
-    text = (robot / "l.yaml").read_text("utf-8")
+    text = text_of(robot)
     assert "/middle: {conduit: [Voice], leak: [Video], " in text
 
 
-def test_a_question_mark_says_what_each_key_means_and_answers_nothing(
-    cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    shown = ask(cli, robot, "?q", monkeypatch).stdout
+def test_a_question_mark_says_what_each_key_means_and_answers_nothing(robot: Path, by_keys: ByKeys) -> None:
+    shown = by_keys(robot, "?q").stdout
     for line in (
         "  y  yes (such data as stand beside it)\n",
         "  0  none of it (such data as stand beside it): pick one row; or several, which are then shown",
@@ -220,11 +197,11 @@ def test_a_leak_among_nodes_is_known_before_channels_are_asked_about(robot: Path
     nodes: Nodes = NODES | {"behind": (["/e"], ["/d"]), "end": ([], ["/e"])}
     (robot / "p.xml").write_text(policy_of(nodes), "utf-8")
     (robot / "l.yaml").write_text(HEAD, "utf-8")
-    first = Scripted()
+    first = pressing()
     conversation_in(robot, first).run()
     names = [row.element.name for row in first.asked[0].rows]
     assert sorted(names) == ["/behind", "/end", "/here", "/middle"]
-    person = Scripted(ascii_uppercase[names.index("/end")], "1", *"ABC", "2")
+    person = pressing(ascii_uppercase[names.index("/end")], "1", *"ABC", "2")
     conversation_in(robot, person).run()
     assert [one.about for one in person.asked] == [GOES_ON, GOES_ON, GOES_THROUGH]
     assert {one.partition(" [")[0].partition("-> ")[2] for one in person.asked[-1].rows[0].closes} == {"/end"}
@@ -235,7 +212,7 @@ def test_what_may_be_a_leak_comes_first_and_is_called_a_conduit_only_if_it_is_pi
     nodes: Nodes = {"one": (["/in"], []), "middle": (["/a"], ["/in"]), "end": ([], ["/a"]), "uploader": ([], ["/a"])}
     (robot / "p.xml").write_text(policy_of(nodes), "utf-8")
     (robot / "l.yaml").write_text("labels: 1\nnodes:\n  /one: {source: [Video]}\n", "utf-8")
-    person = Scripted("2", "A", "1")
+    person = pressing("2", "A", "1")
     conversation_in(robot, person).run()
     question = person.asked[0]
     assert [(row.element.name, row.doubtful) for row in question.rows] == [
@@ -246,7 +223,7 @@ def test_what_may_be_a_leak_comes_first_and_is_called_a_conduit_only_if_it_is_pi
         (): False, (1,): True, (0, 2): True, (0, 1, 2): True,
     }  # fmt: skip
     assert PASSES in allowed(Question(GOES_ON, (question.rows[1],)))
-    text = (robot / "l.yaml").read_text("utf-8")
+    text = text_of(robot)
     assert "/uploader: {leak: [Video], note: \"answered by Ada on 2026-11-23: 'uploader' in the name" in text
 
 
@@ -257,13 +234,10 @@ def test_a_leak_that_became_known_in_the_same_question_is_told_before_a_node_end
     types += "  /joints: {types: [sensor_msgs/msg/JointState]}\n"
     (robot / "l.yaml").write_text(f"labels: 1\nnodes:\n  /one: {{source: [Video]}}\n{types}", "utf-8")
 
-    class AboutNodes(Scripted):
-        def key(self, question: Question, picked: frozenset[int]) -> str:
-            return super().key(question, picked) if question.about == GOES_ON else SKIP
-
-    person = AboutNodes("B", "1")
+    keys = ["B", "1"]
+    person = Pressing(lambda question, _: SKIP if question.about != GOES_ON else keys.pop(0) if keys else QUIT)
     conversation_in(robot, person).run()
-    first, last = person.asked[0], person.asked[-1]
+    first, *_, last = [one for one in person.asked if one.about == GOES_ON]
     assert [(row.element.name, row.closes) for row in first.rows] == [("/counter", ()), ("/end", ())]
     ((name, closes),) = [(row.element.name, row.closes) for row in last.rows]
     assert name == "/counter"
@@ -276,7 +250,7 @@ def test_a_finding_of_what_is_made_of_the_data_is_told_before_these_are_taken_aw
     made = "derives: [{from: Video, to: FaceTemplate}], sanitizer: {Video: drop}"
     text = f"labels: 1\nnodes:\n  /one: {{source: [Video]}}\n  /worker: {{{made}}}\n  /end: {{leak: [FaceTemplate]}}\n"
     (robot / "l.yaml").write_text(f"{text}topics:\n  /made: sensitive\n", "utf-8")
-    person = Scripted()
+    person = pressing()
     conversation_in(robot, person).run()
     (row,) = person.asked[0].rows
     assert (row.element.name, row.kinds) == ("/in", ("Video",))
@@ -286,7 +260,7 @@ def test_a_finding_of_what_is_made_of_the_data_is_told_before_these_are_taken_aw
 def test_one_kind_at_most_is_not_said_of_a_channel_that_a_person_says_carries_another(robot: Path) -> None:
     """Both at once would be no label file (S7)."""
     (robot / "l.yaml").write_text(f"{REVIEWED}topics:\n  /a: {{sensitive: [Location]}}\n", "utf-8")
-    person = Scripted()
+    person = pressing()
     conversation_in(robot, person).run()
     keys = {row.element.name: [one.key for one in row.replies] for row in person.asked[0].rows}
     assert (keys["/a"], keys["/b"]) == (["y", "0"], ["y", "1", "2", "0"])
@@ -295,19 +269,19 @@ def test_one_kind_at_most_is_not_said_of_a_channel_that_a_person_says_carries_an
 def test_what_takes_data_away_of_a_topic_takes_none_of_a_service_of_its_name(robot: Path) -> None:
     """Where a line of channels speaks of both, the topic gets a line of its own."""
     (robot / "l.yaml").write_text(f"{REVIEWED}channels:\n  /a: {{sensitive: [Location]}}\n", "utf-8")
-    first = Scripted()
+    first = pressing()
     conversation_in(robot, first).run()
     at = [row.element.name for row in first.asked[0].rows].index("/a")
-    conversation_in(robot, Scripted(ascii_uppercase[at], "0")).run()
-    text = (robot / "l.yaml").read_text("utf-8")
+    conversation_in(robot, pressing(ascii_uppercase[at], "0")).run()
+    text = text_of(robot)
     assert "channels:\n  /a: {sensitive: [Location]}\ntopics:\n  /a: {never: [Video, Voice], note: " in text
 
 
 def test_one_by_one_speaks_of_the_rows_that_are_picked(robot: Path) -> None:
-    person = Scripted("A", "B", OPEN)
+    person = pressing("A", "B", OPEN)
     conversation_in(robot, person).run()
     rest = len(person.asked[0].rows) - 2
-    person = Scripted("A", "B", OPEN, "y", "y")
+    person = pressing("A", "B", OPEN, "y", "y")
     conversation_in(robot, person).run()
     assert [len(one.rows) for one in person.asked] == [rest + 2, 1, 1, rest]
 
@@ -315,33 +289,30 @@ def test_one_by_one_speaks_of_the_rows_that_are_picked(robot: Path) -> None:
 @pytest.mark.parametrize("keys", ["AB", "BC", "\x1b[A"])
 def test_signs_that_come_at_once_pick_no_row(robot: Path, keys: str) -> None:
     """Who types A and B fast and then 0 wants a list, and does not say it of A alone."""
-    person = Scripted(keys, "0")
+    person = pressing(keys, "0")
     conversation_in(robot, person).run()
     assert person.remarks == [f"{keys!r} is no answer here", "'0' is no answer here"]
-    assert (robot / "l.yaml").read_text("utf-8") == REVIEWED
+    assert text_of(robot) == REVIEWED
 
 
 def test_what_comes_later_is_not_asked_again_when_fewer_kinds_get_there(robot: Path) -> None:
-    class Later(Scripted):
-        def key(self, question: Question, picked: frozenset[int]) -> str:
-            key = super().key(question, picked)
-            if key == SKIP:
-                (robot / "l.yaml").write_text(REVIEWED.replace("  /two: {source: [Voice]}\n", ""), "utf-8")
-            return key
+    def later(_: Question, __: frozenset[int]) -> str:
+        (robot / "l.yaml").write_text(REVIEWED.replace("  /two: {source: [Voice]}\n", ""), "utf-8")
+        return SKIP
 
-    person = Later(SKIP)
+    person = Pressing(later)
     assert conversation_in(robot, person).run()
     assert len(person.asked) == 1
 
 
 def test_what_is_written_by_hand_meanwhile_is_read_after_later(robot: Path) -> None:
-    class Writing(Scripted):
-        def key(self, question: Question, picked: frozenset[int]) -> str:
-            if not self.asked:
-                (robot / "l.yaml").write_text(f"{REVIEWED}channels:\n  '/?': sensitive\n", "utf-8")
-            return super().key(question, picked)
+    keys = ["A", SKIP]
 
-    person = Writing("A", SKIP)
+    def writing(_: Question, __: frozenset[int]) -> str:
+        (robot / "l.yaml").write_text(f"{REVIEWED}channels:\n  '/?': sensitive\n", "utf-8")
+        return keys.pop(0) if keys else QUIT
+
+    person = Pressing(writing)
     conversation_in(robot, person).run()
     names = [[row.element.name for row in one.rows] for one in person.asked]
     assert len(names[0]) == len(CHANNELS) + 2
@@ -358,7 +329,7 @@ def test_what_is_written_by_hand_meanwhile_is_read_after_later(robot: Path) -> N
     key=st.sampled_from("0123"),
     apart=st.booleans(),
 )
-@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_a_list_closes_no_known_finding_and_says_what_single_answers_say(
     tmp_path: Path,
     kinds: list[str],
@@ -437,7 +408,7 @@ class Anybody:
     leaks=st.sets(st.integers(1, 4), min_size=1, max_size=2),
     reviewed=st.booleans(),
 )
-@settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_whatever_is_pressed_no_known_finding_is_closed_but_by_what_is_said_of_one_element(
     tmp_path: Path,
     data: st.DataObject,

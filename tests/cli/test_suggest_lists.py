@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import io
 import os
 import pty
 import select
 import subprocess
-import sys
 import time
 from string import ascii_uppercase
 from typing import TYPE_CHECKING
@@ -22,7 +20,16 @@ from rosprivacy.labelling.asking import asked_now
 from rosprivacy.labelling.conversation import QUIT, SKIP, allowed
 from rosprivacy.labelling.suggesting import suggest_labels
 from rosprivacy.settings import Settings
-from tests.helpers.asked_by_keys import ask, conversation, conversation_in, robot_of, wait_for_keys
+from tests.helpers.asked_by_keys import (
+    COMMAND,
+    Pressing,
+    by_keys,
+    conversation,
+    conversation_in,
+    robot_of,
+    text_of,
+    wait_for_keys,
+)
 from tests.helpers.command import cli
 from tests.helpers.little_robots import policy_of
 from tests.helpers.planted_leaks import planted
@@ -33,10 +40,10 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from rosprivacy.analysis.suggesting.label_questions import Question
-    from tests.helpers.command import Cli
+    from tests.helpers.asked_by_keys import ByKeys
     from tests.helpers.little_robots import Nodes
 
-__all__ = ["cli"]
+__all__ = ["by_keys", "cli"]
 
 TEXT = "std_msgs/msg/String"
 JOINTS, BATTERY = "sensor_msgs/msg/JointState", "sensor_msgs/msg/BatteryState"  # one family of the table
@@ -74,11 +81,9 @@ def list_shown(text: str) -> list[str]:
 BEFORE = "s"  # the end of the data
 
 
-def test_only_what_a_type_says_is_in_a_list_and_all_of_it_is_shown(
-    cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_only_what_a_type_says_is_in_a_list_and_all_of_it_is_shown(robot: Path, by_keys: ByKeys) -> None:
     """Not a text, not a map (which is made of what sensors see), and not what nobody knows the type of."""
-    shown = ask(cli, robot, f"{BEFORE}q", monkeypatch).stdout
+    shown = by_keys(robot, f"{BEFORE}q").stdout
     assert sorted(list_shown(shown)) == ["/arm", "/battery", "/joints"]
     for name, said in (("arm", JOINTS), ("battery", BATTERY), ("joints", JOINTS)):
         assert f"type {said} of /{name} is not made for Video" in shown
@@ -91,19 +96,17 @@ def line(*names: str) -> str:
 
 
 def test_a_list_is_confirmed_by_its_number_and_each_note_says_so(robot: Path) -> None:
-    conversation_in(robot, Careless()).run()
-    text = (robot / "l.yaml").read_text("utf-8")
+    conversation_in(robot, careless()).run()
+    text = text_of(robot)
     for name in ("arm", "battery", "joints"):
         assert f"  /{name}: {{never: [Video], " in text
     assert text.count("answered by Ada on 2026-11-23 in a list of 3: type sensor_msgs/msg/") == 3
 
 
-def test_a_label_that_is_typed_in_its_place_does_not_confirm_it(
-    cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_label_that_is_typed_in_its_place_does_not_confirm_it(robot: Path, by_keys: ByKeys) -> None:
     """The list comes again; what was taken out before stays out."""
-    shown = ask(cli, robot, f"{BEFORE}A/eye node leak Biometric\n", monkeypatch).stdout
-    text = (robot / "l.yaml").read_text("utf-8")
+    shown = by_keys(robot, f"{BEFORE}A/eye node leak Biometric\n").stdout
+    text = text_of(robot)
     assert "  /eye: {leak: [Biometric], source: [Video], note: " in text
     assert "never" not in text
     assert shown.count(HEADING) == 2
@@ -112,23 +115,12 @@ def test_a_label_that_is_typed_in_its_place_does_not_confirm_it(
 
 @pytest.mark.parametrize("number", ["", "0", "1", "2", "4", "33", "3x", "03"])
 def test_no_other_number_confirms_it(robot: Path, number: str) -> None:
-    before = (robot / "l.yaml").read_text("utf-8")
-    told: list[str] = []
-
-    class Mistyping:
-        def __init__(self) -> None:
-            self.keys = [number, QUIT]
-
-        def key(self, question: Question, picked: frozenset[int]) -> str:
-            del picked
-            return self.keys.pop(0) if question.about == LISTED else SKIP
-
-        def remark(self, remark: str) -> None:
-            told.append(remark)
-
-    conversation_in(robot, Mistyping()).run()
-    assert told == ([f"{number!r} is no answer here; 3 rows left"] if number else [])
-    assert (robot / "l.yaml").read_text("utf-8") == before
+    before = text_of(robot)
+    keys = [number, QUIT]
+    person = Pressing(lambda question, _: keys.pop(0) if question.about == LISTED else SKIP)
+    conversation_in(robot, person).run()
+    assert person.remarks == ([f"{number!r} is no answer here; 3 rows left"] if number else [])
+    assert text_of(robot) == before
 
 
 @pytest.mark.parametrize(
@@ -138,118 +130,100 @@ def test_no_other_number_confirms_it(robot: Path, number: str) -> None:
         *(line("arm"), line("arm", "text"), line("arm", "arm"), line("arm", "joints").replace("Video", "Voice")),
     ],
 )
-def test_a_file_of_keys_that_does_not_name_the_rows_confirms_nothing(
-    cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch, keys: str
-) -> None:
+def test_a_file_of_keys_that_does_not_name_the_rows_confirms_nothing(robot: Path, by_keys: ByKeys, keys: str) -> None:
     """Three others may be in the list than those that it was made for."""
-    before = (robot / "l.yaml").read_text("utf-8")
-    done = ask(cli, robot, f"{BEFORE}{keys}", monkeypatch)
+    before = text_of(robot)
+    done = by_keys(robot, f"{BEFORE}{keys}")
     assert done.returncode == 0
-    assert (robot / "l.yaml").read_text("utf-8") == before
+    assert text_of(robot) == before
 
 
-def test_a_file_of_keys_confirms_the_rows_that_it_names(cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    told = ask(cli, robot, f"{BEFORE}3\n", monkeypatch).stdout
+def test_a_file_of_keys_confirms_the_rows_that_it_names(robot: Path, by_keys: ByKeys) -> None:
+    told = by_keys(robot, f"{BEFORE}3\n").stdout
     whole = line("arm", "battery", "joints")
     assert f"'3' takes data away; where no terminal is, a line says it, and no more keys are read: {whole}" in told
-    done = ask(cli, robot, f"{BEFORE}A{line('battery', 'joints')}q", monkeypatch)
+    done = by_keys(robot, f"{BEFORE}A{line('battery', 'joints')}q")
     assert "1 answer in l.yaml" in done.stdout
-    text = (robot / "l.yaml").read_text("utf-8")
+    text = text_of(robot)
     assert text.count("never: [Video]") == text.count("in a list of 2: ") == 2
     assert "/arm: {types" in text
 
 
-def test_rows_are_taken_out_and_asked_by_themselves(cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    ask(cli, robot, f"{BEFORE}{line('battery', 'joints')}q", monkeypatch)
-    out = list_shown(ask(cli, robot, "sssq", monkeypatch).stdout)
+def test_rows_are_taken_out_and_asked_by_themselves(robot: Path, by_keys: ByKeys) -> None:
+    by_keys(robot, f"{BEFORE}{line('battery', 'joints')}q")
+    out = list_shown(by_keys(robot, "sssq").stdout)
     assert out == []  # one channel makes no list
     (robot / "l.yaml").write_text(labels_of(TYPES), "utf-8")
-    assert "Can Video go through these?" in ask(cli, robot, f"{BEFORE}oq", monkeypatch).stdout
+    assert "Can Video go through these?" in by_keys(robot, f"{BEFORE}oq").stdout
 
 
 def test_a_known_finding_is_asked_by_itself_also_where_only_all_together_would_close_it(
-    cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch
+    robot: Path, by_keys: ByKeys
 ) -> None:
     """The data get to the leak by two of three channels: neither closes the finding, both do."""
     nodes: Nodes = NODES | {"out": ([], ["/joints", "/arm"])}
     (robot / "p.xml").write_text(policy_of(nodes), "utf-8")
     (robot / "l.yaml").write_text(labels_of(TYPES, "  /out: {leak: [Video]}\n"), "utf-8")
-    shown = ask(cli, robot, "sssssq", monkeypatch).stdout
+    shown = by_keys(robot, "sssssq").stdout
     assert HEADING not in shown
     assert "known findings, which may hang on this:\n       Video: /eye -> /out [" in shown
     (robot / "p.xml").write_text(policy_of(NODES | {"out": ([], ["/joints"])}), "utf-8")
-    shown = ask(cli, robot, "sssq", monkeypatch).stdout
+    shown = by_keys(robot, "sssq").stdout
     assert sorted(list_shown(shown)) == ["/arm", "/battery"]
 
 
 def test_a_leak_that_becomes_known_while_a_list_is_shown_is_not_closed_by_it(robot: Path) -> None:
     """Somebody else writes the leak into the file between the question and its answer."""
     (robot / "p.xml").write_text(policy_of(NODES | {"out": ([], ["/joints"])}), "utf-8")
-    file = robot / "l.yaml"
-    told: list[str] = []
+    lists = 0
 
-    class Late:
-        done = False
+    def late(question: Question, _: frozenset[int]) -> str:
+        nonlocal lists
+        if question.about != LISTED:
+            return QUIT if lists else SKIP
+        lists += 1
+        (robot / "l.yaml").write_text(labels_of(TYPES, "  /out: {leak: [Video]}\n"), "utf-8")
+        return str(len(question.rows)) if lists == 1 else QUIT
 
-        def key(self, question: Question, picked: frozenset[int]) -> str:
-            del picked
-            if question.about != LISTED or self.done:
-                return SKIP if not self.done else QUIT
-            self.done = True
-            file.write_text(labels_of(TYPES, "  /out: {leak: [Video]}\n"), "utf-8")
-            return str(len(question.rows))
-
-        def remark(self, remark: str) -> None:
-            told.append(remark)
-
-    late = Late()
-    conversation(robot / "p.xml", file, late).run()
-    assert late.done
-    assert told == ["this list is not as it was any more: nothing is kept, and it is asked anew"]
-    assert "never" not in file.read_text("utf-8")
+    person = Pressing(late)
+    conversation_in(robot, person).run()
+    assert person.remarks == ["this list is not as it was any more: nothing is kept, and it is asked anew"]
+    assert "never" not in text_of(robot)
 
 
-class Careless:
+def careless() -> Pressing:
     """Somebody who confirms every list as it is, and answers nothing else."""
-
-    def key(self, question: Question, picked: frozenset[int]) -> str:
-        del picked
-        return str(len(question.rows)) if question.about == LISTED else SKIP
-
-    def remark(self, remark: str) -> None:
-        raise AssertionError(remark)
+    return Pressing(lambda question, _: str(len(question.rows)) if question.about == LISTED else SKIP)
 
 
-class Picking:
+def picking(last: str = "") -> Pressing:
     """Somebody who picks all channels that are asked about together, says that nothing goes through, and confirms."""
 
-    def __init__(self, last: str = "") -> None:
-        self.last = last
-        self.remarks: list[str] = []
-        self.lists: list[tuple[str, ...]] = []
-
-    def key(self, question: Question, picked: frozenset[int]) -> str:
+    def key(question: Question, picked: frozenset[int]) -> str:
         if question.about == LISTED:
-            self.lists.append(tuple(row.element.name for row in question.rows))
-            return self.last or str(len(question.rows))
-        left = [at for at in range(len(question.rows)) if at not in picked]
+            return last or str(len(question.rows))
         if question.about != GOES_THROUGH or len(question.rows) == 1:
             return SKIP
+        left = [at for at in range(len(question.rows)) if at not in picked]
         return ascii_uppercase[left[0]] if left else NOTHING
 
-    def remark(self, remark: str) -> None:
-        self.remarks.append(remark)
+    return Pressing(key)
+
+
+def listed(person: Pressing) -> list[tuple[str, ...]]:
+    """The channels of each list that was shown."""
+    return [tuple(row.element.name for row in one.rows) for one in person.asked if one.about == LISTED]
 
 
 def test_channels_that_a_person_picks_are_asked_as_a_list(robot: Path) -> None:
     """Also those of which nobody knows the type: each was picked by its letter, and is shown again."""
     (robot / "l.yaml").write_text(HEAD + "  /here: conduit\n", "utf-8")
-    stopped = Picking(QUIT)
+    stopped = picking(QUIT)
     conversation_in(robot, stopped).run()
-    assert stopped.lists == [("/a", "/arm", "/battery", "/grid", "/joints", "/plain", "/text")]
-    assert "never" not in (robot / "l.yaml").read_text("utf-8")
-    conversation_in(robot, Picking()).run()
-    text = (robot / "l.yaml").read_text("utf-8")
+    assert listed(stopped) == [("/a", "/arm", "/battery", "/grid", "/joints", "/plain", "/text")]
+    assert "never" not in text_of(robot)
+    conversation_in(robot, picking()).run()
+    text = text_of(robot)
     assert text.count('never: [Video], note: "answered by Ada on 2026-11-23 in a list of 7"') == 7
 
 
@@ -258,9 +232,9 @@ def test_a_picked_channel_that_would_close_a_finding_is_asked_by_itself(robot: P
     (robot / "p.xml").write_text(policy_of(nodes), "utf-8")
     (robot / "l.yaml").write_text(f"{HEAD}  /here: conduit\n  /out: {{leak: [Video]}}\n", "utf-8")
     before = found(robot / "p.xml", robot / "l.yaml")
-    person = Picking()
+    person = picking()
     conversation_in(robot, person).run()
-    assert person.lists == [("/arm", "/battery", "/grid", "/plain", "/text")]
+    assert listed(person) == [("/arm", "/battery", "/grid", "/plain", "/text")]
     told = "it could close a known finding, and is asked by itself"
     assert person.remarks == [f"topic /a: {told}", f"topic /joints: {told}"]
     assert found(robot / "p.xml", robot / "l.yaml") == before
@@ -286,7 +260,7 @@ CHANNELS = ("joints", "battery", "arm", "text", "plain")
     ends=st.lists(st.lists(st.sampled_from(CHANNELS), min_size=1, unique=True), min_size=1, max_size=3),
     leaks=st.integers(0, 3),
 )
-@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_an_accepted_list_closes_no_known_finding(
     tmp_path: Path, middle: list[str], second: list[str], ends: list[list[str]], leaks: int
 ) -> None:
@@ -303,13 +277,13 @@ def test_an_accepted_list_closes_no_known_finding(
     (tmp_path / "l.yaml").write_text(labels_of(types, out + "  /second: conduit\n"), "utf-8")
     policy, file = tmp_path / "p.xml", tmp_path / "l.yaml"
     before = found(policy, file)
-    conversation(policy, file, Careless()).run()
+    conversation(policy, file, careless()).run()
     assert found(policy, file) == before
     picked = tmp_path / "picked.yaml"
     picked.write_text(file.read_text("utf-8"), "utf-8")
-    conversation(policy, picked, Picking()).run()
+    conversation(policy, picked, picking()).run()
     assert found(policy, picked) == before
-    text = (tmp_path / "l.yaml").read_text("utf-8")
+    text = text_of(tmp_path)
     assert not any(f"  /{name}: {{never" in text for name in ("text", "plain", "a"))
 
 
@@ -320,9 +294,9 @@ def test_lists_of_packages_close_no_planted_leak(corpus: Path, tmp_path: Path) -
     for policy in (corpus / TURTLEBOT3, corpus / POLICIES["$RMF"]):
         for file, path in planted(str(policy), tmp_path, 6, 1):
             before = found(policy, file)
-            asking = conversation(policy, file, Careless())
-            asking.run()
-            lists += len(asking.lists)
+            person = careless()
+            conversation(policy, file, person).run()
+            lists += len(listed(person))
             assert found(policy, file) == before, path
     assert lists
 
@@ -332,7 +306,7 @@ def found(policy: Path, file: Path) -> set[str]:
     return {one.id for one in analysis.findings}
 
 
-def test_what_only_code_says_of_a_type_makes_no_list(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_only_code_says_of_a_type_makes_no_list(by_keys: ByKeys, tmp_path: Path) -> None:
     """A test writes a flag where the camera has its pictures: nobody else says a type."""
     nodes: Nodes = {"camera": (["/front", "/rear"], []), "box": ([], ["/front", "/rear"])}
     (tmp_path / "p.xml").write_text(policy_of(nodes), "utf-8")
@@ -343,11 +317,7 @@ def test_what_only_code_says_of_a_type_makes_no_list(cli: Cli, tmp_path: Path, m
         "        self.create_publisher(Bool, '/front', 1)\n        self.create_publisher(Bool, '/rear', 1)\n",
         "utf-8",
     )
-    with monkeypatch.context() as context:
-        context.setattr(sys, "stdin", io.StringIO("2q"))
-        shown = cli(
-            "suggest", "p.xml", "--into", "l.yaml", "--ask", "--source", "test_box.py", cwd=tmp_path
-        ).stdout  # fmt: skip
+    shown = by_keys(tmp_path, "2q", "--source", "test_box.py").stdout
     assert "type std_msgs/msg/Bool of /front is not made for Video" in shown
     assert HEADING not in shown
 
@@ -367,7 +337,7 @@ nodes:
 
 @pytest.mark.parametrize("stated", [True, False])
 def test_where_a_label_states_that_something_else_goes_in_no_package_knows_the_type(
-    cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *, stated: bool
+    by_keys: ByKeys, tmp_path: Path, *, stated: bool
 ) -> None:
     nodes: Nodes = {"eye": (["/a"], []), "beeper": (["/beep", "/tone"], ["/a"]), "box": ([], ["/beep", "/tone"])}
     (tmp_path / "p.xml").write_text(policy_of(nodes), "utf-8")
@@ -379,19 +349,14 @@ def test_where_a_label_states_that_something_else_goes_in_no_package_knows_the_t
     )
     into = "  - {from: disk, to: {topic: /beep}}\n  - {from: disk, to: {topic: /tone}}\n" if stated else ""
     (tmp_path / "l.yaml").write_text(f"labels: 1\nauthor: Ada\nnodes:\n{more}{into}", "utf-8")
-    with monkeypatch.context() as context:
-        context.setattr(sys, "stdin", io.StringIO("ssq"))
-        shown = cli(
-            "suggest", "p.xml", "--into", "l.yaml", "--ask", "--packages", "beeper.yaml", cwd=tmp_path
-        ).stdout  # fmt: skip
+    shown = by_keys(tmp_path, "ssq", "--packages", "beeper.yaml").stdout
     assert "topic /beep" in shown
     assert (HEADING in shown) is not stated
 
 
 def test_a_process_that_is_killed_in_a_number_keeps_nothing_of_the_list(robot: Path) -> None:
-    command = [sys.executable, "-m", "rosprivacy", "suggest", "p.xml", "--into", "l.yaml", "--ask"]
-    before = (robot / "l.yaml").read_text("utf-8")
-    with subprocess.Popen(command, cwd=robot, stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0) as process:
+    before = text_of(robot)
+    with subprocess.Popen(COMMAND, cwd=robot, stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0) as process:
         assert process.stdin is not None
         assert process.stdout is not None
         process.stdin.write(b"ss3")
@@ -401,7 +366,7 @@ def test_a_process_that_is_killed_in_a_number_keeps_nothing_of_the_list(robot: P
         time.sleep(0.5)
         process.kill()
     assert HEADING.encode() in shown
-    assert (robot / "l.yaml").read_text("utf-8") == before
+    assert text_of(robot) == before
 
 
 def test_two_digits_that_come_at_once_confirm_no_list_without_enter(robot: Path) -> None:
@@ -409,10 +374,9 @@ def test_two_digits_that_come_at_once_confirm_no_list_without_enter(robot: Path)
     nodes: Nodes = {"eye": (["/a"], []), "middle": (names, ["/a"]), "here": ([], names)}
     (robot / "p.xml").write_text(policy_of(nodes), "utf-8")
     (robot / "l.yaml").write_text(labels_of({name[1:]: JOINTS for name in names}, "  /here: conduit\n"), "utf-8")
-    before = (robot / "l.yaml").read_text("utf-8")
+    before = text_of(robot)
     ours, theirs = pty.openpty()
-    command = [sys.executable, "-m", "rosprivacy", "suggest", "p.xml", "--into", "l.yaml", "--ask"]
-    with subprocess.Popen(command, cwd=robot, stdin=theirs, stdout=subprocess.PIPE, bufsize=0) as process:
+    with subprocess.Popen(COMMAND, cwd=robot, stdin=theirs, stdout=subprocess.PIPE, bufsize=0) as process:
         assert process.stdout is not None
         shown = b""
         while not shown.endswith(b"> ") and (more := process.stdout.read(1)):
@@ -428,4 +392,4 @@ def test_two_digits_that_come_at_once_confirm_no_list_without_enter(robot: Path)
     os.close(theirs)
     assert b"10 and Enter for none of it in all 10" in shown
     assert b"'10q' is no answer here; 10 rows left" in shown
-    assert (robot / "l.yaml").read_text("utf-8") == before
+    assert text_of(robot) == before

@@ -5,27 +5,26 @@ from __future__ import annotations
 import os
 import pty
 import subprocess
-import sys
 from typing import TYPE_CHECKING
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import rosprivacy
 from rosprivacy.labelling.asking import contradiction, typed_label, with_label
 from rosprivacy.settings import Settings
-from tests.helpers.asked_by_keys import ask, read_until, robot_of, wait_for_keys
+from tests.helpers.asked_by_keys import COMMAND, by_keys, read_until, robot_of, text_of, wait_for_keys
 from tests.helpers.command import cli
 from tests.helpers.little_robots import policy_of
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from tests.helpers.command import Cli
+    from tests.helpers.asked_by_keys import ByKeys
     from tests.helpers.little_robots import Nodes
 
-__all__ = ["cli"]
+__all__ = ["by_keys", "cli"]
 
 NODES: Nodes = {"lidar": (["/points"], []), "finder": (["/found"], ["/points"]), "end": ([], ["/found", "/points"])}
 HEAD = "labels: 1\nauthor: Ada\n"
@@ -36,13 +35,9 @@ def robot(tmp_path: Path) -> Path:
     return robot_of(tmp_path, NODES, HEAD)
 
 
-def text_of(folder: Path) -> str:
-    return (folder / "l.yaml").read_text("utf-8")
-
-
-def test_another_kind_than_the_one_that_is_asked_about(cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_another_kind_than_the_one_that_is_asked_about(robot: Path, by_keys: ByKeys) -> None:
     """What is still to be asked comes again, and what the new source reaches is asked about."""
-    done = ask(cli, robot, "/lidar node source Location Voice\nn", monkeypatch)
+    done = by_keys(robot, "/lidar node source Location Voice\nn")
     assert done.returncode == 0
     assert "Which of these bring such data in?\n  A  node /lidar: PersonPointCloud\n" in done.stdout
     assert "Does it bring such data in?\n  node /lidar: PersonPointCloud\n" in done.stdout
@@ -50,9 +45,9 @@ def test_another_kind_than_the_one_that_is_asked_about(cli: Cli, robot: Path, mo
     assert '  /lidar: {source: [Location, Voice], note: "typed by Ada on 2026-01-01"}\n' in text_of(robot)
 
 
-def test_what_a_node_lets_out_and_makes(cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_a_node_lets_out_and_makes(robot: Path, by_keys: ByKeys) -> None:
     lines = ("/lidar node source Video", "/finder node derives Video FaceTemplate", "/end node leak FaceTemplate Video")
-    ask(cli, robot, "\n".join(lines) + "\n", monkeypatch)
+    by_keys(robot, "\n".join(lines) + "\n")
     findings = rosprivacy.analyze(str(robot / "p.xml"), str(robot / "l.yaml")).analysis.findings
     ends = {(one.category, one.source.name, one.leak.name) for one in findings}
     assert ends == {("Video", "/lidar", "/end"), ("FaceTemplate", "/lidar", "/end")}
@@ -77,9 +72,9 @@ def test_what_a_node_lets_out_and_makes(cli: Cli, robot: Path, monkeypatch: pyte
     ],
 )
 def test_a_line_that_is_no_label_writes_nothing_and_no_more_keys_are_read(
-    cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch, line: str, why: str
+    robot: Path, by_keys: ByKeys, line: str, why: str
 ) -> None:
-    done = ask(cli, robot, f"{line}\ny", monkeypatch)
+    done = by_keys(robot, f"{line}\ny")
     said = next(told for told in done.stdout.splitlines() if "no answer here" in told)
     assert f"'{line}' is no answer here: {why}" in said
     assert said.endswith("the keys are out of step with the questions, and no more are read")
@@ -102,28 +97,27 @@ def test_a_line_that_is_no_label_writes_nothing_and_no_more_keys_are_read(
     ],
 )
 def test_what_contradicts_the_file_is_not_written(
-    cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch, said: str, line: str, told: str
+    robot: Path, by_keys: ByKeys, said: str, line: str, told: str
 ) -> None:
     """Else the file would be an error from then on (rule S7)."""
     before = f"{HEAD}nodes:\n  /lidar: {{{said}}}\n  /end: {{source: [FaceTemplate]}}\n"
     (robot / "l.yaml").write_text(before, "utf-8")
-    done = ask(cli, robot, f"/lidar node {line}\n", monkeypatch)
+    done = by_keys(robot, f"/lidar node {line}\n")
     assert done.returncode == 0
     assert f"is no answer here: this label:1: {told}" in done.stdout
     assert text_of(robot) == before
 
 
-def test_a_limit_on_the_way_is_told(cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_limit_on_the_way_is_told(robot: Path, by_keys: ByKeys) -> None:
     (robot / "l.yaml").write_text(f"{HEAD}topics:\n  /points: {{never: [Location]}}\n", "utf-8")
-    done = ask(cli, robot, "/lidar node source Location\n", monkeypatch)
+    done = by_keys(robot, "/lidar node source Location\n")
     assert "never of topic /points takes Location away, which is accepted now" in done.stdout
 
 
 def test_at_a_terminal_a_line_is_shown_while_it_is_typed(robot: Path) -> None:
     """A wrong one is told, and asked again."""
     ours, theirs = pty.openpty()
-    command = [sys.executable, "-m", "rosprivacy", "suggest", "p.xml", "--into", "l.yaml", "--ask"]
-    with subprocess.Popen(command, cwd=robot, stdin=theirs, stdout=theirs, stderr=theirs) as process:
+    with subprocess.Popen(COMMAND, cwd=robot, stdin=theirs, stdout=theirs, stderr=theirs) as process:
         screen = read_until(ours, b"> ")
         for line in (b"lidra node source Location\n", b"lidar node source Location\n"):
             wait_for_keys(theirs)
@@ -165,7 +159,6 @@ SAID = st.sampled_from(
 NAMES = st.sampled_from(["/lidar", "/finder", "/end", '"/*"', "/e*"])
 
 
-@settings(max_examples=150)
 @given(st.lists(st.tuples(NAMES, SAID), max_size=5, unique_by=lambda one: one[0]), LINES)
 def test_a_typed_label_takes_nothing_away(
     tmp_path_factory: pytest.TempPathFactory, entries: list[tuple[str, str]], line: str

@@ -8,18 +8,19 @@ import select
 import sys
 import termios
 import time
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
+
+import pytest
 
 from rosprivacy.labelling.asking import asked_now, closing, with_answer
-from rosprivacy.labelling.conversation import Conversation
+from rosprivacy.labelling.conversation import QUIT, Conversation
 from rosprivacy.labelling.suggesting import suggest_labels
 from rosprivacy.settings import Settings
 from tests.helpers.little_robots import policy_of
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
-
-    import pytest
 
     from rosprivacy.analysis.suggesting.label_questions import Question
     from rosprivacy.labelling.conversation import Person
@@ -29,6 +30,11 @@ if TYPE_CHECKING:
 
 DAY = "1767225600"  # 2026-01-01
 SECONDS = 60
+COMMAND = [sys.executable, "-m", "rosprivacy", "suggest", "p.xml", "--into", "l.yaml", "--ask"]
+
+
+class ByKeys(Protocol):
+    def __call__(self, folder: Path, keys: str, *more: str) -> Done: ...
 
 
 def robot_of(folder: Path, nodes: Nodes, labels: str) -> Path:
@@ -43,6 +49,44 @@ def ask(cli: Cli, folder: Path, keys: str, patch: pytest.MonkeyPatch, *more: str
     with patch.context() as context:
         context.setattr(sys, "stdin", io.StringIO(keys))
         return cli("suggest", "p.xml", "--into", "l.yaml", "--ask", *more, cwd=folder, SOURCE_DATE_EPOCH=DAY)
+
+
+@pytest.fixture
+def by_keys(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> ByKeys:
+    """Answer by a file of keys."""
+
+    def answered(folder: Path, keys: str, *more: str) -> Done:
+        return ask(cli, folder, keys, monkeypatch, *more)
+
+    return answered
+
+
+class Pressing:
+    """Somebody whose keys a function chooses of a question and the rows that are picked; what is asked is kept."""
+
+    def __init__(self, choose: Callable[[Question, frozenset[int]], str]) -> None:
+        self.choose = choose
+        self.asked: list[Question] = []
+        self.remarks: list[str] = []
+
+    def key(self, question: Question, picked: frozenset[int]) -> str:
+        if not picked:
+            self.asked.append(question)
+        return self.choose(question, picked)
+
+    def remark(self, remark: str) -> None:
+        self.remarks.append(remark)
+
+
+def pressing(*keys: str) -> Pressing:
+    """Return somebody who presses these keys, and then stops."""
+    left = [*keys]
+    return Pressing(lambda _, __: left.pop(0) if left else QUIT)
+
+
+def text_of(folder: Path) -> str:
+    """Return the label file of a robot."""
+    return (folder / "l.yaml").read_text("utf-8")
 
 
 def conversation_in(folder: Path, person: Person) -> Conversation:

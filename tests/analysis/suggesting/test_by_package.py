@@ -58,17 +58,38 @@ def test_the_name_and_half_of_the_interfaces_are_likely_in_any_namespace() -> No
     assert {str(one.place) for one in found} == {"rosprivacy:packages/usb_cam.yaml:16"}
 
 
+HALF, THIRD = "its name, 2 of 3 of its interfaces", "its name, 1 of 3 of its interfaces"
+TYPED = "labels: 1\nchannels:\n  {}: {{types: [{}]}}\n"
+NAME = "its name alone"
+
+
+@pytest.mark.parametrize(
+    ("profile", "labels", "expected"),
+    [
+        ("/usb_cam>/else", "", (MAY, NAME)),
+        ("/camera_2>/image_raw,/camera_info", "", ()),  # another name
+        ("/usb_cam</image_raw,/camera_info", "", (MAY, NAME)),  # the direction counts
+        ("/usb_cam>/*", "", (MAY, NAME)),  # a wildcard confirms nothing
+        ("/usb_cam>/*/image_raw,/*/camera_info", "", (MAY, NAME)),
+        ("/usb_cam>/image_raw,/camera_info", TYPED.format("/image_raw", "sensor_msgs/msg/Image"), (LIKELY, HALF)),
+        ("/usb_cam>/image_raw,/camera_info", TYPED.format("/image_raw", "std_msgs/msg/Bool"), (MAY, THIRD)),
+        ("/usb_cam>/move", TYPED.format("/move", "geometry_msgs/msg/Twist"), ()),  # of known types: another node
+        ("/usb_cam>/move,/more", TYPED.format("/move", "geometry_msgs/msg/Twist"), (MAY, NAME)),  # one is not known
+    ],
+)
+def test_what_confirms_that_a_node_is_that_of_a_package(
+    profile: str, labels: str, expected: tuple[Confidence, str] | tuple[()]
+) -> None:
+    found = told(evidence(policy(profile), labels or "labels: 1\n"), "source", "Video")
+    assert [(confidence, reason) for _, confidence, reason in found] == ([expected] if expected else [])
+
+
 def test_exactly_half_is_enough() -> None:
     found = evidence(policy("/teleop_twist_joy_node>/cmd_vel", "/n/teleop_twist_joy_node>/else"))
     assert told(found, "conduit", "") == [
-        ("/n/teleop_twist_joy_node", MAY, "its name alone"),
+        ("/n/teleop_twist_joy_node", MAY, NAME),
         ("/teleop_twist_joy_node", LIKELY, "its name, 1 of 2 of its interfaces"),
     ]
-
-
-def test_the_name_alone_may_and_another_name_is_no_match() -> None:
-    found = evidence(policy("/usb_cam>/else", "/camera_2>/image_raw,/camera_info"))
-    assert told(found, "source", "Video") == [("/usb_cam", MAY, "its name alone")]
 
 
 def test_a_private_name_follows_the_node() -> None:
@@ -85,22 +106,10 @@ def test_a_private_name_follows_the_node() -> None:
     assert {confidence for _, confidence, _ in other} == {MAY}
 
 
-def test_a_topic_of_another_type_confirms_nothing() -> None:
-    text = policy("/usb_cam>/image_raw,/camera_info")
-    typed = "labels: 1\nchannels:\n  /image_raw: {types: [%s]}\n"
-    assert told(evidence(text, typed % "sensor_msgs/msg/Image"), "source", "Video")[0][1] is LIKELY
-    assert told(evidence(text, typed % "std_msgs/msg/Bool"), "source", "Video")[0][1] is MAY
-
-
-def test_a_node_of_known_types_without_the_interfaces_is_another_one_but_for_its_leaks() -> None:
-    typed = "labels: 1\nchannels:\n  /move: {types: [geometry_msgs/msg/Twist]}\n"
-    found = evidence(policy("/usb_cam>/move", "/rviz2</move"), typed)
-    assert told(found, "source", "Video") == []
-    assert told(found, "leak", "PersonalData") == [("/rviz2", MAY, "its name alone")]
+def test_a_node_of_known_types_without_the_interfaces_may_let_out_all_the_same() -> None:
+    typed = TYPED.format("/move", "geometry_msgs/msg/Twist")
+    assert told(evidence(policy("/rviz2</move"), typed), "leak", "PersonalData") == [("/rviz2", MAY, NAME)]
     assert told(evidence(policy("/camera>/move"), typed), "leak", "Video") == [], "it is no camera"
-    assert told(evidence(policy("/usb_cam>/move,/more"), typed), "source", "Video")[0][1] is MAY, (
-        "one type is not known"
-    )
 
 
 def test_the_name_alone_is_evidence_of_a_name() -> None:
@@ -108,12 +117,6 @@ def test_the_name_alone_is_evidence_of_a_name() -> None:
         one.confidence: one.ground for one in evidence(policy("/usb_cam>/x", "/n/usb_cam>/image_raw,/camera_info"))
     }
     assert grounds == {MAY: "name", LIKELY: "package"}
-
-
-def test_the_direction_counts_and_a_wildcard_confirms_nothing() -> None:
-    assert told(evidence(policy("/usb_cam</image_raw,/camera_info")), "source", "Video")[0][1] is MAY
-    for wildcards in ("/*", "/*/image_raw,/*/camera_info"):
-        assert told(evidence(policy(f"/usb_cam>{wildcards}")), "source", "Video")[0][1] is MAY
 
 
 def test_a_made_up_end_of_a_name_is_no_part_of_it() -> None:
