@@ -202,7 +202,7 @@ def test_a_record_adds_up() -> None:
 def test_a_bounded_exploration_finds_nothing(tmp_path: Path, thorough: bool) -> None:  # noqa: FBT001 - a fixture
     """The same inputs in every run of the same code: seed and number are given."""
     pytest.importorskip("atheris", reason="no atheris: pip install '.[fuzz]'")
-    inputs, whole = (20_000, 40) if thorough else (5_000, 20)
+    inputs, whole = (20_000, 40) if thorough else (2_000, 10)
     command = [sys.executable, "-m", "tests.fuzzing", "run", "--inputs", str(inputs), "--whole", str(whole)]
     done = subprocess.run([*command, "--folder", tmp_path], cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
