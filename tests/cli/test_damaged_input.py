@@ -1,7 +1,6 @@
 """Files of ours that came to harm are refused in one line for each problem, exit code 2, whichever command reads them.
 
-Saved analyses and saved graphs here; Parquet is in ``spark/test_damaged_results.py``. The review (security.md, its
-defect 8) had eleven tracebacks, with exit code 1, which says 'leak' or 'worse'.
+Saved analyses and saved graphs here; Parquet is in ``tests/parts/test_damaged_results.py``.
 """
 
 from __future__ import annotations
@@ -124,7 +123,6 @@ def refused_as(cli: Cli, folder: Path, reader: str, said: str, data: bytes) -> N
     assert everything(folder) == there
 
 
-@pytest.mark.parametrize("cli", ["here"], indirect=True)  # there are many
 @pytest.mark.parametrize("reader", one_in(5, READERS))
 @pytest.mark.parametrize(("data", "said"), BYTES, ids=[said for _, said in BYTES])
 def test_what_is_no_document_is_refused(cli: Cli, folder: Path, reader: str, data: bytes, said: str) -> None:
@@ -136,7 +134,6 @@ def test_what_is_no_document_is_refused(cli: Cli, folder: Path, reader: str, dat
         refused_as(cli, folder, reader, said, data)
 
 
-@pytest.mark.parametrize("cli", ["here"], indirect=True)  # there are many
 @pytest.mark.parametrize("reader", one_in(5, READERS))
 @pytest.mark.parametrize(("way", "value", "said"), PLACES, ids=[said for *_, said in PLACES])
 def test_a_damaged_analysis_is_refused_with_the_place(
@@ -219,7 +216,6 @@ GRAPHS = [
 ]
 
 
-@pytest.mark.parametrize("cli", ["here"], indirect=True)  # there are many
 @pytest.mark.parametrize("reader", one_in(4, GRAPH_READERS))
 @pytest.mark.parametrize(("way", "value", "said"), GRAPHS, ids=[said for *_, said in GRAPHS])
 def test_a_damaged_graph_is_refused_with_the_place(
@@ -241,7 +237,6 @@ DAMAGED = [
 ]
 
 
-@pytest.mark.parametrize("cli", ["here"], indirect=True)  # there are many
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize(("reader", "file"), DAMAGED, ids=lambda value: value if isinstance(value, str) else value[0])
 def test_any_damage_ends_as_documented(cli: Cli, folder: Path, reader: tuple[str, ...], file: str, seed: int) -> None:

@@ -53,7 +53,6 @@ def temporary(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return folder
 
 
-@pytest.mark.parametrize("cli", ["here"], indirect=True)  # a process would not have the defect
 @pytest.mark.parametrize("error", ERRORS, ids=lambda error: str(error.__name__))
 def test_it_is_told_in_one_line_that_names_the_file_to_send(
     cli: Cli, system: Path, temporary: Path, monkeypatch: pytest.MonkeyPatch, error: type[Exception]
@@ -75,7 +74,6 @@ def test_it_is_told_in_one_line_that_names_the_file_to_send(
     assert report.stat().st_mode & 0o077 == 0
 
 
-@pytest.mark.parametrize("cli", ["here"], indirect=True)
 def test_where_no_report_can_be_written_the_line_has_to_do(
     cli: Cli, system: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -87,7 +85,6 @@ def test_where_no_report_can_be_written_the_line_has_to_do(
     assert done.stderr.endswith("; please send us this line, and, if you may, what was read: p.xml\n")
 
 
-@pytest.mark.parametrize("cli", ["here"], indirect=True)
 @pytest.mark.parametrize(("error", "code"), [(KeyboardInterrupt, 130), (BrokenPipeError, 141)])
 def test_who_ends_it_is_no_finding_either(
     cli: Cli, system: Path, monkeypatch: pytest.MonkeyPatch, error: type[BaseException], code: int

@@ -22,7 +22,6 @@ LINE = re.compile(r".+?(:\d+)?: .+; .+")  # file:line: what is wrong; what to do
 SECRET = "outside_the_root"  # noqa: S105 - the name of a topic
 IN_OPEN = 0x20
 EVENT = struct.Struct("iIII")
-GIGABYTE = 2**30
 
 POLICY_WORDS = (
     # XML

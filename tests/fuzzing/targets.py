@@ -148,7 +148,7 @@ def _used() -> None:
 
 def _accepted() -> None:
     """What is accepted by its confidence hides nothing, and what is left says what it said."""
-    text = Path("labels.yaml").read_bytes().decode()
+    text = Path("labels.yaml").read_bytes().decode("utf-8", "replace")
     _, before = taken_apart("labels.yaml", text)
     done = accept("labels.yaml", text, [Confidence.MAY], "somebody", "2026-01-01", load())
     rest, left = taken_apart("labels.yaml", done.text)

@@ -86,6 +86,15 @@ def test_at_least_a_third_of_what_is_made_is_accepted(name: str, watched: Watch)
     assert kinds.count("accepted") >= tried / 3
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("name", TARGETS)
+def test_thousands_of_inputs_are_read_or_refused(name: str, watched: Watch) -> None:
+    """As many as an exploration gives each reader in a few minutes, most of which it takes to begin."""
+    random = Random(5)  # noqa: S311 - repeatable
+    for _ in range(5 * TARGETS[name].share):
+        reading(TARGETS[name], random.randbytes(random.randrange(4, 120)), watched)
+
+
 DAILY = {"policy", "analysis"}  # a second or two each
 WHOLE = [name for name, target in TARGETS.items() if target.analyse]
 
@@ -200,10 +209,11 @@ def test_a_record_adds_up() -> None:
 
 @pytest.mark.slow
 def test_a_bounded_exploration_finds_nothing(tmp_path: Path, thorough: bool) -> None:  # noqa: FBT001 - a fixture
-    """The same inputs in every run of the same code: seed and number are given."""
+    """The same inputs in every run of the same code: seed and number are given. For each change of one reader."""
     pytest.importorskip("atheris", reason="no atheris: pip install '.[fuzz]'")
-    inputs, whole = (20_000, 40) if thorough else (5_000, 20)
+    inputs, whole = (20_000, 40) if thorough else (300, 4)
     command = [sys.executable, "-m", "tests.fuzzing", "run", "--inputs", str(inputs), "--whole", str(whole)]
+    command += [] if thorough else ["--only", "labels"]
     done = subprocess.run([*command, "--folder", tmp_path], cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     told = json.loads((tmp_path / "record.json").read_text("utf-8"))
