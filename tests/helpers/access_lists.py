@@ -1,9 +1,8 @@
-"""Random access lists of Zenoh, and what two sessions on loopback hear of each other."""
+"""Random access lists of Zenoh."""
 
 from __future__ import annotations
 
 import json
-import time
 from random import Random
 from typing import Any
 
@@ -24,9 +23,6 @@ SUBJECTS: tuple[dict[str, list[str]], ...] = (  # what the other end of a link o
 )
 MESSAGES = ("put", "delete")
 KEYS = tuple(dict.fromkeys("/".join(Random(seed).choices(CHUNKS, k=1 + seed % 3)) for seed in range(60)))  # noqa: S311 - repeatable
-
-Samples = set[tuple[str, str]]
-"""(message, key)."""
 
 
 def expression(random: Random) -> str:
@@ -75,37 +71,3 @@ def text_of(access: dict[str, Any], namespace: str = "") -> str:
     space = f"namespace: '{namespace}', " if namespace else ""
     section = json.dumps(access, indent=1)
     return f"// of one session\n{{ mode: 'client', {space}access_control: /* ours */ {section}, }}\n"
-
-
-def heard(sender: Any, receiver: Any, expected: Samples, mark: str) -> Samples:
-    """What a session hears when the other one puts and deletes every key, until all that is expected is there.
-
-    Parameters
-    ----------
-    mark
-        What these messages carry, so that no others are taken for them.
-    """
-    samples: Samples = set()
-
-    def hear(sample: Any) -> None:
-        if sample.attachment and sample.attachment.to_string() == mark:
-            samples.add(("put" if sample.kind == zenoh.SampleKind.PUT else "delete", str(sample.key_expr)))
-
-    kept = [receiver.declare_subscriber(key, hear, allowed_origin=zenoh.Locality.REMOTE) for key in KEYS]
-    time.sleep(0.05)  # until the subscribers are known, or else it is asked again
-    end = time.monotonic() + 10
-    _send(sender, mark)
-    while not expected <= samples and time.monotonic() < end:
-        time.sleep(0.02)
-        _send(sender, mark)
-    _send(sender, mark)  # now that subscribers are known, whatever else could come
-    time.sleep(0.1)
-    for one in kept:
-        one.undeclare()
-    return set(samples)
-
-
-def _send(sender: Any, mark: str) -> None:
-    for key in KEYS:
-        sender.put(key, b"", attachment=mark)
-        sender.delete(key, attachment=mark)

@@ -63,16 +63,6 @@ class TestDocument:
         assert (video["article9"], video["special_from"]) == ("may-reveal", None)
         assert [(legal["provision"], legal["verdict"]) for legal in video["law"]] == [("GDPR Art. 9(1)", "may-reveal")]
 
-    def test_the_date_of_the_law_is_an_assumption(self) -> None:  # S12
-        assert document()["assumptions"]["law_as_of"] == "2026-11-21"
-
-    def test_what_a_category_is_stands_once_for_all_its_findings(self) -> None:
-        categories = {category["name"]: category for category in document()["categories"]}
-        assert categories["Video"]["data_types"] == ["video"]
-        (legal,) = categories["Video"]["law"]
-        assert legal["sources"][0] == "EDPB Guidelines 3/2019 par. 63"
-        assert categories["FaceTemplate"]["gdpr"] == "GDPR Art. 4(14) biometric data"
-
 
 FACE, VIDEO, VOICE = ("FaceTemplate", "/uplink"), ("Video", "/recorder"), ("Voice", "/uplink")
 FILTERS: list[tuple[dict[str, Any], set[tuple[str, str]], dict[str, Any]]] = [  # asked, findings, assumptions

@@ -95,21 +95,23 @@ def small_fleet(folder: Path) -> Path:
 @pytest.mark.slow
 @pytest.mark.database
 class TestTheClientIsKilled:
-    def test_that_loads_a_robot(self, shared: Database, every: int) -> None:
-        old, new = shared.is_after(OTHER, FIRST), shared.is_after(OTHER, SECOND)
+    @pytest.mark.parametrize(("command", "kills"), [(SECOND, 16), (GONE, 10)], ids=["loads", "unloads"])
+    def test_that_writes_a_robot(self, shared: Database, command: tuple[str, ...], kills: int, every: int) -> None:
+        """The robot is as it was or as it is to be; the command that was killed ends its work when it runs again."""
+        old = shared.is_after(OTHER, FIRST)
+        new = shared.is_after(OTHER, *((SECOND,) if command == SECOND else ()))
         assert old != new
         shared.is_after(OTHER, FIRST)
-        sent = shared.run(SECOND)[2]
-        seen = []
-        for at in moments(sent, 16, every):
+        sent = shared.run(command)[2]
+        states = []
+        for at in moments(sent, kills, every):
             shared.is_after(OTHER, FIRST)
-            assert shared.run(SECOND, at)[0] == -signal.SIGKILL
-            left = shared.now()
-            assert left in (old, new)
-            assert shared.run(SECOND)[0] == 0
+            assert shared.run(command, at)[0] == -signal.SIGKILL
+            states.append(shared.now())
+            assert states[-1] in (old, new)
+            assert shared.run(command)[0] == (2 if command == GONE and states[-1] == new else 0)
             assert shared.now() == new
-            seen.append(left == new)
-        assert False in seen or every > 1
+        assert old in states or every > 1
 
     def test_that_loads_a_fleet(self, shared: Database, tmp_path: Path, every: int) -> None:
         fleet = ("load", "--fleet", str(small_fleet(tmp_path / "fleet")))
@@ -124,18 +126,6 @@ class TestTheClientIsKilled:
             assert other[0] <= shared.now()[0]
             assert shared.run(fleet)[0] == 0
             assert shared.now() == new
-
-    def test_that_unloads(self, shared: Database, every: int) -> None:
-        there, gone = shared.is_after(OTHER, FIRST), shared.is_after(OTHER, FIRST, GONE)
-        shared.is_after(OTHER, FIRST)
-        sent = shared.run(GONE)[2]
-        for at in moments(sent, 10, every):
-            shared.is_after(OTHER, FIRST)
-            assert shared.run(GONE, at)[0] == -signal.SIGKILL
-            left = shared.now()
-            assert left in (there, gone)
-            assert shared.run(GONE)[0] == (2 if left == gone else 0)
-            assert shared.now() == gone
 
     def test_and_without_transactions_it_is_seen(self, shared: Database) -> None:
         """That the tests above can fail."""

@@ -8,6 +8,7 @@ import pytest
 
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.ingest.deployed.deployed_inputs import read_deployed
+from rosprivacy.ingest.deployed.differences import differences
 from rosprivacy.ingest.deployed.governance import read_governance
 from rosprivacy.ingest.deployed.permissions import read_permissions
 from rosprivacy.ingest.policies.flow_graph import build
@@ -43,12 +44,13 @@ def test_each_file_is_read_or_refused_with_its_cause(corpus: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["sample", "single_context", "minimal_action", "talker_listener", "add_two_ints"])
-def test_the_permissions_that_sros2_makes_of_a_policy_give_the_same_graph(corpus: Path, name: str) -> None:
+def test_the_permissions_that_sros2_makes_of_a_policy_give_the_same_graph_and_rights(corpus: Path, name: str) -> None:
     folder = corpus / "policies" / SROS2
     policy = read_policy(str(folder / f"{name}.policy.xml"), include_root=str(folder))
     file = corpus / "dds" / SROS2 / "permissions" / name / "permissions.xml"
     read, _ = read_deployed([str(file)], None, "2026-11-22", allow_unsigned=True)
     assert _flows([policy]) == _flows(list(read))
+    assert differences([policy], read) == ()
 
 
 def _flows(policies: list[Policy]) -> set[tuple[object, object]]:

@@ -2,21 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rosprivacy.ingest.deployed.deployed_inputs import read_deployed
 from rosprivacy.ingest.deployed.differences import differences
 from rosprivacy.ingest.deployed.permissions import Permissions, policy_of, read_permissions
-from rosprivacy.ingest.policies.policy_xml import read_policy
 from tests.helpers.keystores import grant, permissions, rule
 from tests.helpers.permission_oracle import may
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 NAMES = ("rt/a", "rt/ab", "rt/b")
 EXPRESSIONS = (*NAMES, "rt/*", "rt/a*", "rt/?")
@@ -63,14 +55,3 @@ def test_a_deny_that_is_not_deployed_is_a_difference() -> None:
     ours = read(rule("deny", ("rt/b",)), rule("allow", ("rt/*",)))
     theirs = read(rule("allow", ("rt/*",)))
     assert compared(ours, theirs) == [(False, "rt/*")]
-
-
-@pytest.mark.corpus
-@pytest.mark.parametrize("name", ["sample", "single_context", "minimal_action", "talker_listener", "add_two_ints"])
-def test_the_permissions_that_sros2_makes_hold_what_the_policy_says(corpus: Path, name: str) -> None:
-    sros2 = "ros2__sros2/sros2/test/policies"
-    folder = corpus / "policies" / sros2
-    policy = read_policy(str(folder / f"{name}.policy.xml"), include_root=str(folder))
-    file = corpus / "dds" / sros2 / "permissions" / name / "permissions.xml"
-    deployed, _ = read_deployed([str(file)], None, "2026-11-22", allow_unsigned=True)
-    assert differences([policy], deployed) == ()
