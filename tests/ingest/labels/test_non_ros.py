@@ -80,7 +80,8 @@ class TestTakingPart:
                 (
                     "elements:\n  bucket: {kind: storage, country: DE, retention: P1D}\n"
                     "  cloud: {kind: external-system, country: FR}\n"
-                    "flows: [{from: /recorder, to: bucket}, {from: bucket, to: /trainer}, {from: /trainer, to: cloud}]\n"
+                    "flows: [{from: /recorder, to: bucket}, {from: bucket, to: /trainer}, "
+                    "{from: /trainer, to: cloud}]\n"
                 ),
                 ["disclosure Video /camera /image /recorder bucket /trainer cloud"],
             ),
@@ -100,8 +101,8 @@ class TestTakingPart:
             ),
             (  # a side channel joins nodes in both directions
                 (
-                    "elements:\n  ring: {kind: shared-memory, between: [/recorder, /trainer]}\n  screen: {kind: display}\n"
-                    "flows: [{from: /trainer, to: screen}]\n"
+                    "elements:\n  ring: {kind: shared-memory, between: [/recorder, /trainer]}\n"
+                    "  screen: {kind: display}\nflows: [{from: /trainer, to: screen}]\n"
                 ),
                 ["disclosure Video /camera /image /recorder ring /trainer screen"],
             ),
