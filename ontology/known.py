@@ -21,7 +21,7 @@ class Problem(NamedTuple):
     """What is wrong with a subject, and what to do; with the property where one is meant."""
 
     subject: Node
-    what: str
+    fault: str
     hint: str
     predicate: Node | None = None
 

@@ -124,7 +124,7 @@ def _decoded(data: bytes, file: str) -> str:
 def _error(problem: Problem, file: str, lines: Lines) -> OntologyError:
     subject = problem.subject
     who = f"<{shown(str(subject))}>" if isinstance(subject, URIRef) else "[]"  # the name of a blank node is by chance
-    what = as_published(f"{who} {problem.what}")
+    what = as_published(f"{who} {problem.fault}")
     return OntologyError(file, lines.of(subject, problem.predicate), what, problem.hint)
 
 

@@ -179,8 +179,8 @@ def _vocabulary(folder: Path, shipped: tuple[bytes, ...], own: tuple[tuple[str, 
 def _read(file: str) -> bytes:
     path = Path(file)
 
-    def refused(what: str, hint: str) -> InputErrors:
-        return InputErrors([OntologyError(file, 0, what, hint)])
+    def refused(problem: str, hint: str) -> InputErrors:
+        return InputErrors([OntologyError(file, 0, problem, hint)])
 
     try:
         if not path.is_file():

@@ -295,8 +295,8 @@ class _Fleet:
         """Where the whole fleet works; what an including file says counts before what it includes."""
         return joined(part.surroundings for part in reversed(self._parts))
 
-    def _differ(self, what: str, first: Processing, other: Processing) -> None:
-        self.problems.append(two_of_one(what, first, other, FleetError))
+    def _differ(self, fact: str, first: Processing, other: Processing) -> None:
+        self.problems.append(two_of_one(fact, first, other, FleetError))
 
     def _add(self, name: str, spec: Spec, *, shared: bool) -> None:
         known = self._robots.get(name) or self._infrastructure.get(name)

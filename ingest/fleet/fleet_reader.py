@@ -59,12 +59,12 @@ class Spec:
     lines: dict[str, int] = field(default_factory=dict)
 
 
-def text_of(reader: LabelReader, value: Value, what: str, form: re.Pattern[str] = ID, hint: str = ID_HINT) -> str:
+def text_of(reader: LabelReader, value: Value, use: str, form: re.Pattern[str] = ID, hint: str = ID_HINT) -> str:
     """Return a text of some form."""
     text = value.text if value.kind == "text" or value.text.isdigit() else ""
     if form.fullmatch(text):
         return text
-    reader.problem(value.line, f"{shown(text or value.kind)!r} cannot be {what}", hint)
+    reader.problem(value.line, f"{shown(text or value.kind)!r} cannot be {use}", hint)
     return ""
 
 

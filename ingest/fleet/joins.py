@@ -102,11 +102,11 @@ class _Joins:
         known = f"; domains here: {listed(sorted(self._domains))}" if self._domains else ""
         return self._nothing(robot, f"{what}, and no flow of the fleet file leads to it or from it{known}")
 
-    def _nothing(self, robot: Robot, what: str, *, joined: bool = False) -> Diagnostic:
+    def _nothing(self, robot: Robot, message: str, *, joined: bool = False) -> Diagnostic:
         if joined or robot.id not in self._letting_out:
-            return Diagnostic(robot.place, Severity.WARNING, what, JOINS_NOTHING)
-        what += f"; data of others that got to {shown(robot.id)} would be let out or kept there"
-        return Diagnostic(robot.place, Severity.WARNING, what, LEAK_JOINS_NOTHING)
+            return Diagnostic(robot.place, Severity.WARNING, message, JOINS_NOTHING)
+        message += f"; data of others that got to {shown(robot.id)} would be let out or kept there"
+        return Diagnostic(robot.place, Severity.WARNING, message, LEAK_JOINS_NOTHING)
 
 
 def _line(place: Place) -> tuple[str, int]:

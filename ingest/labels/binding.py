@@ -196,8 +196,8 @@ def join(
 def _of_system(labels: Iterable[Labels], problems: list[InputError]) -> Processing:
     """What the tops of label files say; two of one rank that name different controllers are a problem."""
 
-    def differ(what: str, first: Processing, other: Processing) -> None:
-        problems.append(two_of_one(what, first, other, LabelError))
+    def differ(fact: str, first: Processing, other: Processing) -> None:
+        problems.append(two_of_one(fact, first, other, LabelError))
 
     return united((((int(file.own), 0), file.processing) for file in labels), differ)
 

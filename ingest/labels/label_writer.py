@@ -212,11 +212,11 @@ def _as_yaml(file: str, text: str, entries: Sequence[Said]) -> NewText:
     return _comment(text, new, remarks)
 
 
-def _only_these(text: str, same: str, new: str) -> str | None:
+def _only_these(text: str, unchanged: str, new: str) -> str | None:
     """The old text with what differs between two texts of ruamel.yaml; None if lines of it are not those of one."""
-    if same == text:
+    if unchanged == text:
         return new
-    before, after, old = same.splitlines(True), new.splitlines(True), text.splitlines(True)
+    before, after, old = unchanged.splitlines(True), new.splitlines(True), text.splitlines(True)
     if len(before) != len(old):
         return None
     if old and not old[-1].endswith("\n"):

@@ -52,16 +52,16 @@ class NameReader(FileReader):
             elif key == "note" and child.kind != "text":
                 self.problem(line, f"note takes text, not a {child.kind}", "write it, or remove it")
 
-    def not_empty(self, value: Value, what: str) -> None:
+    def not_empty(self, value: Value, key: str) -> None:
         """Report a map that names nothing."""
         if not value.entries:
-            self.problem(value.line, f"{what} names no category", "name one, such as {Video: …}, or remove it")
+            self.problem(value.line, f"{key} names no category", "name one, such as {Video: …}, or remove it")
 
-    def categories_of(self, value: Value, what: str) -> Iterable[str]:
+    def categories_of(self, value: Value, key: str) -> Iterable[str]:
         """Return the categories of a list, or of one text, that are known; the others are problems."""
         if value.kind == "empty" or (value.kind == "list" and not value.items):
-            self.problem(value.line, f"{what} names no category", "name one, such as [Video], or remove it")
-        for item in self.list_of(value, what):
+            self.problem(value.line, f"{key} names no category", "name one, such as [Video], or remove it")
+        for item in self.list_of(value, key):
             name = self.category_of(item)
             if name:
                 yield name

@@ -175,9 +175,9 @@ def united(
     )
 
 
-def two_of_one(what: str, first: Processing, other: Processing, error: type[InputError]) -> InputError:
+def two_of_one(fact: str, first: Processing, other: Processing, error: type[InputError]) -> InputError:
     """Return the error for two files of one rank that name different controllers, or officers."""
-    said = f"{what} {shown(getattr(other, what))!r}, and {shown(getattr(first, what))!r} at {first.place}"
+    said = f"{fact} {shown(getattr(other, fact))!r}, and {shown(getattr(first, fact))!r} at {first.place}"
     return error(other.place.file, other.place.line, said, "name one; joint controllers stand in one text")
 
 
@@ -186,9 +186,9 @@ def over(own: Processing, general: Processing) -> Processing:
     return united([((1, 0), own), ((0, 0), general)])
 
 
-def _foremost(ordered: list[tuple[Rank, Processing]], what: str) -> list[Processing]:
+def _foremost(ordered: list[tuple[Rank, Processing]], fact: str) -> list[Processing]:
     """Of those that say something, those of the highest rank."""
-    saying = [(rank, one) for rank, one in ordered if getattr(one, what)]
+    saying = [(rank, one) for rank, one in ordered if getattr(one, fact)]
     return [one for rank, one in saying if rank == saying[0][0]]
 
 

@@ -116,11 +116,11 @@ class _Reader(FileReader):
                 what = f"{shown(item.text or item.kind)!r} is not a kind of change"
                 self.problem(item.line, what, f"write all, or a list of {', '.join(CHANGES)}")
 
-    def _number(self, value: Value, what: str) -> int:
+    def _number(self, value: Value, key: str) -> int:
         plain = value.kind == "number" and value.text.isascii() and value.text.isdigit()
         number = int(value.text) if plain and len(value.text) <= len(str(LARGEST_COST)) else 0
         if not 1 <= number <= LARGEST_COST:
-            problem = f"{what} is {shown(value.text or value.kind)!r}"
+            problem = f"{key} is {shown(value.text or value.kind)!r}"
             self.problem(value.line, problem, f"write a whole number from 1 to {LARGEST_COST}")
             return 1
         return number

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 ROLES = {"source": SOURCE, "leak": LEAK, "derives": DERIVATION, "sanitizer": SANITIZER, "conduit": CONDUIT}
 CLAIM_KEYS = (*ROLES, "to", "confidence", "why")
-SAID = (Confidence.LIKELY, Confidence.MAY)
+CONFIDENCES = (Confidence.LIKELY, Confidence.MAY)
 METHODS = tuple(method for method in Method if method is not Method.ABSENT)
 LONGEST = 500  # characters of a text
 KEYS = ("package", "name", "about", "sources", "nodes")
@@ -152,7 +152,9 @@ class _Reader(FileReader):
             basis = Claim(
                 ROLES[roles[0]],
                 "",
-                Confidence(self._one_of(said["confidence"], "confidence", SAID)) if "confidence" in said else SAID[0],
+                Confidence(self._one_of(said["confidence"], "confidence", CONFIDENCES))
+                if "confidence" in said
+                else CONFIDENCES[0],
                 self._text(said["why"], "why"),
                 Place(self.file, item.line),
                 where=self._one_of(said["to"], "to", WHERE) if "to" in said else "",
@@ -193,34 +195,34 @@ class _Reader(FileReader):
             return ""
         return category.name
 
-    def _filled(self, value: Value, what: str, hint: str) -> tuple[Value, ...]:
+    def _filled(self, value: Value, key: str, hint: str) -> tuple[Value, ...]:
         """The items of a list that is not empty."""
-        items = self.list_of(value, what, hint)
+        items = self.list_of(value, key, hint)
         if value.kind in ("list", "empty") and not items:
-            self.problem(value.line, f"{what} is empty", hint)
+            self.problem(value.line, f"{key} is empty", hint)
         return items
 
-    def _text(self, value: Value, what: str) -> str:
+    def _text(self, value: Value, key: str) -> str:
         """A text of bounded length, on one line."""
         text = value.text.strip()
         if value.kind not in ("text", "number") or not text or len(text) > LONGEST or not text.isprintable():
             found = shown(text[:40]) or value.kind
             self.problem(
-                value.line, f"{what} takes one line of at most {LONGEST} characters, not {found!r}", "correct it"
+                value.line, f"{key} takes one line of at most {LONGEST} characters, not {found!r}", "correct it"
             )
             return ""
         return text
 
-    def _plain(self, value: Value, what: str, form: re.Pattern[str], hint: str = "write a plain name") -> str:
+    def _plain(self, value: Value, key: str, form: re.Pattern[str], hint: str = "write a plain name") -> str:
         """A text of a form."""
-        text = self._text(value, what)
+        text = self._text(value, key)
         if text and not form.fullmatch(text):
-            self.problem(value.line, f"{what} cannot be {shown(text[:40])!r}", hint)
+            self.problem(value.line, f"{key} cannot be {shown(text[:40])!r}", hint)
         return text
 
-    def _one_of(self, value: Value, what: str, words: tuple[str, ...]) -> str:
+    def _one_of(self, value: Value, key: str, words: tuple[str, ...]) -> str:
         """One word of a list; the last where another one stands."""
         if value.kind != "text" or value.text not in words:
-            self.problem(value.line, f"{what} {shown(value.text or value.kind)!r}", f"write {' or '.join(words)}")
+            self.problem(value.line, f"{key} {shown(value.text or value.kind)!r}", f"write {' or '.join(words)}")
             return words[-1]
         return value.text

@@ -36,7 +36,7 @@ PLACE = ("rosprivacy", "package.yaml")  # below share/<package>
 ENDINGS = (".yaml", ".yml", ".json")
 SHIPPED = "rosprivacy:packages/"  # how messages and reasons call the shipped folder
 ENDS = (SOURCE, LEAK)
-NAMED = 3  # statements in a notice
+SHOWN_CLAIMS = 3  # statements in a notice
 
 
 def catalogue(vocabulary: Vocabulary) -> tuple[Package, ...]:
@@ -50,12 +50,12 @@ def catalogue(vocabulary: Vocabulary) -> tuple[Package, ...]:
     return tuple(read_shipped(str(file), vocabulary, SHIPPED + file.name) for file in files)
 
 
-def read_packages(named: Iterable[str], vocabulary: Vocabulary, bounds: Bounds = BOUNDS) -> tuple[Package, ...]:
+def read_packages(arguments: Iterable[str], vocabulary: Vocabulary, bounds: Bounds = BOUNDS) -> tuple[Package, ...]:
     """Return the shipped packages with those of a user; after one of a user what is left of a shipped one of its name.
 
     Parameters
     ----------
-    named
+    arguments
         Files, folders, or ``ament`` for those of installed packages.
 
     Raises
@@ -65,7 +65,7 @@ def read_packages(named: Iterable[str], vocabulary: Vocabulary, bounds: Bounds =
     """
     problems: list[InputError] = []
     own: dict[str, Package] = {}
-    for file, folder in _files(named, problems):
+    for file, folder in _files(arguments, problems):
         try:
             package = read_package(file, vocabulary, bounds=bounds)
         except InputErrors as errors:
@@ -105,10 +105,10 @@ def rests_on(packages: Iterable[Package]) -> tuple[tuple[str, str], ...]:
     return ((SHIPPED.rstrip("/"), hashlib.sha256(shipped.encode()).hexdigest()), *own)
 
 
-def _files(named: Iterable[str], problems: list[InputError]) -> Iterable[tuple[str, str]]:
+def _files(arguments: Iterable[str], problems: list[InputError]) -> Iterable[tuple[str, str]]:
     """Files to read, each once, with the installed package that ships it; empty for others."""
     found: dict[str, str] = {}
-    for argument in named:
+    for argument in arguments:
         if argument == AMENT:
             found |= _installed(os.environ, problems)
         elif Path(argument).is_dir():
@@ -145,21 +145,21 @@ def _left_of(shipped: Package, own: Package, hierarchy: Hierarchy) -> Package:
 
     Nodes are the same by name; who states a kind states all narrower ones.
     """
-    nodes = (left for node in shipped.nodes for left in _left(node, own, hierarchy))
+    nodes = (rest for node in shipped.nodes for rest in _remainder(node, own, hierarchy))
     return shipped._replace(nodes=tuple(nodes))
 
 
-def _replacing(own: Package, left: Package) -> Diagnostic:
+def _replacing(own: Package, remainder: Package) -> Diagnostic:
     """The notice that a user's file stands in place of a shipped one, of which so much is left."""
-    claims = [f"{claim.role} of {claim.kind} at {node.names[0]}" for node in left.nodes for claim in node.claims]
+    claims = [f"{claim.role} of {claim.kind} at {node.names[0]}" for node in remainder.nodes for claim in node.claims]
     message = f"it stands in place of the shipped package {own.name}"
     if claims:
-        more = f" and {len(claims) - NAMED} more" if len(claims) > NAMED else ""
-        message += f"; what it does not state of that is asked all the same: {', '.join(claims[:NAMED])}{more}"
+        more = f" and {len(claims) - SHOWN_CLAIMS} more" if len(claims) > SHOWN_CLAIMS else ""
+        message += f"; what it does not state of that is asked all the same: {', '.join(claims[:SHOWN_CLAIMS])}{more}"
     return Diagnostic(own.place, Severity.NOTICE, message)
 
 
-def _left(node: PackageNode, own: Package, hierarchy: Hierarchy) -> Iterator[PackageNode]:
+def _remainder(node: PackageNode, own: Package, hierarchy: Hierarchy) -> Iterator[PackageNode]:
     """A node by each of its names, with the claims that are left under that name."""
     for name in node.names:
         stated = [claim for other in own.nodes if name in other.names for claim in other.claims]
@@ -169,5 +169,5 @@ def _left(node: PackageNode, own: Package, hierarchy: Hierarchy) -> Iterator[Pac
             yield node._replace(names=(name,), claims=claims)
 
 
-def _covers(one: Claim, other: Claim, hierarchy: Hierarchy) -> bool:
-    return one.role == other.role and hierarchy.distance(other.kind, one.kind) is not None
+def _covers(stated: Claim, other: Claim, hierarchy: Hierarchy) -> bool:
+    return stated.role == other.role and hierarchy.distance(other.kind, stated.kind) is not None

@@ -117,9 +117,9 @@ def _names_shown(files: Iterable[str], argument: str) -> str:
     return ", ".join([*names[:SHOWN_AT_MOST], *(["…"] if len(names) > SHOWN_AT_MOST else [])])
 
 
-def not_read_here(place: Place, what: str) -> Diagnostic:
+def not_read_here(place: Place, subject: str) -> Diagnostic:
     """Return the gap that permissions or governance in a folder of policies are: what is deployed is not read."""
-    message = f"not read: {what} permissions or governance, and what that grants is not known"
+    message = f"not read: {subject} permissions or governance, and what that grants is not known"
     return Diagnostic(
         place, Severity.WARNING, f"{message}; name it by itself, or move it out of the folder", ACCESS_GAP
     )

@@ -66,12 +66,12 @@ def _twice(grants: Iterable[Grant]) -> set[tuple[str, str]]:
     return written[True] & written[False]
 
 
-def notices(policies: Sequence[Policy], who: str, namespace: str) -> Iterator[Diagnostic]:
+def notices(policies: Sequence[Policy], owner: str, namespace: str) -> Iterator[Diagnostic]:
     """Yield what a reader has to know of a namespace that is pushed.
 
     Parameters
     ----------
-    who
+    owner
         Robot or model, as a message begins.
     """
     grants = [grant for policy in policies for grant in policy.grants]
@@ -84,12 +84,12 @@ def notices(policies: Sequence[Policy], who: str, namespace: str) -> Iterator[Di
         if len(names) == 1
         else f"{len(names)} names are written absolute and stay"
     )
-    message = f"{who}: {stay} outside the namespace that is pushed: {listed(names)}"
+    message = f"{owner}: {stay} outside the namespace that is pushed: {listed(names)}"
     yield Diagnostic(_first(absolute), Severity.NOTICE, message)
     if twice := sorted({name for _, name in _twice(grants)}):
         both = [grant for grant in absolute if grant.name in twice]
         message = (
-            f"{who}: {listed(twice)} written absolute and relative, under the namespace that is pushed two channels "
+            f"{owner}: {listed(twice)} written absolute and relative, under the namespace that is pushed two channels "
             "each; labels mean the absolute one, and the other by its full name"
         )
         yield Diagnostic(_first(both), Severity.WARNING, message)

@@ -68,15 +68,15 @@ class FileReader:
             raise InputErrors(self.problems)
         return read
 
-    def is_format(self, top: Value, key: str, a_file: str, what: str = "") -> bool:
+    def is_format(self, top: Value, key: str, a_file: str, name: str = "") -> bool:
         """Return whether a file is a map that says which format it is of; see ``version``."""
         if top.kind != "map":
             self.problem(top.line, f"{a_file} is a map, not a {top.kind}", f"begin with '{key}: 1'")
             return False
-        self.version(top, key, what or key)
+        self.version(top, key, name or key)
         return True
 
-    def version(self, top: Value, key: str, what: str) -> None:
+    def version(self, top: Value, key: str, name: str) -> None:
         """Check that a file says which format it is of: ``key: 1``.
 
         Raises
@@ -89,7 +89,7 @@ class FileReader:
             self.problem(top.line, f"no '{key}: 1'", "say so on the first line: it is the format's version")
             raise InputErrors(self.problems)
         if (version.kind, version.text) != ("number", "1"):
-            found = f"{what} format {shown(version.text or version.kind)!r}"
+            found = f"{name} format {shown(version.text or version.kind)!r}"
             self.problem(version.line, found, f"this reads '{key}: 1'")
 
     def entries_of(self, value: Value, keys: tuple[str, ...]) -> Iterable[tuple[str, int, Value]]:
@@ -113,8 +113,8 @@ class FileReader:
             return ""
         return category.name
 
-    def list_of(self, value: Value, what: str, hint: str = "write […]") -> tuple[Value, ...]:
+    def list_of(self, value: Value, key: str, hint: str = "write […]") -> tuple[Value, ...]:
         """Return the items of a list; nothing is an empty one."""
         if value.kind not in ("list", "empty"):
-            self.problem(value.line, f"{what} takes a list, not a {value.kind}", hint)
+            self.problem(value.line, f"{key} takes a list, not a {value.kind}", hint)
         return value.items

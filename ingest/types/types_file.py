@@ -192,20 +192,20 @@ class _Reader(FileReader):
     def _hash(self, entries: Mapping[str, Value]) -> str:
         return self._text(entries["hash"], "hash") if "hash" in entries else ""
 
-    def _nodes(self, value: Value, what: str) -> tuple[str, ...]:
-        return tuple(sorted({name for item in self.list_of(value, what) if (name := self._text(item, what))}))
+    def _nodes(self, value: Value, key: str) -> tuple[str, ...]:
+        return tuple(sorted({name for item in self.list_of(value, key) if (name := self._text(item, key))}))
 
-    def _text(self, value: Value, what: str) -> str:
-        longest = self.bounds.name if what in ("writers", "readers", "servers", "clients") else LONGEST
+    def _text(self, value: Value, key: str) -> str:
+        longest = self.bounds.name if key in ("writers", "readers", "servers", "clients") else LONGEST
         if value.kind != "text" or not value.text or len(value.text) > longest:
-            what = f"{what} takes text of at most {longest} characters, not {shown(value.text[:40]) or value.kind!r}"
-            self.problem(value.line, what, "observe again, or correct it")
+            problem = f"{key} takes text of at most {longest} characters, not {shown(value.text[:40]) or value.kind!r}"
+            self.problem(value.line, problem, "observe again, or correct it")
             return ""
         return value.text
 
-    def _time(self, value: Value, what: str) -> str:
+    def _time(self, value: Value, key: str) -> str:
         if value.kind not in ("text", "number") or not TIME.fullmatch(value.text):
-            text = f"{what} takes a time, not {shown(value.text[:40]) or value.kind!r}"
+            text = f"{key} takes a time, not {shown(value.text[:40]) or value.kind!r}"
             self.problem(value.line, text, "write it as 2026-11-22T10:00:00Z")
             return ""
         return value.text

@@ -134,6 +134,7 @@ ENTRIES = [  # what an entry says, words of the message
     (f"id: {ID}, decision: accept, owner: me", "an acceptance without reason"),
     (f"id: {ID}, decision: accept, reason: so", "an acceptance without owner"),
     ("id: 7ac, decision: avoid", "id '7ac'"),
+    ("id: 0x12345678abcdef, decision: avoid", "id '0x12345678abcdef'"),
     ("decision: avoid", "a decision about everything"),
     ("decision: avoid, kind: disclosure", "a decision about everything"),
     ("category: Vidio, decision: avoid", "unknown category 'Vidio'; did you mean Video or Voice?"),
@@ -171,14 +172,10 @@ def test_all_problems_of_a_decisions_file_are_said_at_once(cli: Cli, tmp_path: P
     assert [line.removeprefix(f"{file}:").partition(":")[0] for line in lines] == ["3", "3", "4", "5", "6"]
 
 
-@pytest.mark.parametrize("id_", ["1234567812345678", "12345678e1234567", "0x12345678abcdef"])
+@pytest.mark.parametrize("id_", ["1234567812345678", "12345678e1234567"])
 def test_an_id_that_yaml_takes_for_a_number_is_an_id(id_: str) -> None:
     text = f"decisions: 1\nfindings:\n- id: {id_}\n  decision: avoid\n"
-    if id_[1] == "x":
-        with pytest.raises(InputErrors):
-            parse_decisions("d", text, load(), "")
-    else:
-        assert parse_decisions("d", text, load(), "").entries[0].id == id_
+    assert parse_decisions("d", text, load(), "").entries[0].id == id_
 
 
 def test_today_can_be_fixed(monkeypatch: pytest.MonkeyPatch, cli: Cli, tmp_path: Path) -> None:
@@ -249,18 +246,6 @@ def test_the_document_says_from_which_robot_a_decision_is(cli: Cli, chain: Path)
     assert entry["target"] == {"leak": "/relay", "from_robot": "a"}
 
 
-def test_an_accepted_leak_is_said_to_be_accepted_not_absent(cli: Cli, chain: Path) -> None:
-    answer(cli, chain, f"category: Video, decision: accept, expires: 2099-01-01, {SIGNED}")
-    done = cli("analyze", "p.xml", "-l", "l.yaml", "--decisions", "d.yaml", cwd=chain)
-    first, second, *rest = done.stdout.splitlines()
-    assert first == (
-        "no-leak-found: no way to a leak but what is accepted, everything on the way is reviewed; 2 findings accepted"
-    )
-    assert second.startswith("2 findings, 2 of them accepted, ")
-    assert "   accepted by who until 2099-01-01, 6(1)(f), 9(2)(a)  (d.yaml:3)" in rest
-    assert "      why" in rest
-
-
 def test_an_expired_acceptance_counts_no_more_and_shows(cli: Cli, chain: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1800000000")  # 15 January 2027
     document = answer(cli, chain, f"category: Video, decision: accept, expires: 2026-12-31, {SIGNED}")
@@ -271,8 +256,6 @@ def test_an_expired_acceptance_counts_no_more_and_shows(cli: Cli, chain: Path, m
     (warning,) = document["diagnostics"]
     assert (warning["file"], warning["line"], warning["severity"]) == ("d.yaml", 3, "warning")
     assert "expired on 2026-12-31" in warning["message"]
-    done = cli("analyze", "p.xml", "-l", "l.yaml", "--decisions", "d.yaml", cwd=chain)
-    assert "   undecided: accepted until 2026-12-31, which has passed  (d.yaml:3)" in done.stdout.splitlines()
 
 
 def test_an_orphaned_decision_shows(cli: Cli, chain: Path) -> None:
@@ -303,12 +286,10 @@ def test_missing_legal_bases_are_flagged_where_a_category_is_special(cli: Cli, t
         "- {category: Voice, decision: accept, reason: why, owner: who}\n"
     )
     document = json.loads(cli("analyze", *CARE, "--decisions", file, "-f", "json1").stdout)
-    said = {(d["line"], d["message"]) for d in document["diagnostics"] if d["file"] == str(file)}
-    assert {line for line, _ in said} == {3, 4}
-    assert any("no ground under Article 9(2), and FaceTemplate can fall under GDPR Art. 9(1)" in m for _, m in said)
-    assert any(line == 4 and "no legal basis under Article 6(1)" in m for line, m in said)
-    assert any(line == 4 and "Voice may reveal what is named in GDPR Art. 9(1)" in m for line, m in said)
-    assert len(said) == 3
+    said = sorted((d["line"], d["message"]) for d in document["diagnostics"] if d["file"] == str(file))
+    assert [line for line, _ in said] == [3, 4, 4]
+    for words in ("FaceTemplate can fall under", "under Article 6(1)", "Voice may reveal"):
+        assert len([message for _, message in said if words in message]) == 1
 
 
 def test_an_acceptance_of_pseudonymised_data_ends_when_it_arrives_as_it_is(cli: Cli, chain: Path) -> None:

@@ -47,20 +47,12 @@ def site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
         ("fleet: 1\ninclude: [link.yaml]\n", 2, "site/link.yaml"),
         ("fleet: 1\ninclude: [more/fleet.yaml]\n", 2, "site/more/fleet.yaml"),
         ("fleet: 1\nrobots:\n  a: {policies: ../other/secret.xml}\n", 3, "site/../other/secret.xml"),
-        (
-            "fleet: 1\nrobots:\n  a:\n    policies: a.xml\n    labels: [../other/secret.yaml]\n",
-            3,
-            "site/../other/secret.yaml",
-        ),
+        ("fleet: 1\nrobots:\n  a: {policies: a.xml, labels: ../other/secret.yaml}\n", 3, "site/../other/secret.yaml"),
         ("fleet: 1\nrobots:\n  a: {policies: link.xml}\n", 3, "site/link.xml"),
         ("fleet: 1\nrobots:\n  a: {policies: '../other/*.xml'}\n", 3, "site/../other/*.xml"),
         ("fleet: 1\nmodels:\n  m: {policies: more}\nrobots: {a: {model: m}}\n", 3, "site/more"),
         ("fleet: 1\ngroups:\n  - {policies: 'more/*/p.xml'}\n", 3, "site/more/*/p.xml"),
-        (
-            "fleet: 1\ngroups:\n  - {policies: 'robots/*/p.xml', labels: 'robots/*/l.yaml'}\n",
-            3,
-            "site/robots/r1/l.yaml",
-        ),
+        ("fleet: 1\ngroups:\n  - {policies: robots/*/p.xml, labels: robots/*/l.yaml}\n", 3, "site/robots/r1/l.yaml"),
     ],
 )
 def test_what_leaves_the_folder_is_refused_and_not_opened(site: Path, text: str, line: int, name: str) -> None:

@@ -80,8 +80,8 @@ class TestTakingPart:
                 (
                     "elements:\n  bucket: {kind: storage, country: DE, retention: P1D}\n"
                     "  cloud: {kind: external-system, country: FR}\n"
-                    "flows:\n  - {from: /recorder, to: bucket}\n  - {from: bucket, to: /trainer}\n"
-                    "  - {from: /trainer, to: cloud}\n"
+                    "flows: [{from: /recorder, to: bucket}, {from: bucket, to: /trainer}, "
+                    "{from: /trainer, to: cloud}]\n"
                 ),
                 ["disclosure Video /camera /image /recorder bucket /trainer cloud"],
             ),
@@ -102,8 +102,7 @@ class TestTakingPart:
             (  # a side channel joins nodes in both directions
                 (
                     "elements:\n  ring: {kind: shared-memory, between: [/recorder, /trainer]}\n"
-                    "  screen: {kind: display}\n"
-                    "flows: [{from: /trainer, to: screen}]\n"
+                    "  screen: {kind: display}\nflows: [{from: /trainer, to: screen}]\n"
                 ),
                 ["disclosure Video /camera /image /recorder ring /trainer screen"],
             ),

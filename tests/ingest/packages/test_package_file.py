@@ -86,26 +86,14 @@ def test_all_problems_are_told_at_their_lines() -> None:
         "- conduit: all", "- conduit: all\n        source: [Video]"
     )
     text = text.replace('version: "2.1", ', "").replace("about: Blurs faces.", "about: Blurs faces.\nowner: me")
-    assert problems(text) == [
-        "p.yaml:4: unknown key 'owner'; one of package, name, about, sources, nodes",
-        (
-            "p.yaml:6: a source that does not say where, when and which version; "
-            "write {at: …, version: … or commit: …, read: 2026-11-23}"
-        ),
-        (
-            "p.yaml:8: a node's name cannot be '/ns/face_blur'; "
-            "write a plain name without namespace, which may begin or end with *"
-        ),
-        "p.yaml:10: 'std_srvs/srv/Empty' is not the type of a topic; write pkg/msg/Name, or nothing if it takes any",
-        "p.yaml:14: a sanitizer's method 'hide'; write anonymise or aggregate or drop or pseudonymise",
-        "p.yaml:17: to 'cloud'; write network or display or file or loudspeaker or device or domain",
-        "p.yaml:18: confidence 'certain'; write likely or may",
-        "p.yaml:20: unknown category 'Presense'; did you mean Presence or Preference?",
-        (
-            "p.yaml:22: a statement that is not of one role, with its reason; "
-            "write one of source, leak, derives, sanitizer, conduit, and why: …"
-        ),
-    ]
+    expected = {
+        4: "unknown key 'owner'", 6: "does not say where, when and which version", 8: "'/ns/face_blur'",
+        10: "'std_srvs/srv/Empty' is not the type of a topic", 14: "method 'hide'", 17: "to 'cloud'",
+        18: "confidence 'certain'", 20: "unknown category 'Presense'", 22: "not of one role, with its reason",
+    }  # fmt: skip
+    lines = problems(text)
+    assert [line.partition(": ")[0] for line in lines] == [f"p.yaml:{at}" for at in expected]
+    assert all(words in line for line, words in zip(lines, expected.values(), strict=True))
 
 
 @pytest.mark.parametrize(
@@ -133,12 +121,6 @@ def test_hostile_text_stays_on_one_line() -> None:
     told = problems(GOOD.replace("name: face_blur", 'name: "a\\e[31m\\nb"'))
     assert len(told) == 1
     assert told[0].isprintable()
-
-
-def test_a_user_kind_takes_part_and_a_missing_one_is_told() -> None:
-    assert problems(GOOD.replace("FaceImage", "VisitorToken"))[0].startswith(
-        "p.yaml:13: unknown category 'VisitorToken'"
-    )
 
 
 def test_the_schema_takes_what_the_reader_takes_and_refuses_the_rest() -> None:
