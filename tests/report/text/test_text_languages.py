@@ -17,12 +17,16 @@ from tests.helpers.paths import ROOT
 from tests.helpers.turtlebot import COSTMAP, MEMORY, TURTLEBOT3
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
     from rosprivacy.result import Result
     from tests.helpers.command import Cli
 
-SYSTEMS = {**EVERY, **{f"run{number}": partial(factory, number) for number in (2, 4, 5)}}
+SYSTEMS: dict[str, Callable[[], Result]] = {
+    **EVERY,
+    **{f"run{number}": partial(factory, number) for number in (2, 4, 5)},
+}
 CODES = re.compile(
     r"no-leak-found|storage-limitation|-l rosprivacy:\S+|rosprivacy [\w-]+(?: --?[\w-]+)*|nodes: \{.*?\}\}\}?"
 )
