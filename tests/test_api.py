@@ -23,6 +23,7 @@ from rosprivacy.formats import FORMATS
 from rosprivacy.report.document.ledger import why_not_document
 from rosprivacy.settings import Settings
 from tests.helpers.daily import one_in
+from tests.helpers.fleet_files import policy
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
@@ -234,12 +235,8 @@ def test_rows_of_a_fleet_count_the_findings_that_they_stand_for() -> None:
 
 
 def test_a_notebook_shows_names_escaped_and_the_verdict_first(tmp_path: Path) -> None:
-    policy = tmp_path / "p.policy.xml"
-    policy.write_text(
-        '<policy version="0.2.0"><enclaves><enclave path="/a"><profiles><profile ns="/" node="a">'
-        '<topics publish="ALLOW"><topic>/t</topic></topics></profile><profile ns="/" node="b">'
-        '<topics subscribe="ALLOW"><topic>/t</topic></topics></profile></profiles></enclave></enclaves></policy>'
-    )
+    file = tmp_path / "p.policy.xml"
+    file.write_text(policy("/a>/t", "/b</t"))
     hostile = "<img src=x onerror=alert(1)>&"
     labels = {
         "labels": 1,
@@ -247,11 +244,11 @@ def test_a_notebook_shows_names_escaped_and_the_verdict_first(tmp_path: Path) ->
         "elements": {hostile: {"kind": "display", "leak": ["Video"]}},
         "flows": [{"from": "/b", "to": hostile}],
     }
-    shown = rosprivacy.analyze(policy, rosprivacy.parse_labels(labels)).findings._repr_html_()
+    shown = rosprivacy.analyze(file, rosprivacy.parse_labels(labels)).findings._repr_html_()
     assert "<img" not in shown
     assert "&lt;img src=x onerror=alert(1)&gt;&amp;" in shown
     assert shown.startswith("<table><caption>leak: data can reach a leak</caption>")
-    empty = rosprivacy.analyze(policy).findings._repr_html_()
+    empty = rosprivacy.analyze(file).findings._repr_html_()
     assert empty.startswith("<table><caption>undetermined: ")
 
 

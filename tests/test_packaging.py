@@ -23,17 +23,15 @@ ROOMS = sorted(path.name for path in (ROOT / "src" / "rosprivacy").iterdir() if 
 
 def test_the_rooms_import_from_the_package_and_bring_their_data() -> None:
     assert ROOMS == ["analysis", "ingest", "ontology", "queries", "report"]
-    assert files("rosprivacy.ontology").joinpath("categories.ttl").is_file()
-    assert files("rosprivacy.ontology").joinpath("law.ttl").is_file()
-    assert files("rosprivacy.ontology").joinpath("packages", "nav2.yaml").is_file()
-    assert files("rosprivacy.ingest.labels").joinpath("standard.yaml").is_file()
-    assert files("rosprivacy.queries").joinpath("leak-paths.cypher").is_file()
-    assert files("rosprivacy.report.page").joinpath("templates", "report.html.j2").is_file()
-    assert files("rosprivacy.explorer.web").joinpath("templates", "page.html.j2").is_file()
-    assert files("rosprivacy.explorer.web").joinpath("static", "explore.js").is_file()
-    assert files("rosprivacy.explorer.web").joinpath("static", "review.css").is_file()
-    assert files("rosprivacy.report.catalogs").joinpath("en.json").is_file()
-    assert files("rosprivacy.report.rdf").joinpath("findings.shapes.ttl").is_file()
+    for room, names in {
+        "ontology": ("categories.ttl", "law.ttl", "packages/nav2.yaml"),
+        "ingest": ("labels/standard.yaml",),
+        "queries": ("leak-paths.cypher",),
+        "explorer": ("web/templates/page.html.j2", "web/static/explore.js", "web/static/review.css"),
+        "report": ("page/templates/report.html.j2", "catalogs/en.json", "rdf/findings.shapes.ttl"),
+    }.items():
+        for name in names:
+            assert files(f"rosprivacy.{room}").joinpath(*name.split("/")).is_file(), name
 
 
 @pytest.fixture(scope="module")

@@ -10,6 +10,7 @@ import rosprivacy
 from rosprivacy.ingest.types import TABLE
 from rosprivacy.ingest.types.type_table import read_table
 from rosprivacy.ontology.vocabulary import load
+from tests.helpers.fleet_files import policy
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -166,15 +167,9 @@ def test_a_suggestion_of_one_leg_is_no_contradiction_of_what_the_other_cannot_ca
                 read_table(str(file), VOCABULARY)
 
 
-POLICY = """<policy version="0.2.0"><enclaves><enclave path="/e"><profiles>
-<profile ns="/" node="cam"><topics publish="ALLOW"><topic>a</topic></topics></profile>
-<profile ns="/" node="sink"><topics subscribe="ALLOW"><topic>a</topic></topics></profile>
-</profiles></enclave></enclaves></policy>"""
-
-
 def test_nothing_is_applied_by_a_suggestion(tmp_path: Path) -> None:
     """A type that suggests Video makes no source, reviews nothing and closes nothing."""
-    (tmp_path / "p.xml").write_text(POLICY)
+    (tmp_path / "p.xml").write_text(policy("/cam>/a", "/sink</a"))
     answers = []
     for type_name in ("sensor_msgs/msg/Image", "own_msgs/msg/Unknown"):
         labels = tmp_path / "l.yaml"

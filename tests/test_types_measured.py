@@ -11,8 +11,8 @@ import pytest
 import rosprivacy
 from rosprivacy.ingest.types import TABLE
 from rosprivacy.report.element_counts import count_rows
-from tests.helpers import live_robot
 from tests.helpers.fleet_files import policy
+from tests.helpers.observed import node_info
 from tests.helpers.paths import ROOT
 from tests.helpers.turtlebot import COSTMAP, TURTLEBOT3, TYPES
 
@@ -21,6 +21,31 @@ if TYPE_CHECKING:
 
 Figures = tuple[str, str, str, str]
 PAPER = "categorizations/JonasWoh__ROS2PrivacyGraph/categorizations/categorization_turtlebot3_step_{}.json"
+# The live example: a small robot with a camera, as ``ros2 node info`` tells of it, and a person's labels.
+GRAPH = (
+    node_info("/head/camera_driver", publishers="/head/camera/image_raw: sensor_msgs/msg/Image")
+    + node_info(
+        "/face_recognizer",
+        subscribers="/head/camera/image_raw: sensor_msgs/msg/Image",
+        publishers="/faces: hri_msgs/msg/IdsList",
+    )
+    + node_info(
+        "/archive",
+        subscribers="/faces: hri_msgs/msg/IdsList",
+        service_servers="/save_footage: std_srvs/srv/SetBool",
+    )
+    + node_info(
+        "/navigator",
+        service_clients="/save_footage: std_srvs/srv/SetBool",
+        action_servers="/navigate_to_pose: nav2_msgs/action/NavigateToPose",
+    )
+)
+ROBOT = """labels: 1
+nodes:
+  /archive: {leak: [Video, PersonIdentifier]}
+  /face_recognizer: {source: [PersonIdentifier]}
+  /head/camera_driver: {source: [Video]}
+"""
 MORE = "channels: {/faces: {only: [PersonIdentifier]}}\nservices: {/save_footage: mundane}\n"
 LAMP = """labels: 1
 nodes: {/camera: {source: [Video]}, /cloud: {leak: [Video]}}
@@ -62,12 +87,12 @@ def measured(policies: str, labels: list[str], **options: Any) -> Figures:
 @pytest.mark.parametrize(
     ("name", "labels"),
     [
-        ("sources and leaks", live_robot.LABELS),
-        ("the same, with two more of a person", live_robot.LABELS + MORE),
+        ("sources and leaks", ROBOT),
+        ("the same, with two more of a person", ROBOT + MORE),
     ],
 )
 def test_the_live_example(cli: Cli, name: str, labels: str) -> None:
-    Path("graph.txt").write_text(live_robot.GRAPH, "utf-8")
+    Path("graph.txt").write_text(GRAPH, "utf-8")
     Path("labels.yaml").write_text(labels, "utf-8")
     assert cli("observe", "--text", "graph.txt", "-o", "robot.policy.xml").returncode == 0
     figures = measured("robot.policy.xml", ["labels.yaml"], types="robot.types.yaml")

@@ -191,15 +191,11 @@ def test_a_line_that_has_moved_is_no_difference() -> None:
     assert set(changes(before, now).changed.values()) == {("reason",)}
 
 
-@pytest.mark.parametrize("language", ["en", "de", "fr"])
-def test_reports_tell_it_and_redacted_ones_name_no_file(cli: Cli, folder: Path, language: str, tmp_path: Path) -> None:
-    said = {"en": "others on the network can read", "de": "andere im Netz können dort mitlesen",
-            "fr": "d'autres peuvent lire sur le réseau"}  # fmt: skip
-    asked = ("report", "keystore", "-l", "labels.yaml", "--lang", language, "--format", "markdown")
+def test_reports_name_the_governance_and_redacted_ones_no_file(cli: Cli, folder: Path, tmp_path: Path) -> None:
+    asked = ("report", "keystore", "-l", "labels.yaml", "--format", "markdown")
     plain, hidden = tmp_path / "p.md", tmp_path / "h.md"
     cli(*asked, "-o", plain, cwd=folder)
     cli(*asked, "--redact", "-o", hidden, cwd=folder)
-    assert said[language] in plain.read_text().replace("\u202f", " ").replace("\xa0", " ")
     assert "governance.p7s" in plain.read_text()
     assert "governance.p7s" not in hidden.read_text()
 

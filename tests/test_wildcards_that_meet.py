@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from rosprivacy.analysis.errors import RosPrivacyError
 from rosprivacy.analysis.findings import review_order
-from rosprivacy.api import analyze
 from rosprivacy.ingest.policies import flow_graph
 from tests.helpers.fleet_files import policy
-from tests.helpers.written_systems import ROLES
+from tests.helpers.written_systems import ROLES, every_answer
 
 NODES = tuple(f"/n{i}" for i in range(5))
 NAMES = ("/r*", "/r*/s*", "/ro*", "/*", "/*/s1", "/r*1", "/r[ab]*", "/*/rosout", "/ra/s1", "/ro")
@@ -55,16 +52,7 @@ def told(stored: int, most: int) -> list[str]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(flow_graph, "STORED", stored)
         patch.setattr(review_order, "BOUND", most)
-        try:
-            result = analyze("p.xml", labels="l.yaml", paths="disjoint")
-        except RosPrivacyError as error:
-            return [str(error)]
-        try:
-            proposals = json.dumps(result.proposals())
-        except RosPrivacyError as error:
-            proposals = str(error)
-        why = [repr(result.why_not("/n0", node)) for node in NODES[1:3]]
-        return [*(str(result.to(name)) for name in FORMATS), proposals, *why]
+        return every_answer(FORMATS)
 
 
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture])

@@ -3,15 +3,24 @@
 from __future__ import annotations
 
 import re
-from functools import cache
+from functools import cache, partial
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.report.catalogs.words import plain, table
+from tests.helpers.graphs import care_home, factory, hospital
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator, Mapping
+    from collections.abc import Callable, Collection, Iterator, Mapping
+
+    from rosprivacy.result import Result
 
 OTHERS = ("de", "fr")
+SYSTEMS: dict[str, Callable[[], Result]] = {  # whose outputs are read in each language
+    "care-home": care_home,
+    "hospital": hospital,
+    "run1": partial(factory, 1),
+    "run3": partial(factory, 3),
+}
 _FUNCTION_WORDS = re.compile(
     r"(?<![\w/.-])(the|of|is|are|which|and|with|for|from|by|not|that|this|be|been|kept|to|it|its|has|as|who|what|"
     r"GDPR|no basis|can|gets|reaches|without|review(?:ed)?|find(?:s|ings?)|path)(?![\w/-])",
@@ -51,6 +60,14 @@ PEOPLES = {  # keys of a document under which texts of users stand
     "subjects", "reason", "owner", "ticket", "why", "operator", "name", "note", "model", "dpo", "officers",
     "controller", "controllers", "contract", "contracts", "purpose", "purposes", "author",
 }  # fmt: skip
+
+
+def names_in(result: Result) -> list[str]:
+    """Return what users wrote of a system: names, files, groups of persons."""
+    elements = {element.name for element in result.analysis.graph.elements}
+    groups = {group for groups in result.bound.subjects.values() for group in groups}
+    files = {entry["file"] for kind in ("policies", "labels", "fleet") for entry in result.assumptions.get(kind) or ()}
+    return [*elements, *groups, *files, *result.vocabulary.categories]
 
 
 def users_texts(document: Mapping[str, Any]) -> list[str]:

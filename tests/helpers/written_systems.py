@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from hypothesis import strategies as st
 
+import rosprivacy
 from tests.helpers.fleet_files import policy
 
 if TYPE_CHECKING:
@@ -105,6 +106,20 @@ def told(result: Result) -> dict[str, Any]:
     for decision in plain.get("decisions", ()):  # sorted by ids, which hold the robot's name
         decision["findings"] = sorted(decision["findings"])
     return plain
+
+
+def every_answer(formats: Sequence[str], **options: Any) -> list[str]:
+    """All that is told of p.xml and l.yaml, or why nothing is."""
+    try:
+        result = rosprivacy.analyze("p.xml", labels="l.yaml", paths="disjoint", **options)
+    except rosprivacy.RosPrivacyError as error:
+        return [str(error)]
+    try:
+        proposals = json.dumps(result.proposals())
+    except rosprivacy.RosPrivacyError as error:
+        proposals = str(error)
+    why = [repr(result.why_not("/n0", node)) for node in NODES[1:3]]
+    return [*(str(result.to(name)) for name in formats), proposals, *why]
 
 
 def _plain(value: Any, ids: dict[str, str]) -> Any:

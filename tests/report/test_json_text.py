@@ -11,6 +11,7 @@ import pytest
 
 from rosprivacy.report.json_text import as_text, in_pieces
 from tests.helpers.command import Cli, cli
+from tests.helpers.fleet_files import policy
 from tests.helpers.house import ROOMS, parsed
 from tests.helpers.paths import ROOT
 
@@ -24,12 +25,6 @@ ODD = [
     *map(chr, range(0x7F, 0xA0)), "\u2028", "\u2029", "\u061c", "\u200e", "\u200f",
     *map(chr, range(0x202A, 0x202F)), *map(chr, range(0x2066, 0x206A)),
 ]  # fmt: skip
-POLICY = """\
-<policy version="0.2.0"><enclaves><enclave path="/r"><profiles>
-  <profile ns="/" node="camera"><topics publish="ALLOW"><topic>{name}</topic></topics></profile>
-  <profile ns="/" node="uplink"><topics subscribe="ALLOW"><topic>{name}</topic></topics></profile>
-</profiles></enclave></enclaves></policy>
-"""
 LABELS = 'labels: 1\nnodes:\n  /camera: {source: [Voice]}\n  /uplink: {leak: [Voice], note: "a\\u009B\\u202Eb"}\n'
 
 
@@ -62,7 +57,8 @@ def test_a_large_document_is_not_in_memory_as_text() -> None:
 )  # fmt: skip
 def test_no_command_writes_a_sign_that_cannot_be_printed(cli: Cli, tmp_path: Path, arguments: list[str]) -> None:
     """In an earlier version ``analyze -f json`` and ``-f sarif`` have them raw (U+009B and U+202E)."""
-    (tmp_path / "p.policy.xml").write_text(POLICY.format(name="audio" + "".join(ODD[1:])), "utf-8")
+    topic = "/audio" + "".join(ODD[1:])
+    (tmp_path / "p.policy.xml").write_text(policy(f"/camera>{topic}", f"/uplink<{topic}"), "utf-8")
     (tmp_path / "l.yaml").write_text(LABELS, "utf-8")
     command, *options = arguments
     elements = [one for one in options if one in ("/camera", "/uplink")]

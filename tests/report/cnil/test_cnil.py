@@ -19,7 +19,7 @@ from hypothesis import strategies as st
 import rosprivacy
 from rosprivacy.analysis.durations import parse
 from rosprivacy.analysis.findings.findings import analyse
-from rosprivacy.analysis.model import Bound, Category, Element, Flow, FlowGraph, Method, NonRosFacts, Place, Statement
+from rosprivacy.analysis.model import Bound, Category, Element, Flow, FlowGraph, NonRosFacts, Place, Statement
 from rosprivacy.analysis.non_ros import EVERY
 from rosprivacy.documents import document_of
 from rosprivacy.ingest.database.loading import load as load_robots
@@ -33,19 +33,16 @@ from rosprivacy.report.cnil.pia import cnil_pia
 from rosprivacy.settings import Settings
 from tests.helpers.additions import ADD_STORAGE
 from tests.helpers.answers import accepting, answer_of, as_json
-from tests.helpers.graphs import care_home as analysed_care_home
-from tests.helpers.graphs import factory, hospital
-from tests.helpers.languages import OTHERS, english_in, users_texts
+from tests.helpers.fleet_files import policy
+from tests.helpers.languages import OTHERS, SYSTEMS, english_in, names_in, users_texts
 from tests.helpers.paths import ROOT
 from tests.helpers.sarif import HOSTILE, analyze, checked, log_of, physical, small_system, way
 from tests.helpers.systems import HIERARCHY, PARENTS, System, analysed, systems
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from pathlib import Path
 
     from rosprivacy.private_neo4j.connection import Connection
-    from rosprivacy.result import Result
     from tests.helpers.command import Cli
 
 CARE_HOME = (["care-home/care-home.policy.xml"], ["care-home/care-home.labels.yaml"])
@@ -248,39 +245,6 @@ def test_decisions_are_told_with_their_reason() -> None:
     assert "(accepted: staff & family agreed <2030>)" in seen(tool, 122)
 
 
-def test_storages_and_recipients_with_what_was_stated_of_them() -> None:
-    """Rule S9."""
-    elements = (
-        Element("node", "/camera"), Element("node", "/blur"), Element("external-system", "cloud"),
-        Element("storage", "bucket"), Element("storage", "disk"),
-    )  # fmt: skip
-    flows = tuple(Flow(a, b, "flow") for a, b in ((0, 1), (1, 2), (1, 3), (1, 4)))
-    here = Place("labels.yaml", 1)
-    said = {
-        0: (Statement("source", ("Video",), (1, 0), here),),
-        1: (Statement("sanitizer", ("Video",), (1, 0), here, Method.PSEUDONYMISE, stated=False),),
-        2: (Statement("leak", ("Video",), (1, 0), here),),
-    }
-    vocabulary = load()
-    graph, bound = FlowGraph(elements, flows, (), ()), Bound(said)
-    analysis = analyse(graph, bound, vocabulary.hierarchy)
-    outside = {
-        elements[3]: NonRosFacts(retention=((EVERY, parse("P30D")),), country="DE", encrypted=True),
-        elements[2]: NonRosFacts(country="US", transfer="standard-clauses"),
-    }
-    tool = imported(cnil_pia(document_of(answer_of(analysis, vocabulary, {}, outside=outside)), CREATED))
-    assert "Kept in: storage bucket (30 days), storage disk (retention not stated)" in seen(tool, 121)
-    assert "/blur: pseudonymise (the data is still personal), taken because the label states no method" in seen(
-        tool, 122
-    )
-    assert "storage bucket: pseudonymised Video; retention: 30 days" in seen(tool, 215)
-    assert "storage disk: pseudonymised Video; retention: not stated" in seen(tool, 215)
-    assert "external-system cloud: country: US; basis of a transfer: standard-clauses" in seen(tool, 227)
-    contents = {m["title"]: Page(m["content"]).seen for m in tool.measures.values()}
-    assert contents["Encryption of storages"].startswith("bucket: encrypted at rest, as stated")
-    assert "Access control by SROS 2 policies" not in contents  # no profile, so nothing is known of it
-
-
 def with_facts(facts: dict[str, NonRosFacts], subjects: tuple[str, ...] = ()) -> Tool:
     """A camera that everything non-ROS gets video from, and what people state of each."""
     kinds = ("external-system" if name.startswith("cloud") else "storage" for name in facts)
@@ -293,26 +257,47 @@ def with_facts(facts: dict[str, NonRosFacts], subjects: tuple[str, ...] = ()) ->
     return imported(cnil_pia(document_of(answer_of(analysis, load(), {}, bound=bound, outside=outside)), CREATED))
 
 
-def test_a_storage_that_is_not_encrypted_is_a_threat_and_no_measure() -> None:
-    tool = with_facts({"nas": NonRosFacts(encrypted=False)})
-    assert "Encryption of storages" not in {measure["title"] for measure in tool.measures.values()}
-    assert "data at rest not encrypted: storage nas" in tool.answers[322]["list"]
+KEPT = NonRosFacts(retention=((EVERY, parse("P30D")),), country="DE", encrypted=True)
 
 
-def test_processors_are_named_as_stated_and_nobody_else() -> None:
-    """Article 28; question 226 stays without an answer where nobody names one."""
-    stated = NonRosFacts(operator="Speech Inc.", recipient="processor", country="US", area="partly")
-    tool = with_facts({"cloud": stated, "nas": NonRosFacts(operator="us")})
-    assert seen(tool, 226).startswith("external-system cloud: processor: Speech Inc. (US); contract under Article 28")
-    assert "nas" not in seen(tool, 226)
+@pytest.mark.parametrize(
+    ("facts", "question", "told_so"),
+    [
+        ({"bucket": KEPT, "disk": NonRosFacts()}, 121, "bucket (30 days), storage disk (retention not stated)"),
+        ({"bucket": KEPT}, 215, "storage bucket: Video; retention: 30 days"),
+        ({"disk": NonRosFacts()}, 215, "storage disk: Video; retention: not stated"),
+        (
+            {"cloud": NonRosFacts(operator="Speech Inc.", recipient="processor", country="US", area="partly")},
+            226,
+            "external-system cloud: processor: Speech Inc. (US); contract under Article 28",
+        ),
+        (
+            {"cloud": NonRosFacts(country="US", transfer="standard-clauses")},
+            227,
+            "external-system cloud: country: US; basis of a transfer: standard-clauses",
+        ),
+        ({"cloud": NonRosFacts(country="DE", area="eea")}, 227, "in the EEA: no transfer to a third country"),
+        ({"cloud": NonRosFacts(country="CH", area="adequate")}, 227, "CH, adequacy decision (Article 45 GDPR)"),
+    ],
+)
+def test_what_people_state_of_storages_and_recipients_is_told(
+    facts: dict[str, NonRosFacts], question: int, told_so: str
+) -> None:
+    """Rule S9; Articles 28, 44 and 45."""
+    assert told_so in seen(with_facts(facts), question)
+
+
+def test_encryption_is_a_measure_and_its_lack_a_threat() -> None:
+    encrypted, plain_text = with_facts({"nas": KEPT}), with_facts({"nas": NonRosFacts(encrypted=False)})
+    contents = {measure["title"]: Page(measure["content"]).seen for measure in encrypted.measures.values()}
+    assert contents["Encryption of storages"].startswith("nas: encrypted at rest, as stated")
+    assert "Access control by SROS 2 policies" not in contents  # no profile, so nothing is known of it
+    assert "Encryption of storages" not in {measure["title"] for measure in plain_text.measures.values()}
+    assert "data at rest not encrypted: storage nas" in plain_text.answers[322]["list"]
+
+
+def test_without_a_processor_its_question_stays_without_an_answer() -> None:
     assert 226 not in with_facts({"nas": NonRosFacts(operator="us")}).answers
-
-
-def test_what_stays_in_the_eea_is_no_transfer() -> None:
-    facts = {"cloud_de": NonRosFacts(country="DE", area="eea"), "cloud_ch": NonRosFacts(country="CH", area="adequate")}
-    said = seen(with_facts(facts), 227)
-    assert "cloud_de: country: DE, in the EEA: no transfer to a third country" in said
-    assert "cloud_ch: country: CH, adequacy decision (Article 45 GDPR)" in said
 
 
 def test_persons_that_labels_name_are_told() -> None:
@@ -325,14 +310,9 @@ def test_persons_that_labels_name_are_told() -> None:
 
 
 def test_long_answers_are_bounded_and_say_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    topics = "".join(f"<topic>/t{i:03}</topic>" for i in range(50))
-    profiles = "".join(
-        f'<profile ns="/" node="s{i}"><topics publish="ALLOW">{topics}</topics></profile>'
-        f'<profile ns="/" node="l{i}"><topics subscribe="ALLOW">{topics}</topics></profile>'
-        for i in range(12)
-    )
-    enclave = f'<enclave path="/"><profiles>{profiles}</profiles></enclave>'
-    (tmp_path / "p.xml").write_text(f'<policy version="0.2.0"><enclaves>{enclave}</enclaves></policy>')
+    topics = ",".join(f"/t{i:03}" for i in range(50))
+    profiles = [profile for i in range(12) for profile in (f"/s{i}>{topics}", f"/l{i}<{topics}")]
+    (tmp_path / "p.xml").write_text(policy(*profiles))
     (tmp_path / "l.yaml").write_text("labels: 1\nnodes: {/s*: {source: [Video]}, /l*: {leak: [Video]}}\n")
     result = rosprivacy.analyze([str(tmp_path / "p.xml")], [str(tmp_path / "l.yaml")])
     assert len(result.analysis.findings) == 144
@@ -415,22 +395,6 @@ def test_what_people_added_in_the_database_is_in_both_formats(neo4j_server: Conn
 # ---------------------------------------------------------------- languages
 
 
-def names_in(result: Result) -> list[str]:
-    """What users wrote: names, files, groups of persons."""
-    elements = {element.name for element in result.analysis.graph.elements}
-    groups = {group for groups in result.bound.subjects.values() for group in groups}
-    files = {entry["file"] for kind in ("policies", "labels", "fleet") for entry in result.assumptions.get(kind) or ()}
-    return [*elements, *groups, *files, *result.vocabulary.categories, *users_texts(result.document())]
-
-
-SYSTEMS: dict[str, Callable[[], Result]] = {
-    "care-home": analysed_care_home,
-    "hospital": hospital,
-    "run1": lambda: factory(1),
-    "run3": lambda: factory(3),
-}
-
-
 @pytest.mark.parametrize("language", OTHERS)
 @pytest.mark.parametrize("system", SYSTEMS)
 def test_the_file_is_whole_in_every_language(language: str, system: str) -> None:
@@ -444,6 +408,6 @@ def test_the_file_is_whole_in_every_language(language: str, system: str) -> None
     ]
     assert len(data["measures"]) == len(english["measures"])
     text = "\n".join(Page(part).seen for part in tool.shown_as_html())
-    assert english_in(text, language, names_in(result)) == []
+    assert english_in(text, language, [*names_in(result), *users_texts(result.document())]) == []
     assert "\\xa0" not in text
     assert "\\u202f" not in text

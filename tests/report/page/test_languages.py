@@ -18,6 +18,7 @@ from rosprivacy.ingest.labels.countries import countries
 from rosprivacy.report.catalogs.words import Words, table
 from rosprivacy.report.page.article30 import record
 from rosprivacy.report.page.markdown import markdown
+from tests.helpers.fleet_files import policy
 from tests.helpers.graphs import care_home, hospital
 from tests.helpers.languages import OTHERS, english_in, users_texts
 from tests.helpers.pages import earlier, page, told
@@ -47,10 +48,7 @@ flows:
   - {from: /uplink, to: far}
   - {from: /uplink, to: old}
 """
-POLICY = """<policy version="0.2.0"><enclaves><enclave path="/e"><profiles>
-<profile ns="/" node="camera"><topics publish="ALLOW"><topic>image</topic></topics></profile>
-<profile ns="/" node="uplink"><topics subscribe="ALLOW"><topic>image</topic></topics></profile>
-</profiles></enclave></enclaves></policy>"""
+POLICY = policy("/camera>/image", "/uplink</image")
 
 
 def reasons(folder: Path, today: str = "") -> dict[str, Any]:

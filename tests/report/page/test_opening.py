@@ -60,12 +60,6 @@ def test_one_flow_that_is_two_findings_is_decided_once() -> None:
     assert report.opening.headline == "You have to decide 3 things"
 
 
-def test_of_a_fleet_the_robot_whose_filter_is_off_stands_first_and_robots_are_counted() -> None:
-    first = told(hospital().document()).opening.rows[0]
-    assert flow(first) == ("video of persons", "/camera_driver", "base:reviewer")
-    assert first.spread == ("On 24 of 40 robots.", "1 robot (carrier_lent): unfiltered.", "23 robots: pseudonymised.")
-
-
 def test_every_finding_that_is_neither_accepted_nor_dismissed_is_in_a_row() -> None:
     for document in (care(), with_outside(care()), with_decisions(care()), hospital().document(), run(2)):
         report = told(dict(document))
@@ -153,6 +147,11 @@ def test_a_transfer_that_rests_on_article_6_alone_says_what_it_lacks() -> None:
     document["processed_for"] = [based if r is stated else r for r in document["processed_for"]]
     row = next(row for row in told(document).opening.rows if row.leak == "hospital:fleet cloud")
     assert "none of chapter V" not in dict(row.facts)["Legal basis"]
+
+
+def test_the_view_of_the_report_is_explained_first() -> None:
+    for view in ("declared", "enforced"):
+        assert told({**care(), "view": view}).glossary[0][0] == view
 
 
 def test_not_reviewed_is_exact_and_what_only_globs_review_is_counted_beside_it() -> None:

@@ -15,6 +15,14 @@ def cells(table: Any) -> dict[str, dict[str, str]]:
     }
 
 
+def test_who_gets_which_kind() -> None:
+    """All cells are in the golden set."""
+    who = cells(told(care()).recipients)
+    assert who["/recorder"]["video of persons"] == "1 path to assess, pseudonymised"
+    assert who["/recorder"]["voice"] == "no path found"
+    assert who["/uplink"]["voice"] == "1 path to assess"
+
+
 def test_a_recipient_that_nothing_reaches_is_a_row_all_the_same() -> None:
     document = care() | {"findings": []}
     assert set(cells(told(document).recipients)) == {"/recorder", "/uplink"}

@@ -56,7 +56,7 @@ def test_the_text_says_through_which_element_and_what_a_label_would_close(cli: C
     assert "is a source itself (location); does it pass on what comes in?" in arm
 
 
-def test_the_page_says_the_same_in_both_languages(cli: Cli, folder: Path) -> None:
+def test_the_page_says_the_same(cli: Cli, folder: Path) -> None:
     page = told(cli, folder)
     section = page[page.index('id="questions"') : page.index('id="criteria"')]
     plain = " ".join(unescape(re.sub("<[^>]+>", "", section)).split())
@@ -68,14 +68,6 @@ def test_the_page_says_the_same_in_both_languages(cli: Cli, folder: Path) -> Non
             if row.startswith('<th scope="row">') and f">{name}<" in row.split("</th>")[0]
         ]
         assert [f">{through}<" in row, closes in row] == [True, True]
-    page = told(cli, folder, "--lang", "de")
-    for german in (
-        "Kommt über",
-        "Nur darüber erreichbar",
-        "4 weitere offene Elemente, 1 Empfänger",
-        "Hat Zeit (1 E",
-    ):
-        assert german in page
 
 
 def test_a_picture_of_the_page_cuts_no_words(cli: Cli, folder: Path) -> None:

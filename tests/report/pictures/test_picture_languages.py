@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import html
 import re
-from functools import partial
 from typing import TYPE_CHECKING
 
 import pytest
@@ -17,24 +16,15 @@ from rosprivacy.report.pictures.legible import legible
 from rosprivacy.report.pictures.mermaid import mermaid
 from rosprivacy.report.pictures.phrases import Phrases
 from rosprivacy.report.pictures.svg import alt_text
-from tests.helpers.graphs import care_home, factory, hospital
-from tests.helpers.languages import OTHERS, english_in
+from tests.helpers.languages import OTHERS, SYSTEMS, english_in
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
 
     from rosprivacy.report.pictures.picture import Picture
     from rosprivacy.result import Result
     from tests.helpers.command import Cli
-
-
-SYSTEMS: dict[str, Callable[[], Result]] = {
-    "care-home": care_home,
-    "hospital": hospital,
-    "run1": partial(factory, 1),
-    "run3": partial(factory, 3),
-}
 
 
 def phrases(result: Result, language: str) -> Phrases:

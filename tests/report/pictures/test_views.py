@@ -98,6 +98,13 @@ def test_what_gets_to_where_it_is_said_to_be_cleaned_is_drawn_and_ends_in_a_bar(
     assert "cleaned" not in lines_of(views.privacy_view(factory(2).analysis)).values()
 
 
+def test_the_picture_of_a_finding_says_where_its_data_is_made() -> None:
+    care = care_home().analysis
+    titles = [views.finding_view(care, finding).title for finding in care.findings]
+    assert "made of Video of /camera at /face_recognizer" in titles[0]
+    assert "How Voice can get from /microphone to /uplink (declared)" in titles
+
+
 def test_findings_of_other_kinds_have_ways_and_words_of_their_own() -> None:
     """Rule S10: what is kept too long, what leaves the EEA; no label calls such a place a leak."""
     found = factory(2).analysis

@@ -10,8 +10,6 @@ from contextlib import chdir
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-import pyoxigraph
-import pyshacl
 import pytest
 from hypothesis import given
 from rdflib import DCTERMS, RDF, RDFS, SKOS, XSD, Graph, Literal, Namespace, URIRef
@@ -43,6 +41,7 @@ from rosprivacy.report.rdf.terms import (
 )
 from tests.helpers.answers import accepting, answer_of
 from tests.helpers.cases import CASES
+from tests.helpers.linked_data import problems, strict
 from tests.helpers.ontologies import ontology
 from tests.helpers.paths import ROOT
 from tests.helpers.systems import PARENTS, System, analysed, statement, systems
@@ -57,9 +56,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.durations import Duration
     from rosprivacy.result import Result
 
-SHAPES = Graph().parse(ROOT / "report" / "rdf" / "findings.shapes.ttl")
 CARE_HOME = ("examples/care-home/care-home.policy.xml", "-l", "examples/care-home/care-home.labels.yaml")
-SYNTAX = {"turtle": pyoxigraph.RdfFormat.TURTLE, "json-ld": pyoxigraph.RdfFormat.JSON_LD}
 VOCABULARY = Vocabulary.of(Category(n, f"urn:test:{n}", n, n, f"{n}.", up) for n, up in PARENTS.items())
 REST: dict[str, Any] = {"rosprivacy": "1.2.3"}
 BASE = "urn:test:"
@@ -86,18 +83,6 @@ def care_home() -> Result:
 @pytest.fixture(scope="module")
 def graph(care_home: Result) -> Graph:
     return rdf_graph(document_of(care_home))
-
-
-def problems(graph: Graph) -> str:
-    conforms, _, text = pyshacl.validate(graph, shacl_graph=SHAPES)
-    return "" if conforms else str(text)
-
-
-def strict(text: str | bytes, form: str) -> Graph:
-    """Read by a parser that allows nothing that the standard does not."""
-    triples = pyoxigraph.parse(text.encode() if isinstance(text, str) else text, SYNTAX[form])
-    lines = "".join(f"{q.triple} .\n" for q in triples)
-    return Graph().parse(data=lines, format="nt")
 
 
 @pytest.fixture(scope="module")

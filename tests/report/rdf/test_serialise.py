@@ -9,7 +9,6 @@ from datetime import UTC, datetime
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-import pyoxigraph
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -39,6 +38,7 @@ from rosprivacy.report.rdf.serialise import SERIALISERS
 from rosprivacy.report.rdf.terms import RP
 from tests.helpers.answers import accepting, answer_of
 from tests.helpers.daily import one_in
+from tests.helpers.linked_data import strict
 from tests.helpers.paths import ROOT
 from tests.helpers.systems import statement
 
@@ -50,7 +50,6 @@ if TYPE_CHECKING:
 
 
 CARE_HOME = ("examples/care-home/care-home.policy.xml", "-l", "examples/care-home/care-home.labels.yaml")
-SYNTAX = {"turtle": pyoxigraph.RdfFormat.TURTLE, "json-ld": pyoxigraph.RdfFormat.JSON_LD}
 TURNED = "\u202eevil\u202c\u2066"
 HOSTILE = [
     '"', '"""', "\\", '\\"', 'a\nb\\"', '\n"', '\n""', "<", "> . <urn:x> <urn:y> <urn:z> . <", '" . <urn:x> <urn:y> "',
@@ -79,12 +78,6 @@ def system(name: str, file: str = "") -> Answer:
 
 def text_of(name: str, form: str) -> str:
     return SERIALISERS[form](rdf_graph(document_of(system(name))))
-
-
-def strict(text: str, form: str) -> Graph:
-    """Read by a parser that allows nothing that the standard does not."""
-    lines = "".join(f"{quad.triple} .\n" for quad in pyoxigraph.parse(text.encode(), SYNTAX[form]))
-    return Graph().parse(data=lines, format="nt")
 
 
 def values(graph: Graph, kind: Any, predicate: Any) -> set[str]:

@@ -27,6 +27,7 @@ from rosprivacy.report.sarif import log as sarif_module
 from rosprivacy.report.sarif.log import sarif
 from tests.helpers.answers import accepting, answer_of, as_json
 from tests.helpers.cases import CASES
+from tests.helpers.fleet_files import policy
 from tests.helpers.paths import ROOT
 from tests.helpers.sarif import EXAMPLES, HOSTILE, analyze, checked, log_of, physical, small_system, way
 from tests.helpers.systems import HIERARCHY, PARENTS, System, analysed, systems
@@ -105,10 +106,10 @@ def test_files_are_named_relative_to_the_repository_wherever_one_stands(tmp_path
     for name in ("care-home.policy.xml", "node.xml", "care-home.labels.yaml"):
         (folder / name).write_text((EXAMPLES / "care-home" / name).read_text())
     named = set()
-    for at, policy in ((folder, "care-home.policy.xml"), (tmp_path / "repo", str(folder / "care-home.policy.xml"))):
+    for at, file in ((folder, "care-home.policy.xml"), (tmp_path / "repo", str(folder / "care-home.policy.xml"))):
         with pytest.MonkeyPatch.context() as patch:
             patch.chdir(at)
-            log = as_json(rosprivacy.analyze([policy], [str(folder / "care-home.labels.yaml")]), "sarif")
+            log = as_json(rosprivacy.analyze([file], [str(folder / "care-home.labels.yaml")]), "sarif")
         places = [
             location["physicalLocation"]["artifactLocation"] for location in checked(log)["results"][0]["locations"]
         ]
@@ -280,13 +281,8 @@ def test_a_file_with_too_many_ways_keeps_every_finding(monkeypatch: pytest.Monke
 
 def test_a_very_long_way_keeps_its_ends(tmp_path: Path) -> None:
     count = 700  # 1,401 elements
-    profiles = ""
-    for i in range(count + 1):
-        topics = f'<topics subscribe="ALLOW"><topic>/t{i - 1}</topic></topics>' if i else ""
-        topics += f'<topics publish="ALLOW"><topic>/t{i}</topic></topics>' if i < count else ""
-        profiles += f'<profile ns="/" node="n{i}">{topics}</profile>\n'
-    enclave = f'<enclave path="/"><profiles>{profiles}</profiles></enclave>'
-    (tmp_path / "p.xml").write_text(f'<policy version="0.2.0"><enclaves>{enclave}</enclaves></policy>')
+    ends = [f"/t{i}" if 0 <= i < count else "" for i in range(-1, count + 1)]
+    (tmp_path / "p.xml").write_text(policy(*(f"/n{i}>{ends[i + 1]}<{ends[i]}" for i in range(count + 1))))
     (tmp_path / "l.yaml").write_text(f"labels: 1\nnodes: {{/n0: {{source: [Video]}}, /n{count}: {{leak: [Video]}}}}\n")
     result = rosprivacy.analyze([str(tmp_path / "p.xml")], [str(tmp_path / "l.yaml")])
     (found, *_) = checked(log_of(result, at=tmp_path))["results"]
