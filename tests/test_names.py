@@ -30,8 +30,7 @@ STORED = {
 # Wings whose names are older than this rule: how many such names each has. A number only falls.
 OLDER = {
     "analysis.suggesting": 4,
-    "explorer": 35,
-    "explorer.web": 30,
+    "explorer": 4,
     "ingest.suggestions": 6,
     "labelling": 25,
     "report.compare": 6,

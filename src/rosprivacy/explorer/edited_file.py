@@ -97,7 +97,7 @@ class FileText:
     def new_entries(self, edits: Sequence[Edit]) -> list[Any]:
         """Return the last word on each entry that edits change."""
         last = {(edit.section, edit.name): edit for edit in edits}
-        return [edit.said for place, edit in last.items() if edit.value != self.says.get(place)]
+        return [edit.statement for place, edit in last.items() if edit.value != self.says.get(place)]
 
     def new_text(self, edits: Sequence[Edit]) -> NewText:
         """Return the text of the file with edits; it means what the session says that it means."""

@@ -99,7 +99,7 @@ class Edit(NamedTuple):
     file: str = ""
 
     @property
-    def said(self) -> Said:
+    def statement(self) -> Said:
         """What the entry says after it."""
         return Said(self.section, self.name, self.value)
 

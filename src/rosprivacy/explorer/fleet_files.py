@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.fleet.alike_robots import Alike
     from rosprivacy.ingest.fleet.fleet_file import Fleet, Robot
     from rosprivacy.ingest.labels.label_file import Labels
-    from rosprivacy.question import Question as Asked
+    from rosprivacy.question import Question
     from rosprivacy.reading.fleet_system import FleetRead, FleetSystem
     from rosprivacy.result import Result
     from rosprivacy.system import System
@@ -97,9 +97,13 @@ class FleetFiles:
     refusal: tuple[str, ...] = ()
 
     def __init__(
-        self, read: FleetRead, asked: Asked, edited: Mapping[str, EditedFile] = {}, digests: Mapping[str, str] = {}
+        self,
+        read: FleetRead,
+        question: Question,
+        edited: Mapping[str, EditedFile] = {},
+        digests: Mapping[str, str] = {},
     ) -> None:
-        self.read, self.asked = read, asked
+        self.read, self.question = read, question
         self._targets = Targets(read.fleet)
         self._edited = dict(edited)  # those that were looked into, by the first of their names
         self._digests = dict(digests)  # of label files, as they were read
@@ -215,8 +219,8 @@ class FleetFiles:
         return EditedFile.of(readings.get((name, False)) or self._text(name), readings)
 
     def _text(self, name: str, *, alone: bool = False) -> FileText:
-        settings = replace(self.asked.settings, include_root=self.fleet.root)
-        return read_file(name, self.asked.vocabulary, settings, alone=alone)
+        settings = replace(self.question.settings, include_root=self.fleet.root)
+        return read_file(name, self.question.vocabulary, settings, alone=alone)
 
     def differences(self, before: Sequence[Edit], after: Sequence[Edit]) -> list[Edit]:
         """Return the edits that make of the files with some edits those with others."""
@@ -241,9 +245,11 @@ class FleetFiles:
             self._digests.setdefault(name, labels.sha256)
         return system
 
-    def tried(self, now: System, asked: Asked, what: WhatIf, edits: Sequence[Edit]) -> tuple[Result, tuple[str, ...]]:
+    def tried(
+        self, now: System, question: Question, trial: WhatIf, edits: Sequence[Edit]
+    ) -> tuple[Result, tuple[str, ...]]:
         """Return the answer if something were so on some robots, and what to tell of it."""
-        return tried_on_robots(now, partial(self.read.tried, *self._meanings(edits)), asked, what)
+        return tried_on_robots(now, partial(self.read.tried, *self._meanings(edits)), question, trial)
 
     def _meanings(self, edits: Sequence[Edit]) -> tuple[dict[tuple[str, bool], Labels], set[str]]:
         """What those that were looked into mean with edits, and the names of those that are not as on the disk."""
@@ -253,9 +259,9 @@ class FleetFiles:
         changed = [file for name, file in self._edited.items() if file.unsaved(_of(name, edits))]
         return labels, {name for file in changed for name, _ in file.readings}
 
-    def ask(self, asked: Asked, edits: Sequence[Edit]) -> None:
+    def ask(self, question: Question, edits: Sequence[Edit]) -> None:
         """Go on with another question: robots about which somebody decided are alike only to each other."""
-        self.read = replace(self.read, question=asked)
+        self.read = replace(self.read, question=question)
         self.read = self._compared_anew(edits)
 
     def _compared_anew(self, edits: Sequence[Edit]) -> FleetRead:
@@ -303,7 +309,7 @@ class FleetFiles:
                 stay, theirs = file.merged(edited[name], _of(name, edits))
                 left = [edit for edit in left if edit.file != name or edit in stay]
                 both += [edit._replace(file=name) for edit in theirs]
-        return FleetFiles(self._compared_anew(edits), self.asked, edited, self._digests), left, tuple(both)
+        return FleetFiles(self._compared_anew(edits), self.question, edited, self._digests), left, tuple(both)
 
 
 def _of(file: str, edits: Sequence[Edit]) -> list[Edit]:

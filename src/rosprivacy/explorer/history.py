@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from rosprivacy.explorer.fleet_files import FleetFiles
     from rosprivacy.explorer.journal import Unsaved
     from rosprivacy.explorer.label_files import RobotFiles
-    from rosprivacy.question import Question as Asked
+    from rosprivacy.question import Question
     from rosprivacy.result import Result
     from rosprivacy.system import System
 
@@ -54,13 +54,13 @@ class History:
         Grows with every change of the state.
     """
 
-    def __init__(self, files: LabelFiles, system: System, asked: Asked) -> None:
+    def __init__(self, files: LabelFiles, system: System, question: Question) -> None:
         self.lock = RLock()
-        self.files, self.asked = files, asked
+        self.files, self.question = files, question
         self.version = 0
         self._edits_made: list[Edit] = []
         self._undone: list[Edit] = []
-        self._now = _Answered(system, answer(system, asked, count_paths=False))
+        self._now = _Answered(system, answer(system, question, count_paths=False))
         self._last: tuple[str, _Answered] | None = None  # edits, as text, before the last edit, undo or redo
         self._journal = Journal()
         self._watched = WatchedFiles()
@@ -95,7 +95,7 @@ class History:
         with self.lock:
             if self._now.whole is None:
                 uncounted = self._now.uncounted
-                whole = uncounted if uncounted.options.count_paths else answer(self._now.system, self.asked)
+                whole = uncounted if uncounted.options.count_paths else answer(self._now.system, self.question)
                 self._now = self._now._replace(whole=whole)
             assert self._now.whole is not None
             return self._now.whole
@@ -186,7 +186,7 @@ class History:
     def _analyse(self, edits: Sequence[Edit]) -> None:
         """Have the answer after edits; if they are wrong, that of before is kept."""
         system = self.files.system(edits)
-        self._now = _Answered(system, answer(system, self.asked, count_paths=False, before=self.uncounted))
+        self._now = _Answered(system, answer(system, self.question, count_paths=False, before=self.uncounted))
         self._last = None
 
     def check_that_it_changes(self, place: str, *, file: bool = False) -> None:
@@ -293,8 +293,8 @@ class History:
 
     def _other_files(self) -> list[tuple[str, str]]:
         """The files that the answer rests on and that answers do not go to, with their hashes."""
-        asked = {key: self.uncounted.assumptions.get(key) for key in OF_QUESTION}
-        return [*self.files.other_files, *files_in(asked)]
+        assumed = {key: self.uncounted.assumptions.get(key) for key in OF_QUESTION}
+        return [*self.files.other_files, *files_in(assumed)]
 
     def merge(self) -> tuple[Edit, ...]:
         """Read the label file anew, and make the edits again on what it says now.
@@ -326,24 +326,24 @@ class History:
 
     # --- another question ---------------------------------------------------------------------------------------
 
-    def ask(self, asked: Asked) -> None:
+    def ask(self, question: Question) -> None:
         """Have the answer to another question, such as one with other decisions."""
-        self._ask(asked)
+        self._ask(question)
         self._analyse(self._edits_made)
 
-    def _ask(self, asked: Asked) -> None:
-        self.asked = asked
-        self.files.ask(asked, self._edits_made)
+    def _ask(self, question: Question) -> None:
+        self.question = question
+        self.files.ask(question, self._edits_made)
 
     @contextmanager
     def undone_if_it_fails(self) -> Iterator[None]:
         """Go back to the question and the answer of before, if something fails; else it is a new version."""
-        asked, now = self.asked, self._now
+        question, now = self.question, self._now
         try:
             yield
         except BaseException:
-            if asked is not self.asked:
-                self._ask(asked)
+            if question is not self.question:
+                self._ask(question)
             self._now = now
             raise
         self.version += 1

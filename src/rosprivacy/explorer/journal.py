@@ -280,4 +280,4 @@ def _text(base: Base, edits: Iterable[Edit]) -> str:
 
 
 def _line(edit: Edit) -> str:
-    return f"{json.dumps(edit if edit.file else edit.said)}\n"
+    return f"{json.dumps(edit if edit.file else edit.statement)}\n"

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.explorer.edited_file import Conflict, Saved
     from rosprivacy.explorer.scenarios import WhatIf
-    from rosprivacy.question import Question as Asked
+    from rosprivacy.question import Question
     from rosprivacy.result import Result
     from rosprivacy.system import System
 
@@ -74,38 +74,38 @@ class RobotFiles:
     outliers: frozenset[str] = frozenset()  # robots that are not read as most of their model are
 
     def __init__(
-        self, read: System, asked: Asked, files: Sequence[Labels], edited: EditedFile, at: int = 0,
+        self, read: System, question: Question, files: Sequence[Labels], edited: EditedFile, at: int = 0,
         other_files: Iterable[tuple[str, str]] = (), refusal: tuple[str, ...] = (),
     ) -> None:  # fmt: skip
-        self.read, self.asked, self.other_files, self.refusal = read, asked, tuple(other_files), refusal
+        self.read, self.question, self.other_files, self.refusal = read, question, tuple(other_files), refusal
         self._files, self._edited, self._at = tuple(files), edited, at
 
     @classmethod
-    def begin(cls, policies: Sequence[str], labels: Sequence[str | Labels], asked: Asked) -> Self:
+    def begin(cls, policies: Sequence[str], labels: Sequence[str | Labels], question: Question) -> Self:
         """Read policies and label files; the first of these that is a person's is edited. It need not be there yet."""
         where = chosen(labels)
-        own = read_file(None if where is None else labels[where], asked.vocabulary, asked.settings)
+        own = read_file(None if where is None else labels[where], question.vocabulary, question.settings)
         named = list(labels)
         if where is None:
             named.append(own.labels)
         else:
             named[where] = own.labels
-        files = read_label_files(tuple(named), asked.vocabulary, asked.settings)
+        files = read_label_files(tuple(named), question.vocabulary, question.settings)
         at = next(i for i, file in enumerate(files) if file is own.labels)
-        read = robot_system(tuple(policies), tuple(files), asked)
+        read = robot_system(tuple(policies), tuple(files), question)
         elsewhere = {(file.file, file.sha256) for file in named if isinstance(file, Labels)}  # edited, or from memory
         beside = (file for file in files_in(read.rests_on) if file not in elsewhere)
-        return cls(read, asked, files, EditedFile.of(own), at, beside)
+        return cls(read, question, files, EditedFile.of(own), at, beside)
 
     @classmethod
-    def stored(cls, system: System, asked: Asked) -> Self:
+    def stored(cls, system: System, question: Question) -> Self:
         """Return what refuses each change: no file speaks of what is in a database.
 
         What people say there stands in its roles, which are more than the entries of a label file and can be written by
         several people at once; so they are changed there.
         """
-        own = read_file(None, asked.vocabulary, asked.settings)
-        return cls(system, asked, (), EditedFile.of(own), refusal=SHOWN_ONLY)
+        own = read_file(None, question.vocabulary, question.settings)
+        return cls(system, question, (), EditedFile.of(own), refusal=SHOWN_ONLY)
 
     @property
     def name(self) -> str:
@@ -159,13 +159,15 @@ class RobotFiles:
         assert self.read.under is not None, "of one robot"
         return self.read.under(tuple(files))
 
-    def tried(self, now: System, asked: Asked, what: WhatIf, _edits: Sequence[Edit]) -> tuple[Result, tuple[str, ...]]:
+    def tried(
+        self, now: System, question: Question, trial: WhatIf, _edits: Sequence[Edit]
+    ) -> tuple[Result, tuple[str, ...]]:
         """Return the answer if something were so, and what to tell of it."""
-        return tried(now, asked, what)
+        return tried(now, question, trial)
 
-    def ask(self, asked: Asked, _edits: Sequence[Edit]) -> None:
+    def ask(self, question: Question, _edits: Sequence[Edit]) -> None:
         """Go on with another question."""
-        self.asked = asked
+        self.question = question
 
     def save(self, edits: Sequence[Edit]) -> Saved | Conflict:
         """Write edits into it: only the lines that they are about, and only over what was read."""
@@ -185,7 +187,7 @@ class RobotFiles:
         """Read it anew, and hold edits against what it says now, as ``EditedFile.merged``; this here stays as it is."""
         now = self._read(self.file)
         left, both = self._edited.merged(now, edits)
-        return RobotFiles(self.read, self.asked, self._files, now, self._at, self.other_files), left, both
+        return RobotFiles(self.read, self.question, self._files, now, self._at, self.other_files), left, both
 
     def _read(self, file: str) -> EditedFile:
-        return EditedFile.of(read_file(file or None, self.asked.vocabulary, self.asked.settings))
+        return EditedFile.of(read_file(file or None, self.question.vocabulary, self.question.settings))

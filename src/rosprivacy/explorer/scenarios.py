@@ -101,11 +101,11 @@ class Scenario(NamedTuple):
     remarks: tuple[str, ...] = ()
 
 
-def tried(system: System, question: Question, what: WhatIf) -> tuple[Result, tuple[str, ...]]:
+def tried(system: System, question: Question, trial: WhatIf) -> tuple[Result, tuple[str, ...]]:
     """Return the answer if something were so, and what to tell of it."""
-    if what.robots:
+    if trial.robots:
         raise _not_tried("names robots, and this is one robot", "leave robots away")
-    grants, labels = _cut(system.policies, what), _stated(question, what)
+    grants, labels = _cut(system.policies, trial), _stated(question, trial)
     files = (*system.labels, labels) if labels else system.labels
     remarks: tuple[str, ...] = ()
     if grants:
@@ -117,10 +117,10 @@ def tried(system: System, question: Question, what: WhatIf) -> tuple[Result, tup
         changed = system.under(files)
     else:
         changed = system
-    return answer(_with_steps(_doubting(changed, question, what), what), question), remarks
+    return answer(_with_steps(_doubting(changed, question, trial), trial), question), remarks
 
 
-def tried_on_robots(now: System, read: ReadFleet, question: Question, what: WhatIf) -> tuple[Result, tuple[str, ...]]:
+def tried_on_robots(now: System, read: ReadFleet, question: Question, trial: WhatIf) -> tuple[Result, tuple[str, ...]]:
     """Return the answer of the fleet if something were so on some robots, and what to tell of it.
 
     Parameters
@@ -129,11 +129,11 @@ def tried_on_robots(now: System, read: ReadFleet, question: Question, what: What
         Makes the fleet with something otherwise on some robots.
     """
     assert isinstance(now, FleetSystem), "of a fleet"
-    _check_robots(now.fleet, what.robots)
-    groups = (group for group in now.groups if any(robot.id in what.robots for robot in group.robots))
+    _check_robots(now.fleet, trial.robots)
+    groups = (group for group in now.groups if any(robot.id in trial.robots for robot in group.robots))
     policies = {policy.file: policy for group in groups for policy in now.members[group.robots[0].id].policies}
-    system, missing = read(what.robots, Tried(frozenset(_cut(policies.values(), what)), _stated(question, what)))
-    result = answer(_filtered(_doubting(system, question, what), now.fleet, what), question)
+    system, missing = read(trial.robots, Tried(frozenset(_cut(policies.values(), trial)), _stated(question, trial)))
+    result = answer(_filtered(_doubting(system, question, trial), now.fleet, trial), question)
     return result, tuple(dict.fromkeys(map(str, missing)))
 
 
@@ -147,20 +147,20 @@ def _check_robots(fleet: Fleet, robots: Collection[str]) -> None:
         raise InputErrors([InputError(TRIED, 0, problem, hint) for problem in problems])
 
 
-def _filtered(system: System, fleet: Fleet, what: WhatIf) -> System:
+def _filtered(system: System, fleet: Fleet, trial: WhatIf) -> System:
     """The fleet with the steps on each robot; a filter there is read by wildcards of its robot and its domain only."""
-    if not what.steps:
+    if not trial.steps:
         return system
     domains = {robot.id: robot.domain for robot in (*fleet.robots, *fleet.infrastructure)}
     elements, wild = system.graph.elements, open_ended(system.graph)
     names = {element.shown_as for element in elements}
     changed = False
-    for robot in dict.fromkeys(element.robot for element in elements if element.robot in what.robots):
-        steps = tuple(step for each in what.steps for step in _on(each, robot, what.robots, names))
+    for robot in dict.fromkeys(element.robot for element in elements if element.robot in trial.robots):
+        steps = tuple(step for each in trial.steps for step in _on(each, robot, trial.robots, names))
         if steps:
             near = {robot, pseudo_robot(domains[robot])} if domains[robot] else {robot}
             read_by = {kind: frozenset(v for v in at if elements[v].robot in near) for kind, at in wild.items()}
-            system = _with_steps(system, what._replace(steps=steps), read_by)
+            system = _with_steps(system, trial._replace(steps=steps), read_by)
             changed = True
     if not changed:
         raise _not_tried("is on none of these robots", LOOK_AGAIN)
@@ -180,32 +180,32 @@ def _on(step: ProposedStep, robot: str, robots: Collection[str], names: Collecti
         yield replace(step, between=between, channel=channel)
 
 
-def _cut(policies: Iterable[Policy], what: WhatIf) -> list[Grant]:
+def _cut(policies: Iterable[Policy], trial: WhatIf) -> list[Grant]:
     """The lines that are set to DENY."""
     grants = [grant for policy in policies for grant in policy.grants]
-    named = [grant for grant in grants if grant.allow and (grant.place.file, grant.place.line) in what.cut]
+    named = [grant for grant in grants if grant.allow and (grant.place.file, grant.place.line) in trial.cut]
     lines = {(grant.place.file, grant.place.line) for grant in named}
     hint = "name a line that allows something"
-    problems = [InputError(*place, "allows nothing", hint) for place in what.cut if place not in lines]
+    problems = [InputError(*place, "allows nothing", hint) for place in trial.cut if place not in lines]
     if problems:
         raise InputErrors(problems)
-    chosen = {grant for step in what.steps if step.kind == DENY for grant in step.grants}
+    chosen = {grant for step in trial.steps if step.kind == DENY for grant in step.grants}
     return named + [grant for grant in grants if grant in chosen]
 
 
-def _stated(question: Question, what: WhatIf) -> Labels | None:
+def _stated(question: Question, trial: WhatIf) -> Labels | None:
     """What a label file would say; None for nothing."""
-    flows: list[dict[str, Any]] = [{"from": a, "to": b, "never": list(kinds)} for a, b, kinds in what.filters]
-    flows += [{"from": a, "to": b} for a, b in what.flows]
-    if not (flows or what.elements):
+    flows: list[dict[str, Any]] = [{"from": a, "to": b, "never": list(kinds)} for a, b, kinds in trial.filters]
+    flows += [{"from": a, "to": b} for a, b in trial.flows]
+    if not (flows or trial.elements):
         return None
-    entries = {"labels": 1, "elements": dict(what.elements), "flows": flows}
+    entries = {"labels": 1, "elements": dict(trial.elements), "flows": flows}
     return parse_labels(entries, question.vocabulary, name=TRIED, bounds=question.settings.bounds)
 
 
-def _with_steps(system: System, what: WhatIf, wild: Mapping[str, frozenset[int]] | None = None) -> System:
+def _with_steps(system: System, trial: WhatIf, wild: Mapping[str, frozenset[int]] | None = None) -> System:
     """The system after reviews and filters; what is set to DENY is gone already. ``wild`` is as of ``with_changes``."""
-    steps = [step for step in what.steps if step.kind != DENY]
+    steps = [step for step in trial.steps if step.kind != DENY]
     if not steps:
         return system
     elements = system.graph.elements
@@ -224,16 +224,16 @@ def _with_steps(system: System, what: WhatIf, wild: Mapping[str, frozenset[int]]
     return replace(system, graph=graph, bound=bound)
 
 
-def _doubting(system: System, question: Question, what: WhatIf) -> System:
+def _doubting(system: System, question: Question, trial: WhatIf) -> System:
     """The system without what some sanitizers are said to clean."""
     elements = dict(system.bound.elements)
-    for kind, name, kinds in what.doubted:
+    for kind, name, kinds in trial.doubted:
         section = section_of(kind, name, TRIED)
         hierarchy = question.vocabulary.hierarchy
         cleans_nothing = True
         for vertex, statements in system.bound.elements.items():
             element = system.graph.elements[vertex]
-            if what.robots and element.robot not in what.robots:
+            if trial.robots and element.robot not in trial.robots:
                 continue
             if element.kind in KINDS[section] and same_name(element.name, name):
                 left = tuple(each for each in statements if not _cleans(each, kinds, hierarchy))
@@ -242,7 +242,7 @@ def _doubting(system: System, question: Question, what: WhatIf) -> System:
         if cleans_nothing:
             problem = f"{shown(name)!r} is no sanitizer" + (f" of {', '.join(kinds)}" if kinds else "")
             raise _not_tried(problem, "name one that cleans something")
-    return replace(system, bound=replace(system.bound, elements=elements)) if what.doubted else system
+    return replace(system, bound=replace(system.bound, elements=elements)) if trial.doubted else system
 
 
 def _cleans(statement: Statement, kinds: tuple[str, ...], hierarchy: Hierarchy) -> bool:
@@ -255,19 +255,19 @@ def _cleans(statement: Statement, kinds: tuple[str, ...], hierarchy: Hierarchy) 
     )
 
 
-def summary_of(what: WhatIf) -> str:
+def summary_of(trial: WhatIf) -> str:
     """Return in few words how much is tried.
 
     >>> summary_of(WhatIf(cut=(("p.xml", 3),), doubted=(("nodes", "/blur", ()),)))
     '1 line cut, 1 sanitizer doubted'
     """
     parts: list[tuple[Sized, str, str]] = [
-        (what.steps, "change", "made"),
-        (what.cut, "line", "cut"),
-        (what.filters, "flow", "filtered"),
-        (what.elements, "element", "added"),
-        (what.flows, "flow", "added"),
-        (what.doubted, "sanitizer", "doubted"),
+        (trial.steps, "change", "made"),
+        (trial.cut, "line", "cut"),
+        (trial.filters, "flow", "filtered"),
+        (trial.elements, "element", "added"),
+        (trial.flows, "flow", "added"),
+        (trial.doubted, "sanitizer", "doubted"),
     ]
     return ", ".join(f"{counted(len(part), noun)} {verb}" for part, noun, verb in parts if part)
 
@@ -308,8 +308,8 @@ def _free(name: str, first: WhatIf, second: WhatIf) -> str:
     return next(other for number in count(2) if (other := f"{name} {number}") not in taken)
 
 
-def _stated_of(name: str, what: WhatIf) -> object:
-    return what.elements[name], [flow for flow in what.flows if name in map(_name_of, flow)]
+def _stated_of(name: str, trial: WhatIf) -> object:
+    return trial.elements[name], [flow for flow in trial.flows if name in map(_name_of, flow)]
 
 
 def _renamed(end: End, names: Mapping[str, str]) -> End:

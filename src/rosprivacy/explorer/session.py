@@ -76,8 +76,8 @@ class Session:
         Where decisions about findings are written; None where none was named.
     """
 
-    def __init__(self, files: LabelFiles, system: System, asked: Asked, decisions_file: str | None = None) -> None:
-        self.history = History(files, system, asked)
+    def __init__(self, files: LabelFiles, system: System, question: Asked, decisions_file: str | None = None) -> None:
+        self.history = History(files, system, question)
         self.decisions_file = decisions_file
         self._scenarios: dict[str, Scenario] = {}
 
@@ -114,9 +114,9 @@ class Session:
             With every problem of the input.
         """
         settings = settings or Settings()
-        asked = question_of(_with_decisions_there(settings))
-        files = RobotFiles.begin(policies, labels, asked)
-        session = cls(files, files.read, asked, settings.decisions)
+        question = question_of(_with_decisions_there(settings))
+        files = RobotFiles.begin(policies, labels, question)
+        session = cls(files, files.read, question, settings.decisions)
         return session._journalled(journal, tuple(policies), resume=resume)
 
     @classmethod
@@ -135,10 +135,11 @@ class Session:
         (('carrier',), 24)
         """
         settings = settings or Settings()
-        asked = question_of(_with_decisions_there(settings))
-        asked = asked._replace(every=settings.decisions is not None)  # what can be decided about is more than is shown
-        files = FleetFiles(read_once(file, asked), asked)
-        session = cls(files, files.system(()), asked, settings.decisions)
+        question = question_of(_with_decisions_there(settings))
+        # what can be decided about is more than is shown
+        question = question._replace(every=settings.decisions is not None)
+        files = FleetFiles(read_once(file, question), question)
+        session = cls(files, files.system(()), question, settings.decisions)
         return session._journalled(journal, (file,), resume=resume)
 
     @classmethod
@@ -154,13 +155,13 @@ class Session:
         """
         from rosprivacy.reading.stored_system import stored_system  # noqa: PLC0415 - light start
 
-        asked = question_of(settings or Settings())._replace(every=True)
-        return cls.of_stored(stored_system(driver, asked.vocabulary), asked)
+        question = question_of(settings or Settings())._replace(every=True)
+        return cls.of_stored(stored_system(driver, question.vocabulary), question)
 
     @classmethod
-    def of_stored(cls, system: System, asked: Asked) -> Session:
+    def of_stored(cls, system: System, question: Asked) -> Session:
         """Return a session with what was read from a database."""
-        return cls(RobotFiles.stored(system, asked), system, asked)
+        return cls(RobotFiles.stored(system, question), system, question)
 
     def _journalled(self, folder: Path | None, named_files: tuple[str, ...], *, resume: bool) -> Session:
         if folder is not None:
@@ -394,7 +395,7 @@ class Session:
         """
         with self.history.lock:
             edit = self._entry_called(name, kind, only_this_robot=only_this_robot)
-            return self.history.do(edit._replace(value=entry_of(label, edit.value, self.history.asked.vocabulary)))
+            return self.history.do(edit._replace(value=entry_of(label, edit.value, self.history.question.vocabulary)))
 
     def unlabel(self, name: str, *, kind: str = "node", only_this_robot: bool = False) -> Change:
         """Take away what the label file says of an element, and what was said of it here; parameters as of ``label``.
@@ -476,7 +477,7 @@ class Session:
         """
         with self.history.lock:
             self.history.check_that_it_changes(name)
-            result, remarks = self._files.tried(self.history.system, self.history.asked, what, self.history.edits)
+            result, remarks = self._files.tried(self.history.system, self.history.question, what, self.history.edits)
             scenario = Scenario(name, what, self.version, result, compared(self.uncounted, result), remarks)
             self._scenarios[name] = scenario
             return scenario
@@ -537,9 +538,9 @@ class Session:
 
     def _judge(self, decisions: Decisions) -> None:
         """Have the answer under what people decided."""
-        asked = self.history.asked
-        settings = replace(asked.settings, decisions=self.decisions_file)
-        self.history.ask(asked._replace(settings=settings, decisions=judged(decisions, settings)))
+        question = self.history.question
+        settings = replace(question.settings, decisions=self.decisions_file)
+        self.history.ask(question._replace(settings=settings, decisions=judged(decisions, settings)))
 
 
 FleetSession = Session  # the public name of one with a fleet

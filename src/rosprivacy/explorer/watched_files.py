@@ -34,7 +34,7 @@ class WatchedFiles:
     """Remembers how files look, and what they held then."""
 
     def __init__(self) -> None:
-        self._seen: dict[str, tuple[_Look, str]] = {}
+        self._looks: dict[str, tuple[_Look, str]] = {}
         self._first: dict[str, str | None] = {}  # of security files: what they held when they were looked at first
 
     def changed(self, read: Iterable[tuple[str, str]]) -> tuple[str, ...]:
@@ -59,7 +59,7 @@ class WatchedFiles:
                 self._first.setdefault(file, None)
                 return None
             look = _Look(status.st_size, status.st_mtime_ns, status.st_ctime_ns, status.st_ino)
-            seen = self._seen.get(file)
+            seen = self._looks.get(file)
             if seen and seen[0] == look:
                 return seen[1]
             data = contents(Path(file))
@@ -69,7 +69,7 @@ class WatchedFiles:
         digest = digest_of(data)
         self._first.setdefault(file, digest if SECURED in data else None)
         if max(look.modified, look.changed) + SETTLED < time.time_ns():
-            self._seen[file] = look, digest
+            self._looks[file] = look, digest
         return digest
 
 

@@ -58,34 +58,6 @@ def test_a_file_that_is_not_there_yet_was_changed_by_nobody(explore: Explore, tm
     assert 'role="alert"' in client.get("/").text
 
 
-def test_undo_and_redo_go_to_the_start_and_back(explore: Explore, tmp_path: Path) -> None:
-    explorer = explore(BARE, tmp_path / "new.labels.yaml")
-    client = explorer.client()
-    label(client, CAMERA, "source", **VIDEO)
-    label(client, ARCHIVE, "leak", about="Video")
-    leak = explorer.session.result.to("json1")
-    for _ in range(2):
-        assert client.post("/undo", data={"version": version(client)}).status_code == 303
-    assert explorer.session.edits == ()
-    assert client.post("/undo", data={"version": version(client)}).status_code == 303  # nothing happens
-    for _ in range(2):
-        client.post("/redo", data={"version": version(client)})
-    assert explorer.session.result.to("json1") == leak
-
-
-def test_a_window_that_did_not_see_the_last_answer_changes_nothing(explore: Explore, tmp_path: Path) -> None:
-    explorer = explore(BARE, tmp_path / "new.labels.yaml")
-    client = explorer.client()
-    label(client, CAMERA, "source", **VIDEO)
-    for path in POSTS:
-        old = {"version": "0", "element": ARCHIVE, "role": "leak", "about": "Video"}
-        answer = client.post(path, data=old)
-        assert answer.status_code == 409
-        assert "Another window changed something meanwhile" in answer.text
-        assert 'data-version="1"' in answer.text
-    assert len(explorer.session.edits) == 1
-
-
 def test_what_the_labels_contradict_is_told_and_nothing_is_changed(explore: Explore, tmp_path: Path) -> None:
     file = tmp_path / "own.labels.yaml"
     file.write_text("labels: 1\nnodes:\n  /safety_camera: {source: {Video: [/safety_video]}}\n", "utf-8")
@@ -282,15 +254,6 @@ def test_what_is_switched_off_is_neither_asked_nor_drawn(explore: Explore, tmp_p
         assert not none.xpath("//ol[@class='rows']//a[starts-with(@id, 'first') or starts-with(@id, 'exits')]")
 
 
-def test_what_is_switched_off_stays_in_the_sentence_of_the_verdict(explore: Explore, tmp_path: Path) -> None:
-    client = explore(BARE, copied(FACTORY / "run2.labels.yaml", tmp_path)).client()
-    shown, none = (html.fromstring(client.get(f"/?{view}").text) for view in ("", "hide=Video&hide=PersonalData"))
-    said = "//div[starts-with(@class, 'verdict')]"
-    assert "place" in shown.xpath(f"string({said})")
-    assert none.xpath(f"string({said})") == shown.xpath(f"string({said})")
-    assert "Nothing is left to decide" not in none.text_content()
-
-
 def test_the_report_of_now_is_a_file_to_keep(explore: Explore, tmp_path: Path) -> None:
     client = explore(BARE, copied(FACTORY / "run2.labels.yaml", tmp_path), language="de").client()
     answer = client.get("/report")
@@ -333,15 +296,25 @@ def test_no_bytes_in_the_place_of_a_form_change_anything(opened: Explorer, body:
 
 
 @pytest.mark.parametrize("language", ["de", "fr"])
-def test_the_page_speaks_the_readers_language(explore: Explore, tmp_path: Path, language: str) -> None:
-    file = copied(FACTORY / "run2.labels.yaml", tmp_path)
-    page = explore(BARE, file, language=language).client().get(f"/?at={node('/navigator')}").text
-    whole = html.fromstring(page)
-    assert whole.get("lang") == language
-    for left in whole.xpath("//bdi | //*[@class='name'] | //option | //*[@lang='en'] | //title"):
-        left.drop_tree()
-    marks = whole.xpath("//@aria-label | //@placeholder | //@title")
-    assert english_in(" ".join([whole.text_content(), *marks]), language, ["rosprivacy explore"]) == []
+def test_elements_findings_and_trials_speak_the_readers_language(
+    explore: Explore, tmp_path: Path, language: str
+) -> None:
+    explorer = explore(BARE, copied(FACTORY / "run2.labels.yaml", tmp_path), language=language)
+    client, filmed = explorer.client(), node("/robot_camera")
+    trial = {"version": "0", "what": "storage", "element": filmed, "days": "30", "country": "DE"}
+    addresses = [client.post("/try", data=trial).headers["location"]]
+    addresses += [
+        f"/?finding={explorer.session.findings[0].id}&closes=1",
+        f"/?at={filmed}",
+        f"/?at={node('/navigator')}",
+    ]
+    for address in addresses:
+        whole = html.fromstring(client.get(address).text)
+        assert whole.get("lang") == language
+        for foreign in whole.xpath("//bdi | //*[@class='name'] | //option | //*[@lang='en'] | //title | //code"):
+            foreign.drop_tree()
+        marks = whole.xpath("//@aria-label | //@placeholder | //@title")
+        assert english_in(" ".join([whole.text_content(), *marks]), language, ["rosprivacy explore"]) == []
 
 
 def test_every_element_can_be_looked_at_whatever_is_said_of_it(explore: Explore, tmp_path: Path) -> None:

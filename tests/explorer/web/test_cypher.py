@@ -11,8 +11,7 @@ from lxml import html
 from starlette.testclient import TestClient
 
 from rosprivacy.explorer.element_ids import element_id
-from rosprivacy.explorer.web.application import Site
-from rosprivacy.explorer.web.cypher_site import AT_ONCE, BOXES, LETTERS, LONGEST_CELL, LONGEST_TEXT, ROWS, StoredSite
+from rosprivacy.explorer.web.cypher_site import AT_ONCE, BOXES, LETTERS, LONGEST_CELL, LONGEST_TEXT, ROWS
 from rosprivacy.explorer.web.guard import LARGEST
 from rosprivacy.private_neo4j import connection
 from rosprivacy.private_neo4j.connection import Connection
@@ -374,8 +373,3 @@ def test_it_speaks_the_language_of_its_reader(loaded: Connection, language: str,
             node for node in page.xpath("//body//*[not(ancestor-or-self::*[@lang='en'])]/text()") if " the " in node
         ]
         assert english == []
-
-
-def test_a_site_of_files_is_none_of_a_database() -> None:
-    assert not Site.asks
-    assert StoredSite.asks

@@ -10,7 +10,7 @@ from lxml import html
 
 from rosprivacy.explorer.element_ids import element_id
 from rosprivacy.explorer.web.answered_entries import left_of
-from rosprivacy.explorer.web.review_panes import asked
+from rosprivacy.explorer.web.review_panes import open_elements
 from rosprivacy.reading.fleet_system import answer_fleet
 from rosprivacy.report.catalogs.words import Words
 from rosprivacy.settings import Settings
@@ -53,7 +53,7 @@ def on(robot: str, name: str) -> str:
 
 
 def robots_asked(explorer: Explorer) -> list[str]:
-    return [one.element.robot for one in asked(explorer.site.standing) if not one.left]
+    return [one.element.robot for one in open_elements(explorer.site.standing) if not one.note]
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
@@ -84,7 +84,7 @@ def test_robots_that_are_not_as_their_model_are_asked_about_first(explore: Explo
     assert "carrier_lent" in heading(page(client))
     assert "carrier_lent: not as its model." in page(client).text_content()
     to_the_end_of_sources(client)
-    rows = [one.element for one in asked(explorer.site.standing) if not one.left]
+    rows = [one.element for one in open_elements(explorer.site.standing) if not one.note]
     rows = [element for element in rows if element.name != "/rosout"]  # a log that nobody reads waits for all others
     of_carriers = [element.robot for element in rows if element.robot.startswith("carrier")]
     assert of_carriers
@@ -111,7 +111,7 @@ def test_an_answer_is_of_the_model_or_of_one_robot_as_a_person_chooses(explore: 
     assert [one.get("value") for one in chosen if one.get("checked")] == ["model"]
     recorder = f"/?at={on('carrier_lent', '/recorder')}"
     assert answer(client, "leak", recorder, whose="robot").status_code == 303
-    assert on("carrier_01", "/recorder") in {one.id for one in asked(explorer.site.standing)}
+    assert on("carrier_01", "/recorder") in {one.id for one in open_elements(explorer.site.standing)}
     assert answer(client, "conduit", f"/?at={on('carrier_01', '/recorder')}", whose="model").status_code == 303
     client.post("/save", data={"version": str(explorer.session.version)})
     model, own = ((hospital.parent / f"{name}.labels.yaml").read_text() for name in ("carrier", "carrier_lent"))
@@ -132,7 +132,7 @@ def test_what_is_left_to_the_engineer_is_left_of_every_robot_that_reads_the_file
     to_the_end_of_sources(client)
     recorder = f"/?at={on('carrier_01', '/recorder')}"
     assert answer(client, "skip", recorder, whose="model", note="does it keep them?").status_code == 303
-    left = {one.element.full_name for one in asked(explorer.site.standing) if one.left}
+    left = {one.element.full_name for one in open_elements(explorer.site.standing) if one.note}
     assert left == {"carrier_01:/recorder", "carrier_lent:/recorder"}
     assert "does it keep them?" in page(client, "/?step=summary").text_content()
     back = client.post("/undo", data={"version": str(explorer.session.version)})
@@ -155,7 +155,7 @@ def test_what_no_file_can_answer_is_told_as_open_and_never_asked(
     explorer = reviewed(explore, fleet, language=language)
     client, words = explorer.client(), Words(language)
     to_the_end(client)
-    open_now = {one.element.full_name for one in asked(explorer.site.standing)}
+    open_now = {one.element.full_name for one in open_elements(explorer.site.standing)}
     assert "bare:/recorder" in open_now
     summary = page(client, "/?step=summary")
     assert words("review.beyond") in summary.text_content()

@@ -93,7 +93,7 @@ def test_no_other_token_opens(link: str) -> None:
 
 def test_the_cookie_of_the_page_opens_nothing_before_the_link_was_used() -> None:
     room = Room()
-    room.client.cookies.set(room.door.cookie, room.door._kept)
+    room.client.cookies.set(room.door.cookie, room.door._secret)
     assert room.client.get("/").status_code == 401
 
 
@@ -107,7 +107,7 @@ def test_no_other_cookie_opens(value: str) -> None:
 
 def test_cookies_of_other_programs_on_this_machine_disturb_nothing() -> None:
     room = Room().enter()
-    mine = f"{room.door.cookie}={room.door._kept}"
+    mine = f"{room.door.cookie}={room.door._secret}"
     odd = f'_xsrf=2|a|b; x={{"a": [1]}}; =; rosprivacy-1=other; {mine}; b@d[]=1'
     room.client.cookies.clear()
     assert room.client.get("/", headers={"cookie": odd}).status_code == 200
@@ -147,7 +147,7 @@ def test_who_does_not_say_where_it_comes_from_changes_nothing() -> None:
 def test_the_page_itself_is_let_in_under_both_names() -> None:
     room = Room().enter()
     assert room.client.post("/label", headers=OURS, content="a=1").text == "inner"
-    cookie = {"cookie": f"{room.door.cookie}={room.door._kept}"}
+    cookie = {"cookie": f"{room.door.cookie}={room.door._secret}"}
     other = {"host": f"localhost:{PORT}", "origin": f"http://localhost:{PORT}", **cookie}
     assert room.stranger().post("/label", headers=other, content="a=1").text == "inner"
 

@@ -8,7 +8,7 @@ import pytest
 from lxml import html
 
 from rosprivacy.explorer.element_ids import element_id
-from rosprivacy.explorer.web.review_panes import asked
+from rosprivacy.explorer.web.review_panes import open_elements
 from rosprivacy.report.catalogs.words import Words
 from tests.helpers.explorers import Explorer, label, node
 from tests.helpers.little_robots import policy_of
@@ -140,7 +140,7 @@ def test_a_row_says_what_is_surest_and_a_list_with_a_likely_source_is_not_folded
     rows = rows_of(page)
     assert rows[0][0] == page.xpath("string(//h2[@id='h-element']/bdi)") == "/camera", "it is in hand first"
     assert rows[0][1].endswith("perhaps brings in: video of persons")
-    assert asked(explorer.site.standing)[0].element.name == "/camera", "a review begins with it, too"
+    assert open_elements(explorer.site.standing)[0].element.name == "/camera", "a review begins with it, too"
     told = [one.xpath("string(.//p/b)") for one in page.cssselect(".offer")]
     assert told.index("It perhaps brings in: video of persons") == 0
     assert "It perhaps brings in: body pose" in told[1:]

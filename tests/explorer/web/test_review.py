@@ -9,7 +9,7 @@ from lxml import html
 
 from rosprivacy.explorer.element_ids import element_id
 from rosprivacy.explorer.web.answered_entries import left_of
-from rosprivacy.explorer.web.review_panes import asked
+from rosprivacy.explorer.web.review_panes import open_elements
 from rosprivacy.report.catalogs.words import Words
 from tests.helpers.explorers import BARE, FACTORY, Explorer, copied, node
 from tests.helpers.languages import english_in
@@ -261,4 +261,4 @@ def test_a_note_of_something_else_hides_no_question(explore: Explore, tmp_path: 
 
 
 def asked_names(explorer: Explorer) -> set[str]:
-    return {one.element.name for one in asked(explorer.site.standing)}
+    return {one.element.name for one in open_elements(explorer.site.standing)}

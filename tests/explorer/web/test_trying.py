@@ -14,7 +14,6 @@ from lxml import html
 from rosprivacy.explorer.element_ids import element_id
 from rosprivacy.explorer.web.kept_trials import BOUND
 from tests.helpers.explorers import BARE, FACTORY, FILTERED, Explorer, copied, label, node, version
-from tests.helpers.languages import english_in
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -270,19 +269,6 @@ def test_reading_is_trying_but_not_deciding(explore: Explore, labels: Path, tmp_
     assert explorer.session.scenarios == {}
 
 
-def test_a_window_that_did_not_see_the_last_answer_tries_and_decides_nothing(
-    explore: Explore, labels: Path, tmp_path: Path
-) -> None:
-    explorer = explore(BARE, labels, decisions=tmp_path / "d.yaml")
-    client = explorer.client()
-    label(client, node("/robot_arm_control"), "conduit", about="*")
-    old = {"version": "0", "what": "storage", "element": CAMERA, "finding": explorer.session.findings[0].id}
-    for path in ("/try", "/drop", "/decide"):
-        assert client.post(path, data={**old, "choice": "avoid", "name": "x"}).status_code == 409
-    assert explorer.session.scenarios == {}
-    assert not (tmp_path / "d.yaml").exists()
-
-
 @pytest.fixture(scope="module")
 def opened(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Explorer]:
     folder = tmp_path_factory.mktemp("opened")
@@ -312,17 +298,3 @@ def test_no_fields_break_the_page_or_write_anything(opened: Explorer, fields: li
     assert not (opened.labels.parent / "d.yaml").exists()
     for name in list(opened.session.scenarios):
         opened.session.drop_scenario(name)
-
-
-@pytest.mark.parametrize("language", ["de", "fr"])
-def test_trials_and_findings_speak_the_readers_language(explore: Explore, labels: Path, language: str) -> None:
-    explorer = explore(BARE, labels, language=language)
-    client = explorer.client()
-    address = tried(client, what="storage", element=CAMERA, days="30", country="DE").headers["location"]
-    finding = explorer.session.findings[0].id
-    for at in (address, f"/?finding={finding}&closes=1", f"/?at={CAMERA}"):
-        whole = page(client, at)
-        for left in whole.xpath("//bdi | //*[@class='name'] | //option | //*[@lang='en'] | //title | //code"):
-            left.drop_tree()
-        marks = whole.xpath("//@aria-label | //@placeholder | //@title")
-        assert english_in(" ".join([whole.text_content(), *marks]), language, ["rosprivacy explore"]) == []

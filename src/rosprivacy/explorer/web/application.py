@@ -25,7 +25,7 @@ from rosprivacy.explorer.web.finding_pane import finding_pane, scope_in, scope_i
 from rosprivacy.explorer.web.guard import Guard
 from rosprivacy.explorer.web.kept_trials import Trials, kept_trials, trial_pane
 from rosprivacy.explorer.web.page import Message, draw_picture, page_of, render_page
-from rosprivacy.explorer.web.panes import ROBOT, WHOSE, Pane, title_of, titles_of
+from rosprivacy.explorer.web.panes import ROBOT, ROBOT_OR_MODEL, Pane, title_of, titles_of
 from rosprivacy.explorer.web.standing import Standing
 from rosprivacy.explorer.web.trial_forms import TOGETHER, offers_at, tried_in
 from rosprivacy.explorer.web.view import trial_in, view_of
@@ -89,9 +89,9 @@ class Site:
         self.session, self.door = session, door
         self._words = words
         self._lock = RLock()
-        self._known = Suggester(what_is_known(session.uncounted.vocabulary, settings))
-        self._standing = Standing(session, self._known)
-        self._trials = Trials(session, self._known)
+        self._suggester = Suggester(what_is_known(session.uncounted.vocabulary, settings))
+        self._standing = Standing(session, self._suggester)
+        self._trials = Trials(session, self._suggester)
         self._phrases = Phrases.of_report(words, titles_of(session.uncounted.vocabulary, words))
         self._pictures = Pictures(self._phrases)
         self._by = ""
@@ -126,7 +126,7 @@ class Site:
     def standing(self) -> Standing:
         """The session as it stands."""
         if self._standing.version != self.session.version:
-            self._standing = Standing(self.session, self._known)
+            self._standing = Standing(self.session, self._suggester)
         return self._standing
 
     # --- what is asked ------------------------------------------------------------------------------------------
@@ -174,7 +174,7 @@ class Site:
                 page,
                 self._words,
                 draw_picture(self._pictures, standing, page),
-                self._beside(standing, page),
+                self._side(standing, page),
                 read_only=self.door.read_only,
                 message=message,
                 left=self.session.history.unsaved_from_before,
@@ -185,7 +185,7 @@ class Site:
             )
         return HTMLResponse(text, outcome.status if outcome else 200)
 
-    def _beside(self, standing: Standing, page: Pane) -> Pane:
+    def _side(self, standing: Standing, page: Pane) -> Pane:
         """What stands beside the system: the finding in hand, the trial that is looked at, what can be tried here."""
         view, words = page.view, self._words
         finding = standing.findings.get(view.finding)
@@ -255,7 +255,7 @@ class Site:
     def _label(self, form: Form) -> Outcome:
         standing = self.standing
         answer = forms.answer_in(form, standing.elements, standing.vocabulary.categories)
-        alone = form.choice("whose", WHOSE) == ROBOT
+        alone = form.choice("whose", ROBOT_OR_MODEL) == ROBOT
         label, now = None, self.session.entry_for(answer.element, only_this_robot=alone)
         if answer.role != forms.NOTHING:
             label = cast("Label", label_of(answer, now))
@@ -263,9 +263,9 @@ class Site:
         self._by = answer.by or self._by
         return Outcome(200, self._answered(answer, now, self._words(f"explorer.answer.{answer.role}")))
 
-    def _answered(self, answer: Answer, before: Any, what: str) -> Message:
+    def _answered(self, answer: Answer, before: Any, role: str) -> Message:
         """Tell what was answered, and what was said that it takes away: a limit, or derivations."""
-        text = self._words("explorer.changed", what=f"{shown(answer.element.full_name)} – {what}")
+        text = self._words("explorer.changed", what=f"{shown(answer.element.full_name)} – {role}")
         limit = limit_of(before) if answer.role == forms.SENSITIVE and not answer.kinds else ()
         made = made_by(before) if answer.role == forms.ABSENT else ()
         gone = (("explorer.limit.gone", limit), ("explorer.derives.gone", made))

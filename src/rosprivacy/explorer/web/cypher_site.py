@@ -82,7 +82,7 @@ class Asked(NamedTuple):
     ----------
     query
         Of the pack; None for Cypher of a person's own.
-    given
+    fields
         Values of its parameters, as they were typed.
     text
         What stands in the text area.
@@ -91,7 +91,7 @@ class Asked(NamedTuple):
     """
 
     query: Query | None = None
-    given: Mapping[str, str] = {}
+    fields: Mapping[str, str] = {}
     text: str = ""
     at: str = ""
 
@@ -102,13 +102,13 @@ class Asked(NamedTuple):
 
     def values(self) -> dict[str, Any]:
         """Return the values of its parameters; what was left empty has its default."""
-        return self.query.values({name: text for name, text in self.given.items() if text}) if self.query else {}
+        return self.query.values({name: text for name, text in self.fields.items() if text}) if self.query else {}
 
     def to_edit(self) -> Asked:
         """Return the same as Cypher in the text area, with the values that were typed and the defaults in it."""
         if not self.query:
             return self
-        typed = {name: text for name, text in self.given.items() if text}
+        typed = {name: text for name, text in self.fields.items() if text}
         needed = (field.name for field in self.query.parameters if field.default is None)
         missing = {name: "" for name in needed if name not in typed}
         values = self.query.values({**missing, **typed})
@@ -165,13 +165,13 @@ class Table(NamedTuple):
 
     Attributes
     ----------
-    more
+    is_cut
         Whether there are more rows than these.
     """
 
     columns: tuple[Column, ...]
     rows: tuple[tuple[str, ...], ...]
-    more: bool
+    is_cut: bool
 
 
 def table_of(rows: Rows, query: Query | None, words: Words) -> Table:
@@ -286,36 +286,36 @@ class StoredSite(Site):
 
     def _ask(self, body: bytes) -> Response:
         """Ask what a form asks; what cannot be answered stays in its fields."""
-        asked, standing = Asked(), self._now_standing()
+        entered, standing = Asked(), self._now_standing()
         try:
             form = Form(body)
-            asked = Asked(text=form.value("text"), at=form.value("at"))  # kept, whatever is wrong with the rest
-            asked, do = asked_in(form)
+            entered = Asked(text=form.value("text"), at=form.value("at"))  # kept, whatever is wrong with the rest
+            entered, do = asked_in(form)
             if do == EDIT:
-                return self._page_of(asked.to_edit(), standing)
+                return self._page_of(entered.to_edit(), standing)
             if not self._room.acquire(blocking=False):
                 return self._page_of(
-                    asked, standing, Message(PROBLEM, self._words("cypher.busy", n=AT_ONCE)), status=429
+                    entered, standing, Message(PROBLEM, self._words("cypher.busy", n=AT_ONCE)), status=429
                 )
             try:
-                answer = self._answer(asked, standing)
+                answer = self._answer(entered, standing)
             finally:
                 self._room.release()
         except (FormError, RosPrivacyError) as error:
             status = 503 if isinstance(error, DatabaseError) else 422
             message = Message(PROBLEM, self._words("cypher.refused"), detail=tuple(str(error).splitlines()))
-            return self._page_of(asked, standing, message, status=status)
+            return self._page_of(entered, standing, message, status=status)
         warning = Message(DONE, self._words("cypher.warning"), detail=(answer.warning,)) if answer.warning else None
-        return self._page_of(asked, standing, warning, answer)
+        return self._page_of(entered, standing, warning, answer)
 
-    def _answer(self, asked: Asked, standing: Standing) -> Answer:
+    def _answer(self, entered: Asked, standing: Standing) -> Answer:
         with self._opened() as driver:
             rows, warning = rows_of(
-                driver, asked.cypher, asked.values(), limit=ROWS, timeout=self._seconds, query=asked.query,
+                driver, entered.cypher, entered.values(), limit=ROWS, timeout=self._seconds, query=entered.query,
                 vocabulary=standing.vocabulary,
             )  # fmt: skip
-        table = table_of(rows, asked.query, self._words)
-        title = asked.query.description if asked.query else shortened(" ".join(asked.text.split()), LONGEST_TITLE)
+        table = table_of(rows, entered.query, self._words)
+        title = entered.query.description if entered.query else shortened(" ".join(entered.text.split()), LONGEST_TITLE)
         picture = picture_of(rows, title, self._phrases)
         return Answer(table, self._pictures.drawn(picture, _links(standing), ROOM) if picture else None, warning)
 
@@ -326,15 +326,15 @@ class StoredSite(Site):
             return standing
 
     def _page_of(
-        self, asked: Asked, standing: Standing, message: Message | None = None, answer: Answer | None = None,
+        self, entered: Asked, standing: Standing, message: Message | None = None, answer: Answer | None = None,
         status: int = 200,
     ) -> Response:  # fmt: skip
-        at = asked.at if asked.at in standing.elements else ""
+        at = entered.at if entered.at in standing.elements else ""
         text = template("cypher").render(
-            t=in_html(self._words), asked=asked, query=asked.query, message=message, answer=answer,
+            t=in_html(self._words), asked=entered, query=entered.query, message=message, answer=answer,
             svg=Markup(answer.picture.svg) if answer and answer.picture else "",  # noqa: S704 - names in it are escaped
             pack=pack().values(), at=at, back=View().to(at).address, seconds=self._seconds, most=ROWS,
-            longest=LONGEST_TEXT, field=FIELD, offered=_offered(standing) if asked.query else {},
+            longest=LONGEST_TEXT, field=FIELD, offered=_offered(standing) if entered.query else {},
         )  # fmt: skip
         return HTMLResponse(text, status)
 

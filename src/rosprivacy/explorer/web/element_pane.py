@@ -12,7 +12,7 @@ from rosprivacy.analysis.model import Confidence
 from rosprivacy.analysis.suggesting.evidence import written
 from rosprivacy.explorer.element_ids import element_id
 from rosprivacy.explorer.web import forms
-from rosprivacy.explorer.web.panes import ROBOT, Pane, stands_for, title_of, whose
+from rosprivacy.explorer.web.panes import ROBOT, Pane, robot_or_model, stands_for, title_of
 from rosprivacy.ingest.suggestions.accepting import LIMITING, could_close
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ def element_pane(standing: Standing, element: Element, view: View, words: Words)
     here = [kind for kind in carried if kind not in view.hidden]
     asked = [kind for kind in open_kinds if kind not in view.hidden]
     offers = standing.suggestions.of(element.identity)
-    files = whose(standing.session, element, words)
+    files = robot_or_model(standing.session, element, words)
     alone = any(file.chosen and file.value == ROBOT for file in files)
     labelled = standing.session.entry_for(element, only_this_robot=alone) is not None
     return Pane(

@@ -75,7 +75,7 @@ class Door:
     port: int
     read_only: bool = False
     _token: str | None = field(default_factory=lambda: secrets.token_urlsafe(32), repr=False)
-    _kept: str = field(default_factory=lambda: secrets.token_urlsafe(32), repr=False)
+    _secret: str = field(default_factory=lambda: secrets.token_urlsafe(32), repr=False)
 
     @property
     def cookie(self) -> str:
@@ -97,11 +97,11 @@ class Door:
         if self._token is None or not _equal(token, self._token):
             return None
         self._token = None
-        return self._kept
+        return self._secret
 
-    def knows(self, kept: str) -> bool:
+    def knows(self, secret: str) -> bool:
         """Whether this is what the link left in the browser."""
-        return self._token is None and _equal(kept, self._kept)
+        return self._token is None and _equal(secret, self._secret)
 
 
 class Guard:

@@ -39,12 +39,12 @@ class Trials:
 
     Parameters
     ----------
-    known
+    suggester
         What suggestions are made by.
     """
 
-    def __init__(self, session: Session, known: Suggester) -> None:
-        self._session, self._known = session, known
+    def __init__(self, session: Session, suggester: Suggester) -> None:
+        self._session, self._suggester = session, suggester
         self._says: dict[str, tuple[str, ...]] = {}
         self._standing: Standing | None = None  # of the one that was looked at last
 
@@ -57,7 +57,7 @@ class Trials:
         """Try something, and keep it under a name; another of that name is replaced."""
         if name not in self.names and len(self.names) >= BOUND:
             raise FormError(f"There are {BOUND} trials already: forget one.")
-        self._session.scenario(name, tried.what)
+        self._session.scenario(name, tried.trial)
         self._says[name] = tried.says
 
     def together(self, form: Form) -> Tried:
@@ -66,7 +66,7 @@ class Trials:
         first, second = (self._session.scenarios[name].what for name in names)
         return Tried(together(first, second), tuple(dict.fromkeys(line for name in names for line in self.says(name))))
 
-    def beside(self, name: str) -> Iterator[str]:
+    def combinable(self, name: str) -> Iterator[str]:
         """Yield the others that can be tried together with one: on the same robots."""
         kept = self._session.scenarios
         yield from (other for other in kept if other != name and kept[other].what.robots == kept[name].what.robots)
@@ -89,7 +89,7 @@ class Trials:
         """Return how the session would stand; errors as of ``scenario``."""
         scenario = self.scenario(name)
         if self._standing is None or self._standing.result is not scenario.result:
-            self._standing = Standing(self._session, self._known, scenario.result)
+            self._standing = Standing(self._session, self._suggester, scenario.result)
         return self._standing
 
 
@@ -119,7 +119,7 @@ def trial_pane(now: Standing, trials: Trials, view: View, words: Words) -> Pane:
         remarks=tuple(map(shown, scenario.remarks)),
         address=within.address,
         leads=out.address,  # where the trial is left
-        others=tuple(trials.beside(name)),  # that can be tried together with this one
+        others=tuple(trials.combinable(name)),  # that can be tried together with this one
     )
 
 
@@ -137,13 +137,13 @@ def _within(view: View) -> View:
     return view.to("")._replace(find="")
 
 
-def _findings(difference: Difference, what: str, standing: Standing, view: View, words: Words) -> Iterable[Pane]:
+def _findings(difference: Difference, group: str, standing: Standing, view: View, words: Words) -> Iterable[Pane]:
     """Findings that a trial opens, closes or makes plain; of a fleet, on which robots it does."""
     index = Index(standing.document, words)
-    ids = {OPENED: difference.opened, CLOSED: difference.closed, PLAINER: difference.plainer}[what]
+    ids = {OPENED: difference.opened, CLOSED: difference.closed, PLAINER: difference.plainer}[group]
     for finding in ids[:SENTENCES]:
-        robots = difference.robots.get((what, finding), ())
-        notes = [words("explorer.trial.plainly")] if what == PLAINER else []
+        robots = difference.robots.get((group, finding), ())
+        notes = [words("explorer.trial.plainly")] if group == PLAINER else []
         if robots:
             names = words.row(words.first(list(map(shown, robots)), SHOWN_AT_MOST))
             notes.append(words("explorer.trial.robots", robots=words.count(len(robots), "robot"), names=names))

@@ -57,7 +57,7 @@ class Message(NamedTuple):
     ----------
     kind
         ``done`` or ``problem``.
-    more
+    notes
         Further lines in the reader's language.
     detail
         What readers of files and forms say, in English.
@@ -67,7 +67,7 @@ class Message(NamedTuple):
 
     kind: str
     text: str
-    more: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
     detail: tuple[str, ...] = ()
     diff: str = ""
 
@@ -91,14 +91,14 @@ def _templates() -> Environment:
     )
 
 
-def render_page(page: Pane, words: Words, picture: Shown, beside: Pane, *, read_only: bool, **more: Any) -> str:
+def render_page(page: Pane, words: Words, picture: Shown, side: Pane, *, read_only: bool, **fields: Any) -> str:
     """Return the page as HTML.
 
     Parameters
     ----------
-    beside
+    side
         What stands beside the system: the finding in hand, trials, what can be tried.
-    **more
+    **fields
         What else the template names: ``message``; ``left`` and ``remarks`` of the session; ``inputs``, that files are
         not what was read; ``by``, who gave the last answer; ``asks``, whether there is a database that can be asked.
     """
@@ -108,10 +108,10 @@ def render_page(page: Pane, words: Words, picture: Shown, beside: Pane, *, read_
     kept += [("draw", ALL)] if view.whole else []
     kept += [("trial", view.trial)] if view.trial else []
     return template("page").render(
-        p=page, t=in_html(words), x=beside, kept=kept, kept_query=after[1:],
+        p=page, t=in_html(words), x=side, kept=kept, kept_query=after[1:],
         other_picture=view._replace(whole=not view.whole).address, methods=METHODS, picture=picture,
         svg=Markup(picture.svg),  # noqa: S704 - made by the program, names in it are escaped
-        read_only=read_only, fixed=read_only or bool(view.trial), **more,
+        read_only=read_only, fixed=read_only or bool(view.trial), **fields,
     )  # fmt: skip
 
 
@@ -179,9 +179,9 @@ def _first(groups: Sequence[Pane]) -> str:
 
 
 def _groups(standing: Standing, view: View, words: Words) -> tuple[Pane, ...]:
-    groups = [_group(FOUND, _found(standing, view, words))] if view.find else []
+    groups = [_group(FOUND, _matches(standing, view, words))] if view.find else []
     groups.append(_suggested(standing, view, words))
-    groups += [_asked(key, standing, view, words) for key in GROUPS]
+    groups += [_questions(key, standing, view, words) for key in GROUPS]
     groups.append(_group(EXITS, _exits(standing, view, words)))
     return tuple(group for group in groups if group.rows)
 
@@ -191,7 +191,7 @@ def _group(key: str, rows: Sequence[Pane], remaining: int = 0, *, sure: bool = F
     return Pane(key=key, rows=rows, left=remaining, sure=sure)
 
 
-def _asked(key: str, standing: Standing, view: View, words: Words) -> Pane:
+def _questions(key: str, standing: Standing, view: View, words: Words) -> Pane:
     hidden = set(view.hidden)
     asked = [each for each in standing.questions if each.group == key and not hidden.issuperset(each.kinds)]
     rows = []
@@ -252,7 +252,7 @@ def _exits(standing: Standing, view: View, words: Words) -> tuple[Pane, ...]:
     return tuple(rows.values())
 
 
-def _found(standing: Standing, view: View, words: Words) -> tuple[Pane, ...]:
+def _matches(standing: Standing, view: View, words: Words) -> tuple[Pane, ...]:
     wanted = view.find.casefold()
     fitting = [
         element

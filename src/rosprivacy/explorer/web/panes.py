@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rosprivacy.report.catalogs.words import Words
 
 MODEL, ROBOT = "model", "robot"
-WHOSE = ("", MODEL, ROBOT)  # what a form can say; the first where it says nothing
+ROBOT_OR_MODEL = ("", MODEL, ROBOT)  # what a form can say; the first where it says nothing
 
 
 class Pane(SimpleNamespace):
@@ -41,7 +41,7 @@ def titles_of(vocabulary: Vocabulary, words: Words) -> dict[str, str]:
     return {name: title_of(name, vocabulary, words) for name in vocabulary.categories}
 
 
-def whose(session: Session, element: Element, words: Words) -> tuple[Pane, ...]:
+def robot_or_model(session: Session, element: Element, words: Words) -> tuple[Pane, ...]:
     """Return the label files of a fleet that an answer can go to: nothing where a session edits one file.
 
     The robot's own file is chosen first where it already speaks of the element: there it outranks that of the model.

@@ -44,7 +44,7 @@ class Asked(NamedTuple):
 
     Attributes
     ----------
-    left
+    note
         What of it is left to the engineer; empty if nothing is.
     can_wait
         Whether nothing hangs on the answer now.
@@ -54,12 +54,12 @@ class Asked(NamedTuple):
 
     id: str
     element: Element
-    left: str
+    note: str
     can_wait: bool = False
     beyond: bool = False
 
 
-def asked(standing: Standing) -> tuple[Asked, ...]:
+def open_elements(standing: Standing) -> tuple[Asked, ...]:
     """Return everything that is open, in the order in which it is asked."""
     session, questions = standing.session, dict[str, Asked]()
     suggested = [proposals[0].label.element for proposals in standing.suggestions.of_role("source")]
@@ -67,16 +67,16 @@ def asked(standing: Standing) -> tuple[Asked, ...]:
         at, entries = element_id(element.identity), standing.entries_of(element)
         if at in standing.carried or any(map(says_of_data, entries)):
             continue
-        if _left(entries) or not any(map(brings_nothing, entries)):
-            questions[at] = Asked(at, element, _left(entries), beyond=not session.targets_of(element))
+        if _engineers_note(entries) or not any(map(brings_nothing, entries)):
+            questions[at] = Asked(at, element, _engineers_note(entries), beyond=not session.targets_of(element))
     for question in standing.questions:
         element, at = question.element, element_id(question.element.identity)
-        left, beyond = _left(standing.entries_of(element)), not session.targets_of(element)
+        left, beyond = _engineers_note(standing.entries_of(element)), not session.targets_of(element)
         questions[at] = Asked(at, element, left, question.can_wait, beyond)
     return tuple(questions.values())
 
 
-def _left(entries: Sequence[Any]) -> str:
+def _engineers_note(entries: Sequence[Any]) -> str:
     return next(filter(None, map(left_of, entries)), "")
 
 
@@ -100,7 +100,7 @@ def question_pane(standing: Standing, element: Element, words: Words) -> Pane:
         ways=[Pane(title=way.title, sentences=tuple(_sentences(way.hops, words))) for way in pane.ways],
         roles=offered(element, reached=reached),
         reached=reached,
-        left=_left(entries),
+        left=_engineers_note(entries),
         said=shown(next(filter(None, map(note_before, entries)), "")),
         beyond=not standing.session.targets_of(element),
         robot=shown(element.robot),
@@ -108,7 +108,7 @@ def question_pane(standing: Standing, element: Element, words: Words) -> Pane:
 
 
 def _text(element: Element, pane: Pane, words: Words, *, reached: bool) -> str:
-    name = named(element, words)
+    name = name_and_kind(element, words)
     if not reached:
         return words("review.ask.untouched.channel" if element.is_channel else "review.ask.untouched", name=name)
     return words("review.ask.channel" if element.is_channel else "review.ask", name=name, data=pane.asked)
@@ -124,7 +124,7 @@ def _sentences(hops: Sequence[Pane], words: Words) -> Iterator[Pane]:
         yield Pane(told=text, lines=hop.lines, more=hop.more)
 
 
-def named(element: Element, words: Words) -> str:
+def name_and_kind(element: Element, words: Words) -> str:
     """Return the name of an element and what it is, in plain words.
 
     >>> from rosprivacy.analysis.model import Element
@@ -143,7 +143,7 @@ def _element_names(name: str, kind: str, words: Words) -> str:
 
 def _named_with_robots(element: Element, standing: Standing, words: Words) -> str:
     """The same; of a fleet with how many robots it is asked about."""
-    return words.row(filter(None, [named(element, words), stands_for(standing, element, words)]))
+    return words.row(filter(None, [name_and_kind(element, words), stands_for(standing, element, words)]))
 
 
 # --- an answer --------------------------------------------------------------------------------------------------
@@ -163,9 +163,9 @@ def offered(element: Element, *, reached: bool) -> tuple[str, ...]:
 def answer_in_review(form: forms.Form, standing: Standing, words: Words) -> forms.Answer:
     """Return what a form says of an element; its role may be ``SKIP`` or ``NONE``, too."""
 
-    def need(what: str, *, is_there: object) -> None:
+    def need(field: str, *, is_there: object) -> None:
         if not is_there:
-            raise NotYet(words(f"review.need.{what}"))
+            raise NotYet(words(f"review.need.{field}"))
 
     at = form.value("element")
     need("element", is_there=at in standing.elements)
@@ -241,7 +241,7 @@ def _end(questions: Sequence[Asked], words: Words, *, decided: bool, followed: b
 
 def _open(question: Asked, standing: Standing, words: Words) -> Pane:
     name = _named_with_robots(question.element, standing, words)
-    left, wait, beyond = shown(question.left), question.can_wait, question.beyond
+    left, wait, beyond = shown(question.note), question.can_wait, question.beyond
     return Pane(id=question.id, name=name, left=left, can_wait=wait, beyond=beyond)
 
 
@@ -264,12 +264,12 @@ def _roles(entry: Any, titles: Mapping[str, str], words: Words) -> Iterator[str]
         yield words.of_value(f"review.said.{entry}", shown(entry))
     for role in ROLES if isinstance(entry, dict) else ():
         if role in entry:
-            what = _what(entry[role], titles, words)
+            what = _statement(entry[role], titles, words)
             text = words(f"review.said.{role}")
             yield words.pair(text, what) if what else text
 
 
-def _what(value: Any, titles: Mapping[str, str], words: Words) -> str:
+def _statement(value: Any, titles: Mapping[str, str], words: Words) -> str:
     """The kinds of data, or the reason, that a role is said with."""
     if value is True or value is None:
         return ""
@@ -277,8 +277,8 @@ def _what(value: Any, titles: Mapping[str, str], words: Words) -> str:
         names = [name for name in value if name not in ("from", "to")]
         if not names:  # a derivation
             ends = {"data": value.get("from"), "to": value.get("to")}
-            return words("review.made", **{key: _what(end, titles, words) for key, end in ends.items()})
+            return words("review.made", **{key: _statement(end, titles, words) for key, end in ends.items()})
         return words.row(titles.get(kind, shown(str(kind))) for kind in names)
     if isinstance(value, list | tuple):
-        return words.row(_what(each, titles, words) for each in value)
+        return words.row(_statement(each, titles, words) for each in value)
     return titles.get(str(value), shown(str(value)))

@@ -15,14 +15,14 @@ from rosprivacy.explorer.web import forms
 from rosprivacy.explorer.web.answered_entries import bringing_nothing, label_of, leaving, left_of, note_before
 from rosprivacy.explorer.web.application import PROBLEM, Outcome, Site
 from rosprivacy.explorer.web.page import Message, template
-from rosprivacy.explorer.web.panes import ROBOT, WHOSE
+from rosprivacy.explorer.web.panes import ROBOT, ROBOT_OR_MODEL
 from rosprivacy.explorer.web.review_panes import (
     NONE,
     REASONED,
     SKIP,
     NotYet,
     answer_in_review,
-    asked,
+    open_elements,
     progress,
     question_pane,
     sources_pane,
@@ -52,10 +52,10 @@ class ReviewSite(Site):
         with self._lock:
             standing, words, history = self.standing, self._words, self.session.history
             self._next = FIRST
-            questions = asked(standing)
+            questions = open_elements(standing)
             element, step = standing.elements.get(_value(query, "at")), _value(query, "step")
             if element is None and step not in STEPS:
-                element = next((each.element for each in questions if not (each.left or each.beyond)), None)
+                element = next((each.element for each in questions if not (each.note or each.beyond)), None)
                 step = "source" if not standing.analysis.emitted else step
             message, self._message = outcome.message if outcome else self._message or self._changed_on_disk(), None
             entered, self._entered = self._entered, None
@@ -89,7 +89,7 @@ class ReviewSite(Site):
     def _label(self, form: Form) -> Outcome:
         self._entered = form
         answer = answer_in_review(form, self.standing, self._words)
-        alone = form.choice("whose", WHOSE) == ROBOT
+        alone = form.choice("whose", ROBOT_OR_MODEL) == ROBOT
         now = self.session.entry_for(answer.element, only_this_robot=alone)
         self.session.answer_for(answer.element, cast("Label", self._label_text(answer, now)), only_this_robot=alone)
         self._entered, self._by = None, answer.by

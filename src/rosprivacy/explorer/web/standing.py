@@ -38,14 +38,14 @@ class Standing:
 
     Parameters
     ----------
-    known
+    suggester
         What suggestions are made by.
     trial
         The answer of a trial that is looked at; None for that of now.
     """
 
-    def __init__(self, session: Session, known: Suggester, trial: Result | None = None) -> None:
-        self.session, self._known, self._trial = session, known, trial
+    def __init__(self, session: Session, suggester: Suggester, trial: Result | None = None) -> None:
+        self.session, self._suggester, self._trial = session, suggester, trial
         self.version = session.version
         self.result: Result = trial or session.uncounted
         self.analysis: Analysis = self.result.shown
@@ -101,7 +101,7 @@ class Standing:
     @cached_property
     def suggestions(self) -> Suggestions:
         """What could be said of elements."""
-        return self._known.under(self.result, self.order)
+        return self._suggester.under(self.result, self.order)
 
     @cached_property
     def carried(self) -> Mapping[str, tuple[str, ...]]:

@@ -19,7 +19,7 @@ from rosprivacy.analysis.text import fit
 from rosprivacy.explorer.element_ids import DIGITS, element_id
 from rosprivacy.explorer.scenarios import WhatIf
 from rosprivacy.explorer.web.forms import EVERY, FormError, element_in
-from rosprivacy.explorer.web.panes import MODEL, ROBOT, WHOSE, Pane, robots_in_words, title_of
+from rosprivacy.explorer.web.panes import MODEL, ROBOT, ROBOT_OR_MODEL, Pane, robots_in_words, title_of
 from rosprivacy.report.document.analysis import label_key
 from rosprivacy.report.naming import name
 from rosprivacy.report.page.closing import change_told
@@ -50,7 +50,7 @@ def offers_at(standing: Standing, element: Element, words: Words) -> Pane:
     ends = ((flow, _id(flow.source, standing), _id(flow.target, standing)) for flow in _flows(standing, element))
     flows = [flow for flow, source, target in ends if {source, target} <= standing.carried.keys()]
     kinds = standing.carried.get(at, ())
-    whose = tuple(_whose(standing.session, element, words))
+    whose = tuple(_robots_of_choice(standing.session, element, words))
     shared = standing.session.is_fleet and not whose  # what is on no robot is changed in the fleet file
     places = dict.fromkeys(grant.place for flow in flows for grant in flow.grants)
     if standing.result.fleet:  # a line of the fleet file is none of a policy
@@ -71,7 +71,7 @@ def _offer(value: str, text: str) -> Pane:
     return Pane(value=value, told=text)
 
 
-def _whose(session: Session, element: Element, words: Words) -> Iterator[Pane]:
+def _robots_of_choice(session: Session, element: Element, words: Words) -> Iterator[Pane]:
     """All robots of the model, and this one only; once where these are the same."""
     model, alone = (session.robots_like(element.robot, only_this_robot=alone) for alone in (False, True))
     if model != alone:
@@ -150,7 +150,7 @@ def _id(vertex: int, standing: Standing) -> str:
 class Tried(NamedTuple):
     """What is tried, and what a person is told of it."""
 
-    what: WhatIf
+    trial: WhatIf
     says: tuple[str, ...]
 
 
@@ -159,14 +159,14 @@ def tried_in(form: Form, standing: Standing, words: Words) -> Tried:
     tried = _KINDS[form.choice("what", _KINDS)](form, standing, words)
     if standing.session.can_mitigate:
         return tried
-    if not tried.what.robots:
+    if not tried.trial.robots:
         raise FormError("It belongs to no robot: what the fleet file states is changed there.")
-    return tried._replace(says=(*tried.says, robots_in_words(standing.session, tried.what.robots, words)))
+    return tried._replace(says=(*tried.says, robots_in_words(standing.session, tried.trial.robots, words)))
 
 
 def _robots(form: Form, standing: Standing, *elements: Element) -> tuple[str, ...]:
     """Of a fleet, on which robots it is tried: those of the model of the first element on a robot, or that one."""
-    alone = form.choice("whose", WHOSE) == ROBOT
+    alone = form.choice("whose", ROBOT_OR_MODEL) == ROBOT
     robots = (standing.session.robots_like(element.robot, only_this_robot=alone) for element in elements)
     return next(filter(None, robots), ())
 
@@ -179,8 +179,8 @@ def _filter(form: Form, standing: Standing, words: Words) -> Tried:
     kinds, data = _kinds(form, standing, words)
     source, target = (shown(end.full_name) for end in ends[0])
     step = ProposedStep(FILTER, 0, kinds or _all(standing), between=ends)
-    what = WhatIf(steps=(step,), robots=_robots(form, standing, *ends[0]))
-    return Tried(what, (words("closing.filter", source=source, target=target, data=data),))
+    trial = WhatIf(steps=(step,), robots=_robots(form, standing, *ends[0]))
+    return Tried(trial, (words("closing.filter", source=source, target=target, data=data),))
 
 
 def _cut(form: Form, standing: Standing, words: Words) -> Tried:
@@ -188,8 +188,8 @@ def _cut(form: Form, standing: Standing, words: Words) -> Tried:
     place = lines[form.choice("line", lines)]
     element = standing.elements.get(form.value("element"))
     robots = _robots(form, standing, element) if element else ()
-    what = WhatIf(cut=((place.file, place.line),), robots=robots)
-    return Tried(what, (words("explorer.try.says.cut", line=shown(str(place))),))
+    trial = WhatIf(cut=((place.file, place.line),), robots=robots)
+    return Tried(trial, (words("explorer.try.says.cut", line=shown(str(place))),))
 
 
 def _storage(form: Form, standing: Standing, words: Words) -> Tried:
@@ -197,11 +197,11 @@ def _storage(form: Form, standing: Standing, words: Words) -> Tried:
     called = words("explorer.try.storage.name")
     facts = {"kind": "storage", **_facts(form)}
     robots = _robots(form, standing, element)
-    what = WhatIf(elements={called: facts}, flows=((_end(element), called),), robots=robots)
+    trial = WhatIf(elements={called: facts}, flows=((_end(element), called),), robots=robots)
     says = [words("explorer.try.says.storage", element=shown(element.full_name))]
     says += [words.pair(words("column.retention"), words.duration(facts["retention"]))] if "retention" in facts else []
     says += [words.pair(words("column.place"), facts["country"])] if "country" in facts else []
-    return Tried(what, tuple(says))
+    return Tried(trial, tuple(says))
 
 
 def _facts(form: Form) -> dict[str, str]:
@@ -227,8 +227,8 @@ def _doubt(form: Form, standing: Standing, words: Words) -> Tried:
         raise FormError("It is not said to clean anything.")
     kinds, data = _kinds(form, standing, words)
     robots = _robots(form, standing, element)
-    what = WhatIf(doubted=((element.kind, element.name, kinds),), robots=robots)
-    return Tried(what, (words("explorer.try.says.doubt", element=shown(element.full_name), data=data),))
+    trial = WhatIf(doubted=((element.kind, element.name, kinds),), robots=robots)
+    return Tried(trial, (words("explorer.try.says.doubt", element=shown(element.full_name), data=data),))
 
 
 def _proposal(form: Form, standing: Standing, words: Words) -> Tried:
