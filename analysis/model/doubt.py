@@ -109,10 +109,16 @@ class Doubt:
 
         >>> Doubt("unread-file", place=Place("a.xml", 3), message="not read").id
         '4777f4f0fece49e1'
+
+        A file's name need not be UTF-8.
+
+        >>> len(Doubt("unread-file", place=Place("caf\\udce9.xml", 3)).id)
+        16
         """
         about = self.element.identity if self.element else (self.place.file, self.message)
         leg = (self.element.leg,) if self.element and self.element.leg else ()
-        return hashlib.sha256("\0".join(("doubt", self.name, *about, *leg)).encode()).hexdigest()[:16]
+        parts = "\0".join(("doubt", self.name, *about, *leg))
+        return hashlib.sha256(parts.encode("utf-8", "surrogateescape")).hexdigest()[:16]
 
     @property
     def breaks(self) -> bool:
