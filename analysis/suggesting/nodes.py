@@ -85,13 +85,14 @@ def node_evidence(
     /face_id derivation Video FaceTemplate
     """
     heard = {at: _for_nodes(of_channel, rules.names) for at, of_channel in clues.items()}
+    sent = {at: _for_writers(graph.elements[at], of_channel, rules.names) for at, of_channel in heard.items()}
     for vertex, element in enumerate(graph.elements):
         if not element.is_node:
             continue
         read = ends.reads.get(vertex, ())
         into = [clue for at in read for clue in heard.get(at, ())]
         written = [
-            _Channel(graph.elements[at], [one.name for one in bound.types.get(at, ())], heard.get(at, ()))
+            _Channel(graph.elements[at], [one.name for one in bound.types.get(at, ())], sent.get(at, ()))
             for at in ends.writes.get(vertex, ())
         ]
         node = _Node(element, rules, written, into, libraries.of_node(uses.get(vertex, ())), reads=bool(read))
@@ -339,3 +340,10 @@ def _for_nodes(clues: tuple[Clue, ...], names: NameRules) -> tuple[Clue, ...]:
     """What is thought of a channel, as far as it says something of nodes: not what only a weak type says."""
     weak = names.not_by_type - {clue.kind for clue in clues if clue.ground == NAMED}
     return tuple(clue for clue in clues if clue.kind not in weak or clue.confidence is not MAY)
+
+
+def _for_writers(channel: Element, clues: tuple[Clue, ...], names: NameRules) -> tuple[Clue, ...]:
+    """What is thought of a channel, for who writes it: what a goal may carry is where somebody wants the robot."""
+    if not of_node(channel.name, names.unprompted):
+        return clues
+    return tuple(clue for clue in clues if clue.confidence is not MAY or clue.kind == ANYTHING)

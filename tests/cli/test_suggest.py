@@ -154,7 +154,7 @@ def test_who_asks_for_a_place_is_no_source_of_it(cli: Cli, tmp_path: Path) -> No
         ("n", "debug_image", IMAGE, ["Video may"]),
         ("n", "map", "nav_msgs/msg/OccupancyGrid", ["HomeMap may"]),  # worked out of other data
         ("n", "odom", "nav_msgs/msg/Odometry", ["RobotPosition may"]),
-        ("n", "goal_pose", POSE, ["RobotPosition may", "OperatorInput may"]),  # somebody may want it there
+        ("n", "goal_pose", POSE, ["OperatorInput may"]),  # somebody may want it there
         ("n", "pose", POSE, ["RobotPosition may"]),
         ("n", "goal_markers", "visualization_msgs/msg/MarkerArray", ["OperatorInput may"]),  # no PersonTrack
         ("n", "people_markers", "visualization_msgs/msg/MarkerArray", ["PersonTrack may"]),
