@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
     from tests.helpers.asked_by_keys import ByKeys
     from tests.helpers.command import Cli
+    from tests.helpers.little_robots import Nodes
 
 __all__ = ["by_keys", "cli"]
 
@@ -66,8 +67,7 @@ def test_a_limit_on_the_way_of_a_source_that_gets_a_yes_is_told(robot: Path, by_
     told = "\nl.yaml:7: never of topic /a takes Video away, which is accepted now; see whether it is still so\n"
     limited = f"{SOURCE}topics:\n  /a: {{never: [Video]}}\n"
     for writes, there in (("/a", 1), ("/other", 0)):
-        (robot / "p.xml").write_text(policy_of({**NODES, "second_camera": ([writes], [])}), "utf-8")
-        (robot / "l.yaml").write_text(limited, "utf-8")
+        robot_of(robot, {**NODES, "second_camera": ([writes], [])}, limited)
         done = by_keys(robot, "y")
         assert "/second_camera: {source: [Video]" in text_of(robot)
         assert done.stdout.count(told) == there
@@ -121,14 +121,13 @@ def test_a_no_to_a_kind_is_one_to_narrower_kinds(robot: Path, by_keys: ByKeys) -
 
 
 LEAKING = "labels: 1\nauthor: Ada\nnodes:\n  /eye: {source: [Video]}\n  /two: {source: [Voice]}\n  /box: {leak: none}\n"
-TWO_KINDS = policy_of({"eye": (["/front"], []), "two": (["/front"], []), "box": ([], ["/front"])})
+TWO_KINDS: Nodes = {"eye": (["/front"], []), "two": (["/front"], []), "box": ([], ["/front"])}
 
 
 @pytest.mark.parametrize("keys", ["10\n", "1", "0", "2", "9", "3\n", "/front 0", "/rear topic never Video and Voice\n"])
 def test_keys_of_a_file_that_are_out_of_step_take_nothing_away(tmp_path: Path, by_keys: ByKeys, keys: str) -> None:
     """The ``1`` of ``10`` says *Video at most* of a channel of two kinds, and ``0`` none of it."""
-    (tmp_path / "p.xml").write_text(TWO_KINDS, "utf-8")
-    (tmp_path / "l.yaml").write_text(LEAKING, "utf-8")
+    robot_of(tmp_path, TWO_KINDS, LEAKING)
     done = by_keys(tmp_path, f"{keys}q")
     assert "Can Video and Voice go through?" in done.stdout
     assert "no more are read" in done.stdout or "no more keys are read" in done.stdout
@@ -145,8 +144,7 @@ def test_keys_of_a_file_that_are_out_of_step_take_nothing_away(tmp_path: Path, b
 def test_a_line_of_a_file_says_of_its_element_what_is_taken_away(
     tmp_path: Path, by_keys: ByKeys, line: str, label: str
 ) -> None:
-    (tmp_path / "p.xml").write_text(TWO_KINDS, "utf-8")
-    (tmp_path / "l.yaml").write_text(LEAKING, "utf-8")
+    robot_of(tmp_path, TWO_KINDS, LEAKING)
     told = by_keys(tmp_path, "1").stdout
     assert "'1' takes data away; where no terminal is, a line says it, and no more keys are read: " in told
     assert "/front topic only Video\n" in told

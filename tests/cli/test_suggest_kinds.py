@@ -138,8 +138,7 @@ def test_no_digit_of_a_file_of_keys_makes_such_a_list(robot: Path, by_keys: ByKe
 
 def test_the_channel_by_which_alone_a_known_finding_is_left_is_asked_by_itself(robot: Path) -> None:
     """Voice gets to the leak by both: the list has one of them, and the other is asked with the finding."""
-    (robot / "p.xml").write_text(policy_of(NODES | {"out": ([], ["/b", "/c"])}), "utf-8")
-    (robot / "l.yaml").write_text(f"{REVIEWED}  /out: {{leak: [Voice]}}\n", "utf-8")
+    robot_of(robot, NODES | {"out": ([], ["/b", "/c"])}, f"{REVIEWED}  /out: {{leak: [Voice]}}\n")
     before = found(robot)
     person = Listing(["/a", "/b", "/c"], "1")
     conversation_in(robot, person).run()
@@ -195,8 +194,7 @@ def test_a_question_mark_says_what_each_key_means_and_answers_nothing(robot: Pat
 def test_a_leak_among_nodes_is_known_before_channels_are_asked_about(robot: Path) -> None:
     """Also of a node that data reach behind another open one: it is asked in the same question as that."""
     nodes: Nodes = NODES | {"behind": (["/e"], ["/d"]), "end": ([], ["/e"])}
-    (robot / "p.xml").write_text(policy_of(nodes), "utf-8")
-    (robot / "l.yaml").write_text(HEAD, "utf-8")
+    robot_of(robot, nodes, HEAD)
     first = pressing()
     conversation_in(robot, first).run()
     names = [row.element.name for row in first.asked[0].rows]
@@ -210,8 +208,7 @@ def test_a_leak_among_nodes_is_known_before_channels_are_asked_about(robot: Path
 def test_what_may_be_a_leak_comes_first_and_is_called_a_conduit_only_if_it_is_picked(robot: Path) -> None:
     """Something suggests it of the uploader, and nobody knows it of an end; the node between passes data on."""
     nodes: Nodes = {"one": (["/in"], []), "middle": (["/a"], ["/in"]), "end": ([], ["/a"]), "uploader": ([], ["/a"])}
-    (robot / "p.xml").write_text(policy_of(nodes), "utf-8")
-    (robot / "l.yaml").write_text("labels: 1\nnodes:\n  /one: {source: [Video]}\n", "utf-8")
+    robot_of(robot, nodes, "labels: 1\nnodes:\n  /one: {source: [Video]}\n")
     person = pressing("2", "A", "1")
     conversation_in(robot, person).run()
     question = person.asked[0]

@@ -162,8 +162,7 @@ def test_a_known_finding_is_asked_by_itself_also_where_only_all_together_would_c
 ) -> None:
     """The data get to the leak by two of three channels: neither closes the finding, both do."""
     nodes: Nodes = NODES | {"out": ([], ["/joints", "/arm"])}
-    (robot / "p.xml").write_text(policy_of(nodes), "utf-8")
-    (robot / "l.yaml").write_text(labels_of(TYPES, "  /out: {leak: [Video]}\n"), "utf-8")
+    robot_of(robot, nodes, labels_of(TYPES, "  /out: {leak: [Video]}\n"))
     shown = by_keys(robot, "sssssq").stdout
     assert HEADING not in shown
     assert "known findings, which may hang on this:\n       Video: /eye -> /out [" in shown
@@ -229,8 +228,7 @@ def test_channels_that_a_person_picks_are_asked_as_a_list(robot: Path) -> None:
 
 def test_a_picked_channel_that_would_close_a_finding_is_asked_by_itself(robot: Path) -> None:
     nodes: Nodes = NODES | {"out": ([], ["/joints"])}
-    (robot / "p.xml").write_text(policy_of(nodes), "utf-8")
-    (robot / "l.yaml").write_text(f"{HEAD}  /here: conduit\n  /out: {{leak: [Video]}}\n", "utf-8")
+    robot_of(robot, nodes, f"{HEAD}  /here: conduit\n  /out: {{leak: [Video]}}\n")
     before = found(robot / "p.xml", robot / "l.yaml")
     person = picking()
     conversation_in(robot, person).run()
@@ -309,8 +307,7 @@ def found(policy: Path, file: Path) -> set[str]:
 def test_what_only_code_says_of_a_type_makes_no_list(by_keys: ByKeys, tmp_path: Path) -> None:
     """A test writes a flag where the camera has its pictures: nobody else says a type."""
     nodes: Nodes = {"camera": (["/front", "/rear"], []), "box": ([], ["/front", "/rear"])}
-    (tmp_path / "p.xml").write_text(policy_of(nodes), "utf-8")
-    (tmp_path / "l.yaml").write_text("labels: 1\nauthor: Ada\nnodes:\n  /camera: {source: [Video]}\n", "utf-8")
+    robot_of(tmp_path, nodes, "labels: 1\nauthor: Ada\nnodes:\n  /camera: {source: [Video]}\n")
     (tmp_path / "test_box.py").write_text(
         "from rclpy.node import Node\nfrom std_msgs.msg import Bool\n\n\nclass Tester(Node):\n"
         "    def __init__(self):\n        super().__init__('tester')\n"
@@ -372,8 +369,7 @@ def test_a_process_that_is_killed_in_a_number_keeps_nothing_of_the_list(robot: P
 def test_two_digits_that_come_at_once_confirm_no_list_without_enter(robot: Path) -> None:
     names = [f"/arm{at}" for at in range(10)]
     nodes: Nodes = {"eye": (["/a"], []), "middle": (names, ["/a"]), "here": ([], names)}
-    (robot / "p.xml").write_text(policy_of(nodes), "utf-8")
-    (robot / "l.yaml").write_text(labels_of({name[1:]: JOINTS for name in names}, "  /here: conduit\n"), "utf-8")
+    robot_of(robot, nodes, labels_of({name[1:]: JOINTS for name in names}, "  /here: conduit\n"))
     before = text_of(robot)
     ours, theirs = pty.openpty()
     with subprocess.Popen(COMMAND, cwd=robot, stdin=theirs, stdout=subprocess.PIPE, bufsize=0) as process:
