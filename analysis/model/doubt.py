@@ -103,7 +103,7 @@ class Doubt:
 
     @property
     def id(self) -> str:
-        """16 hexadecimal digits, the same as long as it is about the same: its name, and its element or file.
+        r"""16 hexadecimal digits, the same as long as it is about the same: its name, and its element or file.
 
         A line may move; a file's message is part of what it is about, so that no acceptance covers another problem.
 
@@ -112,7 +112,7 @@ class Doubt:
 
         A file's name need not be UTF-8.
 
-        >>> len(Doubt("unread-file", place=Place("caf\\udce9.xml", 3)).id)
+        >>> len(Doubt("unread-file", place=Place("caf\udce9.xml", 3)).id)
         16
         """
         about = self.element.identity if self.element else (self.place.file, self.message)
