@@ -129,7 +129,7 @@ def name_and_kind(element: Element, words: Words) -> str:
 
     >>> from rosprivacy.analysis.model import Element
     >>> from rosprivacy.report.catalogs.words import IN_ENGLISH
-    >>> named(Element("topic", "/video"), IN_ENGLISH)
+    >>> name_and_kind(Element("topic", "/video"), IN_ENGLISH)
     '“/video” (channel)'
     """
     return _element_names(shown(element.full_name), element.kind, words)
