@@ -199,6 +199,7 @@ def test_a_result_is_shown_in_one_line_that_begins_with_the_verdict(care: rospri
     assert repr(unlabelled).startswith("<Result: undetermined: no data was followed")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", sorted(FORMATS.keys() - {"docx"}))  # no text: tests/report/docx
 def test_every_format_is_written_by_its_name(
     care: rosprivacy.Result, name: str, cli: Cli, monkeypatch: pytest.MonkeyPatch
@@ -292,6 +293,7 @@ def test_other_labels_give_the_answer_of_an_analysis_anew_without_the_policies(t
     assert under_first.with_labels(*under_first.labels).document() == under_first.document()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("section", "name", "said"),
     one_in(

@@ -45,6 +45,7 @@ def test_a_robot_says_so_in_any_case(cli: Cli, more: Sequence[str]) -> None:
     assert "not_asked" not in told
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", [("analyze",), ("report", "-f", "markdown"), ("report", "-f", "html")])
 @pytest.mark.parametrize("language", ["en", "de", "fr"])
 def test_people_read_which_option_asks(cli: Cli, command: Sequence[str], language: str) -> None:

@@ -146,6 +146,7 @@ def test_the_quick_form_leaves_out_what_has_no_bound(tmp_path: Path) -> None:
     assert "no bound / theirs" in run("made_up", modules=tmp_path).stdout
 
 
+@pytest.mark.slow
 def test_real_rows_are_measured() -> None:
     """What CI runs, in its smallest part: the start of the command, in fresh processes."""
     done = run("--quick", "startup")

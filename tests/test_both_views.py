@@ -378,6 +378,7 @@ def test_sarif_has_notes_of_a_rule_of_their_own_at_the_line_of_another_profile(c
     )
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("example")
 @pytest.mark.parametrize("form", ["html", "markdown", "docx"])
 def test_a_report_has_a_section_of_it_in_each_language_and_only_where_it_was_asked(cli: Cli, form: str) -> None:

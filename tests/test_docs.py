@@ -296,6 +296,7 @@ def test_the_label_files_that_are_shown_are_read(page: Path, tmp_path: Path) -> 
         assert read_labels(str(file), load()).entries
 
 
+@pytest.mark.slow
 def test_what_is_shown_of_python_is_what_it_prints(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(ROOT)
     page = ROOT / "docs" / "python.md"

@@ -75,6 +75,7 @@ def lines(done: Done) -> list[str]:
 
 @pytest.mark.database
 class TestLoad:
+    @pytest.mark.slow
     def test_it_says_what_it_wrote_and_the_same_again_changes_nothing(self, cli: Cli, driver: Driver) -> None:
         first = cli(*LOAD)
         assert (first.returncode, first.stderr) == (0, "")
@@ -90,6 +91,7 @@ class TestLoad:
         assert all(LINE.match(line) for line in lines(done))
         assert count(driver, "(n)") == 0
 
+    @pytest.mark.slow
     def test_without_a_name_a_robot_is_called_as_its_policy_file_and_replaces_no_other(
         self, cli: Cli, driver: Driver, tmp_path: Path
     ) -> None:
@@ -255,6 +257,7 @@ class TestQuery:
         assert [path[0]["name"], path[1]["type"], path[1]["role"], path[2]] == ["/camera", "FLOWS_TO", "publish", node]
         assert (node["name"], "Topic" in node["labels"]) == ("/camera/image", True)
 
+    @pytest.mark.slow
     @pytest.mark.parametrize(
         ("asked", "title"),
         [

@@ -59,6 +59,7 @@ def page(tmp_path: Path) -> Iterator[WebDriver]:
         yield found
 
 
+@pytest.mark.slow
 @pytest.mark.database
 @pytest.mark.parametrize("folder", one_in(2, ["", "of my own"]))
 def test_it_writes_the_files_and_says_where_everything_is(

@@ -72,6 +72,7 @@ def page(asking: http.client.HTTPConnection, headers: dict[str, str], path: str 
 CAMERA = {"element": node("/robot_camera"), "role": "source", "brings": "Video"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("options", "words"),
     [(("--lang", "de"), "Zu entscheiden"), (("--review", "--lang", "fr"), "Toutes les réponses sont enregistrées")],
@@ -170,6 +171,7 @@ def wait_until(there: Callable[[], bool]) -> None:
         time.sleep(0.05)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("of", [0, 60_000])
 def test_a_form_that_is_broken_off_is_no_error_of_the_program(tmp_path: Path, of: int) -> None:
     with started("-l", str(tmp_path / "new.labels.yaml")) as (process, lines):

@@ -314,6 +314,7 @@ def test_the_types_come_back_from_the_file_beside_the_policy(cli: Cli, robot: Pa
     assert done.returncode == 1, done.stderr
 
 
+@pytest.mark.slow
 def test_watch_tells_what_comes_and_leaves_and_each_new_finding(robot: Path) -> None:
     """An alarm at run time: a node that starts and opens a path to a leak is told, and one that leaves is told."""
     variables = fake_ros2(robot)

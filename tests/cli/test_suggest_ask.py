@@ -310,6 +310,7 @@ def test_bad_input_is_one_line(robot: Path, by_keys: ByKeys, text: str, more: li
     assert text_of(robot) == text
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("keys", [b"\xff\xfe", b"y\xff", b"\0q"])
 def test_keys_that_are_no_text_end_it(robot: Path, keys: bytes) -> None:
     done = subprocess.run(COMMAND, cwd=robot, input=keys, capture_output=True, timeout=60, check=False)

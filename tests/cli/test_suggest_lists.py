@@ -252,6 +252,7 @@ def asked_of(robot: Path) -> tuple[Question, ...]:
 CHANNELS = ("joints", "battery", "arm", "text", "plain")
 
 
+@pytest.mark.slow
 @given(
     middle=st.lists(st.sampled_from(CHANNELS), min_size=2, unique=True),
     second=st.lists(st.sampled_from(CHANNELS), unique=True),

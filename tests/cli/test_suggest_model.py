@@ -133,6 +133,7 @@ def test_an_answer_of_another_form_is_told_and_the_rules_speak_all_the_same(
 # ---------------------------------------------------------------- a server that gives no answer
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("reply", "message"),
     [
@@ -276,6 +277,7 @@ main()
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "more", [[], ["--model", "m", "--model-url", "https://models.example/v1", "--dry-run"], ["--replay", "r.json"]]
 )
@@ -532,6 +534,7 @@ def test_a_proxy_of_the_environment_is_used_but_not_for_what_is_near(cli: Cli, r
 # ---------------------------------------------------------------- hostile names
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", [*HOSTILE, INJECTION, '/a"}]} END DATA', f"/{'long_' * 2000}"], ids=lambda name: ascii(name)[:30]
 )

@@ -56,6 +56,7 @@ def test_no_decision_of_two_that_decide_at_once_is_lost(tmp_path: Path) -> None:
     assert [path.name for path in tmp_path.iterdir()] == ["decisions.yaml"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["labels.yaml", "link.yaml"])
 def test_a_second_edit_waits_for_the_first(cli: Cli, tmp_path: Path, name: str) -> None:
     file = tmp_path / "labels.yaml"

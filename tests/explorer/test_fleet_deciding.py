@@ -88,6 +88,7 @@ def test_a_session_that_can_decide_begins_as_the_analysis(hospital: Path) -> Non
     assert begun(hospital).result.to("json1") == rosprivacy.analyze_fleet(hospital).to("json1")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(6))
 def test_what_is_decided_is_exactly_what_was_told_and_what_the_file_means(hospital: Path, seed: int) -> None:
     session, random = begun(hospital), Random(seed)  # noqa: S311 - no secret

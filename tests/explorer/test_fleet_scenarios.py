@@ -185,6 +185,7 @@ def test_a_trial_counts_on_the_edits_of_now_and_changes_nothing(hospital: Path) 
     assert before.count('"id"') == session.result.to("json1").count('"id"')
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("what", "why"),
     [

@@ -67,6 +67,7 @@ def test_a_session_begins_as_the_analysis(hospital: Path) -> None:
     assert len(session.target("carrier_01").robots) == 24
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(4))
 def test_edits_saved_mean_what_the_files_then_mean(hospital: Path, seed: int) -> None:
     session, random = begun(hospital), Random(seed)  # noqa: S311 - no secret

@@ -68,6 +68,7 @@ def test_what_was_a_fault_is_none(case: Path, watched: Watch) -> None:
     assert [outcome.fault for outcome in outcomes] == [""] * len(outcomes)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", LIGHT)
 def test_a_kept_seed_is_read_or_refused(name: str, watched: Watch) -> None:
     assert seeds.kept(name)
@@ -78,6 +79,7 @@ def test_a_kept_seed_is_read_or_refused(name: str, watched: Watch) -> None:
 # ---------------------------------------------------------------- what is made
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", LIGHT)
 def test_at_least_a_third_of_what_is_made_is_accepted(name: str, watched: Watch) -> None:
     random = Random(16)  # noqa: S311 - repeatable
@@ -99,6 +101,7 @@ DAILY = {"policy", "analysis"}  # a second or two each
 WHOLE = [name for name, target in TARGETS.items() if target.analyse]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=[] if name in DAILY else [pytest.mark.slow]) for name in WHOLE]
 )

@@ -42,6 +42,7 @@ def old(tmp_path_factory: pytest.TempPathFactory) -> Vocabulary:
     return read(tmp_path_factory.mktemp("old"), MINE.format(STORED, "rp:Health"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "parent",
     one_in(

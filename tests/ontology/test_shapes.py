@@ -44,6 +44,7 @@ def messages(graph: Graph, *, strict: bool = False) -> set[str]:
 
 
 class TestShapes:
+    @pytest.mark.slow
     def test_ours_hold_all_of_them(self) -> None:
         assert messages(ontology(), strict=True) == set()
 

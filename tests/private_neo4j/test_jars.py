@@ -124,6 +124,7 @@ def test_what_a_mirror_puts_in_place_of_a_jar_is_not_started(mirror: Callable[[b
     assert not (cache.parent / "data" / "neo4j" / "conf").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("local_extra")
 @pytest.mark.parametrize("there", ["nothing", "half", "page"])
 def test_a_jar_that_was_broken_off_is_fetched_again(

@@ -127,6 +127,7 @@ def test_on_200_random_graphs(driver: Driver) -> None:
         assert paths(driver, "leak-paths-of-category", category=name).keys() == of_category
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", one_in(4, CASES), ids=lambda path: str(path.name))
 def test_on_the_examples(driver: Driver, case: Path, examples: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(examples)

@@ -146,6 +146,7 @@ ONCE = {  # several rows that differ in other columns only
 }  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.database
 @pytest.mark.parametrize("count", [5, pytest.param(130, marks=pytest.mark.slow)])
 def test_the_rows_are_what_memory_says(count: int, driver: Driver, tmp_path: Path) -> None:

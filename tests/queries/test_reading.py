@@ -148,6 +148,7 @@ def test_a_file_is_not_read_wherever_it_is_asked_for(driver: Driver, tmp_path: P
     assert TEXT not in message
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "text",
     [

@@ -95,11 +95,13 @@ def test_operators_that_the_server_would_not_survive_are_refused_before_it_gets_
     assert time.monotonic() - begun < 10
 
 
+@pytest.mark.slow
 def test_many_values_and_alternatives_are_no_row_of_operators(driver: Driver) -> None:
     values = ", ".join(["1 + 1"] * OPERATORS)
     assert run(driver, f"WITH [{values}] AS many, '{'+' * OPERATORS}' AS x RETURN size(many)").rows == ((OPERATORS,),)
 
 
+@pytest.mark.slow
 def test_a_server_that_plans_on_and_on_is_not_waited_for(driver: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
     """The server's own bound holds while it runs a query. Of this one its stack overflows, and it says nothing."""
     monkeypatch.setattr(running, "refuse_too_much", lambda _: None)
@@ -111,6 +113,7 @@ def test_a_server_that_plans_on_and_on_is_not_waited_for(driver: Driver, monkeyp
     assert run(driver, "RETURN 1").rows == ((1,),)
 
 
+@pytest.mark.slow
 def test_an_answer_that_nobody_waits_for_asks_the_server_nothing_more(
     neo4j_server: Connection, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -30,6 +30,7 @@ def said(text: str, expression: str) -> tuple[int, ...]:
     return tuple(int(number.replace(",", "")) for number in found.groups())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("system", SYSTEMS)
 def test_all_outputs_count_alike(cli: Cli, system: str) -> None:
     def told(command: str, *options: str) -> str:

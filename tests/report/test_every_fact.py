@@ -301,6 +301,7 @@ SYSTEMS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FORMATS)
 @pytest.mark.parametrize("system", SYSTEMS)
 def test_every_fact_that_has_a_term_is_told(system: str, name: str, request: pytest.FixtureRequest) -> None:

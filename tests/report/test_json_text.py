@@ -36,6 +36,7 @@ def test_the_value_stays_and_the_text_is_printable() -> None:
     assert "é 人 😀" in text  # letters are for people
 
 
+@pytest.mark.slow
 def test_a_large_document_is_not_in_memory_as_text() -> None:
     """At e6bf35d the text was there three times, and each of its tokens by itself."""
     value = [{"name": f"/camera{number}", "steps": [number, "é"]} for number in range(30_000)]
@@ -69,6 +70,7 @@ def test_no_command_writes_a_sign_that_cannot_be_printed(cli: Cli, tmp_path: Pat
     assert all(line.isprintable() for line in done.stdout.split("\n"))
 
 
+@pytest.mark.slow
 def test_json_and_csv_for_users_are_written_in_one_place_each() -> None:
     """Any other that leaves signs as they are (``ensure_ascii=False``) says here what it is for."""
     raw, csv = set(), set()

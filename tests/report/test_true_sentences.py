@@ -128,6 +128,7 @@ def test_who_recognises_or_judges_persons_is_no_measure(tmp_path: Path) -> None:
         assert not any(protections.lstrip().startswith(name) for name in ("/emotion", "/guard"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("country", "language", "there", "not_there"),
     [

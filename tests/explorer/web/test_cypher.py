@@ -146,6 +146,7 @@ def test_a_picture_is_bounded_and_says_how_much_it_shows(here: Asker) -> None:
     assert len(cells(whole)) == 1
 
 
+@pytest.mark.slow
 def test_a_question_can_be_changed_with_what_was_typed_in_it(here: Asker) -> None:
     for query in pack().values():
         needed = {f"p-{field.name}": "/it's" for field in query.parameters if field.default is None}
@@ -158,6 +159,7 @@ def test_a_question_can_be_changed_with_what_was_typed_in_it(here: Asker) -> Non
     assert cells(own) == cells(here.page(ask="findings", **{"p-category": "Voice"}))
 
 
+@pytest.mark.slow
 def test_an_element_and_a_finding_lead_to_their_questions(here: Asker) -> None:
     finding: Finding = here.site.session.findings[0]
     page = html.fromstring(here.client.get(f"/?finding={finding.id}").text)
@@ -192,6 +194,7 @@ def test_the_text_of_a_query_never_comes_from_an_address(here: Asker) -> None:
 # --- what is refused -------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("text", "why"),
     [
@@ -274,6 +277,7 @@ def test_a_malformed_or_oversized_form_is_refused_and_never_breaks(here: Asker, 
     assert here.client.post("/cypher", content=body, headers=kind).status_code == status
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "text",
     [
@@ -335,6 +339,7 @@ def test_hostile_names_and_texts_are_text(here: Asker, loaded: Connection) -> No
     assert area.xpath("./*") == []
 
 
+@pytest.mark.slow
 def test_a_question_that_takes_long_holds_no_other_page_up_and_only_some_wait_at_once(loaded: Connection) -> None:
     with asker(loaded, seconds=3) as here:
         statuses: list[int] = []

@@ -142,6 +142,7 @@ def test_what_is_decided_already_is_told_and_what_is_not_comes_first(begun: Expl
     assert "of model carrier: 23 robots – to be mitigated" in there
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "fields",
     [

@@ -97,6 +97,7 @@ def tried(client: TestClient, **said: str) -> str:
     return " ".join(pane.text_content().split())
 
 
+@pytest.mark.slow
 def test_a_filter_or_a_cut_on_a_path_is_tried_on_the_robots_of_its_model(explore: Explore, hospital: Path) -> None:
     explorer = explore(hospital, hospital, fleet=True)
     client = explorer.client()

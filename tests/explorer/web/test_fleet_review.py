@@ -56,6 +56,7 @@ def robots_asked(explorer: Explorer) -> list[str]:
     return [one.element.robot for one in open_elements(explorer.site.standing) if not one.note]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_a_review_goes_from_the_first_question_to_the_fleets_report(
     explore: Explore, hospital: Path, language: str

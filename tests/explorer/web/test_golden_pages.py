@@ -245,6 +245,7 @@ def lines(story: str, keep: Path | None = None) -> Iterator[str]:
         yield f"{hashlib.sha256(bare.encode()).hexdigest()[:12]}\t{asked[:160]}"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("story", STORIES)
 def test_pages_are_what_they_were(story: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SOURCE_DATE_EPOCH", DATE)

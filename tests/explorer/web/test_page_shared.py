@@ -58,6 +58,7 @@ def edit(session: Session, random: Random) -> None:
         pass
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("system", SYSTEMS)
 @pytest.mark.parametrize("seed", range(2))
 def test_a_page_is_the_same_to_the_byte_whatever_was_shown_before(

@@ -33,6 +33,7 @@ PLAIN = """<?xml version="1.0"?>
 OURS = "//code | //option | //*[@lang='en'] | //b"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_a_review_goes_from_the_first_question_to_the_report(explore: Explore, tmp_path: Path, language: str) -> None:
     explorer = explore(CARE, tmp_path / "new.labels.yaml", language=language, review=True)
@@ -67,6 +68,7 @@ def test_every_page_speaks_the_readers_language(explore: Explore, tmp_path: Path
         assert english_in(whole.text_content(), language, ["publishes who it saw, never the picture"]) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_no_page_says_words_of_insiders(explore: Explore, tmp_path: Path, language: str) -> None:
     client = explore(CARE, tmp_path / "new.labels.yaml", language=language, review=True).client()

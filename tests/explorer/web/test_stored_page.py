@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from rosprivacy.private_neo4j.connection import Connection
 
 
+@pytest.mark.slow
 @pytest.mark.database
 def test_what_is_in_a_database_is_shown_and_not_changed(neo4j_server: Connection) -> None:
     from starlette.testclient import TestClient

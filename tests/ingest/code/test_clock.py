@@ -26,6 +26,7 @@ POLICY = """<policy version="0.2.0"><enclaves><enclave path="/e"><profiles><prof
 <topics publish="ALLOW"><topic>image</topic></topics></profile></profiles></enclave></enclaves></policy>"""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CODE)
 def test_a_file_that_takes_too_long_is_told_and_the_others_are_read(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str

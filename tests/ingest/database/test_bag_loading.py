@@ -40,6 +40,7 @@ def column(driver: Driver, query: str) -> list[Any]:
     return [record[0] for record in driver.execute_query(query).records]
 
 
+@pytest.mark.slow
 @pytest.mark.database
 def test_bags_are_rows_of_their_own_with_links_to_the_robot(cli: Cli, there: Path, driver: Driver) -> None:
     """What the document says stands there; a topic that the robot has is linked to it, also a part of an action."""

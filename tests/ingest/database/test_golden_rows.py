@@ -17,6 +17,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Self
 
+import pytest
+
 from rosprivacy.answering import answer
 from rosprivacy.bags import answer_bags
 from rosprivacy.both_views import both_views, both_views_of_fleet
@@ -138,6 +140,7 @@ def hashes() -> Iterator[str]:
         yield f"{hashlib.sha256(chr(10).join(lines).encode()).hexdigest()[:16]}\t{len(lines)}\t{name}"
 
 
+@pytest.mark.slow
 def test_rows_are_as_they_were() -> None:
     assert list(hashes()) == HASHES.read_text("utf-8").splitlines()
 

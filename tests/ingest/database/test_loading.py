@@ -42,6 +42,7 @@ def ask(driver: Driver, query: str, **values: Any) -> list[Any]:
     return [record[0] for record in driver.execute_query(query, **values).records]
 
 
+@pytest.mark.slow
 @pytest.mark.database
 def test_the_graph_has_the_ends_and_keys_that_are_declared(driver: Driver) -> None:
     """Properties and their types are held by ``test_golden_rows.py``."""
@@ -62,6 +63,7 @@ class TestLoad:
         assert load(driver, rows, VOCABULARY) == Loaded(0, 2)
         assert dump(driver) == before
 
+    @pytest.mark.slow
     def test_another_policy_takes_its_place(self, driver: Driver) -> None:
         load(driver, [rows_of("r", factory(5))], VOCABULARY)
         fresh = dump(driver, without=("version",))
@@ -95,6 +97,7 @@ class TestLoad:
         kept = {node for node in others if '"robot": "other"' in node or "tape" in node or "cellar" in node}
         assert kept <= dump(driver)[0]
 
+    @pytest.mark.slow
     @pytest.mark.parametrize(
         "damage",
         one_in(
@@ -116,6 +119,7 @@ class TestLoad:
         assert load(driver, rows, VOCABULARY) == Loaded(1, 0)
         assert dump(driver, without=("version",)) == whole
 
+    @pytest.mark.slow
     def test_readers_see_the_old_robot_until_the_new_one_is_whole(
         self, driver: Driver, monkeypatch: pytest.MonkeyPatch
     ) -> None:

@@ -61,6 +61,7 @@ def names(keys: Keys, space: str) -> Iterator[tuple[str, str, list[str]]]:
         yield TOKENS, "zenoh@/@ros2_lv/0/a/0/0/NN/%/%/camera", ["@ros2_lv/0/a/0/0/NN/%/%/camera"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("spaces", [("",), ("robot",), ("@r",), ("", "robot", "fleet/r1", "@r")])
 def test_channels_are_those_whose_keys_zenoh_says_an_expression_has(spaces: tuple[str, ...]) -> None:
     """And with ``whole`` it includes all keys that such a channel has, as a DENY has to (rule S5)."""

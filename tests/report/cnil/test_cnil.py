@@ -373,6 +373,7 @@ def test_without_being_told_it_is_dated_now(monkeypatch: pytest.MonkeyPatch) -> 
     assert abs((made - datetime.now(UTC)).total_seconds()) < 60
 
 
+@pytest.mark.slow
 @pytest.mark.database
 def test_what_people_added_in_the_database_is_in_both_formats(neo4j_server: Connection) -> None:
     """A finding whose last step no policy line allows is at the last line before it."""

@@ -38,6 +38,7 @@ def words(text: str) -> list[str]:
     return re.findall(r"\w+", text)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("language", one_in(3, ["de", "en", "fr"]))
 def test_every_word_of_the_markdown_stands_in_it(care: rosprivacy.Result, language: str) -> None:
     for result in (care, rosprivacy.analyze_fleet(FLEET)):

@@ -259,6 +259,7 @@ class TestAgainstTheDocument:
         for line in graph.subjects(RDF.type, RP.PolicyLine):
             assert value(graph, line, RP.inFile, RP.file) == value(graph, line, RP.file)
 
+    @pytest.mark.slow
     def test_it_keeps_to_its_shapes(self, case: Path, form: str) -> None:
         assert problems(strict(written(result_of(case, paths="all"), form), form)) == ""
 
