@@ -135,6 +135,8 @@ class NonRosFacts(NamedTuple):
     backups
         How long data stays in backups after it is deleted; True where that is not known, False without backups,
         None where nothing is said.
+    encrypted
+        Whether it is at rest; None where nothing is said.
     country
         ISO 3166-1 alpha-2 code.
     area
@@ -144,8 +146,6 @@ class NonRosFacts(NamedTuple):
         Whom a partial decision covers.
     until
         The last day of an adequacy decision that ends by itself, ``YYYY-MM-DD``.
-    encrypted
-        Whether it is at rest; None where nothing is said.
     operator
         Who runs it.
     recipient
@@ -166,11 +166,11 @@ class NonRosFacts(NamedTuple):
     retention: tuple[tuple[str, Duration], ...] = ()
     limits: tuple[tuple[str, Duration], ...] = ()
     backups: Duration | bool | None = None
+    encrypted: bool | None = None
     country: str = ""
     area: str = ""
     adequacy: str = ""
     until: str = ""
-    encrypted: bool | None = None
     operator: str = ""
     recipient: str = ""
     transfer: str = ""
