@@ -115,8 +115,8 @@ class LibraryRules(NamedTuple):
 
     def of_node(self, uses: Sequence[NodeUse]) -> dict[str, list[RuleOfUse]]:
         """Return by section the rules that speak about the uses of a node."""
-        found: dict[str, list[RuleOfUse]] = {}
-        for name in ("brings_in", "makes", "lets_out"):
+        found: dict[str, list[RuleOfUse]] = {"brings_in": [], "makes": [], "lets_out": []}
+        for name in found if uses else ():
             speaking: dict[Rule, NodeUse] = {}
             for use in uses:
                 if rule := self.spoken(getattr(self, name), use):

@@ -197,8 +197,10 @@ class _Node:
 
         Where it writes the data themselves, only if it also writes what can be anything.
         """
+        if not self.written or not (self.brings_in or self.makes):
+            return
         anything = any(clue.kind == ANYTHING for one in self.written for clue in one.clues)
-        for first, tells in self.names.tells.items() if self.written else ():
+        for first, tells in self.names.tells.items():
             taken = next((one for one in self.brings_in if self._related(first, one.rule.kinds)), None)
             use = taken or next((one for one in self.makes if first in one.rule.to), None)
             if use is None or self._reads(first) or (self._related(first, self.typed) and not anything):

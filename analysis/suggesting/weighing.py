@@ -13,6 +13,7 @@ out.
 from __future__ import annotations
 
 from collections import defaultdict
+from functools import cache
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.model import Confidence
@@ -85,6 +86,8 @@ WEIGHING = {  # what is in no row is may
     ),  # could hide a leak
 }
 SURENESS = {confidence: place for place, confidence in enumerate(Confidence)}  # the surest first
+PLACE_OF_ROLE = {role: place for place, role in enumerate(ROLES)}
+PLACE_OF_GROUND = {ground: place for place, ground in enumerate(GROUNDS)}
 
 
 def proposals(evidence: Iterable[Evidence], categories: Collection[str] = ()) -> tuple[Proposal, ...]:
@@ -145,19 +148,29 @@ def closes_finding(label: Label, categories: Collection[str]) -> bool:
 def _weighed(label: Label, reasons: Sequence[Evidence], categories: Collection[str]) -> Confidence:
     if closes_finding(label, categories):
         return Confidence.MAY
-    return min((_row(row, reasons) for row in WEIGHING[label.role]), key=SURENESS.__getitem__)
+    return _by_table(label.role, tuple([(one.ground, one.confidence, one.alone) for one in reasons]))
 
 
-def _row(row: Row, reasons: Sequence[Evidence]) -> Confidence:
+@cache  # few reasons differ in this
+def _by_table(role: str, reasons: tuple[tuple[str, Confidence, bool], ...]) -> Confidence:
+    """What the table says of reasons of these grounds, the surest of each ground first."""
+    return min((_row(row, reasons) for row in WEIGHING[role]), key=SURENESS.__getitem__)
+
+
+def _row(row: Row, reasons: Iterable[tuple[str, Confidence, bool]]) -> Confidence:
     """What a row of the table says of reasons: may, if not all of its grounds are there."""
-    speaking = [one for one in reasons if one.ground in row.grounds and not (row.agreed and one.alone)]
-    if {one.ground for one in speaking} != row.grounds or surer(row.floor, speaking[0].confidence):
+    speaking = [
+        (ground, confidence)
+        for ground, confidence, alone in reasons
+        if ground in row.grounds and not (row.agreed and alone)
+    ]
+    if {ground for ground, _ in speaking} != row.grounds or surer(row.floor, speaking[0][1]):
         return Confidence.MAY
-    return row.agreed or weaker(row.ceiling, speaking[0].confidence)
+    return row.agreed or weaker(row.ceiling, speaking[0][1])
 
 
 def _order(label: Label) -> tuple[object, ...]:
-    return (label.element.sort_key(), ROLES.index(label.role), label.kind, label.method or "", label.to)
+    return (label.element.sort_key(), PLACE_OF_ROLE[label.role], label.kind, label.method or "", label.to)
 
 
 def _in_order(reasons: Sequence[Evidence]) -> tuple[Evidence, ...]:
@@ -165,7 +178,7 @@ def _in_order(reasons: Sequence[Evidence]) -> tuple[Evidence, ...]:
 
 
 def _place(reason: Evidence) -> tuple[object, ...]:
-    return (SURENESS[reason.confidence], GROUNDS.index(reason.ground), reason.reason, reason.place)
+    return (SURENESS[reason.confidence], PLACE_OF_GROUND[reason.ground], reason.reason, reason.place)
 
 
 def unsaid(proposals: Iterable[Proposal], graph: FlowGraph, bound: Bound, hierarchy: Hierarchy) -> tuple[Proposal, ...]:
