@@ -18,10 +18,11 @@ def one_in(number: int, rows: Iterable[Any]) -> list[Any]:
     chosen: list[Any] = []
     others = 0
     for i, row in enumerate(rows):
+        values = row if isinstance(row, tuple) else (row,)
         if i % number == 0:
-            chosen.append(row)
+            chosen.append(pytest.param(*values))
             continue
         mark = pytest.mark.thorough if others % IN_CI else pytest.mark.slow
-        chosen.append(pytest.param(*(row if isinstance(row, tuple) else (row,)), marks=mark))
+        chosen.append(pytest.param(*values, marks=mark))
         others += 1
     return chosen

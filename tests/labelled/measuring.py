@@ -137,15 +137,14 @@ def measured(some: Iterable[System], look: Look, folder: Path) -> Measured:
     return Measured(precision, recall, wrong, missed, by_that_kind, asked_about, unseen)
 
 
-def table(some: Sequence[System], folder: Path) -> str:
+def table(looks: Mapping[str, Measured]) -> str:
     """Write the figures as they stand in docs/suggestions.md."""
     rows = []
-    for look in LOOKS:
-        found = measured(some, look, folder)
-        shares = [*(found.precision[name] for name in ("likely", "may")), found.recall[SOURCE]]
+    for name, found in looks.items():
+        shares = [*(found.precision[sure] for sure in ("likely", "may")), found.recall[SOURCE]]
         shares += [found.by_that_kind, found.asked_about]
         shares += [found.recall[role] for role in (DERIVES, LEAK)]
-        rows.append(f"| {look.name} | {' | '.join(f'{share.part} of {share.of}' for share in shares)} |\n")
+        rows.append(f"| {name} | {' | '.join(f'{share.part} of {share.of}' for share in shares)} |\n")
     return "".join(rows)
 
 

@@ -148,7 +148,7 @@ ONCE = {  # several rows that differ in other columns only
 
 @pytest.mark.slow
 @pytest.mark.database
-@pytest.mark.parametrize("count", [5, pytest.param(130, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [20, pytest.param(130, marks=pytest.mark.thorough)])
 def test_the_rows_are_what_memory_says(count: int, driver: Driver, tmp_path: Path) -> None:
     fleets, rows = written(range(count), tmp_path)
     load(driver, rows, VOCABULARY)

@@ -100,12 +100,13 @@ def test_what_gets_through_is_what_we_say(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_what_gets_through_two_hundred_lists_is_what_we_say(tmp_path: Path) -> None:
+def test_what_gets_through_many_lists_is_what_we_say(tmp_path: Path, *, thorough: bool) -> None:
     """Data, queries, replies, declarations and liveliness, on lists of sessions and of routers."""
+    seeds = range(500, 720 if thorough else 560)
     with ThreadPoolExecutor(4) as several:  # most of the time is waiting
-        said = sum(several.map(lambda seed: compared(tmp_path, seed), range(500, 720)), Counter[str]())
+        said = sum(several.map(lambda seed: compared(tmp_path, seed), seeds), Counter[str]())
     assert len(said) == 4 * len(OUT)
-    assert min(said.values()) > 100, said
+    assert min(said.values()) > (100 if thorough else 25), said
 
 
 def listed(file: Path, default: str, *rules: tuple[str, list[str], str, str], namespace: str = "") -> dict[str, Any]:
