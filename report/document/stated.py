@@ -49,7 +49,7 @@ if TYPE_CHECKING:
     from rosprivacy.report.document.contents import Document
 
 # Of what is stated of an element outside ROS: what stands in other entries of the document.
-TOLD_ELSEWHERE = ("limits", "adequacy", "until", "place", "day")
+IN_OTHER_ENTRIES = ("limits", "adequacy", "until", "place", "day")
 KEYS = {"name": "provision"}  # what the contract calls otherwise than the model
 
 
@@ -175,7 +175,7 @@ def without_backups(analysis: Analysis) -> list[Element]:
 
 def _facts(facts: NonRosFacts) -> NonRosStated:
     backups = facts.backups if isinstance(facts.backups, bool | None) else str(facts.backups)
-    as_they_are = {name: value for name, value in facts._asdict().items() if name not in TOLD_ELSEWHERE}
+    as_they_are = {name: value for name, value in facts._asdict().items() if name not in IN_OTHER_ENTRIES}
     written = {
         "retention": _durations(facts.retention),
         "backups": backups,

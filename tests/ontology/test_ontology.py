@@ -25,7 +25,6 @@ EU_GDPR = Namespace("https://w3id.org/dpv/legal/eu/gdpr#")
 DPV_FILES = ("dpv", "pd", "tech", "risk", "eu-gdpr")
 DPV_TERM = "https://w3id.org/dpv"
 SPECIAL = URIRef(f"{DPV_TERM}#SpecialCategoryPersonalData")
-LANGUAGES = {"en", "de", "fr"}
 ARTICLE_9_ITEMS = (
     "ethnic-origin", "political-opinions", "beliefs", "trade-union", "genetic", "biometric", "health", "sex-life",
 )  # fmt: skip

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 from typer.core import TyperGroup
 
-from rosprivacy.cli.exit_code import REMOVED_OPTIONS, SIGPIPE
+from rosprivacy.cli.exit_code import SIGPIPE
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -45,6 +45,8 @@ class Group(TyperGroup):
         """
         try:
             return super().invoke(ctx)
+        except typer.Exit:  # an exit code is no error
+            raise
         except typer.BadParameter as error:
             from rosprivacy.cli.wrong_values import with_nearest
 
@@ -53,10 +55,11 @@ class Group(TyperGroup):
             raise typer.Exit(128 + SIGPIPE) from None
         except EOFError as error:
             raise RuntimeError("the input ended") from error
-        except Exception as error:  # typer exports no name for an unknown option
-            removed = getattr(error, "option_name", "")
-            if removed in REMOVED_OPTIONS:
-                raise typer.BadParameter(f"there is no {removed} any more; {REMOVED_OPTIONS[removed]}") from None
+        except Exception as error:
+            from rosprivacy.cli.wrong_values import removed_option
+
+            if refusal := removed_option(error):
+                raise refusal from None
             raise
 
 

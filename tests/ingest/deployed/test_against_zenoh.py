@@ -93,7 +93,6 @@ def compared(folder: Path, seed: int) -> Counter[str]:
     return said
 
 
-@pytest.mark.slow
 def test_what_gets_through_is_what_we_say(tmp_path: Path) -> None:
     with ThreadPoolExecutor(2) as both:
         assert all(both.map(lambda seed: compared(tmp_path, seed), (400, 401, 402)))

@@ -16,8 +16,6 @@ if TYPE_CHECKING:
 
     from rosprivacy.result import Result
 
-CLOUD = "{kind: external-system, country: US, operator: X, recipient: processor"
-
 
 def analysed(folder: Path, labels: str, *more: str, **options: object) -> Result:
     """A camera and a microphone, and an uplink that reads both."""
