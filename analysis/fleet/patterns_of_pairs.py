@@ -2,19 +2,22 @@
 
 In: the pairs of the kernel, and which robot stands for which. Out: for ``analyse``, the findings to make; for the
 report, patterns and robots that differ. The same as ``patterns.py`` makes of all findings; a test holds this.
+
+A fleet of n robots that a cloud joins has n² pairs of each pattern, so none of them is an object: a block of them is a
+table, of which sums and the first in each row are taken. What is kept grows with the robots.
 """
 
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rosprivacy.analysis.fleet.patterns import FleetView
-from rosprivacy.analysis.fleet.source_leak_pairs import pairs
-from rosprivacy.analysis.fleet.tallies import Count, Form, Pair, Share, Tallies
+from rosprivacy.analysis.fleet.source_leak_pairs import DISMISSED, NO_PAIR, PSEUDONYMISED, blocks
+from rosprivacy.analysis.fleet.tallies import Count, Form, Pair, Tallies
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -24,13 +27,13 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Analysis, Finding
     from rosprivacy.analysis.findings.concerns import Concern
     from rosprivacy.analysis.fleet.likeness import Likeness
-    from rosprivacy.analysis.fleet.source_leak_pairs import Pairs
+    from rosprivacy.analysis.fleet.source_leak_pairs import Block, Forms
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Element
 
     Indices = NDArray[np.int64]
-    Flags = NDArray[np.bool_]
 
+FORMS = (0, PSEUDONYMISED, DISMISSED, DISMISSED | PSEUDONYMISED)  # of ``Block.forms``, that which stands most first
 WantedPairs = dict[int, set[tuple[str, int, int, bool]]]  # source -> as ``Chosen`` of the findings
 
 
@@ -49,21 +52,180 @@ class _Table:
         alike = [(e.kind, e.name, shown[e.robot], e.leg, e.side, e.without) for e in elements]
         kinds = {kind: number for number, kind in enumerate(dict.fromkeys(alike))}
         self.alike = np.array([kinds[kind] for kind in alike], np.int64)
-        self.kinds = len(kinds)
 
-    def patterns(self, sources: Indices, leaks: Indices) -> Indices:
-        """What pairs have in common that differ only in the robot."""
-        a, b = self.robot[sources], self.robot[leaks]
-        across = self.is_robot[a] & self.is_robot[b] & (a != b)
-        keys: Indices = (self.alike[sources] * self.kinds + self.alike[leaks]) * 2 + across
-        return keys
+    def across(self, source: int, leak: int) -> bool:
+        """Return whether a pair goes from robot to robot."""
+        a, b = self.robot[source], self.robot[leak]
+        return bool(self.is_robot[a] and self.is_robot[b] and a != b)
 
-    def counts(self, a: Indices, b: Indices) -> Indices:
-        """For how many findings of the fleet a pair of robots stands, as ``Likeness.count``."""
-        to_second = self.is_second[b]
-        to_other = np.where(a == b, 1, self.weight[b])
-        many = self.weight[a] * np.where(to_second, self.weight[a] - 1, to_other)
-        return np.where(self.is_second[a] | (to_second & (self.first[b] != a)), 0, many)
+    def count(self, source: int, leak: int) -> int:
+        """Return for how many findings of the fleet a pair stands, as ``Likeness.count``."""
+        a, b = self.robot[source], self.robot[leak]
+        if self.is_second[a] or (self.is_second[b] and self.first[b] != a):
+            return 0
+        to = self.weight[a] - 1 if self.is_second[b] else 1 if a == b else self.weight[b]
+        return int(self.weight[a] * to)
+
+
+@dataclass(slots=True)
+class _Pattern:
+    """What differs only in the robot: the pair that is shown of it, what is counted, and robots by form.
+
+    Attributes
+    ----------
+    first
+        (form, source, leak) of the pair that is shown.
+    counts
+        Findings of the fleet, by form.
+    begins, ends
+        (form, robots) where findings of that form begin, and where they end.
+    pairs
+        All, as long as they are no more than what is made; ``None`` after that.
+    from_robot, to_robot
+        Robot -> (form, source, leak) of the pair that is made of those that begin or end there.
+    """
+
+    across: bool
+    first: tuple[int, int, int] = (NO_PAIR, 0, 0)
+    counts: list[int] = field(default_factory=lambda: [0] * len(FORMS))
+    begins: list[tuple[int, Indices]] = field(default_factory=list)
+    ends: list[tuple[int, Indices]] = field(default_factory=list)
+    pairs: list[tuple[Indices, Indices]] | None = field(default_factory=list)
+    from_robot: dict[int, tuple[int, int, int]] = field(default_factory=dict)
+    to_robot: dict[int, tuple[int, int, int]] = field(default_factory=dict)
+
+    def robots(self, rows: list[tuple[int, Indices]]) -> dict[int, Indices]:
+        """Return the robots of ``begins`` or ``ends`` by form, each once."""
+        return {
+            form: np.unique(np.concatenate([robots for some, robots in rows if some == form]))
+            for form in sorted({form for form, _ in rows})
+        }
+
+
+class _Patterns:
+    """The patterns of one kind and category, as blocks of their pairs are added.
+
+    Parameters
+    ----------
+    most_across
+        As of ``Groups``; without it only ``first`` of each pattern is kept.
+    """
+
+    def __init__(self, table: _Table, most_across: int | None = None) -> None:
+        self._table, self._most = table, most_across
+        self.by_key: dict[tuple[int, int, bool], _Pattern] = {}
+
+    def add(self, block: Block) -> None:
+        """Add pairs; blocks come in the order of their sources."""
+        forms, table = block.forms.copy(), self._table
+        for row, column in self._within(block):
+            if forms[row, column] != NO_PAIR:
+                leak, source = int(block.leaks[row]), int(block.sources[column])
+                if count := table.count(source, leak):
+                    one = forms[row : row + 1, column : column + 1]
+                    ends = block.sources[[column]], block.leaks[[row]]
+                    self._add(one, *ends, across=table.across(source, leak), count=count)
+                forms[row, column] = NO_PAIR
+        # What is left goes between two robots, or to or from what is shared: a second robot stands for nothing there.
+        rows = np.flatnonzero(~table.is_second[table.robot[block.leaks]])
+        columns = np.flatnonzero(~table.is_second[table.robot[block.sources]])
+        rows = rows[np.argsort(table.alike[block.leaks[rows]], kind="stable")]
+        columns = columns[np.argsort(table.alike[block.sources[columns]], kind="stable")]
+        if not len(rows) or not len(columns):
+            return
+        forms = forms[np.ix_(rows, columns)]
+        sources, leaks = block.sources[columns], block.leaks[rows]
+        down, right = _starts(table.alike[leaks]), _starts(table.alike[sources])
+        there = np.logical_or.reduceat(np.logical_or.reduceat(forms != NO_PAIR, down, axis=0), right, axis=1)
+        down, right = np.append(down, len(rows)), np.append(right, len(columns))
+        for y, x in zip(*(some.tolist() for some in np.nonzero(there)), strict=True):
+            below, beside = slice(down[y], down[y + 1]), slice(right[x], right[x + 1])
+            robots = table.robot[[sources[right[x]], leaks[down[y]]]]
+            self._add(forms[below, beside], sources[beside], leaks[below], across=bool(table.is_robot[robots].all()))
+
+    def _within(self, block: Block) -> Iterator[tuple[int, int]]:
+        """(row, column) of the pairs on one robot, or from a robot to that which stands for others like it."""
+        table = self._table
+        owners = table.first[table.robot[block.leaks]]
+        order = np.argsort(owners, kind="stable")
+        homes = table.robot[block.sources]
+        starts, ends = (np.searchsorted(owners[order], homes, side=side) for side in ("left", "right"))
+        for column, (start, end) in enumerate(zip(starts.tolist(), ends.tolist(), strict=True)):
+            for row in order[start:end].tolist():
+                yield row, column
+
+    def _add(self, forms: Forms, sources: Indices, leaks: Indices, *, across: bool, count: int | None = None) -> None:
+        """Add pairs of one pattern.
+
+        Parameters
+        ----------
+        count
+            Of a single pair, where it is not that of the weights of its robots.
+        """
+        table = self._table
+        key = int(table.alike[sources[0]]), int(table.alike[leaks[0]]), across
+        pattern = self.by_key.setdefault(key, _Pattern(across))
+        from_robots, to_robots = table.robot[sources], table.first[table.robot[leaks]]
+        weights = table.weight[from_robots], table.weight[to_robots]
+        for form in FORMS:
+            some = forms == form
+            from_some = some.any(axis=0)
+            if from_some.any():
+                counted = int(weights[1] @ (some @ weights[0])) if count is None else count
+                pattern.counts[form] += counted
+                pattern.begins.append((form, from_robots[from_some]))
+                pattern.ends.append((form, to_robots[some.any(axis=1)]))
+        least = forms.min(axis=0)
+        column = int(least.argmin())
+        shown = int(least[column]), int(sources[column]), int(leaks[forms[:, column].argmin()])
+        pattern.first = min(pattern.first, shown)
+        if self._most is not None:
+            self._make(pattern, forms, sources, leaks)
+
+    def _make(self, pattern: _Pattern, forms: Forms, sources: Indices, leaks: Indices) -> None:
+        """Note the pairs that may be made."""
+        if pattern.pairs is not None:
+            rows, columns = np.nonzero(forms != NO_PAIR)
+            pattern.pairs.append((sources[columns], leaks[rows]))
+            if pattern.across and sum(pattern.counts) > (self._most or 0):
+                pattern.pairs = None
+        if pattern.across:
+            table = self._table
+            for column, row in enumerate(forms.argmin(axis=0).tolist()):
+                _keep(pattern.from_robot, int(table.robot[sources[column]]), forms, (row, column), sources, leaks)
+            for row, column in enumerate(forms.argmin(axis=1).tolist()):
+                robot = int(table.first[table.robot[leaks[row]]])
+                _keep(pattern.to_robot, robot, forms, (row, column), sources, leaks)
+
+    def chosen(self, pattern: _Pattern) -> Iterator[tuple[int, int]]:
+        """Return source and leak of each finding to make."""
+        yield pattern.first[1:]
+        if self._most is not None and pattern.pairs is not None:
+            for sources, leaks in pattern.pairs:
+                yield from zip(sources.tolist(), leaks.tolist(), strict=True)
+        elif self._most is not None:
+            for _, source, leak in (*pattern.from_robot.values(), *pattern.to_robot.values()):
+                yield source, leak
+
+
+def _starts(values: Indices) -> Indices:
+    """Where runs of equal values begin."""
+    return np.flatnonzero(np.diff(values, prepend=-1))
+
+
+def _keep(
+    least: dict[int, tuple[int, int, int]],
+    robot: int,
+    forms: Forms,
+    at: tuple[int, int],
+    sources: Indices,
+    leaks: Indices,
+) -> None:
+    """Keep of a robot the pair that stands most."""
+    form = int(forms[at])
+    if form != NO_PAIR:
+        pair = form, int(sources[at[1]]), int(leaks[at[0]])
+        least[robot] = min(pair, least.get(robot, pair))
 
 
 class Groups:
@@ -86,49 +248,37 @@ class Groups:
     def __call__(self, spread: Spread, kinds: Sequence[Concern], mask: int) -> WantedPairs:
         """Return the findings to make."""
         table = _Table(spread.graph.elements, self._likeness)
+        patterns: dict[tuple[str, int, bool], _Patterns] = {}
+        for block in blocks(spread, kinds, mask):
+            for some, plain_also in _with_plain(block):
+                key = block.kind, block.category, plain_also
+                patterns.setdefault(key, _Patterns(table, self._most_across)).add(some)
         wanted: WantedPairs = defaultdict(set)
-        for part in pairs(spread, kinds, mask):
-            for some, beside in _with_plain(part):
-                for source, leak in self._take(spread, some, table, plain_also=beside):
-                    wanted[source].add((part.kind, leak, part.category, beside))
+        for (kind, category, plain_also), group in patterns.items():
+            for pattern in group.by_key.values():
+                self._tally(spread, (kind, category, plain_also), pattern, table)
+                for source, leak in group.chosen(pattern):
+                    wanted[source].add((kind, leak, category, plain_also))
         return dict(wanted)
 
-    def _take(self, spread: Spread, part: Pairs, table: _Table, *, plain_also: bool) -> Iterator[tuple[int, int]]:
-        """Group the pairs of one kind and category; return those to make."""
-        counts = table.counts(table.robot[part.sources], table.robot[part.leaks])
-        chosen = np.flatnonzero(counts)
-        sources, leaks, counts = part.sources[chosen], part.leaks[chosen], counts[chosen]
-        if not len(chosen):
-            return
-        hidden, dismissed = part.pseudonymised[chosen], part.dismissed[chosen]
-        a, b = table.robot[sources], table.robot[leaks]
-        across = table.is_robot[a] & table.is_robot[b] & (a != b)
-        keys = table.patterns(sources, leaks)
-        order = np.lexsort((np.arange(len(keys)), hidden, dismissed, keys))
-        ids: dict[int, str] = {}
-        starts = np.flatnonzero(np.diff(keys[order], prepend=-1))
-        ends = [*starts[1:].tolist(), len(order)]
-        elements, category = spread.graph.elements, spread.categories[part.category]
-        for start, end in zip(starts.tolist(), ends, strict=True):
-            rows = order[start:end]
-            source, leak = int(sources[rows[0]]), int(leaks[rows[0]])
-            pair = Pair(part.kind, category, elements[source], elements[leak], plain_also)
-            form = Form(bool(dismissed[rows[0]]), False, bool(hidden[rows[0]]))
-            some = counts[rows]
-            count = Count(int(some.sum()), int(some[dismissed[rows]].sum()), 0, int(some[hidden[rows]].sum()))
-            where = np.unique(np.where(table.is_robot[a[rows]], a[rows], table.first[b[rows]]))
-            ids[int(keys[rows[0]])] = self._tallies.add(pair, form, count, [table.names[i] for i in where.tolist()])
-            yield source, leak
-            if self._most_across is not None:
-                if across[rows[0]] and count.all > self._most_across:
-                    firsts = [np.unique(robots[rows], return_index=True)[1] for robots in (a, table.first[b])]
-                    rows = rows[np.concatenate(firsts)]
-                yield from zip(sources[rows].tolist(), leaks[rows].tolist(), strict=True)
-        no = np.zeros(len(keys), bool)
-        for robots_at, ends_here in ((a, no), (table.first[b], across)):
-            rows = np.unique(np.column_stack([robots_at, keys, ends_here, dismissed, hidden]), axis=0)
-            for robot, pattern, *flags in rows.tolist():
-                self._tallies.shares[table.names[robot]].add(Share(ids[pattern], *map(bool, flags)))
+    def _tally(self, spread: Spread, concern: tuple[str, int, bool], pattern: _Pattern, table: _Table) -> None:
+        """Count the findings of a pattern, and note on which robots they begin and end."""
+        (kind, category, plain_also), elements = concern, spread.graph.elements
+        form, source, leak = pattern.first
+        begins, ends = pattern.robots(pattern.begins), pattern.robots(pattern.ends)
+        where = begins if table.is_robot[table.robot[source]] else ends
+        _, hidden, dismissed, both = pattern.counts
+        key = self._tallies.add(
+            Pair(kind, spread.categories[category], elements[source], elements[leak], plain_also),
+            _form(form),
+            Count(sum(pattern.counts), dismissed + both, 0, hidden + both),
+            sorted({table.names[robot] for robots in where.values() for robot in robots.tolist()}),
+        )
+        for some in FORMS:
+            here, there = (
+                [table.names[robot] for robot in rows[some].tolist()] if some in rows else [] for rows in (begins, ends)
+            )
+            self._tallies.share(key, here, there, _form(some), across=pattern.across)
 
     def view(self, analysis: Analysis) -> FleetView:
         """Return patterns and deviants, when the findings are made."""
@@ -152,22 +302,25 @@ class Closed:
 
     def __call__(self, spread: Spread, kinds: Sequence[Concern], mask: int) -> WantedPairs:
         """Return the findings to make."""
-        elements, size = spread.graph.elements, len(spread.graph.elements)
+        elements = spread.graph.elements
         table = _Table(elements, self._likeness)
         wanted = defaultdict(set, Groups(self._likeness)(spread, kinds, mask))
-        left = {
-            (part.kind, part.category, beside): some.sources * size + some.leaks
-            for part in pairs(self._under, kinds, mask)
-            for some, beside in _with_plain(part)
-        }
-        for part in pairs(spread, kinds, mask):
-            for some, beside in _with_plain(part):
-                there = left.get((part.kind, part.category, beside), np.zeros(0, np.int64))
-                gone = np.flatnonzero(~np.isin(some.sources * size + some.leaks, there))
-                for source, leak in _first_of_each(some, gone, table):
-                    wanted[source].add((part.kind, leak, part.category, beside))
-                    category = spread.categories[part.category]
-                    self._closed_pairs.add((part.kind, category, elements[source], elements[leak], beside))
+        left: dict[tuple[str, int, bool], list[Indices]] = defaultdict(list)
+        for block in blocks(self._under, kinds, mask):
+            for some, plain_also in _with_plain(block):
+                left[block.kind, block.category, plain_also].append(_numbers(some)[some.forms != NO_PAIR])
+        gone: dict[tuple[str, int, bool], _Patterns] = {}
+        for block in blocks(spread, kinds, mask):
+            for some, plain_also in _with_plain(block):
+                key = block.kind, block.category, plain_also
+                there = np.isin(_numbers(some), np.concatenate(left[key])) if left[key] else False
+                forms = np.where(there, np.uint8(NO_PAIR), some.forms)
+                gone.setdefault(key, _Patterns(table)).add(replace(some, forms=forms))
+        for (kind, category, plain_also), patterns in gone.items():
+            for _, source, leak in (pattern.first for pattern in patterns.by_key.values()):
+                wanted[source].add((kind, leak, category, plain_also))
+                name = spread.categories[category]
+                self._closed_pairs.add((kind, name, elements[source], elements[leak], plain_also))
         return dict(wanted)
 
     def of(self, findings: Iterable[Finding]) -> tuple[Finding, ...]:
@@ -175,26 +328,19 @@ class Closed:
         return tuple(f for f in findings if (f.kind, f.category, f.source, f.leak, f.plain_also) in self._closed_pairs)
 
 
-def _first_of_each(part: Pairs, chosen: Indices, table: _Table) -> Iterator[tuple[int, int]]:
-    """Of some pairs one of each pattern: as ``Groups`` chooses the one that is shown."""
-    sources, leaks = part.sources[chosen], part.leaks[chosen]
-    counted = np.flatnonzero(table.counts(table.robot[sources], table.robot[leaks]))
-    chosen, sources, leaks = chosen[counted], sources[counted], leaks[counted]
-    keys = table.patterns(sources, leaks)
-    order = np.lexsort((np.arange(len(keys)), part.pseudonymised[chosen], part.dismissed[chosen], keys))
-    first = order[np.flatnonzero(np.diff(keys[order], prepend=-1))]
-    return zip(sources[first].tolist(), leaks[first].tolist(), strict=True)
+def _numbers(block: Block) -> Indices:
+    """A number for each pair: shape (m, n)."""
+    numbers: Indices = block.leaks[:, None] << np.int64(32) | block.sources
+    return numbers
 
 
-def _with_plain(part: Pairs) -> tuple[tuple[Pairs, bool], ...]:
-    """The pairs of a kind and category, and those that stand beside them."""
-    return (part, False), (_plain_beside(part), True)
+def _with_plain(block: Block) -> Iterator[tuple[Block, bool]]:
+    """The pairs of a block; and the findings of data as it is that stand beside pseudonymised ones (rule S10)."""
+    yield block, False
+    if block.plain_also.any():
+        forms = np.where(block.plain_also, np.uint8(DISMISSED), np.uint8(NO_PAIR))
+        yield replace(block, forms=forms), True
 
 
-def _plain_beside(part: Pairs) -> Pairs:
-    """The findings of data as it is that stand beside pseudonymised ones: pairs of their own, dismissed (rule S10)."""
-    at = np.flatnonzero(part.plain_also)
-    no = np.zeros(len(at), bool)
-    return replace(
-        part, sources=part.sources[at], leaks=part.leaks[at], pseudonymised=no, dismissed=~no, plain_also=no
-    )  # fmt: skip
+def _form(form: int) -> Form:
+    return Form(bool(form & DISMISSED), False, bool(form & PSEUDONYMISED))

@@ -29,7 +29,9 @@ if TYPE_CHECKING:
     Indices = NDArray[np.int64]
     Bits = NDArray[np.uint64]
     Flags = NDArray[np.bool_]
+    Forms = NDArray[np.uint8]
 
+PLAIN, PSEUDONYMISED, DISMISSED, NO_PAIR = 0, 1, 2, 4  # of ``Block.forms``; dismissed and pseudonymised is 3
 MOST_WORDS = 16  # in one run of the kernel, which then folds channels once for all of them
 MOST_BITS = 2**28  # of all vertices in one run: 32 MB for each of the few arrays that a run takes
 
@@ -59,18 +61,33 @@ class Pairs:
     plain_also: Flags
 
 
-def pairs(spread: Spread, kinds: Sequence[Concern], mask: int) -> Iterator[Pairs]:
-    """Return all pairs, by kind and category.
+@dataclass(frozen=True, slots=True)
+class Block:
+    """The pairs of one kind and category that begin at some of the sources, as a table of sources and leaks.
 
-    Parameters
+    Attributes
     ----------
-    mask
-        Bits of the categories that the answer is about.
+    category
+        Its number.
+    sources, leaks
+        Vertices, shape (n,) and (m,), sorted. Every block of a kind and category has the same leaks.
+    forms
+        Shape (m, n): how the finding stands (``DISMISSED`` and ``PSEUDONYMISED`` added up), the least first; or
+        ``NO_PAIR``.
+    plain_also
+        Shape (m, n): whether data as it is arrives there, too, through another leak only.
+    """
 
-    Notes
-    -----
-    Two runs of the kernel per category and so many sources: one that stops at leaks of the category, one that does not.
-    So many are ``MOST_WORDS`` times 64 for each form, fewer in a large graph.
+    kind: str
+    category: int
+    sources: Indices
+    leaks: Indices
+    forms: Forms
+    plain_also: Flags
+
+
+def pairs(spread: Spread, kinds: Sequence[Concern], mask: int) -> Iterator[Pairs]:
+    """Return all pairs, by category and kind: ``blocks`` put together, which grows with the square of a fleet.
 
     Examples
     --------
@@ -83,6 +100,36 @@ def pairs(spread: Spread, kinds: Sequence[Concern], mask: int) -> Iterator[Pairs
     >>> [(carried.categories[row.category], NAMES[row.leaks[0]], bool(row.pseudonymised[0])) for row in rows][1:3]
     [('FaceTemplate', 'disk', False), ('Video', '/archive', True)]
     """
+    by_kind: dict[tuple[int, str], list[Block]] = {}
+    for block in blocks(spread, kinds, mask):
+        by_kind.setdefault((block.category, block.kind), []).append(block)
+    for (category, kind), parts in by_kind.items():
+        columns = [np.concatenate(column) for column in zip(*map(_columns, parts), strict=True)]
+        if len(columns[0]):
+            yield Pairs(kind, category, *columns)
+
+
+def _columns(block: Block) -> tuple[Indices, Indices, Flags, Flags, Flags]:
+    """The pairs of a block, sorted by source and leak."""
+    source, leak = np.nonzero((block.forms != NO_PAIR).T)
+    forms = block.forms[leak, source]
+    hidden, dismissed = (forms & PSEUDONYMISED).astype(bool), (forms & DISMISSED).astype(bool)
+    return block.sources[source], block.leaks[leak], hidden, dismissed, block.plain_also[leak, source]
+
+
+def blocks(spread: Spread, kinds: Sequence[Concern], mask: int) -> Iterator[Block]:
+    """Return all pairs, by category, some sources at a time: what is held at once does not grow with the sources.
+
+    Parameters
+    ----------
+    mask
+        Bits of the categories that the answer is about.
+
+    Notes
+    -----
+    Two runs of the kernel per category and so many sources: one that stops at leaks of the category, one that does not.
+    So many are ``MOST_WORDS`` times 64 for each form, fewer in a large graph.
+    """
     ends = [as_bits(spread, len(spread.graph.elements), concern.taken_up(spread), 0) for concern in kinds]
     network: GraphArrays | None = None
     for i, _ in enumerate(spread.categories):
@@ -90,7 +137,7 @@ def pairs(spread: Spread, kinds: Sequence[Concern], mask: int) -> Iterator[Pairs
         if not mask & spread.bits.pair(i) or not any(len(some) for some in leaks):
             continue
         network = network or GraphArrays.of(spread)
-        yield from _pairs_of(spread, network, i, kinds, leaks)
+        yield from _blocks_of(spread, network, i, kinds, leaks)
 
 
 def _has(bits: Bits, bit: int) -> Flags:
@@ -244,13 +291,12 @@ def unpacked(rows: Bits, first: int, n: int) -> Flags:
     return bits[:, first - low * WORD : first - low * WORD + n].astype(bool)
 
 
-def _pairs_of(
+def _blocks_of(
     spread: Spread, network: GraphArrays, number: int, kinds: Sequence[Concern], leaks: Sequence[Indices]
-) -> Iterator[Pairs]:
+) -> Iterator[Block]:
     """The pairs of each kind, of one category."""
     steps = {(before, after) for pairs in spread.derives.values() for before, after in pairs}
     category = CategoryRun(spread, network, number, forms(number, spread.bits, steps))
-    rows: list[list[tuple[Indices, Indices, Flags, Flags, Flags]]] = [[] for _ in kinds]
     disclosed = next(number for number, concern in enumerate(kinds) if concern.kind == DISCLOSURE)
     everywhere = np.unique(np.concatenate(leaks))
     for start in range(0, len(category.sources), category.at_once()):
@@ -260,12 +306,7 @@ def _pairs_of(
         for at, concern in enumerate(kinds):
             if len(leaks[at]):
                 reached = (free, through) if concern.kind == DISCLOSURE else (through, through)
-                rows[at].append(_rows(sources, leaks[at], *reached))
-    for concern, some in zip(kinds, rows, strict=True):
-        if some:
-            columns = [np.concatenate(column) for column in zip(*some, strict=True)]
-            if len(columns[0]):
-                yield Pairs(concern.kind, number, *columns)
+                yield Block(concern.kind, number, sources, leaks[at], *_as_shown(leaks[at], *reached))
 
 
 def _reached(category: CategoryRun, sources: Indices, leaks: Indices, *, stop: bool) -> tuple[Flags, Flags, Indices]:
@@ -296,18 +337,18 @@ def _closure(start: set[int], steps: Collection[tuple[int, int]]) -> set[int]:
     return closed
 
 
-def _rows(
-    sources: Indices,
-    leaks: Indices,
-    free: tuple[Flags, Flags, Indices],
-    through: tuple[Flags, Flags, Indices],
-) -> tuple[Indices, Indices, Flags, Flags, Flags]:
-    """The pairs, as a finding would be shown."""
+def _as_shown(
+    leaks: Indices, free: tuple[Flags, Flags, Indices], through: tuple[Flags, Flags, Indices]
+) -> tuple[Forms, Flags]:
+    """The forms and ``plain_also`` of a block, as findings would be shown."""
     there = [_of(reached, plane, leaks) for reached in (free, through) for plane in (0, 1)]
     plain, hidden, plain_through, hidden_through = shown_arrivals(*there)
-    source, leak = np.nonzero(np.logical_or.reduce(there).T)
-    at, dismissed = (leak, source), ~(plain | hidden)
-    return sources[source], leaks[leak], (hidden | hidden_through)[at], dismissed[at], (hidden & plain_through)[at]
+    shown = np.full(plain.shape, NO_PAIR, np.uint8)
+    shown[plain_through] = DISMISSED  # beside what is pseudonymised, that stands: it comes last
+    shown[hidden_through] = DISMISSED | PSEUDONYMISED
+    shown[plain] = PLAIN
+    shown[hidden] = PSEUDONYMISED
+    return shown, hidden & plain_through
 
 
 def _of(reached: tuple[Flags, Flags, Indices], plane: int, leaks: Indices) -> Flags:
