@@ -21,6 +21,7 @@ from rosprivacy.analysis.findings.closures import closed_by_shipped
 from rosprivacy.analysis.findings.concerns import concerns, shown_arrivals
 from rosprivacy.analysis.findings.open_questions import grounds, lacking, open_questions, unknown_ends
 from rosprivacy.analysis.findings.paths_of_source import PathsOfSource
+from rosprivacy.analysis.findings.units import Units
 from rosprivacy.analysis.findings.witness import witness_of
 from rosprivacy.analysis.kernel import spreading, standard_channels
 from rosprivacy.analysis.kernel.bits import bits_of
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Bound, FlowGraph
 
+    _Nets = Callable[[int, AbstractSet["Chosen"]], Iterator[tuple[Net, AbstractSet["Chosen"]]]]
     Followed = tuple[Search, Mapping[int, int]]  # a search, with what it did not follow: vertex -> bits
 
 MAX_PATHS = 100
@@ -74,6 +76,10 @@ class Options(NamedTuple):
     choose
         Of a spread, the kinds of findings and the bits of the categories: source -> ``Chosen`` of the findings to
         make; None for all.
+    shared
+        Names under which a fleet files what no robot has. With them, and with ``choose``, each search looks at the
+        robot of its source, at what is shared and at the robots between (``units.py``): ways are as short, and paths
+        that share no flow are counted there only.
     bounds
         Above ``path_steps`` paths are not counted, which a warning says.
     """
@@ -85,6 +91,7 @@ class Options(NamedTuple):
     uncounted: Callable[[Element, Element], bool] | None = None
     accepts: Callable[[Case], bool] | None = None
     choose: Callable[[Spread, Sequence[Concern], int], Mapping[int, AbstractSet[Chosen]]] | None = None
+    shared: AbstractSet[str] | None = None
     today: str = ""
     bounds: Bounds = BOUNDS
 
@@ -223,22 +230,58 @@ def _findings(net: Net, mask: int, kinds: Sequence[Concern], options: Options, w
     reached = [(concern, leaks) for concern, leaks in ends if leaks]
     results: list[tuple[int, int, int, str, bool, Finding]] = []
     stops = _Stops(spread)
-    room = 0 if options.count_paths else ROOM  # only where these wait for who asks, another answer follows
     chosen = options.choose(spread, kinds, mask) if options.choose and reached else None
     sources = [v for v in spread.facts if spread.begins(v)] if chosen is None else chosen
+    nets = _nets(net, options, stops) if chosen is not None and reached else None
     for source in sorted(sources) if reached else ():
         only = None if chosen is None else chosen[source]
-        whole = searches(spread, room).of(net, source, spread.all_bits, {}, None)
-        work.searches.add(len(whole.arrived_bits), NOWHERE)
-        memory: dict[Any, Any] = {}
-        for concern, leaks in reached:
-            there = _leaks_met(whole, leaks)
-            for leak, category, finding in _findings_of(
-                net, source, whole, concern, there, options, memory, only, work, stops
-            ):
-                work.findings.add(1, NOWHERE)
+        for near, some in [(net, only)] if nets is None or only is None else nets(source, only):
+            for category, leak, finding in _findings_from(near, source, reached, options, some, work, stops):
                 results.append((category, source, leak, finding.kind, finding.plain_also, finding))
     yield from (finding for *_, finding in sorted(results, key=lambda row: row[:5]))
+
+
+def _nets(net: Net, options: Options, stops: _Stops) -> _Nets | None:
+    """What gives of a source the nets to search for its findings, each with those; None where that is the whole net.
+
+    Those to other robots, whose paths are not counted, have a net of their own: they do not make it larger for others.
+    """
+    if options.shared is None or options.accepts is not None:
+        return None
+    spread, elements = net.spread, net.spread.graph.elements
+    numbers = {i if i in spread.made_categories else -1: i for i, _ in enumerate(spread.categories)}
+    free = [_allowed_and_ends(spread, i) for i in numbers.values()]
+    units = Units(
+        net, options.shared, [(spread.all_bits, {}), *((allowed, stops.of(ends, {})) for allowed, ends in free)]
+    )
+
+    def nets(source: int, only: AbstractSet[Chosen]) -> Iterator[tuple[Net, AbstractSet[Chosen]]]:
+        uncounted = options.uncounted or (lambda *_: False)
+        away = {one for one in only if uncounted(elements[source], elements[one[1]])}
+        for some in (only - away, away):
+            if some:
+                yield units.near(source, {leak for _, leak, _, _ in some}), some
+
+    return nets
+
+
+def _findings_from(
+    net: Net, source: int, reached: Sequence[tuple[Concern, Mapping[int, int]]], options: Options,
+    only: AbstractSet[Chosen] | None, work: _Work, stops: _Stops,
+) -> Iterator[tuple[int, int, Finding]]:  # fmt: skip
+    """(number of the category, leak, finding) of one source."""
+    spread = net.spread
+    room = 0 if options.count_paths else ROOM  # only where these wait for who asks, another answer follows
+    whole = searches(spread, room).of(net, source, spread.all_bits, {}, None)
+    work.searches.add(len(whole.arrived_bits), NOWHERE)
+    memory: dict[Any, Any] = {}
+    for concern, leaks in reached:
+        there = _leaks_met(whole, leaks)
+        for leak, category, finding in _findings_of(
+            net, source, whole, concern, there, options, memory, only, work, stops
+        ):
+            work.findings.add(1, NOWHERE)
+            yield category, leak, finding
 
 
 class _Stops:
@@ -326,16 +369,23 @@ def _search_free(
 ) -> None:
     """Search with the leaks of category i as ends; one search serves all categories that nothing is made into."""
     spread = net.spread
-    together = (
-        [i]
-        if i in spread.made_categories
-        else [j for j, _ in enumerate(spread.categories) if j not in spread.made_categories]
-    )
-    ends = sum(map(spread.bits.pair, together))
+    allowed, ends = _allowed_and_ends(spread, i)
     stop = stops.of(ends, accepted)
-    allowed = spread.all_bits if i in spread.made_categories else ends
     result = searches(spread).of(net, source, allowed, stop, (ends, frozenset(accepted.items())))
-    free.update(dict.fromkeys(together, (result, stop)))
+    free.update(dict.fromkeys(_searched_with(spread, i), (result, stop)))
+
+
+def _searched_with(spread: Spread, i: int) -> list[int]:
+    """The categories that one search serves, of which one is i."""
+    if i in spread.made_categories:
+        return [i]
+    return [j for j, _ in enumerate(spread.categories) if j not in spread.made_categories]
+
+
+def _allowed_and_ends(spread: Spread, i: int) -> tuple[int, int]:
+    """The bits that a search for category i follows, and those that end at leaks."""
+    ends = sum(map(spread.bits.pair, _searched_with(spread, i)))
+    return spread.all_bits if i in spread.made_categories else ends, ends
 
 
 def _shown_forms(free: Followed, anywhere: Followed, leak: int, forms: tuple[int, int]) -> list[tuple[Followed, int]]:

@@ -74,7 +74,13 @@ def _first_level(arrived: Iterable[tuple[int, int, int]], bits: int) -> int | No
     return None
 
 
-def search(net: Net, starts: Iterable[int], allowed: int, stop: Mapping[int, int]) -> Search:
+def search(
+    net: Net,
+    starts: Iterable[int],
+    allowed: int,
+    stop: Mapping[int, int],
+    leaving_starts: Mapping[int, int] | None = None,
+) -> Search:
     """Search from what some vertices emit.
 
     Parameters
@@ -85,6 +91,8 @@ def search(net: Net, starts: Iterable[int], allowed: int, stop: Mapping[int, int
         Bits to follow.
     stop
         Vertex -> bits that are not followed on from there (but from a start they are).
+    leaving_starts
+        Start -> the bits that leave it, where that is not what it emits.
 
     Notes
     -----
@@ -108,11 +116,13 @@ def search(net: Net, starts: Iterable[int], allowed: int, stop: Mapping[int, int
     keeps, derives, everything = spread.keeps, spread.derives, spread.all_bits
     level = 0
     leaving: dict[int, int] = defaultdict(int)
-    first = {vertex: spread.emits.get(vertex, 0) & allowed for vertex in sorted(starts)}
-    reach.begun.update({vertex: spread.begins(vertex) & allowed for vertex in first})
+    emits = spread.emits if leaving_starts is None else leaving_starts
+    first = {vertex: emits.get(vertex, 0) & allowed for vertex in sorted(starts)}
+    begins = spread.begins if leaving_starts is None else leaving_starts.__getitem__
+    reach.begun.update({vertex: begins(vertex) & allowed for vertex in first})
     for vertex, bits in first.items():
         _leave(reach, vertex, bits, START, leaving)
-    single = _through_flows(net, first, allowed)
+    single = _through_flows(net, first, allowed) if leaving_starts is None else []
     met: dict[int, int] = defaultdict(int)  # bits that have come to all that a meeting reads
     while leaving or single:
         level += 1

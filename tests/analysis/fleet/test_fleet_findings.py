@@ -6,20 +6,22 @@ from collections import defaultdict
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import pytest
 from hypothesis import given
 
 from rosprivacy.analysis.findings.findings import Options, analyse
 from rosprivacy.analysis.fleet.likeness import pattern_id
 from rosprivacy.analysis.fleet.patterns import FleetView
 from rosprivacy.analysis.fleet.patterns_of_pairs import Groups
-from tests.helpers.random_fleets import Case, fleets, found_in
-from tests.helpers.systems import HIERARCHY
+from rosprivacy.analysis.model import Method, NonRosFacts
+from tests.helpers.random_fleets import HERE, Case, fleets, found_in
+from tests.helpers.systems import HIERARCHY, System, statement
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from rosprivacy.analysis.answer import Finding
-    from rosprivacy.analysis.model import Element
+    from rosprivacy.analysis.model import Element, Statement
 
 Vertex = tuple[str, str]  # robot (or the fleet), name
 
@@ -159,3 +161,57 @@ def test_of_many_pairs_of_robots_each_robot_has_one_at_either_end(case: Case) ->
         return found
 
     assert ends(some.findings) == ends(analysis.findings)
+
+
+@given(fleets())
+def test_searches_that_look_at_some_robots_only_find_ways_as_short(case: Case) -> None:
+    as_short(case)
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        [],
+        [statement("derivation", "Bio", to="Loc")],
+        [statement("derivation", "Bio", to="Loc"), statement("sanitizer", "Bio", method=Method.DROP)],
+        [statement("sanitizer", "Bio", method=Method.PSEUDONYMISE)],
+        [statement("leak", "Bio")],
+    ],
+)
+def test_the_way_from_one_shared_element_to_another_is_through_a_third_robot(said: list[Statement]) -> None:
+    """a brings in what b alone takes from the first storage to the second, which c reads."""
+    robots = {
+        "a0": System(1, 0, [], {0: [statement("source", "Bio")]}, {}),
+        "b0": System(1, 0, [], {0: said}, {}),
+        "c0": System(1, 0, [], {0: [statement("leak", "Any")]}, {}),
+    }
+    storage: tuple[str, NonRosFacts, list[Statement]] = ("storage", NonRosFacts(place=HERE), [])
+    flows = [(a, b, frozenset[str]()) for a, b in (("a0:/n0", "s0"), ("s0", "b0:/n0"), ("b0:/n0", "s1"))]
+    case = Case(robots, {"s0": storage, "s1": storage}, [*flows, ("s1", "c0:/n0", frozenset())])
+    assert any(leak == "/n0" and robot == "c0" for robot, leak in as_short(case))
+
+
+def as_short(case: Case) -> set[tuple[str, str]]:
+    """Every finding stands as it does in one graph (S10); fewer paths that share no flow may be counted."""
+    result = found_in(case)
+    if result is None:
+        return set()
+    analysis, placed = result
+    likeness = placed.likeness
+    numbers = {element: vertex for vertex, element in enumerate(placed.graph.elements)}
+    chosen: dict[int, set[tuple[str, int, int, bool]]] = defaultdict(set)
+    for one in analysis.findings:
+        category = analysis.spread.categories.index(one.category)
+        chosen[numbers[one.source]].add((one.kind, numbers[one.leak], category, one.plain_also))
+    shared = frozenset(element.robot for element in placed.graph.elements if not likeness.is_robot(element.robot))
+    options = Options(choose=lambda *_: chosen, shared=shared, uncounted=likeness.apart)
+    some = analyse(placed.graph, placed.bound, HIERARCHY, options)
+
+    def facts(finding: Finding) -> tuple[object, ...]:
+        return finding.id, finding.dismissed, finding.pseudonymised, len(finding.witness)
+
+    assert list(map(facts, some.findings)) == list(map(facts, analysis.findings))
+    for near, whole in zip(some.findings, analysis.findings, strict=True):
+        if near.number_of_paths is not None:
+            assert 1 <= near.number_of_paths <= (whole.number_of_paths or 1)
+    return {(one.leak.robot, one.leak.name) for one in some.findings}
