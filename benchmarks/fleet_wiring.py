@@ -8,18 +8,23 @@ of one gets to all others.
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from random import Random
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
-from fleet_robots import each_of
-from measure import Row
+from fleet_robots import answered, everything
+from measure import Row, calls_per_robot, per_robot, side_by_side
+from turtlebot import chosen_categories
 
+from rosprivacy.answering import answer
+from rosprivacy.ingest.database.fleet_rows import MOST_ACROSS
 from rosprivacy.ontology.vocabulary import load
+from rosprivacy.reading.fleet_system import fleet_system, rows_of_fleet
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from measure import Measured
 
@@ -27,6 +32,8 @@ if TYPE_CHECKING:
 
 BOUND = 1.3
 SIZES, QUICK = (1_000, 100), (400, 100)  # robots
+LARGE = (4_000, 1_000)
+LOADED = (1_000, 200), (400, 150)  # of fewer, all pairs of robots are written
 NODES, AREAS, PER_AREA = 24, 6, 8  # of a robot: nodes, and topics in areas, which wildcards name
 LABELS = {
     "/camera": {"source": ["Video"]},
@@ -56,27 +63,74 @@ SHARED = {
 def rows(*, quick: bool) -> Iterator[Row]:
     """Declare what is measured."""
     known, sizes = load(), QUICK if quick else SIZES
-    what = f"per robot, fleet file to report: {sizes[0]:,} wired at random"
-    yield Row(what, f"{sizes[1]}", lambda: _measured(known, sizes, quick=quick), BOUND, counts=quick)
-
-
-def _measured(known: Vocabulary, sizes: tuple[int, int], *, quick: bool) -> Measured:
     with TemporaryDirectory() as name:
-        large, small = (fleet(Path(name), robots) for robots in sizes)
-        note = f"{NODES + AREAS * PER_AREA} elements each, few of them with a label, and a cloud that joins all"
-        return each_of((large, small), known, sizes, note, quick=quick)
+        folder = Path(name)
+
+        def row(what: str, work: Callable[[str, Vocabulary], object], sizes: tuple[int, int], kinds: int = 3) -> Row:
+            of_kinds = f", {kinds} kinds" if kinds > 3 else ""
+            return Row(
+                f"per robot, fleet file to {what}: {sizes[0]:,} wired at random{of_kinds}",
+                f"{sizes[1]:,}",
+                lambda: _measured(folder, lambda file: work(file, known), sizes, kinds, quick=quick),
+                BOUND,
+                counts=quick,
+            )
+
+        yield row("report", answered, sizes)
+        yield row("rows of the database", rows_loaded, LOADED[quick])
+        if not quick:
+            yield row("page", page, sizes)
+            yield row("report", answered, sizes, 24)
+            yield row("report", answered, LARGE)
 
 
-def fleet(folder: Path, robots: int) -> str:
+def _measured(
+    folder: Path, work: Callable[[str], object], sizes: tuple[int, int], kinds: int, *, quick: bool
+) -> Measured:
+    large, small = (fleet(folder, robots, kinds) for robots in sizes)
+    note = f"{NODES + AREAS * PER_AREA} elements each, few of them with a label, and a cloud that joins all"
+    works = (lambda: work(large)), (lambda: work(small))
+    if quick:
+        return replace(calls_per_robot(*works, sizes), note=note)
+    return per_robot(side_by_side(3, *works), sizes, note)
+
+
+def page(file: str, known: Vocabulary) -> str:
+    """Read a fleet, analyse it, and make the page for people."""
+    question = everything(known)
+    return answer(fleet_system(file, question), question).to("html")
+
+
+def rows_loaded(file: str, known: Vocabulary) -> int:
+    """Read a fleet, analyse it, and make all that ``load`` writes; return how many rows that is."""
+    question = everything(known)._replace(every=True, most_across=MOST_ACROSS)
+    system = fleet_system(file, question)
+    return sum(robot.size for robot in rows_of_fleet(system, question, answer(system, question)))
+
+
+def fleet(folder: Path, robots: int, kinds: int = 3) -> str:
     """Write a fleet of so many robots, each with a policy of its own; return the name of its file."""
-    (folder / "l.json").write_text(json.dumps({"labels": 1, "nodes": LABELS}), "utf-8")
+    labels = f"labels{kinds}.json"
+    (folder / labels).write_text(json.dumps({"labels": 1, "nodes": labels_of(kinds)}), "utf-8")
     members = {}
     for number in range(robots):
         (folder / f"{number}.xml").write_text(policy(Random(number)), "utf-8")  # noqa: S311 - repeatable
-        members[f"r{number:04}"] = {"policies": f"{number}.xml", "labels": "l.json"}
-    file = folder / f"{robots}.json"
+        members[f"r{number:04}"] = {"policies": f"{number}.xml", "labels": labels}
+    file = folder / f"{robots}of{kinds}.json"
     file.write_text(json.dumps({"fleet": 1, "robots": members, **SHARED}), "utf-8")
     return str(file)
+
+
+def labels_of(kinds: int) -> dict[str, object]:
+    """Return what is said of nodes; beyond three kinds, each is brought in by a node that had no label."""
+    names, _ = chosen_categories(kinds + len(LABELS))
+    known = json.dumps(LABELS)
+    more = [name for name in names if f'"{name}"' not in known][: kinds - 3]
+    brought: dict[str, list[str]] = {}
+    for number, name in enumerate(more):
+        brought.setdefault(f"/part{number % (NODES - len(LABELS))}", []).append(name)
+    leaks = {"leak": ["Voice", "FaceTemplate", *more]}
+    return {**LABELS, "/uplink": leaks, **{node: {"source": some} for node, some in brought.items()}}
 
 
 def policy(random: Random) -> str:

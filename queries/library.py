@@ -51,7 +51,7 @@ TYPES = {**VALUE_TYPES, **dict.fromkeys(NAMES, str)}
 LARGEST = 2**63 - 1  # integers of Cypher have 64 bits
 _LINE = re.compile(r"// (?:(name|kind|description|order)|(param|returns) ([a-z][a-z_0-9]*)): (.+)")
 PARAMETER = re.compile(r"\$([A-Za-z_][A-Za-z_0-9]*)")
-_WRITES = re.compile(r"\b(CREATE|MERGE|DELETE|SET|REMOVE|DROP|FOREACH|LOAD)\b", re.IGNORECASE)
+_WRITES = re.compile(r"(?<!:)\b(CREATE|MERGE|DELETE|SET|REMOVE|DROP|FOREACH|LOAD)\b", re.IGNORECASE)
 TEXT = re.compile(r"'(?:[^'\\]|\\.)*'|\"(?:[^\"\\]|\\.)*\"|//[^\n]*|/\*.*?\*/", re.DOTALL)
 
 

@@ -6,14 +6,17 @@ recogniser is the origin of the face templates there.
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.findings.units import Units
 from rosprivacy.analysis.kernel.search import START, Search, path_to, search
 from rosprivacy.analysis.kernel.states import Net
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+    from collections.abc import Set as AbstractSet
 
     from rosprivacy.analysis.kernel.spread import Spread
 
@@ -44,13 +47,19 @@ class Origin:
     past_leak: bool
 
 
-def origins(spread: Spread) -> tuple[Origin, ...]:
+def origins(spread: Spread, shared: AbstractSet[str] | None = None) -> tuple[Origin, ...]:
     """Return the origins of all that is made on the path, sorted by source, category and maker.
+
+    Parameters
+    ----------
+    shared
+        Names under which a fleet files what no robot has. With them, only what is made on the robot of its source, or
+        at what is shared.
 
     Notes
     -----
-    One search per source and one per category that is made of its data: O(flows) each. Nothing is searched where
-    nothing is made.
+    One search per source and one per category that is made of its data: O(flows) each, with ``shared`` O(flows of the
+    robot). Nothing is searched where nothing is made.
 
     Examples
     --------
@@ -62,9 +71,31 @@ def origins(spread: Spread) -> tuple[Origin, ...]:
     """
     if not spread.made_categories:
         return ()
-    net = Net.of(spread)
+    net, elements = Net.of(spread), spread.graph.elements
     sources = sorted(vertex for vertex in spread.facts if spread.begins(vertex))
-    return tuple(origin for source in sources for origin in _of(net, source))
+    if shared is None:
+        return tuple(origin for source in sources for origin in _of(net, source))
+    stops = [_stop(spread, category) for category in sorted(spread.made_categories)]
+    units = Units(net, shared, [(spread.all_bits, {}), *((spread.all_bits, stop) for stop in stops)])
+    return tuple(
+        origin
+        for source in sources
+        for origin in _of(units.near(source, ()), source)
+        if elements[origin.maker].robot in {elements[source].robot, *shared}
+    )
+
+
+def pairs_at_most(spread: Spread) -> int:
+    """Return a number that (maker, source) of one category cannot exceed; a search finds out how many there are."""
+    makers = Counter(spread.bits.category(made) for pairs in spread.derives.values() for _, made in pairs)
+    sources = sum(1 for vertex in spread.facts if spread.begins(vertex))
+    return sources * max((makers[category] for category in spread.made_categories), default=0)
+
+
+def _stop(spread: Spread, category: int) -> dict[int, int]:
+    """The leaks of a category, which a search past none of them stops at."""
+    both = spread.bits.pair(category)
+    return {vertex: bits & both for vertex, bits in spread.leaks.items()}
 
 
 def _of(net: Net, source: int) -> Iterator[Origin]:
@@ -77,7 +108,7 @@ def _of(net: Net, source: int) -> Iterator[Origin]:
             continue
         # Where the category also arrives ready-made through a leak, only the search past no leak shows that it is made.
         makers = _makers(whole, both)
-        free = search(net, [source], spread.all_bits, {v: bits & both for v, bits in spread.leaks.items()})
+        free = search(net, [source], spread.all_bits, _stop(spread, number))
         not_past = _makers(free, both)
         for maker in sorted(makers.keys() | not_past.keys()):
             past = maker not in not_past

@@ -14,6 +14,7 @@ from rosprivacy.ingest.database.schema import (
     BAG,
     CARRIES,
     CATEGORY,
+    CHANGE,
     COULD_FLOW_TO,
     ELEMENT,
     ENCLAVE,
@@ -21,6 +22,7 @@ from rosprivacy.ingest.database.schema import (
     FINDING,
     HAS_TOPIC,
     INTAKE,
+    LOAD,
     LOOK_AT,
     NODES,
     PROVISION,
@@ -143,6 +145,20 @@ READ_DIGESTS = (
 )
 WRITE_ROBOTS = (
     f"UNWIND $rows AS row MATCH {_node('r', ROBOT, 'row.robot')} SET r += row.properties, r.`version` = r.`version` + 1"
+)
+# What happened: no question about what is there follows these.
+MERGE_LOAD = f"MERGE {_node('l', LOAD, '$id')} SET l += $properties"
+WROTE_ROBOTS = (
+    f"MATCH {_node('l', LOAD, '$id')} UNWIND $names AS name MATCH {_node('r', ROBOT, 'name')} "
+    "CREATE (l)-[:`WROTE` {`version`: r.`version`}]->(r)"
+)
+READ_PATTERNS = (
+    f"MATCH (f:{quoted(FINDING.label)}) WHERE f.`robot` IN $names "
+    "RETURN f.`robot` AS robot, f.`pattern` AS pattern, properties(f) AS properties"
+)
+CREATE_CHANGES = (
+    f"MATCH {_node('l', LOAD, '$load')} UNWIND $rows AS row CREATE {_node('c', CHANGE, 'row.id')} "
+    "SET c += row.properties CREATE (c)-[:`CAME_WITH`]->(l)"
 )
 READ_ELEMENTS = (
     "MATCH (r:`Robot`)<-[:`OF_ROBOT` {`robot`: r.`name`}]-(n:`Element`) WHERE r.`name` IN $names RETURN n.`id` AS id"

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.answer import robot_verdicts
 from rosprivacy.analysis.contexts import Contexts
-from rosprivacy.analysis.findings.derived_from import origins
+from rosprivacy.analysis.findings.derived_from import origins, pairs_at_most
 from rosprivacy.analysis.fleet.likeness import Likeness, pattern_id
 from rosprivacy.analysis.model import UNSTATED
 from rosprivacy.ingest.database.carrying import Carrying
@@ -100,6 +100,9 @@ class FleetRows:
     left_out
         How many findings from one robot to another are not written: of a pattern with more than ``most_across`` one
         is written for each robot from which data comes; with ``counts`` also for each to which it gets.
+    derived_nearby
+        Whether ``DERIVES_FROM`` is written within robots and to what is shared only, as there may be more of it than
+        ``most_across`` from robot to robot.
     """
 
     def __init__(
@@ -123,7 +126,10 @@ class FleetRows:
         self._graph = analysis.graph
         self._labels = category_labels(vocabulary)
         self._names = Names(analysis.spread, vocabulary, self._labels)
-        self._origins = origins(analysis.spread)
+        many = self._likeness.robots > 1 and most_across and pairs_at_most(analysis.spread) > most_across
+        shared = {one.robot for one in self._graph.elements if not self._likeness.is_robot(one.robot)} if many else None
+        self.derived_nearby = shared is not None
+        self._origins = origins(analysis.spread, shared)
         across = [one for one in analysis.findings if self._likeness.across(one) and self._likeness.count(one)]
         self._at_either_end = counts is not None
         if counts is None:

@@ -9,8 +9,10 @@ from __future__ import annotations
 
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from datetime import UTC, datetime
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, TypeVar
+from uuid import uuid4
 
 from rosprivacy.analysis.errors import DatabaseError, InputError, shown
 from rosprivacy.ingest.database import cypher
@@ -58,6 +60,32 @@ PARTS = {  # of ``RobotRows``: what writes them once elements are there, in this
 }
 
 
+CHANGED = ("dismissed", "pseudonymised")  # of a finding: how it stands
+REMEMBERED = ("pattern", "kind", "category", "source", "leak", *CHANGED)  # of a finding that came or went
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """A run of ``load``, as the database remembers it.
+
+    Attributes
+    ----------
+    at
+        When it began, in UTC; ISO 8601, in whole seconds.
+    version
+        Of the program.
+    """
+
+    at: str
+    version: str
+    id: str = field(default_factory=lambda: str(uuid4()))
+
+    @classmethod
+    def begun(cls, version: str, at: datetime | None = None) -> Run:
+        """Return a run that begins now, or at another time."""
+        return cls((at or datetime.now(UTC)).astimezone(UTC).strftime("%Y-%m-%dT%H:%M:%SZ"), version)
+
+
 @dataclass(frozen=True, slots=True)
 class Loaded:
     """How many robots were written, and how many were there already as they are.
@@ -86,6 +114,7 @@ def load(
     robots: Iterable[RobotRows],
     vocabulary: Vocabulary,
     progress: Callable[[int], None] = lambda _: None,
+    run_of: Run | None = None,
 ) -> Loaded:
     """Write robots and categories.
 
@@ -93,6 +122,8 @@ def load(
     ----------
     progress
         Called with the number of rows after each transaction.
+    run_of
+        Remembered with what it changed; without it nothing is remembered.
 
     Raises
     ------
@@ -112,15 +143,17 @@ def load(
         for statement in constraints():
             session.run(statement).consume()
         session.execute_write(write_vocabulary, vocabulary)
+        session.execute_write(_note, run_of, "running", 0, 0)
         for batch in in_batches(robots, attrgetter("size"), attrgetter("robot")):
             there = session.execute_read(_read_there, [rows.robot for rows in batch])
             changed = _changed(there, batch)
             replaced |= _of_other_policies(there, changed)
             if changed:
-                session.execute_write(_write_robots, changed, labels)
+                session.execute_write(_write_robots, changed, labels, run_of)
             written += len(changed)
             unchanged += len(batch) - len(changed)
             progress(sum(rows.size for rows in batch))
+        session.execute_write(_note, run_of, "whole", written, unchanged)
     return Loaded(written, unchanged, replaced)
 
 
@@ -274,11 +307,50 @@ def _link(source: str, target: str, **properties: Any) -> Row:
     return {"source": source, "target": target, "properties": properties}
 
 
-def _write_robots(transaction: ManagedTransaction, robots: list[RobotRows], labels: list[str]) -> None:
+def _note(transaction: ManagedTransaction, load: Run | None, state: str, written: int, unchanged: int) -> None:
+    """Write how far a run is."""
+    if load is not None:
+        facts = {"at": load.at, "version": load.version, "state": state, "written": written, "unchanged": unchanged}
+        run(transaction, cypher.MERGE_LOAD, id=load.id, properties=facts)
+
+
+def _note_changes(transaction: ManagedTransaction, robots: list[RobotRows], known: list[str], load: Run) -> None:
+    """Write which findings of robots that are there come and go; before they do."""
+    before = _patterns(
+        (record["robot"], record["properties"]) for record in transaction.run(cypher.READ_PATTERNS, names=known)
+    )
+    there = set(known)
+    now = _patterns((r.robot, row["properties"]) for r in robots if r.robot in there for row in r.findings)
+    rows = []
+    for robot, pattern in sorted(before.keys() | now.keys()):
+        old, new = before.get((robot, pattern)), now.get((robot, pattern))
+        finding = new or old or {}
+        what = "new" if old is None else "gone" if new is None else "changed"
+        if what != "changed" or any(finding[name] != (old or {})[name] for name in CHANGED):
+            facts = {"at": load.at, "robot": robot, "what": what, **{name: finding.get(name) for name in REMEMBERED}}
+            rows.append({"id": f"{load.id} {robot} {pattern}", "properties": facts})
+    write(transaction, cypher.CREATE_CHANGES, rows, load=load.id)
+
+
+def _patterns(findings: Iterable[tuple[str, Row]]) -> dict[tuple[str, str], Row]:
+    """(robot, pattern) -> of its findings the one that stands most: which of many pairs are written may vary."""
+    least: dict[tuple[str, str], Row] = {}
+    for robot, finding in findings:
+        key = robot, finding["pattern"]
+        if key not in least or [finding[name] for name in CHANGED] < [least[key][name] for name in CHANGED]:
+            least[key] = finding
+    return least
+
+
+def _write_robots(
+    transaction: ManagedTransaction, robots: list[RobotRows], labels: list[str], load: Run | None
+) -> None:
     """Replace some robots, sorted by name, so that two loads do not wait for each other in a ring."""
     names = [rows.robot for rows in robots]
     run(transaction, cypher.LOCK_ROBOTS, names=names)
     known = [record["name"] for record in transaction.run(cypher.READ_ROBOTS, names=names) if record["known"]]
+    if known and load is not None:
+        _note_changes(transaction, robots, known, load)
     if known:
         new = {row["id"] for rows in robots for row in (*rows.elements, *rows.intakes)}
         _remove(transaction, known, new)
@@ -297,6 +369,8 @@ def _write_robots(transaction: ManagedTransaction, robots: list[RobotRows], labe
     absent = {field.name: None for field in ROBOT.properties if field.name not in (ROBOT.key, "version")}
     whole = [{"robot": r.robot, "properties": absent | r.properties} for r in robots]
     run(transaction, cypher.WRITE_ROBOTS, rows=whole)
+    if load is not None:
+        run(transaction, cypher.WROTE_ROBOTS, id=load.id, names=names)
 
 
 def _remove(transaction: ManagedTransaction, names: list[str], but: Collection[str] = ()) -> None:

@@ -225,6 +225,26 @@ _NODES = f"""\
     move STRING the profile of which an enclave of its own takes it away alone; absent if none does
     deny STRINGS DENY lines that take it away, proven by a new analysis
     loses STRINGS what nodes would lose by these lines that their own profiles allow
+(:Load {{id}}) A run of `rosprivacy load`: robots are written one after the other, each as a whole.
+    id STRING unique
+    at STRING when it began, in UTC: 2026-11-27T08:00:00Z
+    version STRING of rosprivacy
+    state STRING running until all is written, then whole; one that was cut off stays running
+    written INTEGER how many robots it wrote, and what they share
+    unchanged INTEGER how many were there already as they are
+(:Change {{id}}) What a load brought to a robot that was there before, or took from it: findings of one pattern that
+        begin there. It is no `Finding`, and no relationship leads from it to an element.
+    id STRING unique: load, robot and pattern
+    at STRING when the load began
+    robot STRING name of the robot
+    what STRING new, gone, or changed: dismissed or pseudonymised as it was not before
+    pattern STRING of the findings, as theirs
+    kind STRING as of `Finding`
+    category STRING name of the category
+    source STRING name of the source
+    leak STRING name of the leak
+    dismissed BOOLEAN as it is now, or was before it went
+    pseudonymised BOOLEAN as it is now, or was before it went
 (:Bag {{id}}) A recording, with what can be in it: `rosprivacy bag --load` writes it. It takes part in no path.
     id STRING unique: where it is, from the root of the file system
     path STRING as it was named when it was loaded
@@ -355,6 +375,9 @@ _RELATIONSHIPS = f"""\
     pseudonymised BOOLEAN in which form
     file STRING of the policy line behind the step to here
     line INTEGER of the policy line behind the step to here
+(:Load)-[:WROTE]->(:Robot) It wrote the robot.
+    version INTEGER the `version` of the robot that it wrote
+(:Change)-[:CAME_WITH]->(:Load) The load that it came with.
 (:Bag)-[:HAS_TOPIC]->(:RecordedTopic) The topic is in the bag.
 (:RecordedTopic)-[:RECORDS]->(:Element) Of which channel of its robot it tells, or of which leg of one.
 """
@@ -377,7 +400,7 @@ NODES = tuple(
     NodeKind(label, key, meaning, properties, _FURTHER_LABELS if label == "Element" else "")
     for (label, key), meaning, properties in _read(_NODES)
 )
-ELEMENT, ROBOT, ENCLAVE, CATEGORY, PROVISION, FINDING, ADDED_FINDING, BAG, RECORDED_TOPIC = NODES
+ELEMENT, ROBOT, ENCLAVE, CATEGORY, PROVISION, FINDING, ADDED_FINDING, LOAD, CHANGE, BAG, RECORDED_TOPIC = NODES
 RELATIONSHIPS = tuple(
     RelationshipKind(type_, source, target, meaning, properties)
     for (source, type_, target), meaning, properties in _read(_RELATIONSHIPS)
@@ -402,6 +425,16 @@ ROLES = {
     "never": _BY_TYPE["HAS_NOT"],
 }
 SUFFIXES = ("", "Source", "Leak", "Sanitizer")
+INDEXED = (
+    (ELEMENT, "robot"),
+    (ELEMENT, "frontier"),
+    (ENCLAVE, "robot"),
+    (FINDING, "robot"),
+    (FINDING, "leak_robot"),
+    (FINDING, "category"),
+    (FINDING, "pattern"),
+    (CHANGE, "at"),
+)
 RESERVED = frozenset({kind.label for kind in NODES} | set(KIND_LABELS.values()) | {LEG, WILDCARD, INTAKE})
 
 
@@ -425,7 +458,12 @@ def constraints() -> list[str]:
     ]
     statements += [
         f"CREATE INDEX {quoted(f'{kind.label}_{key}')} IF NOT EXISTS FOR (n:{quoted(kind.label)}) ON (n.{quoted(key)})"
-        for kind, key in ((ELEMENT, "robot"), (ENCLAVE, "robot"), (FINDING, "robot"), (FINDING, "leak_robot"))
+        for kind, key in INDEXED
+    ]
+    # Of a policy line the number only: the name of its file may be longer than an index takes.
+    statements += [
+        f"CREATE INDEX {quoted(f'{kind.type}_line')} IF NOT EXISTS FOR ()-[r:{quoted(kind.type)}]-() ON (r.`line`)"
+        for kind in (FLOWS_TO, ACROSS)
     ]
     # A text index takes names of any length.
     statements.append("CREATE TEXT INDEX `Element_name` IF NOT EXISTS FOR (n:`Element`) ON (n.`name`)")

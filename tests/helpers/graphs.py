@@ -51,13 +51,16 @@ def rows_of(robot: str, result: Result) -> RobotRows:
 
 
 def dump(driver: Driver, *, without: tuple[str, ...] = ()) -> tuple[set[str], list[str]]:
-    """Nodes and relationships as text; ``without`` some properties."""
+    """Nodes and relationships as text, but for what loads are remembered by; ``without`` some properties."""
     nodes: dict[str, str] = {}
     for record in driver.execute_query(
-        "MATCH (n) RETURN elementId(n) AS key, labels(n) AS l, properties(n) AS p"
+        "MATCH (n) WHERE NOT n:Load AND NOT n:Change RETURN elementId(n) AS key, labels(n) AS l, properties(n) AS p"
     ).records:
         nodes[record["key"]] = text(sorted(record["l"]), record["p"], without)
-    query = "MATCH (a)-[r]->(b) RETURN elementId(a) AS a, elementId(b) AS b, type(r) AS t, properties(r) AS p"
+    query = (
+        "MATCH (a)-[r]->(b) WHERE NOT a:Load AND NOT a:Change "
+        "RETURN elementId(a) AS a, elementId(b) AS b, type(r) AS t, properties(r) AS p"
+    )
     relationships = [
         f"{nodes[r['a']]} -{text(r['t'], r['p'], without)}-> {nodes[r['b']]}"
         for r in driver.execute_query(query).records

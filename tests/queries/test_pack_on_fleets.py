@@ -89,6 +89,8 @@ CHECKS = {
     "enclave-neighbours-of-sanitizers": Check("robot enclave sanitizer category neighbours already reads writes"),
     "bags": Check("bag", memory="none"),
     "message-types": Check("channel", memory="none"),
+    "changes": Check("robot what", memory="none"),
+    "loads": Check("at", memory="none"),
 }
 
 

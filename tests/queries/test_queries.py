@@ -2,7 +2,8 @@
 
 ``cases/queries/<name>.json``: ``hits`` and ``clean``, each with ``load`` (robot -> system of
 ``cases/queries/systems/systems.json``), ``parameters`` and all ``rows``; a path of the graph is told in words. Rows
-were judged by hand from the rules.
+were judged by hand from the rules. Where ``load`` is a list, these are loads one after the other, one a day, which the
+database remembers.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from rosprivacy.analysis.model.recording import Bag, BagTopic, JudgedBag, TopicK
 from rosprivacy.both_views import both_views
 from rosprivacy.ingest.database.bag_rows import bag_rows, load_bags
 from rosprivacy.ingest.database.fleet_rows import robot_rows
-from rosprivacy.ingest.database.loading import load
+from rosprivacy.ingest.database.loading import Run, load
 from rosprivacy.ingest.database.schema import CARRIES, FLOWS_TO, KIND_LABELS
 from rosprivacy.ingest.labels.binding import bind
 from rosprivacy.ingest.labels.label_file import STANDARD, read_labels
@@ -130,11 +131,16 @@ def driver(neo4j_server: Connection) -> Iterator[Driver]:
         yield opened
 
 
-def fill(driver: Driver, robots: Mapping[str, str]) -> None:
+def fill(driver: Driver, loads: Mapping[str, str] | list[dict[str, str]]) -> None:
     """Wipe the database and load what a case asks for; bags under the paths where they are."""
     driver.execute_query("MATCH (n) DETACH DELETE n")
-    bags = {path: SYSTEMS[name]["bag"] for path, name in robots.items() if "bag" in SYSTEMS[name]}
-    load(driver, [system(robot, name) for robot, name in robots.items() if robot not in bags], VOCABULARY)
+    if isinstance(loads, list):
+        for day, robots in enumerate(loads, 1):
+            rows = [system(robot, name) for robot, name in robots.items()]
+            load(driver, rows, VOCABULARY, run_of=Run(f"2026-01-{day:02}T08:00:00Z", "1.0", str(day)))
+        return
+    bags = {path: SYSTEMS[name]["bag"] for path, name in loads.items() if "bag" in SYSTEMS[name]}
+    load(driver, [system(robot, name) for robot, name in loads.items() if robot not in bags], VOCABULARY)
     for path, given in bags.items():
         load_bags(
             driver,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import sys
 from contextlib import contextmanager
@@ -24,7 +25,7 @@ from rosprivacy.report.verdict import verdict_sentence
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
-    from rosprivacy.ingest.database.loading import Loaded
+    from rosprivacy.ingest.database.loading import Loaded, Run
     from rosprivacy.ingest.database.rows import RobotRows
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.result import Result
@@ -79,7 +80,7 @@ def load(
                 inputs.required_policies[0], 0, what, f"name this one: --robot NAME; --robot {shown(name)} replaces it"
             )
         with _bar(rows.size) as advance:
-            done = database.load(driver, [rows], result.vocabulary, advance)
+            done = database.load(driver, [rows], result.vocabulary, advance, _run())
     how = "is there already, nothing to change" if done.unchanged else "is written"
     emit(f"robot {shown(name)} {how}: {_counts(result, rows)}\n{_sentence(result)}\n", None)
     if robot is None:
@@ -137,12 +138,14 @@ def _load_fleet(file: str, settings: Settings, neo4j: str | None, *, both_views:
     from rosprivacy.reading.fleet_system import fleet_system, rows_of_fleet
 
     question = question_of(settings)._replace(every=True, most_across=MOST_ACROSS)
-    system = fleet_system(file, question)
-    result = answer(system, question)
-    if both_views:
-        from rosprivacy.both_views import both_views_of_fleet
+    with _waiting(f"Reading the robots of {shown(file)}"):
+        system = fleet_system(file, question)
+    with _waiting(f"Analysing {len(system.fleet.robots):,} robots"):
+        result = answer(system, question)
+        if both_views:
+            from rosprivacy.both_views import both_views_of_fleet
 
-        result = replace(result, enforced=both_views_of_fleet(file, settings).enforced)
+            result = replace(result, enforced=both_views_of_fleet(file, settings).enforced)
     rows = rows_of_fleet(system, question, result)
     _load_many(rows, system.vocabulary, neo4j, f"fleet {shown(file)}", len(system.fleet.robots), _sentence(result))
     if rows.left_out:
@@ -151,6 +154,9 @@ def _load_fleet(file: str, settings: Settings, neo4j: str | None, *, both_views:
             f"{message} with more than {MOST_ACROSS:,} only one for each robot that data comes from or gets to",
             file=sys.stderr,
         )
+    if rows.derived_nearby:
+        message = "what nodes make of data (DERIVES_FROM) is written within each robot and to what is shared only"
+        print(f"{message}: from robot to robot it could be more than {MOST_ACROSS:,}", file=sys.stderr)
 
 
 def _load_results(folder: str, ontologies: tuple[str, ...], neo4j: str | None) -> None:
@@ -173,10 +179,34 @@ def _load_many(
     from rosprivacy.ingest.database.loading import load
 
     with driver_of(neo4j) as driver, _bar(None) as advance:
-        done = load(driver, rows, vocabulary, advance)
+        done = load(driver, rows, vocabulary, advance, _run())
     _tell_replaced(done)
     shares = f"{origin}: {robots:,} robots and what they share"
     emit(f"{shares}: {done.written:,} written, {done.unchanged:,} as they were\n{sentence}\n", None)
+
+
+def _run() -> Run:
+    """What the database remembers of this run, which begins when the environment says, or now."""
+    from rosprivacy.clock import source_date
+    from rosprivacy.ingest.database.loading import Run
+    from rosprivacy.version import __version__
+
+    return Run.begun(__version__, source_date(os.environ))
+
+
+@contextmanager
+def _waiting(what: str) -> Iterator[None]:
+    """Say on a terminal what is done, and for how long it has been."""
+    if not sys.stderr.isatty():
+        yield
+        return
+    from rich.console import Console
+    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+    columns = (SpinnerColumn(), TextColumn("{task.description}", markup=False), TimeElapsedColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+        progress.add_task(what, total=None)
+        yield
 
 
 @contextmanager

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import pytest
 from hypothesis import given
 
+from rosprivacy.analysis.findings.derived_from import origins, pairs_at_most
 from rosprivacy.analysis.findings.findings import Options, analyse
 from rosprivacy.analysis.fleet.likeness import pattern_id
 from rosprivacy.analysis.fleet.patterns import FleetView
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from rosprivacy.analysis.answer import Finding
+    from rosprivacy.analysis.findings.derived_from import Origin
     from rosprivacy.analysis.model import Element, Statement
 
 Vertex = tuple[str, str]  # robot (or the fleet), name
@@ -215,3 +217,27 @@ def as_short(case: Case) -> set[tuple[str, str]]:
         if near.number_of_paths is not None:
             assert 1 <= near.number_of_paths <= (whole.number_of_paths or 1)
     return {(one.leak.robot, one.leak.name) for one in some.findings}
+
+
+@given(fleets())
+def test_what_is_made_near_its_source_is_what_is_made_there_in_the_whole_fleet(case: Case) -> None:
+    result = found_in(case)
+    if result is None:
+        return
+    analysis, placed = result
+    elements = placed.graph.elements
+    shared = {element.robot for element in elements if not placed.likeness.is_robot(element.robot)}
+
+    def facts(some: Iterable[Origin]) -> list[tuple[object, ...]]:
+        return [
+            (one.maker, one.source, one.category, len(one.path), one.past_leak)
+            for one in some
+            if elements[one.maker].robot in {elements[one.source].robot, *shared}
+        ]
+
+    near = origins(analysis.spread, shared)
+    assert facts(near) == facts(origins(analysis.spread))
+    assert len(facts(near)) == len(near)
+    assert pairs_at_most(analysis.spread) >= max(
+        Counter(one.category for one in origins(analysis.spread)).values(), default=0
+    )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 import threading
+from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +16,7 @@ from rosprivacy.analysis.findings.findings import analyse
 from rosprivacy.analysis.model import Bound, Category, Element, Flow, FlowGraph, Place, Statement
 from rosprivacy.ingest.database import loading
 from rosprivacy.ingest.database.fleet_rows import robot_rows
-from rosprivacy.ingest.database.loading import Loaded, check_robot_name, load, unload
+from rosprivacy.ingest.database.loading import Loaded, Run, check_robot_name, load, unload
 from rosprivacy.ingest.database.read_back import read_stored
 from rosprivacy.ingest.database.schema import NODES, RELATIONSHIPS
 from rosprivacy.ontology.vocabulary import Vocabulary
@@ -26,6 +27,8 @@ from tests.helpers.graphs import care_home, dump, factory, rows_of
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from neo4j import Driver
 
     from rosprivacy.ingest.database.rows import RobotRows
@@ -52,6 +55,57 @@ def test_the_graph_has_the_ends_and_keys_that_are_declared(driver: Driver) -> No
         assert set(ask(driver, query)) <= {f"{relationship.source}>{relationship.target}"}
     constraints = driver.execute_query("SHOW CONSTRAINTS YIELD labelsOrTypes AS labels, properties AS keys").records
     assert {(row["labels"][0], row["keys"][0]) for row in constraints} >= {(kind.label, kind.key) for kind in NODES}
+
+
+CHANGES = (
+    "MATCH (c:Change)-[:CAME_WITH]->(l:Load) "
+    "RETURN [l.at, c.robot, c.what, c.category, c.source, c.leak, c.dismissed] ORDER BY c.source"
+)
+MONDAY, TUESDAY = (Run(f"2026-11-2{day}T08:00:00Z", "1.0", str(day)) for day in (3, 4))
+
+
+@pytest.mark.database
+class TestHistory:
+    """What a load changed can be asked for; what is gone is found by no question about what is there."""
+
+    def test_of_a_robot_that_was_there_is_said_what_came_and_went(self, driver: Driver) -> None:
+        load(driver, [rows_of("r", factory(2)), rows_of("s", factory(2))], VOCABULARY, run_of=MONDAY)
+        assert ask(driver, CHANGES) == []
+        sources = ask(driver, "MATCH (f:Finding {robot: 'r'}) RETURN f.source ORDER BY f.source")
+        assert len(sources) == 2
+        load(driver, [rows_of("r", factory(1)), rows_of("s", factory(2)), rows_of("t", factory(2))], VOCABULARY,
+             run_of=TUESDAY)  # fmt: skip
+        assert ask(driver, CHANGES) == [
+            [TUESDAY.at, "r", "gone", "Video", source, "/archive_server", False] for source in sources
+        ]
+        assert ask(driver, "MATCH (l:Load)-[:WROTE]->(r) RETURN l.at + ' ' + r.name ORDER BY l.at, r.name") == [
+            *(f"{MONDAY.at} {name}" for name in "rs"), *(f"{TUESDAY.at} {name}" for name in "rt")
+        ]  # fmt: skip
+        assert ask(driver, "MATCH (f:Finding {robot: 'r'}) RETURN f.id") == []
+        assert ask(driver, "MATCH (:Change)-[r]-(n) WHERE NOT n:Load RETURN type(r)") == []
+
+    def test_a_finding_that_another_leak_hides_now_is_changed(self, driver: Driver) -> None:
+        rows = rows_of("r", factory(2))
+        load(driver, [rows], VOCABULARY, run_of=MONDAY)
+        hidden = [{**row, "properties": {**row["properties"], "dismissed": True}} for row in rows.findings]
+        other = replace(rows, findings=hidden, properties={**rows.properties, "digest": "another"})
+        load(driver, [other], VOCABULARY, run_of=TUESDAY)
+        assert ask(driver, CHANGES) == [
+            [TUESDAY.at, "r", "changed", "Video", finding["properties"]["source"], "/archive_server", True]
+            for finding in sorted(hidden, key=lambda row: row["properties"]["source"])
+        ]
+
+    def test_a_load_that_was_cut_off_stays_running(self, driver: Driver) -> None:
+        def rows() -> Iterator[RobotRows]:
+            yield rows_of("r", factory(2))
+            yield rows_of("r", factory(1))  # of the same name: the first is written before
+            raise InputError("fleet.yaml", 1, "is gone", "")
+
+        with pytest.raises(InputError):
+            load(driver, rows(), VOCABULARY, run_of=MONDAY)
+        assert ask(driver, "MATCH (l:Load) RETURN [l.state, l.written]") == [["running", 0]]
+        load(driver, [rows_of("r", factory(2))], VOCABULARY, run_of=TUESDAY)
+        assert ask(driver, "MATCH (l:Load) WHERE l.state = 'whole' RETURN l.at") == [TUESDAY.at]
 
 
 @pytest.mark.database
