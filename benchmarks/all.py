@@ -1,10 +1,11 @@
 """All that is claimed about speed and size, in one table: what against what, the ratio, its bound, held or missed.
 
-    python benchmarks/all.py [--quick] [NAME …]
+    python benchmarks/all.py [--quick | --counts] [NAME …]
 
 Ends with 1 if a bound is missed twice in a row: what misses it is measured again. NAMEs are scripts beside this one;
-without any all are run. ``--quick`` is the form for CI: what has a bound, in fewer rounds and sizes, without servers.
+without any all are run. ``--quick`` is the form of each week: what has a bound, in fewer rounds, smaller, no servers.
 It fails on counts only, which are the same at any load: bytes, and calls of functions. What is timed there is told.
+``--counts`` is the quick form of these alone: what each change is held to.
 """
 
 from __future__ import annotations
@@ -105,12 +106,12 @@ def outcome(row: Row, *, quick: bool) -> Outcome:
     return replace(got, measured=row.measure(), missed_before=got.measured.ratio) if got.failed else got
 
 
-def outcomes(benchmark: str, *, quick: bool) -> Iterator[Outcome | str]:
+def outcomes(benchmark: str, *, quick: bool, counts: bool) -> Iterator[Outcome | str]:
     """Measure the rows of one script, one after the other; a text says what was not measured, and why."""
     try:
         declared: Iterable[Row] = import_module(benchmark).rows(quick=quick)
         for row in declared:
-            if quick and row.bound is None:
+            if (quick and row.bound is None) or (counts and not row.counts):
                 continue
             try:
                 yield outcome(row, quick=quick)
@@ -122,11 +123,11 @@ def outcomes(benchmark: str, *, quick: bool) -> Iterator[Outcome | str]:
         yield f"not measured: {error.name} is missing; pip install '.[dev,bench]'"
 
 
-def measured(benchmark: str, *, quick: bool) -> list[str]:
+def measured(benchmark: str, *, quick: bool, counts: bool) -> list[str]:
     """Print the rows of one script, each as soon as it is measured; return those that fail."""
     gc.set_threshold(ENOUGH)  # as the command does
     failed = []
-    for one in outcomes(benchmark, quick=quick):
+    for one in outcomes(benchmark, quick=quick, counts=counts):
         print(f"{benchmark:<{NAME}} {one}" if isinstance(one, str) else one.text(benchmark), flush=True)
         if not isinstance(one, str) and one.failed:
             failed.append(f"{benchmark}: {what(one.row)}")
@@ -136,7 +137,9 @@ def measured(benchmark: str, *, quick: bool) -> list[str]:
 def main() -> int:
     """Print the table; return the exit code."""
     parser = argparse.ArgumentParser(description="All that is claimed about speed and size, as ratios.")
-    parser.add_argument("--quick", action="store_true", help="for CI: what has a bound, smaller, without servers")
+    forms = parser.add_mutually_exclusive_group()
+    forms.add_argument("--quick", action="store_true", help="what has a bound, smaller, without servers")
+    forms.add_argument("--counts", action="store_true", help="for CI: of the quick form what is counted, and not timed")
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(BENCHMARKS)}")
     asked = parser.parse_args()
     failed = []
@@ -144,7 +147,8 @@ def main() -> int:
     # Each in a fresh process: what one has loaded is no part of the next one, nor of the memory of what it starts.
     with ProcessPoolExecutor(1, get_context("spawn"), max_tasks_per_child=1) as pool:
         for benchmark in asked.names or BENCHMARKS:
-            failed += pool.submit(measured, benchmark, quick=asked.quick).result()
+            quick = asked.quick or asked.counts
+            failed += pool.submit(measured, benchmark, quick=quick, counts=asked.counts).result()
     print("\n".join(["", *(f"missed twice: {name}" for name in failed)] if failed else ["", "all bounds held"]))
     return 1 if failed else 0
 

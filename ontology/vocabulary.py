@@ -7,9 +7,9 @@ under the hash of all files (``cache.py``), so that rdflib is imported only afte
 from __future__ import annotations
 
 import hashlib
-from functools import lru_cache
+from functools import lru_cache, wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Concatenate, NamedTuple, ParamSpec, TypeVar
 
 from rosprivacy.analysis.contexts import surrounded
 from rosprivacy.analysis.errors import InputErrors, OntologyError, reason
@@ -22,13 +22,16 @@ from rosprivacy.ontology.iris import STORED, as_stored
 from rosprivacy.ontology.pointed import Pointed
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 
     from rosprivacy.analysis.model import Category
     from rosprivacy.ontology.known import Known
 
 FOLDER = Path(__file__).parent  # what is shipped; importlib.resources would be imported for nothing else
 LARGEST = 4 * 2**20  # bytes of a user's file
+REMEMBERED = 8  # vocabularies that are remembered, and what was made for them: of a program that asks many times
+P = ParamSpec("P")
+T = TypeVar("T")
 TOP = "PersonalData"
 SHIPPED = ("categories.ttl", "law.ttl", "other_law.ttl", "contexts.ttl", "elements.ttl", "dpv.ttl")
 PREFIXES = {
@@ -162,7 +165,30 @@ def load(cache: Path | None = None, ontologies: Sequence[str] = ()) -> Vocabular
     return _vocabulary(cache or kept.default_folder(), shipped, own)
 
 
-@lru_cache(maxsize=8)  # of a program that asks many times
+def remembered(make: Callable[Concatenate[Vocabulary, P], T]) -> Callable[Concatenate[Vocabulary, P], T]:
+    """Make something once for a vocabulary, such as what shipped files say of its kinds; nobody changes it.
+
+    >>> tops = remembered(lambda vocabulary: [TOP])
+    >>> tops(load()) is tops(load())
+    True
+    """
+    made: dict[Hashable, tuple[Vocabulary, T]] = {}
+
+    @wraps(make)
+    def of(vocabulary: Vocabulary, /, *args: P.args, **kwargs: P.kwargs) -> T:
+        key = id(vocabulary), args, *kwargs.items()
+        found = made.get(key)  # with its vocabulary: none of the same number comes while it is here
+        if found is None:
+            found = vocabulary, make(vocabulary, *args, **kwargs)
+            if len(made) >= REMEMBERED:
+                made.clear()
+            made[key] = found
+        return found[1]
+
+    return of
+
+
+@lru_cache(maxsize=REMEMBERED)
 def _vocabulary(folder: Path, shipped: tuple[bytes, ...], own: tuple[tuple[str, bytes], ...]) -> Vocabulary:
     key = hashlib.sha256(
         b"".join(hashlib.sha256(data).digest() for data in [*shipped, *(d for _, d in own)])

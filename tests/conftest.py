@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import linecache
 import os
 import subprocess
 import sys
@@ -14,6 +15,7 @@ import pytest
 from hypothesis import settings
 
 from rosprivacy.private_neo4j import connection as database
+from tests.helpers import java
 from tests.helpers.command import cli
 from tests.helpers.fastdds import fastdds, other, peer
 from tests.helpers.paths import ROOT
@@ -40,9 +42,15 @@ GROUPS = {
     "build": {"built"},  # builds in the folder of the sources
 }
 
-settings.register_profile("everyday", max_examples=5, deadline=None)
+settings.register_profile("everyday", max_examples=3, deadline=None)
 settings.register_profile("slow", max_examples=25, deadline=None, print_blob=True)
 settings.register_profile("thorough", max_examples=200, deadline=None, print_blob=True)
+
+
+# What is compiled is kept, also where PYTHONDONTWRITEBYTECODE is set: of the time of each of hundreds of processes half
+# went into compiling. So is what pytest makes of assertions, else five seconds for each worker.
+sys.dont_write_bytecode = False
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -67,6 +75,7 @@ def pytest_collection() -> Generator[None, object, object]:
         return (yield)
     finally:
         gc.freeze()
+        linecache.clearcache()  # before each doctest the files of all that is in it are looked at
         gc.set_threshold(100_000)
         gc.enable()
 
@@ -104,8 +113,8 @@ def _own_folders(tmp_path_factory: pytest.TempPathFactory, pytestconfig: pytest.
     """Tests do not touch the user's cache, nor the user's private Neo4j; for minutes Java need not compile its best."""
     with pytest.MonkeyPatch.context() as patch:
         if not pytestconfig.getoption("--thorough"):
-            serial = "" if pytestconfig.getoption("--slow") else " -XX:+UseSerialGC"
-            patch.setenv("JDK_JAVA_OPTIONS", f"-XX:TieredStopAtLevel=1{serial}")
+            serial = () if pytestconfig.getoption("--slow") else (java.SERIAL,)
+            patch.setenv("JDK_JAVA_OPTIONS", java.options(*serial))
         patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
         patch.setenv("ROSPRIVACY_DATA", str(tmp_path_factory.mktemp("private data")))
         yield

@@ -147,6 +147,7 @@ FOR_SOME = [  # of ours, needed where there is such a thing: a decision, a bag, 
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("arguments", "absent"),
     [

@@ -100,6 +100,7 @@ def test_a_goal_is_told_and_not_demanded(tmp_path: Path) -> None:
     assert "not reached" in done.stdout
 
 
+@pytest.mark.slow
 def test_a_time_is_told_in_the_quick_form_and_demanded_in_the_full_one(tmp_path: Path) -> None:
     quick, full = (made_up(tmp_path, 2.5, 2.5, counts=False, form=form) for form in ("--quick", ""))
     assert quick.returncode == 0, quick.stdout + quick.stderr
@@ -108,6 +109,7 @@ def test_a_time_is_told_in_the_quick_form_and_demanded_in_the_full_one(tmp_path:
     assert full.returncode == 1, full.stdout + full.stderr
 
 
+@pytest.mark.slow
 def test_calls_are_the_same_each_time_and_grow_with_the_work() -> None:
     """Of a fresh process, and here; what two processes remember of each other is no part."""
     sys.path.insert(0, str(FOLDER))
@@ -123,16 +125,19 @@ def test_calls_are_the_same_each_time_and_grow_with_the_work() -> None:
 
 
 def test_the_tests_run_whatever_the_benchmarks_say(tmp_path: Path) -> None:
-    """The end of .ci/run, from where it waits for them: with what fails in their place."""
+    """The end of .ci/run, from where it runs the tests: with what fails in their place, or in that of the tests."""
     script = (ROOT / ".ci" / "run").read_text("utf-8")
-    end = script[script.index("missed=0") :].replace("make test", "echo the tests ran #")
-    for code in (0, 1):
-        text = f"set -euo pipefail\n(exit {code}) & speed=$!\n{end}"
+    for code, tests in ((0, 0), (1, 0), (0, 2), (1, 2)):
+        end = script[script.index("missed=0") :].replace("make test", "make_test")
+        made = f"make_test() {{ echo the tests ran; return {tests}; }}"
+        text = f"set -euo pipefail\nform=some\n{made}\n(exit {code}) & speed=$!\n{end}"
         done = subprocess.run(["bash", "-c", text], cwd=tmp_path, capture_output=True, text=True, check=False)
         assert "the tests ran" in done.stdout
-        assert done.returncode == code
+        assert done.returncode == (tests or code)
+        assert ("ended with 1" in done.stdout) is bool(code)
 
 
+@pytest.mark.slow
 def test_what_cannot_be_measured_is_told(tmp_path: Path) -> None:
     assert "made_up        not measured: no corpus here" in made_up(tmp_path, 1.0).stdout.splitlines()
     (tmp_path / "needy.py").write_text("import nothing_of_that_name\n", "utf-8")
@@ -141,9 +146,18 @@ def test_what_cannot_be_measured_is_told(tmp_path: Path) -> None:
     assert "not measured: nothing_of_that_name is missing" in done.stdout
 
 
-def test_the_quick_form_leaves_out_what_has_no_bound(tmp_path: Path) -> None:
+@pytest.mark.slow
+def test_the_quick_form_leaves_out_what_has_no_bound_and_counts_what_is_timed(tmp_path: Path) -> None:
     assert "no bound / theirs" not in made_up(tmp_path, 1.0).stdout
     assert "no bound / theirs" in run("made_up", modules=tmp_path).stdout
+    counted = run("--counts", "made_up", modules=tmp_path).stdout
+    assert "ours / theirs" in counted
+    assert "good / a bound" not in counted
+    assert "no bound / theirs" not in counted
+
+
+def test_a_count_missed_twice_fails_where_nothing_else_is_measured(tmp_path: Path) -> None:
+    assert made_up(tmp_path, 1.5, 1.4, form="--counts").returncode == 1
 
 
 @pytest.mark.slow

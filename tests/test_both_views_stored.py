@@ -43,6 +43,7 @@ def rows(driver: Driver, cypher: str) -> list[list[Any]]:
     return [list(record.values()) for record in driver.execute_query(cypher)[0]]
 
 
+@pytest.mark.slow
 def test_plain_data_is_added_beside_the_finding_that_has_it_pseudonymised(cli: Cli, driver: Driver) -> None:
     """Both have one id; each keeps its own ends (S6, S10)."""
     Path("l.yaml").write_text(EXAMPLE_LABELS.replace("anonymise", "pseudonymise"))
@@ -56,6 +57,7 @@ def test_plain_data_is_added_beside_the_finding_that_has_it_pseudonymised(cli: C
     assert rows(driver, "MATCH (f:Finding) OPTIONAL MATCH (g:AddedFinding) RETURN count(f), count(g)") == [[1, 0]]
 
 
+@pytest.mark.slow
 def test_a_finding_has_its_enclave_and_its_steps_and_goes_when_it_is_loaded_otherwise(cli: Cli, driver: Driver) -> None:
     assert cli(*LOAD, "--view", "both").returncode == 0
     found = """MATCH (f:AddedFinding {view: 'enforced'})-[:MADE_POSSIBLE_BY]->(e:Enclave)<-[:ENDED_BY_SPLITTING]-(f)
@@ -105,6 +107,7 @@ def test_an_answer_from_the_database_keeps_it_until_somebody_has_changed_what_wa
     assert rows(driver, "MATCH (r:Robot) RETURN r.beyond") == [[None]]  # not known any more
 
 
+@pytest.mark.slow
 def test_the_query_says_of_which_robots_it_is_not_known(cli: Cli, driver: Driver) -> None:
     del driver
     cli(*LOAD, "--view", "both")

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 
 @pytest.mark.corpus
+@pytest.mark.slow
 @pytest.mark.parametrize("name", one_in(len(STUDIES), STUDIES))
 def test_a_reader_gets_from_nothing_to_the_report(name: str, cli: Cli, corpus: Path, tmp_path: Path) -> None:
     typist = Typist(tmp_path / FILE)

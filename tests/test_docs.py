@@ -318,6 +318,7 @@ def test_the_readmes_first_finding_is_what_is_printed(cli: Cli) -> None:
         assert line == "…" or line in done.stdout.splitlines(), line
 
 
+@pytest.mark.slow
 def test_the_readmes_commands_run_as_they_stand_there(cli: Cli, tmp_path: Path) -> None:
     """In their order, in one folder, with a policy, the examples and an environment as a reader has them."""
     (tmp_path / "examples").symlink_to(ROOT / "examples")
@@ -347,6 +348,7 @@ def test_every_id_in_the_readme_is_of_the_system_that_it_analyses() -> None:
     assert not [one for one in named if not any(full.startswith(one) for full in known)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("block", blocks(ROOT / "docs" / "categories.md", "turtle"))
 def test_the_ontologies_that_are_shown_are_read(block: str, tmp_path: Path) -> None:
     file = tmp_path / "mine.ttl"

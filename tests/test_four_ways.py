@@ -75,6 +75,7 @@ def test_more_of_them(system: Written) -> None:
     in_files_a_saved_graph_and_a_fleet(system)
 
 
+@pytest.mark.slow
 def test_most_of_them_have_a_finding_and_many_an_accepted_one() -> None:
     """Else the tests here would compare empty answers. Which examples come depends on what else is loaded."""
     results: list[Result] = []
@@ -93,6 +94,7 @@ def test_most_of_them_have_a_finding_and_many_an_accepted_one() -> None:
     assert set(changed) == {"view", "path", "disjoint_paths"}
 
 
+@pytest.mark.slow
 @pytest.mark.database
 @given(system=written())
 @settings(max_examples=5, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])

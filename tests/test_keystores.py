@@ -92,6 +92,7 @@ def test_what_is_signed_is_changed_in_the_policy_not_by_a_patch(cli: Cli, keysto
     assert "no change can be proposed" in done.stdout
 
 
+@pytest.mark.slow
 def test_where_permissions_are_not_asked_the_answer_is_undetermined_at_best(cli: Cli, tmp_path: Path) -> None:
     """In a saved graph too; the enforced view has the way that is open, and names the governance that opens it."""
     made = Keystore(tmp_path / "keystore")

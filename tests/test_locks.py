@@ -74,7 +74,7 @@ def test_the_image_has_what_the_action_has() -> None:
     assert action <= image
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_the_image_can_be_built_from_what_the_builder_gets(tmp_path: Path) -> None:
     """The command of its first part, run without docker, on the files that .dockerignore lets through."""
     ignored = (ROOT / ".dockerignore").read_text("utf-8").splitlines()

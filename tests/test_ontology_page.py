@@ -81,6 +81,7 @@ def test_a_provision_has_its_address_and_what_it_is_said_of(page: str) -> None:
     assert '<a href="#FaceTemplate">' in biometric
 
 
+@pytest.mark.slow
 def test_the_same_files_give_the_same_page(page: str) -> None:
     for seed in ("1", "2"):
         program = f"import runpy; print(runpy.run_path({str(PROGRAM)!r})['ontology_page'](), end='')"

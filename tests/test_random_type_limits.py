@@ -282,6 +282,7 @@ def test_random_systems_follow_the_rule_word_for_word(system: System) -> None:
         assert not enforced.analysis.closed
 
 
+@pytest.mark.slow
 def test_many_of_them_are_limited_and_some_findings_only_so_closed() -> None:
     """Else the tests here would compare answers without limits."""
     counts = {"limited": 0, "closed": 0, "all": 0}

@@ -323,6 +323,7 @@ def test_pictures_have_types_where_one_points_at_a_channel() -> None:
         assert "std_msgs/msg/String" in dot(picture)
 
 
+@pytest.mark.slow
 @pytest.mark.database
 def test_the_database_gives_the_same_answer_and_keeps_no_limit_as_a_label(neo4j_server: Connection) -> None:
     """S15: limits follow from the types and the table each time; nobody said them."""

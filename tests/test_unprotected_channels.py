@@ -141,6 +141,7 @@ def test_on_a_fleet_robots_share_a_pattern_and_a_domain_its_channel() -> None:
     assert {kind for kind, *_ in found(document)} == {KIND}
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("folder")
 def test_in_parts_as_spark_has_them_the_fleet_is_the_same() -> None:
     documents("fleet.yaml", in_list)
@@ -200,6 +201,7 @@ def test_reports_name_the_governance_and_redacted_ones_no_file(cli: Cli, folder:
     assert "governance.p7s" not in hidden.read_text()
 
 
+@pytest.mark.slow
 @pytest.mark.database
 @pytest.mark.usefixtures("folder")
 def test_the_database_gives_the_same(neo4j_server: Connection) -> None:

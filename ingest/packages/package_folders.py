@@ -20,7 +20,7 @@ from rosprivacy.analysis.errors import InputError, InputErrors, PackageError, sh
 from rosprivacy.analysis.model import Diagnostic, Severity
 from rosprivacy.analysis.suggesting.evidence import LEAK, SOURCE
 from rosprivacy.ingest.packages.package_file import read_package, read_shipped
-from rosprivacy.ontology.vocabulary import FOLDER
+from rosprivacy.ontology.vocabulary import FOLDER, remembered
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -39,6 +39,7 @@ ENDS = (SOURCE, LEAK)
 SHOWN_CLAIMS = 3  # statements in a notice
 
 
+@remembered
 def catalogue(vocabulary: Vocabulary) -> tuple[Package, ...]:
     """Read the shipped catalogue.
 

@@ -21,7 +21,7 @@ from rosprivacy.analysis.suggesting.name_rules import LONGEST_PHRASE, NameRules,
 from rosprivacy.analysis.suggesting.packages import WHERE
 from rosprivacy.ingest.reading import yaml_values
 from rosprivacy.ingest.reading.format_reader import FileReader
-from rosprivacy.ontology.vocabulary import FOLDER
+from rosprivacy.ontology.vocabulary import FOLDER, remembered
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -177,13 +177,13 @@ def _read_each(
     readers, digests = [], []
     problems: list[InputError] = []
     for file in dict.fromkeys((shipped, *files)):
-        reader = _Reader(file, format_, vocabulary, error=InputError, bounds=bounds)
         try:
             if file == shipped:
-                top, data = yaml_values.read_shipped(str(FOLDER / f"{format_.about}.yaml"), InputError, file)
+                reader, data = _shipped(vocabulary, format_.about, bounds)
             else:
+                reader = _Reader(file, format_, vocabulary, error=InputError, bounds=bounds)
                 top, data = yaml_values.read(file, partial(InputError, file), bounds)
-            reader.read(top)
+                reader.read(top)
             problems += reader.problems
         except InputErrors as error:
             problems += error.errors
@@ -196,6 +196,16 @@ def _read_each(
     if problems:
         raise InputErrors(problems)
     return readers, tuple(digests)
+
+
+@remembered
+def _shipped(vocabulary: Vocabulary, about: str, bounds: Bounds) -> tuple[_Reader, bytes]:
+    """What is read of a shipped file; it is only read from."""
+    file, (format_,) = f"{SHIPPED}{about}", (one for one in (NAMES, LIBRARIES) if one.about == about)
+    reader = _Reader(file, format_, vocabulary, error=InputError, bounds=bounds)
+    top, data = yaml_values.read_shipped(str(FOLDER / f"{about}.yaml"), InputError, file)
+    reader.read(top)
+    return reader, data
 
 
 @dataclass(eq=False, repr=False)

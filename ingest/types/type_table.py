@@ -23,7 +23,7 @@ from rosprivacy.ingest.reading import yaml_values
 from rosprivacy.ingest.reading.format_reader import FileReader, read_values
 from rosprivacy.ingest.types import TABLE
 from rosprivacy.ontology.iris import STORED
-from rosprivacy.ontology.vocabulary import FOLDER
+from rosprivacy.ontology.vocabulary import FOLDER, remembered
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -102,9 +102,17 @@ def read_table(file: str, vocabulary: Vocabulary, bounds: Bounds = BOUNDS) -> Ty
     [('likely', 'OperatorInput')]
     """
     if file == TABLE:
-        top, data = yaml_values.read_shipped(str(FOLDER / "types.yaml"), TypesError, file)
-    else:
-        top, data = read_values(file, partial(TypesError, file), bounds)
+        return _shipped(vocabulary, bounds)
+    return _table(file, *read_values(file, partial(TypesError, file), bounds), vocabulary, bounds)
+
+
+@remembered
+def _shipped(vocabulary: Vocabulary, bounds: Bounds) -> TypeTable:
+    top, data = yaml_values.read_shipped(str(FOLDER / "types.yaml"), TypesError, TABLE)
+    return _table(TABLE, top, data, vocabulary, bounds)
+
+
+def _table(file: str, top: Value, data: bytes, vocabulary: Vocabulary, bounds: Bounds) -> TypeTable:
     reader = _Reader(file, vocabulary, error=TypesError, bounds=bounds)
     limits, hashes, suggestions = reader.whole(reader.document(top))
     return TypeTable(TypeLimits(file, hashlib.sha256(data).hexdigest(), limits, hashes), suggestions)

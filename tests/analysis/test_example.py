@@ -6,6 +6,8 @@ import ast
 import doctest
 import importlib
 
+import pytest
+
 from tests.helpers.house import MODULES
 
 EXAMPLES = {
@@ -22,6 +24,7 @@ def test_every_public_function_has_an_example() -> None:
     assert not without, f"write one into the docstring; analysis/example.py is a small system to look at: {without}"
 
 
+@pytest.mark.slow
 def test_an_example_fails_where_its_function_does_nothing() -> None:
     for path, text in EXAMPLES.items():
         module, _, name = path.rpartition(".")

@@ -128,6 +128,7 @@ def test_the_action_writes_through_no_linked_folder(runner: dict[str, str], tmp_
     assert (tmp_path / "elsewhere" / "out.json").read_text("utf-8") == "mine"
 
 
+@pytest.mark.thorough
 def test_nothing_of_a_hostile_checkout_runs_while_the_action_installs(runner: dict[str, str], tmp_path: Path) -> None:
     """The first step too; and what it installs is what the lock names."""
     action, checkout = hooks_repository(tmp_path / "action"), tmp_path / "checkout"

@@ -62,6 +62,7 @@ def test_what_was_not_analysed_before_is_all_new(cli: Cli, tmp_path: Path) -> No
     assert "Asked otherwise" not in comment
 
 
+@pytest.mark.slow
 def test_no_name_can_link_or_mention_anybody_and_long_lists_are_cut(cli: Cli, tmp_path: Path) -> None:
     after = report_of(2)
     first = after["findings"][0]

@@ -125,6 +125,7 @@ class TestLoad:
         assert problem in done.stderr
         assert count(driver, "(:Robot)") == 0
 
+    @pytest.mark.slow
     def test_a_fleet_that_takes_the_place_of_other_robots_says_so(
         self, cli: Cli, driver: Driver, tmp_path: Path
     ) -> None:
@@ -141,6 +142,7 @@ class TestLoad:
         assert "--fleet takes the names of the fleet file: no --robot" in done.stderr
         assert count(driver, "(:Robot {name: 'h1'})") == 1
 
+    @pytest.mark.slow
     def test_of_a_database_the_same_is_suggested_as_of_its_policies_and_nothing_is_written(
         self, cli: Cli, driver: Driver
     ) -> None:

@@ -104,7 +104,7 @@ def test_every_saved_query_runs_as_it_is_and_gives_what_the_pack_gives(loaded: C
             assert ask(driver, text, given).rows == ask(driver, query.text, query.values(given)).rows, query.name
 
 
-@pytest.mark.slow
+@pytest.mark.thorough  # Neo4j's own page, which changes with its version only
 @pytest.mark.browser
 @pytest.mark.database
 def test_the_browser_takes_colours_and_questions(loaded: Connection, page: WebDriver, tmp_path: Path) -> None:

@@ -106,6 +106,7 @@ def test_a_decision_goes_to_the_file_that_the_command_names(tmp_path: Path) -> N
     assert "id: dc5715a35ba5591a" in decisions.read_text("utf-8")
 
 
+@pytest.mark.slow
 def test_what_is_not_saved_is_told_at_the_end(tmp_path: Path) -> None:
     with started("-l", str(tmp_path / "new.labels.yaml")) as (process, lines):
         asking, headers = entered(lines[0])
@@ -133,6 +134,7 @@ def test_what_it_does_not_take_is_refused(cli: Cli, words: tuple[str | Path, ...
     assert (done.returncode, problem in done.stderr) == (2, True), done.stderr
 
 
+@pytest.mark.slow
 def test_who_came_by_ssh_is_told_the_way() -> None:
     with started(SSH_CONNECTION="192.0.2.7 51234 192.0.2.9 22", LOGNAME="anna") as (_, lines):
         port = re.search(r":(\d+)/enter", lines[0])
@@ -140,6 +142,7 @@ def test_who_came_by_ssh_is_told_the_way() -> None:
         assert f"ssh -N -L {port[1]}:127.0.0.1:{port[1]} anna@192.0.2.9" in lines[2]
 
 
+@pytest.mark.slow
 def test_no_argument_of_the_browser_holds_the_secret(tmp_path: Path) -> None:
     """Everybody on the machine can read what programs are called with; the file that is opened, its user alone."""
     browser, seen = tmp_path / "browser", tmp_path / "seen"

@@ -139,6 +139,7 @@ def test_what_a_command_reads_it_does_not_write(cli: Cli, folder: Path, name: st
     assert cli(*command, "-o", "new-o.txt", cwd=folder).returncode == (2 if name == "labels" else done.returncode)
 
 
+@pytest.mark.slow
 def test_an_ontology_that_is_read_is_not_written(cli: Cli, tmp_path: Path) -> None:
     (text,) = blocks(CATEGORIES, "turtle")
     (tmp_path / "o.ttl").write_text(text)

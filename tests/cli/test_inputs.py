@@ -15,6 +15,7 @@ from rosprivacy.cli.inputs import WRITTEN, Inputs
 from rosprivacy.cli.output import progress_of
 from rosprivacy.settings import Settings
 from tests.helpers.command import cli, run
+from tests.helpers.daily import one_in
 from tests.helpers.docs import CATEGORIES, blocks
 
 if TYPE_CHECKING:
@@ -89,7 +90,9 @@ USES = [  # a command, its exit code, and what it then says of the own category
 ]
 
 
-@pytest.mark.parametrize(("arguments", "code", "said"), USES, ids=[" ".join(use[0][:3]) for use in USES])
+@pytest.mark.parametrize(
+    ("arguments", "code", "said"), one_in(4, USES, in_ci=1), ids=[" ".join(use[0][:3]) for use in USES]
+)
 def test_an_own_category_is_known_to_every_command(
     cli: Cli, clinic: Path, monkeypatch: pytest.MonkeyPatch, arguments: list[str], code: int, said: str
 ) -> None:
@@ -214,6 +217,7 @@ def test_the_options_mean_to_the_library_what_it_takes_by_itself() -> None:
 # ---------------------------------------------------------------- help
 
 
+@pytest.mark.slow
 def test_help_of_every_command_shows_no_type_of_a_flag_and_no_hidden_option(cli: Cli) -> None:
     assert "<bool>" not in cli("--help").stdout
     for name, command in GROUP.commands.items():

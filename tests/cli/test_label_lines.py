@@ -213,6 +213,7 @@ def left(document: dict[str, Any]) -> tuple[int, int]:
     return len(document["open"]), len(now)
 
 
+@pytest.mark.slow
 @pytest.mark.corpus
 def test_turtlebot3_after_the_papers_step_5(corpus: Path, tmp_path: Path) -> None:
     """With /root dropped 144 elements stayed open, all of them listed as if they were alike."""
@@ -224,6 +225,7 @@ def test_turtlebot3_after_the_papers_step_5(corpus: Path, tmp_path: Path) -> Non
     assert left(rosprivacy.analyze(policy, [*files, "rosprivacy:infrastructure"]).document()) == (67, 34)
 
 
+@pytest.mark.slow
 @pytest.mark.corpus
 def test_rmf_office_is_labelled_from_nothing_in_four_rounds(corpus: Path, tmp_path: Path) -> None:
     """37 lines typed in five rounds. Now three lines are typed, the others are one word each."""

@@ -933,7 +933,7 @@ def test_a_leak_that_nobody_has_labelled_is_not_accepted_away_without_looking(tm
 
 @pytest.mark.slow
 @pytest.mark.corpus
-@pytest.mark.parametrize("model", [(), (*HIDES, *ADDS)])
+@pytest.mark.parametrize("model", [pytest.param((), marks=pytest.mark.thorough), (*HIDES, *ADDS)])
 def test_accepting_every_suggestion_hides_no_planted_leak_of_the_corpus(
     corpus: Path, tmp_path: Path, model: Sequence[str], *, thorough: bool
 ) -> None:

@@ -169,6 +169,7 @@ def test_a_line_that_ends_data_says_the_node_and_the_method(tmp_path: Path, by_k
     assert "/face_detector: {sanitizer: {Video: drop}, note: " in text_of(tmp_path)
 
 
+@pytest.mark.slow
 def test_nothing_is_taken_away_in_a_group(robot: Path, by_keys: ByKeys) -> None:
     """It is said of one row, which a line picks; or it was opened before."""
     through = "s"
@@ -262,6 +263,7 @@ def test_whenever_it_ends_what_was_answered_is_there(robot: Path, by_keys: ByKey
     rosprivacy.analyze(str(robot / "p.xml"), str(robot / "l.yaml"))
 
 
+@pytest.mark.slow
 def test_a_process_that_is_killed_loses_the_key_in_hand_at_most(robot: Path) -> None:
     with subprocess.Popen(COMMAND, cwd=robot, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL) as process:
         assert process.stdin is not None
@@ -275,6 +277,7 @@ def test_a_process_that_is_killed_loses_the_key_in_hand_at_most(robot: Path) -> 
     rosprivacy.analyze(str(robot / "p.xml"), str(robot / "l.yaml"))
 
 
+@pytest.mark.slow
 def test_at_a_terminal_a_key_needs_no_enter(robot: Path) -> None:
     ours, theirs = pty.openpty()
     with subprocess.Popen(COMMAND, cwd=robot, stdin=theirs, stdout=subprocess.PIPE, bufsize=0) as process:

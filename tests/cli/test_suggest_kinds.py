@@ -317,6 +317,7 @@ def test_what_is_written_by_hand_meanwhile_is_read_after_later(robot: Path) -> N
     assert not {*CHANNELS} & {*names[1]}
 
 
+@pytest.mark.slow
 @given(
     kinds=st.lists(st.sampled_from(["Video", "Voice", "Location"]), min_size=2, max_size=3, unique=True),
     middle=st.lists(st.sampled_from(CHANNELS), min_size=2, unique=True),

@@ -31,6 +31,7 @@ from tests.helpers.asked_by_keys import (
     wait_for_keys,
 )
 from tests.helpers.command import cli
+from tests.helpers.daily import one_in
 from tests.helpers.little_robots import policy_of
 from tests.helpers.planted_leaks import planted
 from tests.helpers.turtlebot import TURTLEBOT3
@@ -125,10 +126,14 @@ def test_no_other_number_confirms_it(robot: Path, number: str) -> None:
 
 @pytest.mark.parametrize(
     "keys",
-    [
-        *("y", "0", "0\n", "1\n", "2\n", "3\n", "4\n", "33\n", "3", "3x", "3 \n", "x", "n", "Z", "\n\n", "A2\n"),
-        *(line("arm"), line("arm", "text"), line("arm", "arm"), line("arm", "joints").replace("Video", "Voice")),
-    ],
+    one_in(
+        5,
+        [
+            *("y", "0", "0\n", "1\n", "2\n", "3\n", "4\n", "33\n", "3", "3x", "3 \n", "x", "n", "Z", "\n\n", "A2\n"),
+            *(line("arm"), line("arm", "text"), line("arm", "arm"), line("arm", "joints").replace("Video", "Voice")),
+        ],
+        in_ci=1,
+    ),
 )
 def test_a_file_of_keys_that_does_not_name_the_rows_confirms_nothing(robot: Path, by_keys: ByKeys, keys: str) -> None:
     """Three others may be in the list than those that it was made for."""
@@ -149,6 +154,7 @@ def test_a_file_of_keys_confirms_the_rows_that_it_names(robot: Path, by_keys: By
     assert "/arm: {types" in text
 
 
+@pytest.mark.slow
 def test_rows_are_taken_out_and_asked_by_themselves(robot: Path, by_keys: ByKeys) -> None:
     by_keys(robot, f"{BEFORE}{line('battery', 'joints')}q")
     out = list_shown(by_keys(robot, "sssq").stdout)
@@ -352,6 +358,7 @@ def test_where_a_label_states_that_something_else_goes_in_no_package_knows_the_t
     assert (HEADING in shown) is not stated
 
 
+@pytest.mark.slow
 def test_a_process_that_is_killed_in_a_number_keeps_nothing_of_the_list(robot: Path) -> None:
     before = text_of(robot)
     with subprocess.Popen(COMMAND, cwd=robot, stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0) as process:
@@ -367,6 +374,7 @@ def test_a_process_that_is_killed_in_a_number_keeps_nothing_of_the_list(robot: P
     assert text_of(robot) == before
 
 
+@pytest.mark.slow
 def test_two_digits_that_come_at_once_confirm_no_list_without_enter(robot: Path) -> None:
     names = [f"/arm{at}" for at in range(10)]
     nodes: Nodes = {"eye": (["/a"], []), "middle": (names, ["/a"]), "here": ([], names)}

@@ -199,6 +199,7 @@ def test_a_server_that_is_not_there_is_one_line(cli: Cli, robot: Path) -> None:
     assert "cannot be reached: Connection refused; " in done.stderr.splitlines()[1]
 
 
+@pytest.mark.slow
 def test_tls_is_verified(cli: Cli, robot: Path, tmp_path: Path) -> None:
     ca = authority(tmp_path, "ca")
     with ModelServer(NOTHING, tls=signed(tmp_path, "server", "ca")) as server:

@@ -114,6 +114,7 @@ def test_a_limit_on_the_way_is_told(robot: Path, by_keys: ByKeys) -> None:
     assert "never of topic /points takes Location away, which is accepted now" in done.stdout
 
 
+@pytest.mark.slow
 def test_at_a_terminal_a_line_is_shown_while_it_is_typed(robot: Path) -> None:
     """A wrong one is told, and asked again."""
     ours, theirs = pty.openpty()

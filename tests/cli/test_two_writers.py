@@ -46,6 +46,7 @@ def decided(file: Path) -> set[int]:
     return {int(str(entry["id"]), 16) for entry in yaml.safe_load(file.read_text("utf-8"))["findings"]}
 
 
+@pytest.mark.slow
 def test_no_decision_of_two_that_decide_at_once_is_lost(tmp_path: Path) -> None:
     """Real processes; ``test_races.py`` has hundreds of rounds, ``test_killed_writers.py`` kills them."""
     each = 3
@@ -132,6 +133,7 @@ def test_of_two_first_label_files_one_is_refused(tmp_path: Path) -> None:
     assert "is there already" in said[1][0]
 
 
+@pytest.mark.slow
 def test_an_answer_to_a_pipe_takes_no_lock(tmp_path: Path) -> None:
     labels = tmp_path / "l.yaml"
     labels.write_text("labels: 1\nnodes:\n  /safety_camera: {source: [Video]}\n", "utf-8")

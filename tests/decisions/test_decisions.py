@@ -28,6 +28,7 @@ def test_a_label_file_is_taken_apart_into_what_is_typed() -> None:
     ]  # fmt: skip
 
 
+@pytest.mark.slow
 def test_at_the_care_home_questions_come_to_the_same_answer_with_fewer_keys(tmp_path: Path) -> None:
     hand, (count, person) = by_hand(care_home()), asked(care_home(), tmp_path / "labels.yaml")
     assert count.same

@@ -10,7 +10,6 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import pytest
 import yaml
 from hypothesis import Phase, given, reject, settings
 from hypothesis import strategies as st
@@ -110,16 +109,9 @@ def problems(call: Callable[[], object]) -> set[str]:
     return set()
 
 
-@settings(max_examples=25, deadline=None, phases=(Phase.explicit, Phase.reuse, Phase.generate))
+@settings(max_examples=2 * settings().max_examples, deadline=None, phases=(Phase.explicit, Phase.reuse, Phase.generate))
 @given(written(), DEEDS)
 def test_edits_mean_what_the_edited_file_means(system: Written, deeds: list[Edit | str]) -> None:
-    held(system, deeds)
-
-
-@pytest.mark.slow
-@settings(max_examples=300, deadline=None, phases=(Phase.explicit, Phase.reuse, Phase.generate))
-@given(written(), DEEDS)
-def test_many_edits_mean_what_the_edited_file_means(system: Written, deeds: list[Edit | str]) -> None:
     held(system, deeds)
 
 

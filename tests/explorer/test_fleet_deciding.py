@@ -273,6 +273,7 @@ def test_what_was_refused_before_a_decision_keeps_no_robots_apart(small: Path) -
     assert session.result.to("json1") == fresh(small).to("json1")
 
 
+@pytest.mark.slow
 def test_labels_that_are_not_saved_and_decisions_are_in_one_answer(hospital: Path) -> None:
     session = begun(hospital)
     session.label("carrier_lent:/recorder", only_this_robot=True, leak="Video")

@@ -167,6 +167,7 @@ def test_a_filter_on_a_robot_is_passed_by_its_own_wildcards_and_by_no_other_robo
     assert not alone.scenario("filter", WhatIf(steps=(here,))).difference.closed
 
 
+@pytest.mark.slow
 def test_a_trial_counts_on_the_edits_of_now_and_changes_nothing(hospital: Path) -> None:
     session = begun(hospital)
     session.label("carrier_01:/blur", conduit=True)

@@ -162,6 +162,7 @@ def test_a_journal_that_cannot_be_read_stays_and_is_told(file: Path, monkeypatch
     assert len(journals(file)) == 1
 
 
+@pytest.mark.slow
 def test_a_journal_is_bounded(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("rosprivacy.explorer.journal.LONGEST", 2000)
     session = begun(file)
@@ -251,6 +252,7 @@ def holds_after_a_kill(file: Path, lines: int) -> None:
     shutil.copy(FACTORY / "run2.labels.yaml", file)
 
 
+@pytest.mark.slow
 def test_a_killed_session_has_lost_nothing(file: Path) -> None:
     random = Random(1)  # noqa: S311 - repeatable
     for _ in range(3):
@@ -258,7 +260,7 @@ def test_a_killed_session_has_lost_nothing(file: Path) -> None:
 
 
 @pytest.mark.slow
-def test_sessions_killed_again_and_again_have_lost_nothing(file: Path) -> None:
+def test_sessions_killed_again_and_again_have_lost_nothing(file: Path, *, thorough: bool) -> None:
     random = Random(2)  # noqa: S311 - repeatable
-    for _ in range(60):
+    for _ in range(60 if thorough else 20):
         holds_after_a_kill(file, random.randrange(1, 25))

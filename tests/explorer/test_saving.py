@@ -25,6 +25,7 @@ BEFORE = str(FACTORY / "before.policy.xml")
 LINES = 449
 
 
+@pytest.mark.slow
 def test_three_edits_change_three_lines_of_449(cli: Cli, corpus: Path, tmp_path: Path) -> None:
     policy = str(corpus / TURTLEBOT3)
     file = tmp_path / "tb3.labels.yaml"

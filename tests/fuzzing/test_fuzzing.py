@@ -174,6 +174,7 @@ def test_a_fault_is_seen(act: Callable[[], None], fault: str, watched: Watch) ->
     assert re.search(fault, outcome.fault)
 
 
+@pytest.mark.slow
 def test_a_hang_and_growth_are_seen(watched: Watch, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(watch, "SECONDS", 0.2)
     monkeypatch.setattr(watch, "GROWTH", 2**26)

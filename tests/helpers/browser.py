@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from selenium.webdriver.chrome.webdriver import WebDriver
 
 DESKTOP, PHONE = 1280, 390
+# Of pages that are looked at in both widths CI takes the narrow one, in which less fits; each week takes both.
+WIDTHS: list[Any] = [pytest.param(DESKTOP, marks=pytest.mark.thorough), PHONE]
 PAPER = 672  # CSS pixels between the margins of an upright A4 page
 PROGRAMS = ("chromium", "chromedriver")
 HERE_ONLY = "host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1"  # no other host is there

@@ -13,8 +13,11 @@ if TYPE_CHECKING:
 IN_CI = 3  # of the rows that are not for every day, every so many-th
 
 
-def one_in(number: int, rows: Iterable[Any]) -> list[Any]:
-    """Rows of ``parametrize``: the first and every so many-th is for every day; of the others a third is for CI."""
+def one_in(number: int, rows: Iterable[Any], *, in_ci: int = IN_CI) -> list[Any]:
+    """Rows of ``parametrize``: the first and every so many-th is for every day; of the others a third is for CI.
+
+    ``in_ci=1`` where each row could fail alone: CI takes all.
+    """
     chosen: list[Any] = []
     others = 0
     for i, row in enumerate(rows):
@@ -22,7 +25,7 @@ def one_in(number: int, rows: Iterable[Any]) -> list[Any]:
         if i % number == 0:
             chosen.append(pytest.param(*values))
             continue
-        mark = pytest.mark.thorough if others % IN_CI else pytest.mark.slow
+        mark = pytest.mark.thorough if others % in_ci else pytest.mark.slow
         chosen.append(pytest.param(*values, marks=mark))
         others += 1
     return chosen

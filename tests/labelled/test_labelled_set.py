@@ -97,6 +97,7 @@ def test_a_source_that_is_found_is_asked_about_and_one_of_that_kind_is_found(tmp
         assert {share.of for share in shares} == {found.asked_about.of}
 
 
+@pytest.mark.slow
 def test_what_is_disputed_counts_neither_way() -> None:
     every = labelled(one for part in systems() for one in part)
     truth = judged(every, load().hierarchy.overlaps)

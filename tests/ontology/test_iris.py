@@ -67,6 +67,7 @@ def test_relative_to_a_base_too(tmp_path: Path) -> None:
     assert read(tmp_path, text).categories["PulseCurve"].broader == ("Health",)
 
 
+@pytest.mark.slow
 def test_a_name_that_is_taken_is_taken_in_both(tmp_path: Path, cli: Cli) -> None:
     for namespace in (STORED, PUBLISHED):
         taken = MINE.format(PUBLISHED, "rp:Health").replace(

@@ -95,6 +95,7 @@ class TestOwnOntology:
         assert found["PulseCurve"].identity_factors == ("physiological",)
         assert found["WardBadge"].identity_factors == ()
 
+    @pytest.mark.slow
     def test_a_second_reading_needs_no_rdflib_and_gives_the_same(self, mine: Path, tmp_path: Path) -> None:
         code = (
             "import sys, pathlib\nfrom rosprivacy.ontology.vocabulary import load\n"
@@ -186,6 +187,7 @@ class TestCache:
         (tmp_path / "file").write_text("")
         assert anew(tmp_path / "file" / "below").categories
 
+    @pytest.mark.slow
     def test_a_full_disk_leaves_nothing_behind(self, tmp_path: Path) -> None:
         """A temporary file stayed for each run."""
         code = (
@@ -199,6 +201,7 @@ class TestCache:
         subprocess.run([sys.executable, "-B", "-c", code], check=True, timeout=60)
         assert list(tmp_path.iterdir()) == []
 
+    @pytest.mark.slow
     def test_two_that_write_it_at_once(self, tmp_path: Path) -> None:
         code = (
             f"from pathlib import Path; from rosprivacy.ontology.vocabulary import load; load(Path({str(tmp_path)!r}))"

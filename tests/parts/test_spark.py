@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 __all__ = ["fleet_file"]  # a fixture
 pytest.importorskip("pyspark", reason="without the [spark] extra")
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("spark")]  # one process: Spark takes long to start
 FILE = str(ROOT / "examples" / "fleet" / "fleet.yaml")
 
 
@@ -391,7 +391,8 @@ def plant(file: Path, text: str) -> Path:
     return file
 
 
-@pytest.mark.parametrize("folder", [".", "sub"])  # pyspark looks for a Spark in the parent of the current folder, too
+# pyspark looks for a Spark in the parent of the current folder, too: there is more that could be run
+@pytest.mark.parametrize("folder", [pytest.param(".", marks=pytest.mark.thorough), "sub"])
 def test_nothing_of_a_checkout_is_run(checkout: Path, folder: str) -> None:
     """And the workers are the Python that runs us, also where another one stands first in PATH."""
     variables = {

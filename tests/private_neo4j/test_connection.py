@@ -516,6 +516,7 @@ def test_who_waits_on_the_ports_of_the_last_start_hears_no_password(private_neo4
     assert ask(again, "RETURN 1") == [1]
 
 
+@pytest.mark.slow
 @pytest.mark.database
 def test_a_listener_that_is_not_the_servers_process_hears_nothing(
     private_neo4j: Connection, monkeypatch: pytest.MonkeyPatch

@@ -200,7 +200,7 @@ def test_one_changed_jar_among_all_is_enough(private_neo4j: Connection, cache: P
     assert not (tmp_path / "data" / "neo4j" / "server.json").exists()
 
 
-@pytest.mark.slow
+@pytest.mark.thorough  # what Maven's repository has; `make locks` is when our list changes
 @pytest.mark.database
 def test_the_list_is_what_jgo_resolves(local_extra: None) -> None:  # noqa: ARG001 - it brings jgo
     assert LIST.read_text("utf-8") == listed()

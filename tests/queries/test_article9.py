@@ -104,6 +104,7 @@ class TestFilters:
         with pytest.raises(InputErrors, match=message):
             document(**asked)
 
+    @pytest.mark.slow
     def test_a_kind_of_which_no_factor_is_stated_is_kept(self, tmp_path: Path) -> None:
         """What is not known of a kind may be what is asked for."""
         policy, labels, mine = tmp_path / "p.xml", tmp_path / "l.yaml", tmp_path / "mine.ttl"

@@ -104,17 +104,19 @@ def pairs(driver: Driver, vocabulary: Vocabulary) -> set[Pair]:
 
 
 @pytest.mark.slow
-def test_on_200_random_graphs(driver: Driver) -> None:
+def test_on_random_graphs(driver: Driver, *, thorough: bool) -> None:
     """With derivations, pseudonymisation, wildcards, sources of one channel, restricted flows, leaks behind leaks."""
     expected = Disclosures()
     rows = []
-    for number, system in enumerate(random_systems(200, st.one_of(systems(), wildcards(), ranked()))):
+    for number, system in enumerate(
+        random_systems(200 if thorough else 70, st.one_of(systems(), wildcards(), ranked()))
+    ):
         analysis, robot = system.analyse(), f"g{number:03}"
         rows.append(robot_rows(robot, analysis, system.bound(), VOCABULARY))
         expected.add(analysis, robot)
     load(driver, rows, VOCABULARY)
-    assert len(expected.pairs) > 200
-    assert sum(bool(one.intakes) for one in rows) > 10
+    assert len(expected.pairs) > len(rows)
+    assert sum(bool(one.intakes) for one in rows) > len(rows) / 20
     assert pairs(driver, VOCABULARY) == expected.pairs
     assert paths(driver, "leak-paths") == expected.ways
     # Memory shows a way in the clear even where one on which the data is pseudonymised is shorter.
@@ -183,6 +185,7 @@ def test_on_every_policy_of_the_corpus(driver: Driver, corpus: Path, tmp_path: P
     assert all(len(walked[way]) <= len(expected.ways[way]) for way in walked)
 
 
+@pytest.mark.slow
 def test_the_cypher_of_the_documentation(driver: Driver) -> None:
     """Each block of docs/database.md that only reads gives rows; those of video give the pairs of the findings."""
     result = care_home()

@@ -54,6 +54,7 @@ def ask(driver: Driver, name: str, **given: str) -> list[dict[str, Any]]:
     return [dict(zip(found.columns, row, strict=True)) for row in found.rows]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("source", "may", "row"),
     [

@@ -166,6 +166,7 @@ def test_no_address_is_asked(driver: Driver, listener: socket.socket, text: str)
         listener.accept()
 
 
+@pytest.mark.slow
 def test_what_acts_on_the_server_is_refused_and_not_done_on_the_way(driver: Driver) -> None:
     """No node, no user, no transaction ended, no index: to ask for the plan does nothing."""
     for text, why in ACTS:
@@ -223,6 +224,7 @@ def test_an_answer_that_is_too_large_for_the_server_is_one_line_and_it_runs_on(o
     assert run(opened.driver, "RETURN 1").rows == ((1,),)
 
 
+@pytest.mark.slow
 def test_rows_have_a_bound_in_size(driver: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
     text = "UNWIND range(1, 900) AS x RETURN [y IN range(1, 100) | 'ten bytes.'] AS y, {k: x} AS z"
     monkeypatch.setattr(running, "LARGEST", 2**20)

@@ -297,7 +297,7 @@ SYSTEMS = [
     "robot",
     "fleet",
     pytest.param("stored", marks=pytest.mark.database),
-    pytest.param("on_spark", marks=pytest.mark.slow),
+    pytest.param("on_spark", marks=[pytest.mark.slow, pytest.mark.xdist_group("spark")]),
 ]
 
 
@@ -325,6 +325,7 @@ def test_the_systems_have_every_fact(robot: Result, fleet: Result) -> None:
         "controller and officer", "purpose where data leave", "legal basis where data leave", "subjects"}  # fmt: skip
 
 
+@pytest.mark.slow
 def test_the_rows_for_the_database_have_every_fact_that_the_fleet_states() -> None:
     """What ``rosprivacy load`` writes of the robots and of what they share."""
     with chdir(ROOT):

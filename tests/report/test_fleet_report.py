@@ -251,6 +251,7 @@ def test_the_file_of_the_pia_tool_names_one_of_those_that_are_alike_and_says_so(
     assert "25 profiles in 10 enclaves" in text
 
 
+@pytest.mark.slow
 def test_linked_data_names_the_robots_of_each_finding_and_fits_its_shapes() -> None:
     graph = rdflib.Graph().parse(data=written(found(), "turtle"), format="turtle")
     rp = rdflib.Namespace("https://w3id.org/rosprivacy#")

@@ -10,6 +10,7 @@ from dataclasses import replace
 from itertools import count
 from typing import TYPE_CHECKING
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -120,6 +121,7 @@ def fleet_without(case: Case, place: Place) -> Case:
     return replace(case, robots={robot: new[id(system)] for robot, system in case.robots.items()}, shared=shared)
 
 
+@pytest.mark.slow
 @given(stated_fleets())
 def test_what_is_taken_away_on_a_fleet_stands_in_the_ledger(case: Case) -> None:
     """The same of robots that are read once for all that are alike, and of what they share."""

@@ -175,6 +175,7 @@ def test_files_that_are_not_what_was_read_are_told_as_long_as_they_are_not(
         assert said.text_content() == told
 
 
+@pytest.mark.slow
 def test_what_a_session_left_is_offered_once(explore: Explore, tmp_path: Path) -> None:
     for choice, edits in (("/resume", 1), ("/forget", 0)):
         folder = tmp_path / choice[1:]
@@ -295,6 +296,7 @@ def test_no_bytes_in_the_place_of_a_form_change_anything(opened: Explorer, body:
     assert opened.labels.read_bytes() == before
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("language", ["de", "fr"])
 def test_elements_findings_and_trials_speak_the_readers_language(
     explore: Explore, tmp_path: Path, language: str
@@ -317,6 +319,7 @@ def test_elements_findings_and_trials_speak_the_readers_language(
         assert english_in(" ".join([whole.text_content(), *marks]), language, ["rosprivacy explore"]) == []
 
 
+@pytest.mark.slow
 def test_every_element_can_be_looked_at_whatever_is_said_of_it(explore: Explore, tmp_path: Path) -> None:
     labels = tmp_path / "labels.yaml"
     said = "{/robot_video: {only: [HomeMap]}, /safety_video: {never: [Voice]}, /new_pose: sensitive}"

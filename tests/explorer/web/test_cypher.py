@@ -66,6 +66,7 @@ def facts(to: Connection) -> list[list[Any]]:
 # --- what is asked and what comes back -------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_every_question_of_the_pack_is_one_click_away_with_its_fields(here: Asker) -> None:
     links = html.fromstring(here.client.get("/cypher").text).xpath("//nav[@id='questions']//a/@href")
     assert len(links) == len(pack())
@@ -92,6 +93,7 @@ def test_a_question_of_the_pack_gives_the_rows_of_the_command(here: Asker, loade
     ]
 
 
+@pytest.mark.slow
 def test_paths_are_drawn_and_stand_in_the_table_too(here: Asker) -> None:
     page = here.page(ask="leak-path-graph")
     assert page.xpath("//*[local-name()='svg'][contains(@class, 'picture')]//*[contains(@class, 'box')]")

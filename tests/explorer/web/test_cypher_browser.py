@@ -19,7 +19,7 @@ from rosprivacy.private_neo4j import connection
 from rosprivacy.report.catalogs.words import Words
 from rosprivacy.settings import Settings
 from tests.helpers import browser as chrome
-from tests.helpers.browser import DESKTOP, PHONE, axe
+from tests.helpers.browser import DESKTOP, WIDTHS, axe
 from tests.helpers.graphs import care_home, rows_of
 from tests.helpers.page_reader import Reader
 
@@ -156,7 +156,7 @@ def test_hostile_names_stand_on_it_as_text(browser: WebDriver, loaded: Connectio
         assert browser.execute_script("return document.querySelectorAll('img, textarea ~ script').length") == 0
 
 
-@pytest.mark.parametrize("width", [DESKTOP, PHONE])
+@pytest.mark.parametrize("width", WIDTHS)
 @pytest.mark.parametrize("language", ["en", "de", "fr"])
 def test_axe_finds_nothing_and_nothing_is_wider_than_a_phone(
     browser: WebDriver, loaded: Connection, width: int, language: str
@@ -179,7 +179,7 @@ def test_axe_finds_nothing_and_nothing_is_wider_than_a_phone(
         assert axe(browser) == []
 
 
-@pytest.mark.parametrize("width", [DESKTOP, PHONE])
+@pytest.mark.parametrize("width", WIDTHS)
 def test_axe_finds_nothing_in_any_pane_of_what_is_stored(browser: WebDriver, loaded: Connection, width: int) -> None:
     with served(browser, loaded) as door:
         reader = Reader(browser, door, width)

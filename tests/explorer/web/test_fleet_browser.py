@@ -10,7 +10,7 @@ import pytest
 from rosprivacy.reading.fleet_system import answer_fleet
 from rosprivacy.settings import Settings
 from tests.helpers import browser as chrome
-from tests.helpers.browser import DESKTOP, PHONE
+from tests.helpers.browser import WIDTHS
 from tests.helpers.page_reader import Reader, served
 from tests.helpers.paths import ROOT
 
@@ -73,7 +73,7 @@ def test_an_answer_for_the_model_alone_leaves_the_file_of_one_robot_as_it_was(
     assert "  /recorder: {leak: [Video]}" in (hospital.parent / "carrier.labels.yaml").read_text("utf-8")
 
 
-@pytest.mark.parametrize("width", [DESKTOP, PHONE])
+@pytest.mark.parametrize("width", WIDTHS)
 def test_axe_finds_nothing_in_any_pane_of_a_fleet(browser: WebDriver, hospital: Path, width: int) -> None:
     with served(browser, hospital, hospital, fleet=True) as explorer:
         reader = Reader(browser, explorer, width)

@@ -75,6 +75,7 @@ def open_on(file: Path, hospital: Path, finding: Finding) -> set[str]:
     return {robot for form, robots in found.forms if not form.accepted for robot in robots}
 
 
+@pytest.mark.slow
 def test_it_is_told_about_how_many_robots_and_which(begun: Explorer) -> None:
     client = begun.client()
     finding = on_every_robot(begun)
@@ -133,6 +134,7 @@ def test_what_is_chosen_is_decided_and_the_others_stay_open(begun: Explorer, hos
     assert whole.to("json1") == begun.session.result.to("json1")
 
 
+@pytest.mark.slow
 def test_what_is_decided_already_is_told_and_what_is_not_comes_first(begun: Explorer) -> None:
     client = begun.client()
     first = on_every_robot(begun)
@@ -175,6 +177,7 @@ def test_robots_of_another_finding_are_refused(begun: Explorer, file: Path) -> N
     assert not file.exists()
 
 
+@pytest.mark.slow
 def test_a_window_that_shows_what_was_before_decides_nothing(begun: Explorer, file: Path) -> None:
     client, finding = begun.client(), on_every_robot(begun)
     stale = version(client)
@@ -193,6 +196,7 @@ def test_a_page_to_read_decides_nothing(explore: Explore, hospital: Path, file: 
     assert not file.exists()
 
 
+@pytest.mark.slow
 def test_what_an_editor_wrote_meanwhile_stays(begun: Explorer, hospital: Path, file: Path) -> None:
     client, finding = begun.client(), on_every_robot(begun)
     assert decide(client, finding, choice="delegate", whose=finding.id).status_code == 303
@@ -205,6 +209,7 @@ def test_what_an_editor_wrote_meanwhile_stays(begun: Explorer, hospital: Path, f
     assert len(open_on(file, hospital, finding)) == 39
 
 
+@pytest.mark.slow
 def test_a_decision_on_a_full_disk_decides_nothing(begun: Explorer, file: Path) -> None:
     client, finding = begun.client(), on_every_robot(begun)
     before = begun.session.result.to("json1")
@@ -217,6 +222,7 @@ def test_a_decision_on_a_full_disk_decides_nothing(begun: Explorer, file: Path) 
     assert decide(client, finding, **SIGNED, whose=finding.id).status_code == 303
 
 
+@pytest.mark.slow
 def test_without_the_option_the_page_says_how_to_start(explore: Explore, hospital: Path) -> None:
     explorer = explore(hospital, hospital, fleet=True)
     client, finding = explorer.client(), on_every_robot(explorer)
@@ -226,6 +232,7 @@ def test_without_the_option_the_page_says_how_to_start(explore: Explore, hospita
     assert decide(client, finding, **SIGNED, whose=finding.id).status_code == 422
 
 
+@pytest.mark.slow
 def test_robots_that_the_page_does_not_offer_are_counted(begun: Explorer, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(finding_pane, "OFFERED", 3)
     client, finding = begun.client(), on_every_robot(begun)

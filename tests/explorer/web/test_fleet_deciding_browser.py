@@ -8,7 +8,7 @@ import pytest
 
 import rosprivacy
 from tests.helpers import browser as chrome
-from tests.helpers.browser import DESKTOP, PHONE
+from tests.helpers.browser import WIDTHS
 from tests.helpers.page_reader import Reader, served
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ def test_one_robot_is_accepted_and_then_those_that_are_alike(browser: WebDriver,
         assert whole.to("json1") == explorer.session.result.to("json1")
 
 
-@pytest.mark.parametrize("width", [DESKTOP, PHONE])
+@pytest.mark.parametrize("width", WIDTHS)
 def test_axe_finds_nothing_in_a_decision_about_robots(
     browser: WebDriver, hospital: Path, tmp_path: Path, width: int
 ) -> None:

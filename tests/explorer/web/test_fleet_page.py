@@ -60,6 +60,7 @@ def test_an_answer_is_of_the_model_or_of_one_robot(explore: Explore, hospital: P
     assert explorer.session.result.to("json1") == answer_fleet(str(hospital), Settings()).to("json1")
 
 
+@pytest.mark.slow
 def test_a_suggestion_is_taken_for_the_robots_that_are_chosen(explore: Explore, hospital: Path) -> None:
     own, model = (hospital.parent / f"{name}.labels.yaml" for name in ("carrier_lent", "carrier"))
     own.write_text(own.read_text().replace("nodes:\n", "nodes:\n  /person_detector: {note: another one}\n"))
@@ -74,6 +75,7 @@ def test_a_suggestion_is_taken_for_the_robots_that_are_chosen(explore: Explore, 
     assert model.read_text() == before
 
 
+@pytest.mark.slow
 def test_what_cannot_be_said_is_refused_in_words(explore: Explore, hospital: Path) -> None:
     explorer = explore(hospital, hospital, fleet=True)
     client = explorer.client()
@@ -119,6 +121,7 @@ def test_a_filter_or_a_cut_on_a_path_is_tried_on_the_robots_of_its_model(explore
     assert explorer.session.result.to("json1") == before
 
 
+@pytest.mark.slow
 def test_at_an_element_it_is_chosen_whether_the_model_or_one_robot_is_meant(explore: Explore, hospital: Path) -> None:
     explorer = explore(hospital, hospital, fleet=True, read_only=True)
     client = explorer.client()
@@ -148,6 +151,7 @@ def test_at_an_element_it_is_chosen_whether_the_model_or_one_robot_is_meant(expl
     assert "On 1 robot: carrier_01." in tried(client, what="together", first="one", second="two", name="both")
 
 
+@pytest.mark.slow
 def test_what_belongs_to_no_robot_is_told_as_such(explore: Explore, hospital: Path) -> None:
     explorer = explore(hospital, hospital, fleet=True)
     client = explorer.client()

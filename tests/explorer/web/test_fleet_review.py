@@ -125,6 +125,7 @@ def test_an_answer_is_of_the_model_or_of_one_robot_as_a_person_chooses(explore: 
     assert "can get from carrier_lent:/camera_driver to carrier_lent:/recorder, which lets it out." in summary
 
 
+@pytest.mark.slow
 def test_what_is_left_to_the_engineer_is_left_of_every_robot_that_reads_the_file(
     explore: Explore, hospital: Path
 ) -> None:

@@ -250,6 +250,7 @@ def test_the_way_through_ssh_is_told_to_who_came_by_it() -> None:
     assert tunnel(8700, {"SSH_CONNECTION": "odd"}) == ""
 
 
+@pytest.mark.slow
 def test_a_server_looks_for_garbage_often(monkeypatch: pytest.MonkeyPatch) -> None:
     """A command that ends soon never does: a session that lasts for days would take all memory."""
     before = gc.get_threshold()

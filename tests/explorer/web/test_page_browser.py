@@ -12,7 +12,7 @@ import pytest
 from rosprivacy.cli import explore
 from tests.helpers import browser as chrome
 from tests.helpers import explorers
-from tests.helpers.browser import DESKTOP, PHONE
+from tests.helpers.browser import PHONE, WIDTHS
 from tests.helpers.explorers import BARE, FACTORY, FILTERED, copied, label
 from tests.helpers.full_disk import full_disk
 from tests.helpers.page_reader import SECONDS, Reader, meaning, served
@@ -139,7 +139,7 @@ def test_a_phone_shows_everything_without_moving_sideways(browser: WebDriver, tm
         assert reader.text(".hops li") != ""
 
 
-@pytest.mark.parametrize("width", [DESKTOP, PHONE])
+@pytest.mark.parametrize("width", WIDTHS)
 def test_axe_finds_nothing_in_any_pane(browser: WebDriver, tmp_path: Path, width: int) -> None:
     file = copied(FACTORY / "run2.labels.yaml", tmp_path)
     with served(browser, BARE, file) as explorer:
@@ -154,7 +154,7 @@ def test_axe_finds_nothing_in_any_pane(browser: WebDriver, tmp_path: Path, width
         assert chrome.axe(browser) == []
 
 
-@pytest.mark.parametrize("width", [DESKTOP, PHONE])
+@pytest.mark.parametrize("width", WIDTHS)
 def test_axe_finds_nothing_in_what_the_page_tells(browser: WebDriver, tmp_path: Path, width: int) -> None:
     """The empty page, answers of an earlier session, a file that somebody else changed, and one that is only shown."""
     file = tmp_path / "new.labels.yaml"

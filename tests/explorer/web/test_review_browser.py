@@ -10,7 +10,7 @@ import pytest
 
 from tests.helpers import browser as chrome
 from tests.helpers import explorers
-from tests.helpers.browser import DESKTOP, PHONE
+from tests.helpers.browser import WIDTHS
 from tests.helpers.explorers import BARE, FACTORY, copied
 from tests.helpers.paths import ROOT
 
@@ -120,7 +120,7 @@ def test_the_factory_by_keys_alone_to_the_report(browser: WebDriver, tmp_path: P
 
 
 @pytest.mark.parametrize("language", ["en", "de", "fr"])
-@pytest.mark.parametrize("width", [DESKTOP, PHONE])
+@pytest.mark.parametrize("width", WIDTHS)
 def test_question_and_summary_fit_and_axe_finds_nothing(
     browser: WebDriver, tmp_path: Path, width: int, language: str
 ) -> None:
@@ -140,7 +140,7 @@ def test_question_and_summary_fit_and_axe_finds_nothing(
         browser.get("about:blank")
 
 
-@pytest.mark.parametrize("width", [DESKTOP, PHONE])
+@pytest.mark.parametrize("width", WIDTHS)
 def test_axe_finds_nothing_in_what_a_review_tells(browser: WebDriver, tmp_path: Path, width: int) -> None:
     """Nothing asked yet, an answer, answers of an earlier session, and a file that somebody else changed."""
     labels = tmp_path / "new.labels.yaml"
@@ -173,7 +173,7 @@ def _faults(browser: WebDriver, width: int) -> list[object]:
     return [*found, *([f"it is {sideways} wide"] if sideways > width else [])]
 
 
-@pytest.mark.parametrize("width", [DESKTOP, PHONE])
+@pytest.mark.parametrize("width", WIDTHS)
 def test_a_fleet_is_reviewed_by_keys_and_said_of_one_robot_or_of_its_model(
     browser: WebDriver, tmp_path: Path, width: int
 ) -> None:

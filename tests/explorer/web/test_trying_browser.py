@@ -9,7 +9,7 @@ import pytest
 
 from rosprivacy.explorer.element_ids import element_id
 from tests.helpers import browser as chrome
-from tests.helpers.browser import DESKTOP, PHONE
+from tests.helpers.browser import WIDTHS
 from tests.helpers.explorers import BARE, FACTORY, copied
 from tests.helpers.page_reader import Reader, served
 from tests.helpers.paths import ROOT
@@ -56,7 +56,7 @@ def test_a_finding_is_closed_on_trial_and_accepted_by_keys_alone(browser: WebDri
         assert "decision: accept" in decisions.read_text("utf-8")
 
 
-@pytest.mark.parametrize("width", [DESKTOP, PHONE])
+@pytest.mark.parametrize("width", WIDTHS)
 def test_axe_finds_nothing_in_findings_decisions_and_trials(browser: WebDriver, tmp_path: Path, width: int) -> None:
     from selenium.webdriver.common.keys import Keys
 
@@ -93,7 +93,7 @@ def _accepted(explorer: Explorer) -> str:
     return next(finding.id for finding in explorer.session.findings if not finding.stands)
 
 
-@pytest.mark.parametrize("width", [DESKTOP, PHONE])
+@pytest.mark.parametrize("width", WIDTHS)
 def test_trials_of_a_fleet_fit_and_say_on_how_many_robots(browser: WebDriver, tmp_path: Path, width: int) -> None:
     shutil.copytree(ROOT / "examples" / "fleet", tmp_path / "fleet")
     fleet = tmp_path / "fleet" / "fleet.yaml"

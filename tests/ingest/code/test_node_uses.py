@@ -193,6 +193,7 @@ def test_code_that_is_nested_and_chained_as_deep_as_it_can_be_ends(tmp_path: Pat
     assert max(map(len, found)) < LONGEST_NAME
 
 
+@pytest.mark.slow
 def test_names_that_are_longer_than_any_of_a_library_are_none(tmp_path: Path) -> None:
     long = "own" + ".a" * 10_000  # the compiler of Python itself takes the square of it
     code = f"from {long} import x\nimport lib\n{NODE}" + node(line="x(); lib.y()")

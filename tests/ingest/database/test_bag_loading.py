@@ -69,6 +69,7 @@ def test_bags_are_rows_of_their_own_with_links_to_the_robot(cli: Cli, there: Pat
     assert dump(driver) == before
 
 
+@pytest.mark.slow
 @pytest.mark.database
 def test_what_is_no_longer_in_a_bag_goes_and_what_others_loaded_stays(cli: Cli, there: Path, driver: Driver) -> None:
     assert cli("load", there / "r1.policy.xml", "-l", there / "l.yaml").returncode == 0

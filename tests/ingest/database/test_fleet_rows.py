@@ -144,9 +144,9 @@ def test_a_changed_robot_is_written_anew_and_nothing_is_left_behind(driver: Driv
 
 @pytest.mark.slow
 @pytest.mark.database
-def test_on_random_fleets(driver: Driver) -> None:
+def test_on_random_fleets(driver: Driver, *, thorough: bool) -> None:
     """Every finding, with its pattern, on every robot; to analyse the stored fleet again changes nothing."""
-    for case in random_fleets(12):
+    for case in random_fleets(12 if thorough else 4):
         found = found_in(case)
         assert found
         analysis, placed = found

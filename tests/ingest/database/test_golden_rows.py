@@ -145,6 +145,7 @@ def test_rows_are_as_they_were() -> None:
     assert list(hashes()) == HASHES.read_text("utf-8").splitlines()
 
 
+@pytest.mark.slow
 def test_every_property_of_a_row_is_declared_with_its_type() -> None:
     declared = {node.label: node.properties for node in NODES} | {kind.type: kind.properties for kind in RELATIONSHIPS}
     seen = set()

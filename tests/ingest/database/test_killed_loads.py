@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from rosprivacy.private_neo4j import connection, server
+from tests.helpers import java
 from tests.helpers.command import LINE
 from tests.helpers.forked_runs import OF_SOCKETS, Forked, Run
 from tests.helpers.graphs import CARE, FACTORY, dump
@@ -148,7 +149,7 @@ def own_server(local_extra: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatc
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setenv("ROSPRIVACY_DATA", str(tmp_path / "data"))
     monkeypatch.setenv("ROSPRIVACY_NEO4J_HEAP", "256m")
-    monkeypatch.setenv("JDK_JAVA_OPTIONS", "-XX:TieredStopAtLevel=1 -XX:+UseSerialGC")
+    monkeypatch.setenv("JDK_JAVA_OPTIONS", java.options(java.SERIAL))
     with subprocess.Popen([sys.executable, "-c", STOP_AT_THE_END], stdin=subprocess.PIPE, start_new_session=True):
         yield
 

@@ -103,6 +103,7 @@ RULES = {  # S7, S13: labels of a system with a wildcard, a log and a channel ou
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", RULES)
 def test_sharpened_rules_mean_the_same_from_the_database(
     driver: Driver, case: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -196,6 +197,7 @@ class TestWhatIsSaidOfAFlow:
             load(driver, [robot_rows("r", home.analysis, bound, VOCABULARY)], VOCABULARY)
             assert read_stored(driver, VOCABULARY).bound.flows == bound.flows
 
+    @pytest.mark.slow
     def test_a_changed_list_is_a_later_word(self, care: Driver) -> None:
         """It outranks what files say by the other word, which stays."""
         file = next(iter(care_home().bound.flows.values()))
@@ -224,6 +226,7 @@ def care(driver: Driver) -> Driver:
 
 
 class TestWhatPeopleAdd:
+    @pytest.mark.slow
     def test_a_storage_behind_a_node_is_found(self, care: Driver) -> None:
         """The example of docs/database.md; the recorder is no longer the leak, the bucket is."""
         care.execute_query(ADD_STORAGE)
@@ -278,6 +281,7 @@ class TestWhatPeopleAdd:
         )
         assert ("PersonTrack", "/navigator") in {(way[0], way[-1]) for way in ways(answer_stored(care, Settings()))}
 
+    @pytest.mark.slow
     def test_two_robots_meet_at_a_storage(self, care: Driver) -> None:
         """Data that one writes and the other reads flows on, across robots (rule S9)."""
         load(care, [rows_of("factory", factory(5))], VOCABULARY)
@@ -353,6 +357,7 @@ class TestProblems:
         assert all(":" in line for line in str(error.value).splitlines())
         assert care.execute_query(versions).records[0][0] == before
 
+    @pytest.mark.slow
     def test_a_robot_that_is_loaded_meanwhile_is_not_written_over(self, driver: Driver) -> None:
         load(driver, [rows_of("r", factory(2))], VOCABULARY)
         stored = read_stored(driver, VOCABULARY)

@@ -94,6 +94,7 @@ def test_what_is_about_the_whole_fleet_is_a_doubt_of_each_robot(fleet_file: str)
     assert {verdict for verdict, _ in found.values()} == {"undetermined", None}
 
 
+@pytest.mark.slow
 @pytest.mark.database
 def test_the_database_tells_them(fleet_file: str, driver: Driver) -> None:
     def stored(driver: Driver) -> dict[str, tuple[Any, list[str]]]:

@@ -140,6 +140,7 @@ def test_what_is_not_signed_is_refused_and_read_only_where_that_is_asked_for(key
     ]
 
 
+@pytest.mark.slow
 def test_an_expired_certificate_and_an_expired_grant_are_told_and_read(keystore: Keystore) -> None:
     past = permissions(grant("/old", rule("allow", publish=("rt/old",)), validity=("2020-01-01", "2021-01-01")))
     keystore.enclave("/old", past)
@@ -160,6 +161,7 @@ def test_governance_tells_where_permissions_do_not_hold_and_what_is_sent_in_the_
     assert "DDS topics * " not in said
 
 
+@pytest.mark.slow
 def test_a_policy_that_lies_in_a_keystore_is_told(keystore: Keystore) -> None:
     """Rule S11: no middleware reads it there, but who put it there may mean it."""
     (keystore.folder / "package.xml").write_text("<package/>")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from random import Random
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -33,6 +34,7 @@ def test_each_pair_that_meets_is_in_one_group(written: set[str], read: set[str])
     assert len(placed) == len(writing) + len(reading)
 
 
+@pytest.mark.slow
 def test_ends_tell_the_same_as_the_table_for_200000_random_pairs() -> None:
     random = Random(18)  # noqa: S311 - no secret
     names = ["".join(random.choices(SIGNS, k=random.randint(1, 7))) for _ in range(2_000)]

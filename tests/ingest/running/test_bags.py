@@ -238,6 +238,7 @@ def test_a_folder_of_bags_keeps_what_cannot_be_read(tmp_path: Path) -> None:
         read_bags([str(tmp_path / "none")])
 
 
+@pytest.mark.slow
 def test_a_thousand_bags_in_order(tmp_path: Path) -> None:
     one = rosbag2(tmp_path / "one")
     for number in range(1_000):

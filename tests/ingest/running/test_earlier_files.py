@@ -89,6 +89,7 @@ ENDPOINTS = st.builds(
 )
 
 
+@pytest.mark.slow
 @given(st.lists(ENDPOINTS, min_size=1, max_size=8), st.lists(ENDPOINTS, min_size=1, max_size=8))
 @settings(deadline=None, max_examples=40)
 def test_to_add_to_what_was_written_is_to_have_seen_both(

@@ -6,6 +6,8 @@ from dataclasses import replace
 from itertools import permutations
 from time import process_time
 
+import pytest
+
 from rosprivacy.ingest.policies.observed_metadata import NO_NODE, STILL_CHANGING
 from rosprivacy.ingest.running.observation import Span, added_up, continued
 from rosprivacy.ingest.running.observed_files import policy_xml, prepared
@@ -121,6 +123,7 @@ def test_endpoints_of_no_node_stand_under_a_name_of_their_own_and_are_a_gap() ->
     assert b'<participant node="/_no_node/participant_01_0f_x"/>' in text
 
 
+@pytest.mark.slow
 def test_thousands_of_topics_take_time_in_proportion() -> None:
     """Ten times as many take about ten times as long, not a hundred; made-up nodes too. By the processor."""
 

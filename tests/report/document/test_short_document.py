@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from rosprivacy.answer import Answer
+from tests.helpers.daily import one_in
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
@@ -41,7 +42,7 @@ def test_what_is_left_out_is_named_and_the_rest_is_as_in_the_long_one(
     assert short == long
 
 
-@pytest.mark.parametrize("system", SYSTEMS)
+@pytest.mark.parametrize("system", one_in(2, SYSTEMS, in_ci=1))
 def test_diff_reads_it_as_the_long_one(cli: Cli, tmp_path: Path, system: str) -> None:
     answers = []
     for form in ("json1", "json"):
@@ -54,6 +55,7 @@ def test_diff_reads_it_as_the_long_one(cli: Cli, tmp_path: Path, system: str) ->
     assert not json.loads(done.stdout)["worse"]
 
 
+@pytest.mark.slow
 def test_a_report_tells_changes_since_it(cli: Cli, tmp_path: Path) -> None:
     pages = []
     for form in ("json1", "json"):

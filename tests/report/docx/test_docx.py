@@ -64,6 +64,7 @@ def test_a_block_that_is_not_known_is_never_left_out() -> None:
         word_document("> a warning\n", "A", "en", "2026-01-01")
 
 
+@pytest.mark.slow
 def test_the_same_input_gives_the_same_bytes(care: rosprivacy.Result, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1767225600")
     package = care.to("docx", title="Haus Sonnenhof", language="de")
@@ -76,6 +77,7 @@ def test_the_same_input_gives_the_same_bytes(care: rosprivacy.Result, monkeypatc
         assert 'w:lang w:val="de-DE"' in parts.read("word/styles.xml").decode()
 
 
+@pytest.mark.slow
 def test_headings_are_words_own_and_tables_repeat_their_head(care: rosprivacy.Result) -> None:
     document = docx.Document(BytesIO(care.to("docx")))
     headings = [p.text for p in document.paragraphs if p.style and p.style.name == "Heading 2"]

@@ -111,6 +111,7 @@ def test_controls_in_an_answer_are_spelt_out(tmp_path: Path) -> None:
     assert read_answers(file).texts == {"sign.name": "Ada\\u202e\nB"}
 
 
+@pytest.mark.slow
 def test_the_command_line_fills_the_answers_in(cli: Cli, tmp_path: Path) -> None:
     file = saved(tmp_path, {"format": FORMAT, "answers": {"sign.purpose": "night care"}})
     text = cli("report", *SYSTEM, "--assessment", file, "-f", "markdown", cwd=ROOT).stdout

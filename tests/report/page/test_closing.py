@@ -5,6 +5,8 @@ from __future__ import annotations
 import copy
 from typing import TYPE_CHECKING, Any
 
+import pytest
+
 import rosprivacy
 from rosprivacy.formats import Style, written
 from rosprivacy.mitigation import run_mitigation
@@ -25,6 +27,7 @@ def home() -> Result:
     return rosprivacy.analyze(*(ROOT / name for name in HOME))
 
 
+@pytest.mark.slow
 def test_the_report_tells_each_change_of_the_last_proposal_with_its_policy_lines() -> None:
     result = home()
     last = run_mitigation(result).document()["proposals"][-1]

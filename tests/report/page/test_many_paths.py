@@ -68,6 +68,7 @@ def test_the_share_of_a_kind_is_what_the_others_leave() -> None:
         assert BOUND - len(numbers) < shown <= max(BOUND, len(numbers))
 
 
+@pytest.mark.slow
 def test_the_first_paths_of_each_kind_are_told_and_all_are_counted(report: Outline, root: Any) -> None:
     shown = {
         kind: root.xpath(f"count(//article[@class='way'][@data-category='{kind}'])") for kind in ("Video", "Voice")
@@ -82,6 +83,7 @@ def test_the_first_paths_of_each_kind_are_told_and_all_are_counted(report: Outli
     assert report.assessment.left == VIDEO + VOICE - BOUND
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("language", one_in(3, LANGUAGES))
 def test_the_page_says_how_many_it_leaves_out_and_where_they_are(
     many: dict[str, Any], report: Outline, language: str

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import pytest
+
 from rosprivacy.report.document.ledger import by_globs
 from tests.helpers.graphs import hospital
 from tests.helpers.pages import page, texts, told
@@ -126,6 +128,7 @@ def test_without_a_finding_it_says_what_is_not_known_and_never_that_there_is_not
         assert "You have to decide" not in text
 
 
+@pytest.mark.slow
 def test_many_are_counted_and_those_below_told() -> None:
     document = fleet(care(), ["a"])
     for number in range(20):

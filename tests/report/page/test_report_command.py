@@ -116,6 +116,7 @@ def test_what_cannot_be_done_is_said(arguments: list[str], message: bytes) -> No
     assert b"Traceback" not in done.stderr
 
 
+@pytest.mark.slow
 def test_it_is_called_as_the_policies_that_were_named_not_what_they_include(cli: Cli) -> None:
     text = cli("report", *SYSTEM, "-f", "markdown", cwd=ROOT).stdout
     assert "\nSystem: care-home.policy.xml\n" in text

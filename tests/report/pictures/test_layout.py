@@ -37,6 +37,7 @@ def test_one_process_draws_one_picture_after_the_other() -> None:
     assert b"<svg" in first
 
 
+@pytest.mark.slow
 def test_what_takes_too_long_is_ended_and_the_next_picture_is_drawn() -> None:
     """A layout that would take hours: nothing of it is left."""
     ends = [(i, j) for i in range(400) for j in range(0, 400, 3) if i != j]
@@ -133,6 +134,7 @@ def test_dot_stops_before_it_takes_long() -> None:
         assert {size: way_of(pipeline(*size, prefix)).engine for size in sizes} == sizes
 
 
+@pytest.mark.slow
 def test_a_large_picture_is_the_same_bytes_each_time() -> None:
     """Rule S14, in a process of its own each time."""
     picture = pipeline(520, 953)
@@ -163,6 +165,7 @@ def test_every_layout_draws_every_box(way: Way) -> None:
     assert all(f'id="{key}"' in text for key in picture.keys.values())
 
 
+@pytest.mark.slow
 def test_a_png_is_of_a_bounded_size_and_says_when_it_was_made_smaller() -> None:
     """A memory of some gigabytes would be what Graphviz takes otherwise."""
     picture = views.privacy_view(hostile([f"/topic_number_{i}" for i in range(400)]))

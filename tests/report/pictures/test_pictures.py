@@ -25,6 +25,7 @@ from rosprivacy.report.pictures.graphml import graphml
 from rosprivacy.report.pictures.layout import drawn
 from rosprivacy.report.pictures.mermaid import label, mermaid, too_large
 from rosprivacy.report.pictures.wording import broken, quoted
+from tests.helpers.daily import one_in
 from tests.helpers.graphs import care_home, factory
 from tests.helpers.paths import ROOT
 from tests.helpers.pictures import HOSTILE, hostile, pictures, ros
@@ -292,7 +293,7 @@ def test_the_pictures_of_the_documentation_are_shown_there_and_can_be_read_on_a_
 
 
 @pytest.mark.parametrize(
-    "drawing", [d for d in DRAWN["PICTURES"] if d.system != "turtlebot3"], ids=lambda d: str(d.name)
+    "drawing", one_in(4, [d for d in DRAWN["PICTURES"] if d.system != "turtlebot3"], in_ci=1), ids=lambda d: str(d.name)
 )
 def test_the_pictures_of_the_documentation_are_what_the_program_draws(drawing: Any, cli: Cli, tmp_path: Path) -> None:
     """Not byte for byte: where boxes and lines stand depends on the fonts of the machine. All else has to be equal."""

@@ -154,6 +154,7 @@ def test_an_article_whose_number_begins_alike_is_another(graph: Graph) -> None:
     assert marked(changed) == under_article_9(changed) == set()
 
 
+@pytest.mark.slow
 @pytest.mark.database
 def test_cypher_finds_the_same_under_article_9(graph: Graph, neo4j_server: Connection) -> None:
     with connection.open_driver(neo4j_server) as driver:

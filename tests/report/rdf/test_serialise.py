@@ -124,6 +124,7 @@ def test_what_utf_8_cannot_say_is_escaped(name: str, form: str) -> None:
     assert values(graph, RP.SourceFile, RP.file) == {name.encode("utf-8", "backslashreplace").decode()}
 
 
+@pytest.mark.slow
 @FORMS
 def test_nothing_unprintable_is_written(form: str) -> None:
     for name in HOSTILE:

@@ -279,6 +279,7 @@ def test_a_file_with_too_many_ways_keeps_every_finding(monkeypatch: pytest.Monke
     assert "2 paths of findings are left out; --format json lists them." in texts
 
 
+@pytest.mark.slow
 def test_a_very_long_way_keeps_its_ends(tmp_path: Path) -> None:
     count = 700  # 1,401 elements
     ends = [f"/t{i}" if 0 <= i < count else "" for i in range(-1, count + 1)]
@@ -358,6 +359,7 @@ def test_a_file_name_that_is_no_text_is_a_uri_all_the_same(tmp_path: Path) -> No
 # ---------------------------------------------------------------- an independent reader
 
 
+@pytest.mark.slow
 def test_an_independent_reader_opens_it(tmp_path: Path) -> None:
     """sarif-tools, as a user calls it."""
     log = log_of(analyze(["factory/before.policy.xml"], ["factory/run2.labels.yaml"]))
