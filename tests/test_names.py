@@ -29,14 +29,10 @@ STORED = {
 }  # fmt: skip
 # Wings whose names are older than this rule: how many such names each has. A number only falls.
 OLDER = {
-    "analysis.suggesting": 4,
     "explorer": 4,
-    "ingest.suggestions": 6,
-    "labelling": 25,
     "report.compare": 6,
     "report.page": 27,
     "report.pictures": 4,
-    "report.suggest": 6,
 }
 
 
