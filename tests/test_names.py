@@ -30,9 +30,6 @@ STORED = {
 # Wings whose names are older than this rule: how many such names each has. A number only falls.
 OLDER = {
     "explorer": 4,
-    "report.compare": 6,
-    "report.page": 27,
-    "report.pictures": 4,
 }
 
 
