@@ -255,10 +255,10 @@ def _nets(net: Net, options: Options, stops: _Stops) -> _Nets | None:
         net, options.shared, [(spread.all_bits, {}), *((allowed, stops.of(ends, {})) for allowed, ends in free)]
     )
 
-    def nets(source: int, only: AbstractSet[Chosen]) -> Iterator[tuple[Net, AbstractSet[Chosen]]]:
+    def nets(source: int, chosen: AbstractSet[Chosen]) -> Iterator[tuple[Net, AbstractSet[Chosen]]]:
         uncounted = options.uncounted or (lambda *_: False)
-        away = {one for one in only if uncounted(elements[source], elements[one[1]])}
-        for some in (only - away, away):
+        away = {one for one in chosen if uncounted(elements[source], elements[one[1]])}
+        for some in (chosen - away, away):
             if some:
                 yield units.near(source, {leak for _, leak, _, _ in some}), some
 
@@ -267,7 +267,7 @@ def _nets(net: Net, options: Options, stops: _Stops) -> _Nets | None:
 
 def _findings_from(
     net: Net, source: int, reached: Sequence[tuple[Concern, Mapping[int, int]]], options: Options,
-    only: AbstractSet[Chosen] | None, work: _Work, stops: _Stops,
+    chosen: AbstractSet[Chosen] | None, work: _Work, stops: _Stops,
 ) -> Iterator[tuple[int, int, Finding]]:  # fmt: skip
     """(number of the category, leak, finding) of one source."""
     spread = net.spread
@@ -278,7 +278,7 @@ def _findings_from(
     for concern, leaks in reached:
         there = _leaks_met(whole, leaks)
         for leak, category, finding in _findings_of(
-            net, source, whole, concern, there, options, memory, only, work, stops
+            net, source, whole, concern, there, options, memory, chosen, work, stops
         ):
             work.findings.add(1, NOWHERE)
             yield category, leak, finding

@@ -112,7 +112,7 @@ class _Patterns:
     """
 
     def __init__(self, table: _Table, most_across: int | None = None) -> None:
-        self._table, self._most = table, most_across
+        self._table, self._most_across = table, most_across
         self.by_key: dict[tuple[int, int, bool], _Pattern] = {}
 
     def add(self, block: Block) -> None:
@@ -179,7 +179,7 @@ class _Patterns:
         column = int(least.argmin())
         shown = int(least[column]), int(sources[column]), int(leaks[forms[:, column].argmin()])
         pattern.first = min(pattern.first, shown)
-        if self._most is not None:
+        if self._most_across is not None:
             self._make(pattern, forms, sources, leaks)
 
     def _make(self, pattern: _Pattern, forms: Forms, sources: Indices, leaks: Indices) -> None:
@@ -187,7 +187,7 @@ class _Patterns:
         if pattern.pairs is not None:
             rows, columns = np.nonzero(forms != NO_PAIR)
             pattern.pairs.append((sources[columns], leaks[rows]))
-            if pattern.across and sum(pattern.counts) > (self._most or 0):
+            if pattern.across and sum(pattern.counts) > (self._most_across or 0):
                 pattern.pairs = None
         if pattern.across:
             table = self._table
@@ -200,10 +200,10 @@ class _Patterns:
     def chosen(self, pattern: _Pattern) -> Iterator[tuple[int, int]]:
         """Return source and leak of each finding to make."""
         yield pattern.first[1:]
-        if self._most is not None and pattern.pairs is not None:
+        if self._most_across is not None and pattern.pairs is not None:
             for sources, leaks in pattern.pairs:
                 yield from zip(sources.tolist(), leaks.tolist(), strict=True)
-        elif self._most is not None:
+        elif self._most_across is not None:
             for _, source, leak in (*pattern.from_robot.values(), *pattern.to_robot.values()):
                 yield source, leak
 
@@ -214,7 +214,7 @@ def _starts(values: Indices) -> Indices:
 
 
 def _keep(
-    least: dict[int, tuple[int, int, int]],
+    pairs: dict[int, tuple[int, int, int]],
     robot: int,
     forms: Forms,
     at: tuple[int, int],
@@ -225,7 +225,7 @@ def _keep(
     form = int(forms[at])
     if form != NO_PAIR:
         pair = form, int(sources[at[1]]), int(leaks[at[0]])
-        least[robot] = min(pair, least.get(robot, pair))
+        pairs[robot] = min(pair, pairs.get(robot, pair))
 
 
 class Groups:

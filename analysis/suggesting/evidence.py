@@ -86,7 +86,7 @@ class WrittenLabel(NamedTuple):
 
     section: str
     name: str
-    said: dict[str, Any]
+    roles: dict[str, Any]
 
 
 def whole(element: Element) -> Element:
@@ -109,10 +109,10 @@ def written(label: Label) -> WrittenLabel:
 
     >>> from rosprivacy.analysis.model import Element, Method
     >>> node = Element("node", "/n")
-    >>> written(Label(node, "source", "Video")).said, written(Label(node, "sanitizer", "Video", Method.DROP)).said
+    >>> written(Label(node, "source", "Video")).roles, written(Label(node, "sanitizer", "Video", Method.DROP)).roles
     ({'source': ['Video']}, {'sanitizer': {'Video': 'drop'}})
     >>> written(Label(Element("topic", "/a*"), "mundane"))
-    WrittenLabel(section='topics', name='=/a*', said={'never': ['PersonalData']})
+    WrittenLabel(section='topics', name='=/a*', roles={'never': ['PersonalData']})
     """
     kind = label.kind or ANYTHING
     said: dict[str, Any] = {NEVER if label.role == MUNDANE else label.role: [kind]}

@@ -43,7 +43,7 @@ BRINGS_IN, LETS_OUT, MAKES, GOES_ON, GOES_THROUGH = "brings-in", "lets-out", "ma
 LISTED = "listed"
 YES, AT_MOST_ONE, NOTHING = "y", "123456789", "0"
 OUT, PASSES = "1", "2"  # of nodes
-ONLY = "only"
+ONLY_KINDS = "only"
 MOST_ROWS = 26  # a letter for each, and no more than a person reads
 TYPED_AS = (  # in a conversation, where no question offers it; it takes nothing away
     "a label is typed as '/camera node source Video', '/screen node leak Video' or "
@@ -92,7 +92,7 @@ class Row(NamedTuple):
     doubtful
         Of an open node: something suggests that it lets data out or ends them, or no policy lets them go on. That it
         only passes on is said of it where it is picked, or alone.
-    each
+    by_kind
         If it is about several kinds: a row for each of them.
     """
 
@@ -104,7 +104,7 @@ class Row(NamedTuple):
     closes: tuple[str, ...] = ()
     alike: Alike = frozenset()
     doubtful: bool = False
-    each: tuple[Row, ...] = ()
+    by_kind: tuple[Row, ...] = ()
 
     def reply(self, key: str) -> Reply | None:
         """Return what a key says; None if it says nothing here."""
@@ -259,7 +259,7 @@ class _Asked:
     ) -> None:
         self.refused = refused
         self.proposals, self.analysis, self.hierarchy = proposals, analysis, hierarchy
-        self.said = said_of(analysis.graph, bound)
+        self.statements = said_of(analysis.graph, bound)
         self.of: dict[Identity, list[Proposal]] = defaultdict(list)
         for one in proposals:
             self.of[one.label.element.identity].append(one)
@@ -301,7 +301,7 @@ class _Asked:
         if not leaks:
             return []
         element = leaks[0].label.element
-        reached, said = self.reached.get(element.identity, ()), self.said.get(element.identity, ())
+        reached, said = self.reached.get(element.identity, ()), self.statements.get(element.identity, ())
         asked = {kind for one in leaks for kind in narrowed(one.label.kind, reached, self.hierarchy)}
         labels = [Label(element, LEAK, kind) for kind in sorted(asked)]
         return [one for one in labels if not (spoken_of(one, said, self.hierarchy) or self.refused(one))]
@@ -361,18 +361,18 @@ class _Asked:
         if len(kinds) > 1:
             for key, kind in zip(AT_MOST_ONE, () if self._carries(element) else numbered, strict=False):
                 if kind in kinds:
-                    replies.append(Reply(key, _written(element, ONLY, [kind]), takes_away=True))
+                    replies.append(Reply(key, _written(element, ONLY_KINDS, [kind]), takes_away=True))
             each = [
                 self._through(element, (kind,), self._about(about, kind), ())._replace(alike=frozenset())
                 for kind in kinds
             ]
         why = reasons if likeness else ()  # else they may say the opposite
         replies.append(Reply(NOTHING, _written(element, NEVER, kinds), takes_away=True, reasons=why))
-        return Row(element, kinds, tuple(replies), reasons, closes=closed, alike=likeness, each=tuple(each))
+        return Row(element, kinds, tuple(replies), reasons, closes=closed, alike=likeness, by_kind=tuple(each))
 
     def _carries(self, element: Element) -> bool:
         """Whether a person says what goes through a channel: that one kind at most does would take that away (S7)."""
-        return any(one.role == SENSITIVE for one in self.said.get(element.identity, ()))
+        return any(one.role == SENSITIVE for one in self.statements.get(element.identity, ()))
 
     def _node(self, proposals: Sequence[Proposal], kinds: tuple[str, ...]) -> Row:
         element = proposals[0].label.element
@@ -396,7 +396,7 @@ class _Asked:
         each = tuple(self._node(proposals, (kind,)) for kind in kinds if len(kinds) > 1)
         closed = self._closed(kinds) if ends else ()
         reasons = tuple(dict.fromkeys((*why, *_reasons(about))))
-        return Row(element, kinds, tuple(replies), reasons, refused, closed, doubtful=doubtful, each=each)
+        return Row(element, kinds, tuple(replies), reasons, refused, closed, doubtful=doubtful, by_kind=each)
 
     def _about(self, proposals: Iterable[Proposal], kind: str) -> list[Proposal]:
         return [one for one in proposals if self._speaks_of(one, kind)]
@@ -445,7 +445,7 @@ def _leak(labels: Sequence[Label], reasons: tuple[str, ...]) -> Row:
     element, kinds = labels[0].element, tuple(one.kind for one in labels)
     each = [_leak([one], reasons) for one in labels if len(labels) > 1]
     reply = Reply(YES, _written(element, LEAK, kinds), reasons=reasons)
-    return Row(element, kinds, (reply,), reasons, tuple(map(written, labels)), each=tuple(each))
+    return Row(element, kinds, (reply,), reasons, tuple(map(written, labels)), by_kind=tuple(each))
 
 
 def _written(element: Element, role: str, kinds: Sequence[str]) -> WrittenLabel:

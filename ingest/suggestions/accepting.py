@@ -68,14 +68,14 @@ class NewLabel(NamedTuple):
 
     section: str
     name: str
-    said: dict[str, Any]
+    roles: dict[str, Any]
     note: str
     line: int = 0
 
     @property
     def hides(self) -> bool:
         """Whether a wrong one could hide a leak, or that nobody has looked."""
-        return hides(self.said)
+        return hides(self.roles)
 
 
 def accept(
@@ -111,7 +111,7 @@ def accept(
     """
     _, comments = taken_apart(file, text)
     chosen_ones, remarks = _chosen(file, comments, names, vocabulary)
-    limiting = [one for one in chosen_ones if LIMITING & set(one.said)]
+    limiting = [one for one in chosen_ones if LIMITING & set(one.roles)]
     found = None
     if limiting and findings_under:
         others = [_accepted(one, person, day) for one in chosen_ones if one not in limiting]
@@ -129,7 +129,7 @@ def accept(
 
 def _accepted(comment: Comment, person: str, day: str) -> NewLabel:
     note = f"accepted by {person} on {day} ({comment.confidence}): {comment.why}"
-    return NewLabel(comment.section, comment.name, comment.said, note, comment.line)
+    return NewLabel(comment.section, comment.name, comment.roles, note, comment.line)
 
 
 def with_labels(file: str, text: str, labels: Sequence[NewLabel], vocabulary: Vocabulary) -> Accepted:
@@ -152,7 +152,7 @@ def with_labels(file: str, text: str, labels: Sequence[NewLabel], vocabulary: Vo
 
     def change(top: Any) -> None:
         for label in labels:
-            refused = _against(before, label, vocabulary) or _put(top, label, vocabulary)
+            refused = _against(before, label, vocabulary) or _write_label(top, label, vocabulary)
             if refused:
                 remarks.append(f"{file}:{label.line}: {shown(label.name)} {refused}; change it by hand")
             else:
@@ -163,8 +163,8 @@ def with_labels(file: str, text: str, labels: Sequence[NewLabel], vocabulary: Vo
     except FAILURES as error:
         raise _by_hand(file, f"cannot be changed: {shown(str(error).splitlines()[0])}") from None
     _check(file, rest, new, taken, vocabulary)
-    done = [(one.section, one.name, one.said) for one in taken]
-    left = [as_written(one) for one in comments if (one.section, one.name, one.said) not in done]
+    done = [(one.section, one.name, one.roles) for one in taken]
+    left = [as_written(one) for one in comments if (one.section, one.name, one.roles) not in done]
     return Accepted(with_comments(new, [*refusals, *left]), tuple(taken), tuple(remarks))
 
 
@@ -191,7 +191,7 @@ def _closing(comment: Comment, findings: Collection[tuple[str, str]] | None, voc
     if findings is None:
         hint = "name the policies as well, so that findings that it could close are known"
         return f"would take data away; {hint}"
-    closed = could_close(comment.said, findings, vocabulary)
+    closed = could_close(comment.roles, findings, vocabulary)
     if not closed:
         return ""
     return (
@@ -199,10 +199,10 @@ def _closing(comment: Comment, findings: Collection[tuple[str, str]] | None, voc
     )
 
 
-def _put(top: Any, comment: NewLabel, vocabulary: Vocabulary) -> str:
+def _write_label(top: Any, comment: NewLabel, vocabulary: Vocabulary) -> str:
     """Write one label; return why not, if it cannot be joined to what the entry says."""
     note = DoubleQuotedScalarString(blanked(comment.note, "?"))
-    ((role, value),) = comment.said.items()
+    ((role, value),) = comment.roles.items()
     section = _section_of(top, comment)
     if section is None:
         add_line(top, NewLine(comment.section, comment.name, "", _flow({role: value, "note": note})))
@@ -228,7 +228,7 @@ def _put(top: Any, comment: NewLabel, vocabulary: Vocabulary) -> str:
 
 def _against(before: Iterable[Entry], comment: NewLabel, vocabulary: Vocabulary) -> str:
     """Why one that hides is refused: a line, by a glob too, says that such data come in or go out there (rule S7)."""
-    (value,) = comment.said.values()
+    (value,) = comment.roles.values()
     for entry in before if comment.hides else ():
         meant_too = set(SECTIONS[comment.section]) & set(entry.kinds) and covered(entry.name, [bare_name(comment.name)])
         for one in entry.statements if meant_too else ():
@@ -243,7 +243,7 @@ def _section_of(top: Any, comment: NewLabel) -> Any:
     An entry of channels speaks of a topic, a service and an action of that name. What takes data away of one of them is
     not joined to it; what such data can go through is, where it says so of other data: two lines may not (S7).
     """
-    (role,) = comment.said
+    (role,) = comment.roles
     for name, kinds in SECTIONS.items():
         section = top.get(name)
         if set(SECTIONS[comment.section]) <= set(kinds) and section and comment.name in section:
@@ -288,12 +288,12 @@ def _check(file: str, old: str, new: str, labels: Iterable[NewLabel], vocabulary
     """Hold the new text against the old one: nothing is lost, and only the entries that are meant have changed."""
     touched = {(SECTIONS[comment.section], comment.name) for comment in labels}
 
-    def others(text: str) -> list[Any]:
+    def read_rest(text: str) -> list[Any]:
         entries = parse_labels(text, vocabulary, name=file).entries
         return facts_of(e for e in entries if not any(e.name == name and set(k) <= set(e.kinds) for k, name in touched))
 
     try:
-        same = others(old) == others(new)
+        same = read_rest(old) == read_rest(new)
     except InputErrors as error:
         first = error.errors[0]
         raise _by_hand(file, f"a suggestion makes no label: {first.problem}") from None
@@ -356,7 +356,7 @@ def _of_element(file: str, comments: Sequence[Comment], choice: str, vocabulary:
         raise LabelError(file, 0, f"nothing is suggested of {shown(name)}", hint)
     if what == ALL:
         return every
-    named_so = [one for one in every if what in (*one.said, *_words(one))] if what else _surest(every)
+    named_so = [one for one in every if what in (*one.roles, *_words(one))] if what else _surest(every)
     if not named_so:
         raise LabelError(file, 0, f"{shown(what)!r} is not suggested of {shown(name)}", _say_which(name, every))
     if any(_alternatives(one, other, vocabulary) for one in named_so for other in named_so):
@@ -382,7 +382,7 @@ def _alternatives(comment: Comment, other: Comment, vocabulary: Vocabulary) -> b
     """Return whether two suggestions of one element are two answers to one question."""
     if comment.line == other.line or comment.name != other.name or comment.section != other.section:
         return False
-    ((role, value),), ((second, instead),) = comment.said.items(), other.said.items()
+    ((role, value),), ((second, instead),) = comment.roles.items(), other.roles.items()
     if role == second:
         return role == "source" or (role in ONE_OF_A_KIND and overlap(value, instead, vocabulary))
     sides = [(first in BRINGS_OR_LETS_OUT, first in PASSES_OR_ENDS) for first in (role, second)]
@@ -395,8 +395,8 @@ def _needs_name(comment: Comment, comments: Iterable[Comment], vocabulary: Vocab
     """Whether no word accepts it: it takes data away, is a conduit that may be, or one of a leak and a conduit."""
     if comment.takes_away or (comment.hides and comment.confidence is Confidence.MAY):
         return True
-    here = [other for other in comments if other.name == comment.name and "conduit" in other.said]
-    return "leak" in comment.said and any(_alternatives(comment, other, vocabulary) for other in here)
+    here = [other for other in comments if other.name == comment.name and "conduit" in other.roles]
+    return "leak" in comment.roles and any(_alternatives(comment, other, vocabulary) for other in here)
 
 
 def _comes_before(other: Comment, comment: Comment) -> bool:
@@ -407,12 +407,12 @@ def _comes_before(other: Comment, comment: Comment) -> bool:
 
 
 def _role(comment: Comment) -> str:
-    return next(iter(comment.said))
+    return next(iter(comment.roles))
 
 
 def _words(comment: Comment) -> list[str]:
     """What a suggestion names: kinds, and of what is made of them that."""
-    (value,) = comment.said.values()
+    (value,) = comment.roles.values()
     return [str(one["to"]) if isinstance(one, dict) and "to" in one else str(one) for one in value]
 
 

@@ -36,18 +36,18 @@ class Comment(NamedTuple):
     confidence: Confidence
     section: str
     name: str
-    said: dict[str, Any]
+    roles: dict[str, Any]
     why: str
 
     @property
     def hides(self) -> bool:
         """Whether a wrong one could hide a leak, or that nobody has looked."""
-        return hides(self.said)
+        return hides(self.roles)
 
     @property
     def takes_away(self) -> bool:
         """Whether it says that data do not go on: a wrong one could hide a leak."""
-        return self.hides and CONDUIT not in self.said
+        return self.hides and CONDUIT not in self.roles
 
 
 def hides(roles: Iterable[str]) -> bool:
@@ -70,7 +70,7 @@ def comment_of(proposal: Proposal) -> str:
     # suggest: likely {"nodes": {"/camera": {"source": ["Video"]}}} because type sensor_msgs/msg/Image of /image
     """
     at = written(proposal.label)
-    said = json.dumps({at.section: {at.name: at.said}})
+    said = json.dumps({at.section: {at.name: at.roles}})
     reasons = "; ".join(dict.fromkeys(cut(printable(reason.reason), LONGEST_LINE) for reason in proposal.evidence))
     return f"{MARK}{proposal.confidence} {said}{BECAUSE}{blanked(reasons, '?')}"
 
@@ -109,7 +109,7 @@ def with_comments(text: str, comments: Iterable[str]) -> str:
 
 def as_written(comment: Comment) -> str:
     """Return the line of a comment that was read."""
-    said = json.dumps({comment.section: {comment.name: comment.said}})
+    said = json.dumps({comment.section: {comment.name: comment.roles}})
     return f"{MARK}{comment.confidence} {said}{BECAUSE}{comment.why}"
 
 
@@ -136,7 +136,7 @@ def refusal_key(label: WrittenLabel) -> str:
     >>> refusal_key(WrittenLabel("nodes", "/camera", {"source": ["Video"]}))
     '{"nodes": {"/camera": {"source": ["Video"]}}}'
     """
-    return json.dumps({label.section: {label.name: label.said}}, sort_keys=True)
+    return json.dumps({label.section: {label.name: label.roles}}, sort_keys=True)
 
 
 def refusal(label: WrittenLabel, person: str, day: str) -> str:

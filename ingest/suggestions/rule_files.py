@@ -256,15 +256,15 @@ class _Reader(FileReader):
                 rules[()] = rule
             for key in named_by:
                 for name in self._items(entry, key):
-                    self._put(rules, rule, name, self._phrase(name) if key == "words" else self._name(name, key))
+                    self._add_rule(rules, rule, name, self._phrase(name) if key == "words" else self._name(name, key))
         return rules
 
-    def _put(self, rules: dict[Any, Rule], rule: Rule, name: Value, meant: Sequence[Any]) -> None:
+    def _add_rule(self, rules: dict[Any, Rule], rule: Rule, name: Value, keys: Sequence[Any]) -> None:
         """Put a rule beside the others of a section, by a name that it is about and that no other one is about."""
-        if meant and meant[0] in rules:
-            what = f"{shown(name.text)} again, first in line {rules[meant[0]].place.line}"
+        if keys and keys[0] in rules:
+            what = f"{shown(name.text)} again, first in line {rules[keys[0]].place.line}"
             self.problem(name.line, what, "say each once in a section")
-        for one in meant:
+        for one in keys:
             rules.setdefault(one, rule)
 
     def _rule(self, entry: Mapping[str, Value], line: int) -> Rule:

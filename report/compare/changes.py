@@ -41,7 +41,7 @@ class Changes:
         Policies and label files that were added, removed or changed.
     new
         Ids of findings that were not there.
-    gone
+    removed
         Findings that are no longer there, as they were.
     changed
         Id -> what about it changed: keys of the contract.
@@ -56,7 +56,7 @@ class Changes:
     scope: tuple[tuple[str, str, str], ...]
     files: tuple[str, ...]
     new: tuple[str, ...]
-    gone: tuple[Mapping[str, Any], ...]
+    removed: tuple[Mapping[str, Any], ...]
     changed: Mapping[str, tuple[str, ...]]
     opened: tuple[Mapping[str, Any], ...]
     closed: tuple[Mapping[str, Any], ...]
@@ -66,7 +66,7 @@ class Changes:
     @property
     def nothing(self) -> bool:
         """Whether what was found is the same."""
-        found = (self.new, self.gone, self.changed, self.opened, self.closed, self.kinds_new, self.kinds_gone)
+        found = (self.new, self.removed, self.changed, self.opened, self.closed, self.kinds_new, self.kinds_gone)
         return self.before == self.now and not any(found)
 
     def marks(self) -> dict[str, str]:
@@ -79,12 +79,12 @@ def changes(before: Mapping[str, Any], now: Mapping[str, Any]) -> Changes:
     were, are = Identity.of(before), Identity.of(now)
     old, new = _findings(before, were), _findings(now, are)
     pairs = paired(old, new)
-    differ = {new[b]["id"]: tuple(_different(old[a], new[b], were, are)) for a, b in pairs.both}
+    differ = {new[b]["id"]: tuple(_different(old[a], new[b], were, are)) for a, b in pairs.common}
     appeared = {new[key]["id"] for key in pairs.new}
-    vanished = {old[key]["id"] for key in pairs.gone}
+    vanished = {old[key]["id"] for key in pairs.removed}
     left, arrived = _open(before, were), _open(now, are)
     elements = paired(left, arrived)
-    opened, closed = set(elements.new), set(elements.gone)
+    opened, closed = set(elements.new), set(elements.removed)
     kinds = [[category["name"] for category in document["categories"]] for document in (before, now)]
     return Changes(
         before=before["verdict"],
@@ -92,7 +92,7 @@ def changes(before: Mapping[str, Any], now: Mapping[str, Any]) -> Changes:
         scope=tuple(scope(before["assumptions"], now["assumptions"])),
         files=tuple(_files(before["assumptions"], now["assumptions"])),
         new=tuple(finding["id"] for finding in now["findings"] if finding["id"] in appeared),
-        gone=tuple(finding for finding in before["findings"] if finding["id"] in vanished),
+        removed=tuple(finding for finding in before["findings"] if finding["id"] in vanished),
         changed={f["id"]: differ[f["id"]] for f in now["findings"] if differ.get(f["id"])},
         opened=tuple(element for at, element in arrived.items() if at in opened),
         closed=tuple(element for at, element in left.items() if at in closed),

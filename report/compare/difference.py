@@ -34,7 +34,7 @@ NOT_COMPARED = {
     "grants": "the policies of one side are not at hand",
     "doubts": "one side was saved by a version that has no list of them",
 }
-SIGNS = {"new": "+", "gone": "-", "changed": "~"}
+SIGNS = {"new": "+", "gone": "-", "changed": "~"}  # by key of a section
 
 
 def difference(before: Snapshot, after: Snapshot) -> dict[str, Any]:
@@ -62,7 +62,8 @@ def _section(changes: Changes, names: tuple[str, ...]) -> dict[str, Any]:
         key = {name: part for name, part in zip(names, change.key, strict=True) if part}
         return {**key, "before": change.before, "after": change.after}
 
-    return {what: [row(change) for change in getattr(changes, what)] for what in SIGNS}
+    by_key = {"new": changes.new, "gone": changes.removed, "changed": changes.changed}
+    return {key: [row(change) for change in rows] for key, rows in by_key.items()}
 
 
 def worse(document: Mapping[str, Any]) -> bool:
@@ -171,14 +172,14 @@ def title(section: str, row: Mapping[str, Any]) -> str:
     return " ".join(part for part in (row["kind"], robot + row["name"], row.get("leg", "")) if part)
 
 
-def _details(row: Mapping[str, Any], what: str) -> Iterator[str]:
+def _details(row: Mapping[str, Any], sort: str) -> Iterator[str]:
     """What is said of something new, and what of something that changed is not the same."""
     before, after = row["before"] or {}, row["after"] or {}
-    if what == "gone":
+    if sort == "gone":
         return
     for key in sorted({*before, *after}):
         ours, theirs = before.get(key), after.get(key)
-        if what == "new":
+        if sort == "new":
             if theirs:
                 yield f"{key}: {_text(theirs)}"
         elif isinstance(ours, list) and isinstance(theirs, list) and key != "way":

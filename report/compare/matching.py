@@ -43,11 +43,11 @@ class Changes:
     """What differs, each sorted by key."""
 
     new: tuple[Change, ...]
-    gone: tuple[Change, ...]
+    removed: tuple[Change, ...]
     changed: tuple[Change, ...]
 
     def __bool__(self) -> bool:
-        return bool(self.new or self.gone or self.changed)
+        return bool(self.new or self.removed or self.changed)
 
 
 def normalised(name: str) -> str:
@@ -72,10 +72,10 @@ def _without_made_up(part: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Pairs:
-    """Which key of before is which one of after; each sorted, ``both`` by the key after."""
+    """Which key of before is which one of after; each sorted, ``common`` by the key after."""
 
-    both: tuple[tuple[Key, Key], ...]
-    gone: tuple[Key, ...]
+    common: tuple[tuple[Key, Key], ...]
+    removed: tuple[Key, ...]
     new: tuple[Key, ...]
 
 
@@ -102,12 +102,12 @@ def compare(before: Mapping[Key, Record], after: Mapping[Key, Record]) -> Change
     pairs = paired(before.keys(), after.keys())
     changed = [
         Change(theirs, before[ours], after[theirs])
-        for ours, theirs in pairs.both
+        for ours, theirs in pairs.common
         if comparable(before[ours]) != comparable(after[theirs])
     ]
     return Changes(
         tuple(Change(key, None, after[key]) for key in pairs.new),
-        tuple(Change(key, before[key], None) for key in pairs.gone),
+        tuple(Change(key, before[key], None) for key in pairs.removed),
         tuple(changed),
     )
 

@@ -41,10 +41,10 @@ def _lines(
     yield head(f"what runs and is not granted: {len(running):,}")
     for row in running:
         denied = "".join(f" by {show(_place(line))}" for line in row.get("denied_by", ())[:1])
-        yield f"{mark}{show(_what(row))}: {WHY[row['why']]}{denied}; last seen {row['seen']['last']}"
+        yield f"{mark}{show(_grant_text(row))}: {WHY[row['why']]}{denied}; last seen {row['seen']['last']}"
     yield head(f"what is granted to nodes that ran, and was never seen: {len(unused):,}")
     for row in unused:
-        yield f"{mark}{show(_what(row))}: {show(_place(row))}{_reason_not_in_patch(row, document)}"
+        yield f"{mark}{show(_grant_text(row))}: {show(_place(row))}{_reason_not_in_patch(row, document)}"
     never = document["never_seen"]
     yield head(f"nodes with a profile that were never seen, of which nothing is proposed: {len(never):,}")
     for row in never:
@@ -67,7 +67,7 @@ def _reason_not_in_patch(row: Mapping[str, Any], document: Mapping[str, Any]) ->
     return "; not in the patch: a DENY of it would meet other lines of its enclave"
 
 
-def _what(row: Mapping[str, Any]) -> str:
+def _grant_text(row: Mapping[str, Any]) -> str:
     return f"{row['node']} {row['role']} {row['name']}"
 
 

@@ -57,7 +57,7 @@ class Assessment:
 
     Attributes
     ----------
-    left
+    unlisted
         How many more flows there are, without fields: their paths are not told one by one.
     unmatched
         Answers to fields that this report does not have.
@@ -68,7 +68,7 @@ class Assessment:
     general: tuple[Field, ...]
     criteria: tuple[Field, ...]
     risks: tuple[Risk, ...]
-    left: int
+    unlisted: int
     unmatched: tuple[Field, ...]
     file: str
     sha256: str
@@ -95,7 +95,7 @@ def assessment(
         return Field(key, words(label), text, stated.get(key.removeprefix("sign."), ""))
 
     def risk(flow: ToDecide) -> Risk:
-        ids = dict.fromkeys(one for e in flow.entries for one in (e.pattern or e.id, e.id, *e.others))
+        ids = dict.fromkeys(one for e in flow.entries for one in (e.pattern or e.id, e.id, *e.alike))
         first, *others = ids
         fields = (
             field(f"risk.{first}.{what}", f"risk.{what}", [f"risk.{other}.{what}" for other in others]) for what in RISK
@@ -104,8 +104,8 @@ def assessment(
 
     general = tuple(field(f"sign.{what}", f"sign.{what}") for what in GENERAL)
     criteria = tuple(field(f"criterion.{number}", f"criterion.{number}") for number in range(1, CRITERIA + 1))
-    asked = flows if answers.texts else [flow for flow in flows if flow.entries[0].told]
+    asked = flows if answers.texts else [flow for flow in flows if flow.entries[0].detailed]
     made = (risk(flow) for flow in asked)
-    risks = tuple(one for one in made if one.flow.entries[0].told or any(field.text for field in one.fields))
+    risks = tuple(one for one in made if one.flow.entries[0].detailed or any(field.text for field in one.fields))
     left = tuple(Field(key, fit(key), text) for key, text in answers.texts.items() if key not in used)
     return Assessment(general, criteria, risks, len(flows) - len(risks), left, fit(answers.file), answers.sha256)

@@ -30,7 +30,7 @@ class Proposed:
 
     text: str
     lines: tuple[str, ...]
-    more: int
+    further_lines: int
     notes: tuple[str, ...]
 
 
@@ -40,19 +40,19 @@ class Closing:
 
     Attributes
     ----------
-    said
+    sentences
         What the changes together do, or why none is proposed.
     changes
-        The first of them; ``more`` tells how many others there are.
+        The first of them; ``remainder`` tells how many others there are.
     instead
         What can be stated or arranged without a change of flows.
     stays
         Entries that no change removes.
     """
 
-    said: tuple[str, ...]
+    sentences: tuple[str, ...]
     changes: tuple[Proposed, ...] = ()
-    more: str = ""
+    remainder: str = ""
     instead: tuple[str, ...] = ()
     stays: tuple[Entry, ...] = ()
 
@@ -82,11 +82,11 @@ def closing(index: Index, entries: Iterable[Entry], proposals: Mapping[str, Any]
         for row in last["statements"]
     }
     return Closing(
-        said=tuple(proposal_told(last, steps, index)),
+        sentences=tuple(proposal_told(last, steps, index)),
         changes=tuple(change_told(step, index) for step in steps[:SHOWN]),
-        more=words("closing.more", n=len(steps) - SHOWN) if len(steps) > SHOWN else "",
+        remainder=words("closing.more", n=len(steps) - SHOWN) if len(steps) > SHOWN else "",
         instead=tuple(sorted(instead)),
-        stays=tuple(entry for entry in entries if stays.intersection((entry.id, *entry.others))),
+        stays=tuple(entry for entry in entries if stays.intersection((entry.id, *entry.alike))),
     )
 
 

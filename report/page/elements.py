@@ -30,7 +30,7 @@ class Item:
     ----------
     robots
         How many have it.
-    said
+    roles
         What labels say of it, one text for each role.
     reviewed
         Whether labels cover all kinds of data that get there.
@@ -40,7 +40,7 @@ class Item:
     kind: str
     robots: int
     data: str
-    said: tuple[str, ...]
+    roles: tuple[str, ...]
     reviewed: bool
 
 
@@ -85,7 +85,7 @@ def _item(group: list[Mapping[str, Any]], entry: Mapping[Any, Any], open_at: set
         kind=words.kind(element),
         robots=robots,
         data=words.row([*(_category_held(at, category, index) for category in row["categories"]), *hidden]),
-        said=tuple(words(f"role.{role}", data=index.all_data(c)) for role, c in entry.get(at, {}).items()),
+        roles=tuple(words(f"role.{role}", data=index.all_data(c)) for role, c in entry.get(at, {}).items()),
         reviewed=at not in open_at,
     )
 

@@ -72,7 +72,7 @@ def figures(
         return Figures(installed=False)
     analysis = document.analysis
     findings = {finding.id: finding for finding in analysis.findings}
-    entries = [entry for entry in report.entries if entry.told and entry.id in findings]
+    entries = [entry for entry in report.entries if entry.detailed and entry.id in findings]
     words = report.words
     titles = {kind.name: kind.title for kind in report.kinds}
     say = Phrases.of_report(words, titles)

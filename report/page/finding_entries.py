@@ -48,7 +48,7 @@ class Hop:
         What labels say of it; ``open`` whether nobody reviewed it.
     end
         ``source``, ``leak`` or empty.
-    verb, lines, more
+    verb, lines, further_lines
         Of the step, empty at the end: what the policy allows, by which lines, and how many more there are.
     data
         What goes along the step, where it is not what went before.
@@ -61,7 +61,7 @@ class Hop:
     end: str
     verb: str = ""
     lines: tuple[Line, ...] = ()
-    more: int = 0
+    further_lines: int = 0
     data: str = ""
 
 
@@ -72,8 +72,8 @@ class Entry:
     Attributes
     ----------
     id, anchor, number
-        Of the first finding; ``others`` are the ids of those that differ only in the robot.
-    told
+        Of the first finding; ``alike`` are the ids of those that differ only in the robot.
+    detailed
         Whether the page tells it by itself; else it has no hops and notes, and its anchor is that of its kind of data.
     kind, state, article9, category
         As in the contract; the state is ``open``, ``decided``, ``accepted`` or ``dismissed``.
@@ -111,14 +111,14 @@ class Entry:
     hops: tuple[Hop, ...]
     notes: tuple[str, ...]
     special: str
-    others: tuple[str, ...]
+    alike: tuple[str, ...]
     robots: tuple[str, ...]
     paths: tuple[str, ...]
     decision: Decision | None
     mark: str = ""
     spread: tuple[str, ...] = ()
     pattern: str = ""
-    told: bool = True
+    detailed: bool = True
     where: tuple[tuple[str, tuple[str, ...]], ...] = ()
 
     @property
@@ -151,7 +151,7 @@ def finding_entries(index: Index, marks: Mapping[str, str] | None = None) -> tup
     entries = []
     for number, group in enumerate(groups, 1):
         left[group[0]["category"]] -= 1
-        entries.append(_entry(number, group, index, decided, marks, told=left[group[0]["category"]] >= 0))
+        entries.append(_entry(number, group, index, decided, marks, detailed=left[group[0]["category"]] >= 0))
     return tuple(entries)
 
 
@@ -162,7 +162,7 @@ def _entry(
     decided: Mapping[str, Decision | None],
     marks: Mapping[str, str],
     *,
-    told: bool,
+    detailed: bool,
 ) -> Entry:
     finding = group[0]
     decision = decided[finding["id"]]
@@ -170,8 +170,8 @@ def _entry(
     robots = _robots(group, index)
     return Entry(
         id=finding["id"],
-        anchor=anchor(finding["id"]) if told else kind_anchor(finding["category"]),
-        told=told,
+        anchor=anchor(finding["id"]) if detailed else kind_anchor(finding["category"]),
+        detailed=detailed,
         number=number,
         kind=finding["kind"],
         state="decided" if decision and stands == "open" else stands,
@@ -182,10 +182,10 @@ def _entry(
         leak=name(finding["leak"]),
         sentence=sentence_of(finding, index),
         pseudonymised=finding["pseudonymised"],
-        hops=tuple(hops_of(finding, index)) if told else (),
-        notes=tuple(_notes(finding, index)) if told else (),
+        hops=tuple(hops_of(finding, index)) if detailed else (),
+        notes=tuple(_notes(finding, index)) if detailed else (),
         special=_special(finding, index),
-        others=tuple(f["id"] for f in group[1:]),
+        alike=tuple(f["id"] for f in group[1:]),
         robots=robots,
         paths=tuple(" → ".join(map(name, path)) for path in finding.get("paths", ())),
         decision=decision,

@@ -33,7 +33,7 @@ class Difference:
 
     Attributes
     ----------
-    more
+    extra
         Whether they have it and most do not; else the other way round.
     entry
         The finding; None where the difference is an element that nobody has reviewed, or one that is reviewed there.
@@ -43,7 +43,7 @@ class Difference:
         In words.
     """
 
-    more: bool
+    extra: bool
     entry: Entry | None
     ends: tuple[str, str]
     text: str

@@ -56,7 +56,7 @@ def html(report: Outline, drawn: Figures | None = None) -> str:
         css=Markup(css),  # noqa: S704 - our own file
         js=Markup(js),  # noqa: S704 - our own file
         drawn=drawn,
-        undrawn=sum(entry.told and entry.id not in drawn.of for entry in report.entries) if drawn else 0,
+        undrawn=sum(entry.detailed and entry.id not in drawn.of for entry in report.entries) if drawn else 0,
         ink=INK,
         looks=page_legend(report.words, beyond=bool(drawn.beyond)) if drawn and (drawn.of or drawn.beyond) else [],
         paragraphs=PARAGRAPHS,

@@ -47,7 +47,7 @@ class Wishes:
 
     Attributes
     ----------
-    most
+    bound
         Elements in a picture; the shortest path is there whatever its length.
     say
         The words on the boxes; English by default.
@@ -57,7 +57,7 @@ class Wishes:
         What is done to each picture before it is drawn, such as replacing names.
     """
 
-    most: int = BOUND
+    bound: int = BOUND
     say: Phrases | None = None
     labels: Mapping[str, str] = field(default_factory=dict)
     change: Callable[[Picture], Picture] = _as_it_is
@@ -87,7 +87,7 @@ def pictures_of(
 ) -> Iterator[Inline | None]:
     """Return a picture of each finding, as an ``<svg>`` element for one HTML page; None where none could be drawn.
 
-    Lines and text on the page have the colour of the page's text. What goes beyond ``most`` boxes is left out. The
+    Lines and text on the page have the colour of the page's text. What goes beyond ``bound`` boxes is left out. The
     time that a picture takes decides nothing (rule S14): too large is what ``layout.way_of`` finds so.
 
     Raises
@@ -103,8 +103,8 @@ def pictures_of(
     views = FindingViews(analysis, wishes.say)
     with Graphviz() as graphviz:
         for finding in findings:
-            whole = folded(views.of(finding, PER_BOX * wishes.most))
-            picture = bounded(whole, wishes.most)
+            whole = folded(views.of(finding, PER_BOX * wishes.bound))
+            picture = bounded(whole, wishes.bound)
             yield _drawn(graphviz, picture, wishes, finding, all_paths=_is_whole(picture, whole))
 
 

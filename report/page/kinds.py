@@ -92,14 +92,14 @@ class Kind:
         return kind_anchor(self.name)
 
     @property
-    def told(self) -> tuple[Entry, ...]:
+    def detailed(self) -> tuple[Entry, ...]:
         """The entries that are told one by one."""
-        return tuple(entry for entry in self.entries if entry.told)
+        return tuple(entry for entry in self.entries if entry.detailed)
 
     @property
-    def left(self) -> int:
+    def not_detailed(self) -> int:
         """How many others there are."""
-        return sum(not entry.told for entry in self.entries)
+        return sum(not entry.detailed for entry in self.entries)
 
     @property
     def to_assess(self) -> int:

@@ -40,7 +40,7 @@ class ToDecide:
     ----------
     waits
         Whether nobody has decided yet, or the decision no longer holds.
-    what
+    content
         The data, with what they are made of and where, if they are.
     kinds
         Of the findings, in words.
@@ -54,7 +54,7 @@ class ToDecide:
 
     waits: bool
     data: str
-    what: str
+    content: str
     source: str
     leak: str
     article9: str
@@ -72,17 +72,17 @@ class Opening:
     ----------
     headline
         How many things wait for a decision; without any, the verdict.
-    said
+    sentences
         What is there, by name, and what is not known.
     rows
-        The first of them, ``count`` in all; ``more`` tells how many others there are.
+        The first of them, ``count`` in all; ``remainder`` tells how many others there are.
     """
 
     headline: str
-    said: tuple[str, ...]
+    sentences: tuple[str, ...]
     rows: tuple[ToDecide, ...] = ()
     count: int = 0
-    more: str = ""
+    remainder: str = ""
 
 
 def opening(index: Index, flows: Iterable[ToDecide], verdict: str, means: str, doubts: tuple[str, ...] = ()) -> Opening:
@@ -169,7 +169,7 @@ def _row(group: Sequence[Entry], index: Index) -> ToDecide:
     return ToDecide(
         waits=any(_waits(finding, index) for finding in findings),
         data=entry.data,
-        what=data_made(first, entry.data, index.words, index.data, name_of),
+        content=data_made(first, entry.data, index.words, index.data, name_of),
         source=name_of(first["source"]),
         leak=name_of(first["leak"]),
         article9=entry.article9,
@@ -244,8 +244,8 @@ def _owners(findings: Iterable[Mapping[str, Any]]) -> list[str]:
     return [printable(owner) for owner in dict.fromkeys(owners) if owner]
 
 
-def _decided(finding: Mapping[str, Any], what: str) -> Any:
-    return (finding.get("decision") or {}).get(what) or ""
+def _decided(finding: Mapping[str, Any], key: str) -> Any:
+    return (finding.get("decision") or {}).get(key) or ""
 
 
 def _state(finding: Mapping[str, Any], index: Index) -> str:

@@ -68,7 +68,7 @@ class Changed:
         What was asked or assumed otherwise.
     new, changed
         Entries; of a changed one also what changed.
-    gone
+    removed
         (kind of data, ends, id) as they were.
     """
 
@@ -77,7 +77,7 @@ class Changed:
     scope: tuple[str, ...]
     new: tuple[Entry, ...]
     changed: tuple[tuple[Entry, str], ...]
-    gone: tuple[tuple[str, str, str], ...]
+    removed: tuple[tuple[str, str, str], ...]
     opened: tuple[str, ...]
     closed: tuple[str, ...]
 
@@ -90,7 +90,7 @@ class Outline:
     ----------
     title
         Of the system, as the user calls it, or the names of its policies.
-    made
+    date
         Date; empty if none is to be told.
     sections
         (anchor, heading), in order.
@@ -110,7 +110,7 @@ class Outline:
 
     words: Words
     title: str
-    made: str
+    date: str
     version: str
     law: str
     redacted: bool
@@ -217,7 +217,7 @@ def outline(
     return Outline(
         words=words,
         title=fit(title) if title else _title(index),
-        made=words.date(date),
+        date=words.date(date),
         version=document["assumptions"]["rosprivacy"],
         law=_law(document["assumptions"], words),
         redacted=redacted,
@@ -229,7 +229,7 @@ def outline(
         sentence=verdict_sentence(document, words),
         opening=begins,
         closing=closes,
-        means=tuple(_means(index, names, sum(not entry.told for entry in entries))),
+        means=tuple(_means(index, names, sum(not entry.detailed for entry in entries))),
         numbers=tuple(_numbers(index)),
         glossary=tuple(
             (words(f"glossary.{word}"), words(f"glossary.{word}.means")) for word in (document["view"], *EXPLAINED)
@@ -340,7 +340,7 @@ def _numbers(index: Index) -> Iterator[tuple[int, str]]:
 
 def _changed(differ: Changes, earlier: Earlier, entries: tuple[Entry, ...], index: Index) -> Changed:
     words = index.words
-    of_finding = {finding: entry for entry in entries for finding in (entry.id, *entry.others)}
+    of_finding = {finding: entry for entry in entries for finding in (entry.id, *entry.alike)}
     old = Index(earlier.document, words)
     by_entry: dict[Entry, list[str]] = {}
     for finding, what in differ.changed.items():
@@ -354,13 +354,13 @@ def _changed(differ: Changes, earlier: Earlier, entries: tuple[Entry, ...], inde
             (entry, words.row(words(f"changes.what.{w}") for w in dict.fromkeys(what)))
             for entry, what in by_entry.items()
         ),
-        gone=tuple(
+        removed=tuple(
             (
                 old.data(f["category"], pseudonymised=f["pseudonymised"]),
                 words("entry.from.to", source=name(f["source"]), leak=name(f["leak"])),
                 f["id"],
             )
-            for f in differ.gone
+            for f in differ.removed
         ),
         opened=index.names(differ.opened),
         closed=old.names(differ.closed),
@@ -402,7 +402,7 @@ class Closed:
 
     where: str
     data: str
-    said: str
+    statement: str
     lines: tuple[str, ...]
     behind: str
 
@@ -433,7 +433,7 @@ def _closed(rows: list[Mapping[str, Any]], index: Index) -> Closed:
     return Closed(
         where=" → ".join(end for end in (of("element"), of("to")) if end),
         data=index.all_data(row["categories"]),
-        said=words("closed.glob", said=said) if row["glob"] else said,
+        statement=words("closed.glob", said=said) if row["glob"] else said,
         lines=tuple(f"{fit(place['file'])}:{place['line']}" for place in row["places"]),
         behind=words.row(behind) if behind else words("closed.perhaps"),
     )

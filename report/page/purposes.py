@@ -91,9 +91,9 @@ def controllers(rows: Iterable[Mapping[str, Any]], index: Index) -> str:
 
 
 def _with_pending(
-    rows: Sequence[Mapping[str, Any]], key: str, what: str, text_of: Callable[[str], str], index: Index,
+    rows: Sequence[Mapping[str, Any]], key: str, fact: str, text_of: Callable[[str], str], index: Index,
     decided: Iterable[str] = (),
 ) -> str:  # fmt: skip
     stated = dict.fromkeys([*(one for row in rows for one in row[key]), *decided])
-    lacking = not stated or any(what in row["missing"] for row in rows)
+    lacking = not stated or any(fact in row["missing"] for row in rows)
     return "; ".join([*map(text_of, stated), *([index.words("record.open")] if lacking else [])])

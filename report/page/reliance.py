@@ -27,7 +27,7 @@ class Hanging:
     ----------
     where, line
         The elements that it is about; file and line.
-    said, by, why
+    statement, by, why
         What it says, who says so, with which reason; the last two may be empty.
     findings, questions
         What there would be without it.
@@ -37,7 +37,7 @@ class Hanging:
 
     where: str
     line: str
-    said: str
+    statement: str
     by: str
     why: str
     findings: tuple[str, ...]
@@ -57,7 +57,7 @@ def _hanging(row: Mapping[str, Any], index: Index) -> Hanging:
     return Hanging(
         where=" → ".join(words.row(names) for names in ends),
         line=f"{fit(row['file'])}:{row['line']}",
-        said=_statement(row, index),
+        statement=_statement(row, index),
         by=fit(row["author"]),
         why=fit(row["why"]),
         findings=_names_shown(list(_findings(row, index)), index),

@@ -28,8 +28,8 @@ class Place:
     name: str
     kind: str
     data: str
-    kept: str
-    who: str
+    retention: str
+    recipient: str
 
 
 @dataclass(frozen=True, slots=True)

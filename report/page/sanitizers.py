@@ -36,9 +36,9 @@ class Cleaning:
         In words; ``weak`` if the data are still personal.
     unreached
         Kinds that never get there.
-    beside
+    other_readers
         Who reads the same channels and gets the data as they are; after these, who is said to clean them, too.
-    past, more
+    past, remainder
         The first entries of these kinds whose path does not lead through the element: (anchor, number); and how many
         more there are, in words.
     recognises
@@ -51,9 +51,9 @@ class Cleaning:
     weak: bool
     unreached: str
     leaves: str
-    beside: tuple[str, ...]
+    other_readers: tuple[str, ...]
     past: tuple[tuple[str, int], ...]
-    more: str = ""
+    remainder: str = ""
     recognises: str = ""
 
 
@@ -66,7 +66,7 @@ class Making:
 
     name: str
     made_of: str
-    made: str
+    product: str
     special: bool
     recognises: bool = False
 
@@ -89,7 +89,7 @@ class _Past:
         self._paths: dict[str, Counter[tuple[str, int]]] = defaultdict(Counter)
         self._through: dict[tuple[str, Key], list[tuple[str, tuple[str, int]]]] = defaultdict(list)
         for entry in entries:
-            for finding in map(index.by_id.__getitem__, (entry.id, *entry.others)):
+            for finding in map(index.by_id.__getitem__, (entry.id, *entry.alike)):
                 if state(finding) == "open" and not finding["pseudonymised"]:
                     place = entry.anchor, entry.number
                     self._paths[entry.category][place] += 1
@@ -126,7 +126,7 @@ def _cleaning(group: list[Mapping[str, Any]], past: _Past, index: Index) -> Clea
         weak=row["method"] == "pseudonymise",
         unreached=index.all_data(unreached),
         leaves=words.row(leaves),
-        beside=(
+        other_readers=(
             *index.names([*(e for r in group for e in r["beside"]), *(e for e in too if key(e) in recognising)]),
             *(
                 words("sanitizer.cleans.too", element=name)
@@ -135,7 +135,7 @@ def _cleaning(group: list[Mapping[str, Any]], past: _Past, index: Index) -> Clea
         ),
         recognises=index.all_data(dict.fromkeys(kind for r in group for kind in r.get("recognises", ()))),
         past=tuple(first),
-        more=words("more", n=number - len(first)) if number > len(first) else "",
+        remainder=words("more", n=number - len(first)) if number > len(first) else "",
     )
 
 
@@ -153,7 +153,7 @@ def makings(index: Index) -> tuple[Making, ...]:
         Making(
             name=index.words.row(index.names([row["element"] for row in group])),
             made_of=index.data(group[0]["from"]),
-            made=index.data(group[0]["to"]),
+            product=index.data(group[0]["to"]),
             recognises=_recognises(index.categories.get(group[0]["to"], {})),
             special=article9.get(group[0]["to"], False) and not article9.get(group[0]["from"], False),
         )

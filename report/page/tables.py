@@ -82,7 +82,7 @@ class Links:
     """Where the entry of a finding stands: findings that differ only in the robot share one."""
 
     def __init__(self, entries: Iterable[Any]) -> None:
-        self._first = {finding: entry.anchor for entry in entries for finding in (entry.id, *entry.others)}
+        self._first = {finding: entry.anchor for entry in entries for finding in (entry.id, *entry.alike)}
 
     def to(self, findings: Sequence[Mapping[str, Any]]) -> str:
         """Return the anchor of the first entry."""

@@ -152,7 +152,7 @@ class Choice:
         To the element in hand, the shortest first.
     findings
         Of which the shortest paths are drawn.
-    left
+    undrawn
         How many findings are not drawn.
     near
         What the element is joined to, what counts more first; nothing of it is on a path.
@@ -161,7 +161,7 @@ class Choice:
     focus: Key | None
     paths: Sequence[Witness]
     findings: Sequence[Finding]
-    left: int
+    undrawn: int
     near: Sequence[Key]
 
     @property

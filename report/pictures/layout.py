@@ -43,7 +43,7 @@ class Way:
     ----------
     engine, attributes
         Of Graphviz.
-    most
+    max_crossings
         What it is taken for: see ``crossings``.
     words
         What a reader has to know of it.
@@ -51,7 +51,7 @@ class Way:
 
     engine: str
     attributes: Mapping[str, str]
-    most: float = inf
+    max_crossings: float = inf
     words: str = ""
 
 
@@ -78,12 +78,12 @@ class Drawn:
     ----------
     data
         The file.
-    said
+    remarks
         What a reader has to know: that it was laid out by other means, that it was made smaller. Empty as a rule.
     """
 
     data: bytes
-    said: tuple[str, ...] = ()
+    remarks: tuple[str, ...] = ()
 
 
 def drawn(
@@ -139,7 +139,7 @@ def drawn(
 
 def way_of(picture: Picture, ways: tuple[Way, ...] = WAYS) -> Way:
     """Return how a picture is laid out: by its size alone."""
-    return next(way for way in ways if crossings(len(picture.boxes), len(picture.lines)) <= way.most)
+    return next(way for way in ways if crossings(len(picture.boxes), len(picture.lines)) <= way.max_crossings)
 
 
 def crossings(boxes: int, lines: int) -> int:

@@ -110,8 +110,8 @@ def within(picture: Picture, starts: Collection[Key], steps: int) -> set[Key]:
     return kept
 
 
-def _part(picture: Picture, keys: Collection[Key], what: str) -> str:
-    return picture.say("picture.part", what=what, n=len(keys), elements=picture.count(len(picture.boxes), "element"))
+def _part(picture: Picture, keys: Collection[Key], scope: str) -> str:
+    return picture.say("picture.part", what=scope, n=len(keys), elements=picture.count(len(picture.boxes), "element"))
 
 
 def _nearest(name: str, names: Iterable[str]) -> str:

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from rosprivacy.report.pictures.picture import Key, Picture
 
 SECONDS = 8.0
-WAYS = (replace(ON_PAPER[0], most=150_000), *ON_PAPER[1:])  # a page waits less long than paper: 0.3 s, not 2
+WAYS = (replace(ON_PAPER[0], max_crossings=150_000), *ON_PAPER[1:])  # a page waits less long than paper: 0.3 s, not 2
 ROOM = (900.0, 700.0)
 ACROSS, DOWN = DIRECTIONS
 REMEMBERED = 64  # layouts; one takes some 20 kB

@@ -358,7 +358,7 @@ class Scenes:
         if joined and choice.focus:
             name = shortened(choice.focus[2], 60)
             rest = picture.say("picture.explore.near", elements=picture.count(undrawn, "element"), n=joined, name=name)
-        left = picture.count(choice.left, "picture.explore.paths") if choice.left else ""
+        left = picture.count(choice.undrawn, "picture.explore.paths") if choice.undrawn else ""
         quiet = picture.count(standard, "picture.standard") if standard else ""
         return replace(small, notes=tuple(note for note in (left, rest, quiet) if note))
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.suggesting.label_questions import Question, Reply, Row
 
-ASKED = {
+QUESTIONS = {
     BRINGS_IN: ("Does it bring such data in?", "Which of these bring such data in?"),
     LETS_OUT: ("Does it let such data out: keep, show or send them elsewhere?", "Which of these let such data out?"),
     MAKES: ("Does it make such data?", "Which of these make such data?"),
@@ -32,7 +32,7 @@ LISTS = {
     "never": "Is it so that no {kinds} goes through any of these? Read each row: a wrong one hides a leak.",
     "only": "Is it so that of {kinds} only {left} goes through each of these? Read each row: a wrong one hides a leak.",
 }
-BESIDE = "such data as stand beside it"  # where rows are about different kinds
+SUCH_DATA = "such data as stand beside it"  # where rows are about different kinds
 KEYS = {  # a word, and what it means
     "x": ("yes, and no to the others", "yes to the rows that are picked, and no to all others"),
     "n": ("no", "no to all that stands there; it is remembered, and not asked again"),
@@ -58,7 +58,7 @@ def question_lines(question: Question) -> Iterator[str]:
     """Yield what is asked, each row with its reasons, and the findings that may hang on the answer."""
     rows = question.rows
     yield ""
-    yield _asked(question)
+    yield _question_text(question)
     for letter, row in zip(ascii_uppercase, rows, strict=False):
         at = f"{letter}  " if len(rows) > 1 else ""
         yield f"  {at}{row.element.kind} {shown(row.element.name)}{_of_row(question, row)}"
@@ -75,12 +75,12 @@ def question_lines(question: Question) -> Iterator[str]:
             yield f"       and {len(closes) - most} more findings"
 
 
-def _asked(question: Question) -> str:
+def _question_text(question: Question) -> str:
     rows = question.rows
-    kinds = " and ".join(rows[0].kinds) if _same_kinds(rows) else BESIDE
+    kinds = " and ".join(rows[0].kinds) if _same_kinds(rows) else SUCH_DATA
     if question.about != LISTED:
-        return ASKED[question.about][len(rows) > 1].format(kinds=kinds)
-    ((role, left),) = rows[0].replies[0].label.said.items()
+        return QUESTIONS[question.about][len(rows) > 1].format(kinds=kinds)
+    ((role, left),) = rows[0].replies[0].label.roles.items()
     return LISTS[role].format(kinds=kinds, left=", ".join(left))
 
 
@@ -147,7 +147,7 @@ def _list_line(rows: int, out: Collection[int], key: str) -> str:
 def _of_row(question: Question, row: Row) -> str:
     """What a row is about, where rows differ in it."""
     if question.about == MAKES:
-        (made,) = row.replies[0].label.said["derives"]
+        (made,) = row.replies[0].label.roles["derives"]
         return f": {made['to']} from {made['from']}"
     differ = question.about in (BRINGS_IN, LETS_OUT) or not _same_kinds(question.rows)
     return f": {', '.join(row.kinds)}" if differ else ""
@@ -169,7 +169,7 @@ def _words(reply: Reply, rows: Sequence[Row]) -> str:
     >>> _words(one, [row]), _words(all_, [row])
     ('Video at most', 'yes (Video and Voice)')
     """
-    ((role, value),) = reply.label.said.items()
+    ((role, value),) = reply.label.roles.items()
     if role == "sanitizer":
         return " and ".join(f"ends {kind} ({method})" for kind, method in value.items())
     if role == "only":
@@ -180,4 +180,4 @@ def _words(reply: Reply, rows: Sequence[Row]) -> str:
     if all(len(row.kinds) == 1 for row in rows):
         return word
     kinds = " and ".join(value) if len(value) <= SHOWN else f"all {len(value)} kinds"
-    return f"{word} ({kinds if _same_kinds(rows) else BESIDE})"
+    return f"{word} ({kinds if _same_kinds(rows) else SUCH_DATA})"

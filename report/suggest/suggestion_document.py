@@ -95,7 +95,7 @@ def _proposal(proposal: Proposal, *, is_open: bool, by_hand: bool) -> ProposalEn
         "open": is_open,
         "hides": proposal.label.role in HIDING,
         "by_hand": by_hand,
-        "label": at.said,
+        "label": at.roles,
         "evidence": [_evidence(reason) for reason in proposal.evidence],
     }
 

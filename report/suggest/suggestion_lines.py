@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.report.contract.suggested import NoticeEntry, ProposalEntry, RobotEntry, SuggestionsDocument
 
-NONE = "nothing to suggest: no rule speaks of what nobody has labelled"
+NOTHING = "nothing to suggest: no rule speaks of what nobody has labelled"
 BY_HAND = ", and it would close a finding: only by hand"
 OF_ROBOTS = "Write what you accept into the label files of the robot, or of its model."
 WIDEST = 50  # signs of a column
@@ -27,7 +27,7 @@ def suggestion_lines(document: SuggestionsDocument) -> Iterator[str]:
     rows = document["suggestions"]
     yield from notice_lines(document["notices"])
     if not rows:
-        yield NONE
+        yield NOTHING
         yield from _not_looked_at(document)
         return
     first = [row for row in rows if row["open"]]
@@ -54,7 +54,8 @@ def suggestion_lines(document: SuggestionsDocument) -> Iterator[str]:
         yield OF_ROBOTS
     else:
         yield "Answer them by single keys with --into labels.yaml --ask --by 'YOUR NAME'"
-        yield f"Or write them into a label file with --into labels.yaml, then: rosprivacy labels --accept {_what(rows)}"
+        accept = f"rosprivacy labels --accept {_accept_arguments(rows)}"
+        yield f"Or write them into a label file with --into labels.yaml, then: {accept}"
 
 
 def _not_looked_at(document: SuggestionsDocument) -> Iterator[str]:
@@ -77,14 +78,14 @@ def _first_few(texts: Sequence[str]) -> str:
     return ", ".join(texts[:SHOWN]) + more
 
 
-def _what(rows: Sequence[ProposalEntry]) -> str:
+def _accept_arguments(rows: Sequence[ProposalEntry]) -> str:
     """What can be accepted, in the words of the command line: what is sure together, else an element by its name."""
     sure = any(row["confidence"] != Confidence.MAY and not row["hides"] for row in rows)
     return f"{Confidence.LIKELY if sure else 'NAME'} --by 'YOUR NAME' -l labels.yaml"
 
 
 def _table(rows: Sequence[ProposalEntry]) -> Iterator[str]:
-    cells = [(_named(row), said_of(row), row["confidence"]) for row in rows]
+    cells = [(_full_name(row), said_of(row), row["confidence"]) for row in rows]
     widths = [min(WIDEST, max(len(row[at]) for row in cells)) for at in (0, 1)]
     for row, (name, said, sure) in zip(rows, cells, strict=True):
         kind = row["section"].removesuffix("s")
@@ -92,7 +93,7 @@ def _table(rows: Sequence[ProposalEntry]) -> Iterator[str]:
         yield from (f"            {shown(reason)}" for reason in _reasons(row))
 
 
-def _named(row: ProposalEntry) -> str:
+def _full_name(row: ProposalEntry) -> str:
     return shown(f"{row['robot']}:{row['name']}" if row["robot"] else row["name"])
 
 

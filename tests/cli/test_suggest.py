@@ -861,7 +861,7 @@ def hostile(kinds: Sequence[str], roles: Sequence[str]) -> Interview:
             )
         ).body
 
-    return Interview(Asking("m", "http://localhost/v1", masked=False, most=10_000), reply, lambda _: None)
+    return Interview(Asking("m", "http://localhost/v1", masked=False, limit=10_000), reply, lambda _: None)
 
 
 def accept_everything(policy: str, file: Path, model: Sequence[str] = ()) -> None:

@@ -75,7 +75,7 @@ def test_a_digit_says_the_same_kind_of_each_row_and_nothing_of_a_row_that_only_o
     person = pressing()
     conversation_in(robot, person).run()
     for row in person.asked[0].rows:
-        kinds = {one.key: one.label.said["only"] for one in row.replies if "only" in one.label.said}
+        kinds = {one.key: one.label.roles["only"] for one in row.replies if "only" in one.label.roles}
         assert kinds == ({"1": ["Video"], "2": ["Voice"]} if len(row.kinds) > 1 else {})
 
 
@@ -163,7 +163,7 @@ def test_each_kind_is_asked_by_itself_where_a_person_wants_it(robot: Path) -> No
     conversation_in(robot, person).run()
     rows = {row.kinds: row for row in person.asked[1].rows if row.element.name == name}
     assert list(rows) == [("Video",), ("Voice",)]
-    assert [[one.label.said for one in row.replies] for row in rows.values()] == [
+    assert [[one.label.roles for one in row.replies] for row in rows.values()] == [
         [{"sensitive": ["Video"]}, {"never": ["Video"]}], [{"sensitive": ["Voice"]}, {"never": ["Voice"]}],
     ]  # fmt: skip
     assert {row.kinds for row in person.asked[1].rows if row.element.name not in (name, "/seen")} == {
@@ -364,7 +364,7 @@ class EachKind(Listing):
     """The same, of each kind by itself: of every row that is about one kind."""
 
     def key(self, question: Question, picked: frozenset[int]) -> str:
-        if question.about == GOES_THROUGH and any(row.each for row in question.rows):
+        if question.about == GOES_THROUGH and any(row.by_kind for row in question.rows):
             return EACH_KIND
         return super().key(question, picked)
 

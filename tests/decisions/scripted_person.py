@@ -51,7 +51,7 @@ class Knowledge:
         role = ENDS.get(question.about)
         if role and not any(one.role == role and self._near(one, row.kinds) for one in said):
             return NO
-        by_kind = [self.key(question, one) for one in row.each]
+        by_kind = [self.key(question, one) for one in row.by_kind]
         return EACH_KIND if by_kind and SKIP not in by_kind else SKIP
 
     def _near(self, one: Statement, kinds: Iterable[str]) -> bool:
@@ -61,7 +61,7 @@ class Knowledge:
         return not one.categories or any(other in self.hierarchy.ancestors[kind] for other in one.categories)
 
     def _true(self, reply: Reply, row: Row, said: Sequence[Statement]) -> bool:
-        ((role, value),) = reply.label.said.items()
+        ((role, value),) = reply.label.roles.items()
         if role in ("sensitive", "only", "never"):
             return bool(said) and self._goes_through(role, value, row.kinds, said)
         if role == "derives":

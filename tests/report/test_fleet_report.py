@@ -112,7 +112,7 @@ def test_deviants_stand_by_themselves_with_links_to_the_ways(language: str) -> N
     assert fleet
     (deviant,) = fleet.deviants
     assert (deviant.robots, deviant.model) == (("carrier_lent",), "carrier")
-    assert [(d.more, d.ends) for d in deviant.differences] == [
+    assert [(d.extra, d.ends) for d in deviant.differences] == [
         (True, ("/camera_driver", "base:reviewer")),
         (True, ("/camera_driver", "hospital:footage bucket")),
         (False, ("/camera_driver", "base:reviewer")),

@@ -310,7 +310,7 @@ def _write(
         from rosprivacy.report.pictures.layout import drawn
 
         done = drawn(picture, form.value, direction=direction if layout_direction else "", seconds=seconds)
-        for said in done.said:
+        for said in done.remarks:
             print(said, file=sys.stderr)
         emit(done.data, output)
         return

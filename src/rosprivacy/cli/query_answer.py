@@ -72,7 +72,7 @@ def _drawing(rows: Rows, title: str) -> bytes:
     said = f"Only the first {number}: there are more, --limit draws more" if rows.truncated else number
     picture = query_view(values, STORED_NAMES, title, (said,))
     done = drawn(picture, "svg", direction="", remedy=REMEDY, instead=f"{REMEDY}, or take --format json")
-    for note in done.said:
+    for note in done.remarks:
         print(note, file=sys.stderr)
     return done.data
 

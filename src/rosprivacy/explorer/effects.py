@@ -29,7 +29,7 @@ class Difference(NamedTuple):
     opened, closed
         Ids of the findings that stand in the second one only, and in the first one only; of a fleet those that the
         answer shows for robots on which they do.
-    more, fewer
+    newly_open, no_longer_open
         How many elements are open in the second one only, and in the first one only; of a fleet on all robots.
     plainer
         Ids of the findings that stand in both, and are pseudonymised in the first one only.
@@ -42,8 +42,8 @@ class Difference(NamedTuple):
     verdict: Verdict
     opened: tuple[str, ...]
     closed: tuple[str, ...]
-    more: int
-    fewer: int
+    newly_open: int
+    no_longer_open: int
     plainer: tuple[str, ...] = ()
     robots: Mapping[tuple[str, str], tuple[str, ...]] = {}
 
@@ -63,8 +63,8 @@ class Change(NamedTuple):
     verdict: Verdict
     opened: tuple[str, ...] = ()
     closed: tuple[str, ...] = ()
-    more: int = 0
-    fewer: int = 0
+    newly_open: int = 0
+    no_longer_open: int = 0
     plainer: tuple[str, ...] = ()
     robots: Mapping[tuple[str, str], tuple[str, ...]] = {}
 

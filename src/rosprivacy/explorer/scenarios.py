@@ -94,7 +94,7 @@ class Scenario(NamedTuple):
     """
 
     name: str
-    what: WhatIf
+    what_if: WhatIf
     version: int
     result: Result
     difference: Difference

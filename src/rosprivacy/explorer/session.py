@@ -460,7 +460,7 @@ class Session:
 
     # --- what is tried ------------------------------------------------------------------------------------------
 
-    def scenario(self, name: str, what: WhatIf) -> Scenario:
+    def scenario(self, name: str, what_if: WhatIf) -> Scenario:
         """Try something that is no edit, and compare it with now; it is kept by its name.
 
         Raises
@@ -477,8 +477,8 @@ class Session:
         """
         with self.history.lock:
             self.history.check_that_it_changes(name)
-            result, remarks = self._files.tried(self.history.system, self.history.question, what, self.history.edits)
-            scenario = Scenario(name, what, self.version, result, compared(self.uncounted, result), remarks)
+            result, remarks = self._files.tried(self.history.system, self.history.question, what_if, self.history.edits)
+            scenario = Scenario(name, what_if, self.version, result, compared(self.uncounted, result), remarks)
             self._scenarios[name] = scenario
             return scenario
 

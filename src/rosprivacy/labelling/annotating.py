@@ -92,12 +92,12 @@ def differences(annotated_code: Annotated, file: str, vocabulary: Vocabulary) ->
     there, wanted = read_labels(file, vocabulary), parse_labels(annotated_code.text, vocabulary, name=NAME)
     places = {(SECTIONS[one.section], one.name): one.place for one in reversed(annotated_code.labelled)}
     old, new = _by_element(there), _by_element(wanted)
-    lines = [f"{file}: {_called(key)} is not in it; {places[key]} says it" for key in new.keys() - old.keys()]
+    lines = [f"{file}: {_entry_text(key)} is not in it; {places[key]} says it" for key in new.keys() - old.keys()]
     for key, entry in old.items():
         if key not in new:
-            lines.append(f"{entry.place}: {_called(key)} is in no annotation")
+            lines.append(f"{entry.place}: {_entry_text(key)} is in no annotation")
         elif without_places(entry) != without_places(new[key]):
-            lines.append(f"{entry.place}: {_called(key)} is not what {places[key]} says")
+            lines.append(f"{entry.place}: {_entry_text(key)} is not what {places[key]} says")
     if not lines and _rest(there) != _rest(wanted):
         lines.append(f"{file}: it says more than annotations can say")
     return tuple(map(printable, sorted(lines)))
@@ -112,7 +112,7 @@ def _by_element(labels: Labels) -> dict[Key, Entry]:
     return {(entry.kinds, entry.name): entry for entry in labels.entries}
 
 
-def _called(key: Key) -> str:
+def _entry_text(key: Key) -> str:
     kinds, name = key
     return f"{shown(name)} ({kinds[0] if len(kinds) == 1 else 'channel'})"
 

@@ -171,7 +171,7 @@ def typed_label(line: str, elements: Iterable[Element], vocabulary: Vocabulary) 
     >>> from rosprivacy.ontology.vocabulary import load
     >>> nodes = [Element("node", "/lidar")]
     >>> typed_label("/lidar node source Location", nodes, load())
-    WrittenLabel(section='nodes', name='/lidar', said={'source': ['Location']})
+    WrittenLabel(section='nodes', name='/lidar', roles={'source': ['Location']})
     >>> typed_label("/lidar node source Biometrik", nodes, load())
     "unknown category 'Biometrik'; did you mean Biometric?"
     """
@@ -218,7 +218,7 @@ def _with_more(result: Result, labels: Iterable[WrittenLabel], name: str) -> Res
         lambda: defaultdict(lambda: defaultdict(list))
     )
     for label in labels:
-        for role, said in label.said.items():
+        for role, said in label.roles.items():
             sections[label.section][label.name][role] += said
     text = json.dumps({"labels": 1, **sections})
     return result.reanalyse((*result.labels, parse_labels(text, result.vocabulary, name=name)))

@@ -105,7 +105,7 @@ class Conversation:
 
     def run(self) -> bool:
         """Ask; return whether nothing is left to ask, and False if the person has stopped before."""
-        while pending := deque(self._left()):
+        while pending := deque(self._pending()):
             if not self._round(pending):
                 return False
         return True
@@ -127,8 +127,8 @@ class Conversation:
             if len(rows) > 1 and takes_away_of_each(rows, key):
                 return self._picked([row.saying(key) for row in rows])
             if key == OPEN:
-                self._alone.update(_said(question, row) for row in rows)
-            elif self._taken(question, rows, key):
+                self._alone.update(_row_key(question, row) for row in rows)
+            elif self._take_answer(question, rows, key):
                 return True
             else:
                 answered.add(STAGES[question.about])
@@ -143,11 +143,11 @@ class Conversation:
         if not takes_away_of_each(rows, key):
             return False
         said = {(row.element.identity, kind) for row in rows for kind in row.kinds}
-        still = (row for one in self._asked() if one.about == about for row in one.rows)
+        still = (row for one in self._questions_now() if one.about == about for row in one.rows)
         near = (row for row in still if any((row.element.identity, kind) in said for kind in row.kinds))
         return not {one for row in near for one in row.closes} <= {one for row in rows for one in row.closes}
 
-    def _taken(self, question: Question, rows: Sequence[Row], key: str) -> bool:
+    def _take_answer(self, question: Question, rows: Sequence[Row], key: str) -> bool:
         """Take an answer; return whether what is left to ask may have changed by it."""
         if key == EACH_KIND:
             self._kind_by_kind.update((question.about, row.element.identity) for row in rows)
@@ -159,11 +159,11 @@ class Conversation:
             self.person.remark(FOUND_SINCE)
             return True
         if key == EXACTLY:
-            self._kept(Question(question.about, tuple(row for row in question.rows if row not in rows)), NO)
+            self._keep_answer(Question(question.about, tuple(row for row in question.rows if row not in rows)), NO)
             self.answers -= 1  # both are one answer
-            self._kept(Question(question.about, tuple(rows)), YES)
+            self._keep_answer(Question(question.about, tuple(rows)), YES)
             return True
-        return self._kept(Question(question.about, tuple(rows)), key)
+        return self._keep_answer(Question(question.about, tuple(rows)), key)
 
     def _postponed(self, about: str, rows: Iterable[Row]) -> None:
         for row in rows:
@@ -173,24 +173,24 @@ class Conversation:
         """Whether the person wants to answer later; also if by now fewer kinds of data get there."""
         return self._later[question.about, row.element.identity].issuperset(row.kinds)
 
-    def _left(self) -> Iterator[Question]:
+    def _pending(self) -> Iterator[Question]:
         """What is asked now, without what the person wants to answer later; what was opened stands alone."""
-        for question in self._asked():
+        for question in self._questions_now():
             rows = [row for row in question.rows if not self._is_later(question, row)]
-            listed = [row for row in rows if row.alike and _said(question, row) not in self._taken_out | self._alone]
+            listed = [row for row in rows if row.alike and _row_key(question, row) not in self._taken_out | self._alone]
             lists = [part for part in by_likeness(listed) if len(part) >= FEWEST]
             in_lists = [row for part in lists for row in part]
             yield from (Question(LISTED, tuple(row.saying(NOTHING) for row in part)) for part in lists)
-            together = [row for row in rows if row not in in_lists and _said(question, row) not in self._alone]
+            together = [row for row in rows if row not in in_lists and _row_key(question, row) not in self._alone]
             for at in range(0, len(together), MOST_ROWS):
                 yield Question(question.about, tuple(together[at : at + MOST_ROWS]))
             yield from (Question(question.about, (row,)) for row in rows if row not in (*together, *in_lists))
 
-    def _asked(self) -> Iterator[Question]:
+    def _questions_now(self) -> Iterator[Question]:
         """What is asked now; where the person wants it, each kind of data by itself."""
         for question in self.now():
             apart = [
-                row.each if (question.about, row.element.identity) in self._kind_by_kind and row.each else (row,)
+                row.by_kind if (question.about, row.element.identity) in self._kind_by_kind and row.by_kind else (row,)
                 for row in question.rows
             ]
             yield Question(question.about, tuple(one for rows in apart for one in rows))
@@ -237,7 +237,7 @@ class Conversation:
 
     def _confirmed(self, question: Question, *, by_hand: bool) -> None:
         """Keep what is said of a list, if it would still be asked: the file may have changed meanwhile."""
-        still = [row for one in self._asked() if one.about == GOES_THROUGH for row in one.rows]
+        still = [row for one in self._questions_now() if one.about == GOES_THROUGH for row in one.rows]
         if by_hand:
             asked = {_of_channel(row) for row in still}
             same = all(_of_channel(row) in asked for row in question.rows) and not self.closing(question.rows)
@@ -277,7 +277,7 @@ class Conversation:
             self.person.remark(remark)
         self.answers += 1
 
-    def _kept(self, question: Question, key: str) -> bool:
+    def _keep_answer(self, question: Question, key: str) -> bool:
         """Keep an answer; return whether it changes what data get where."""
         remarks = self.keep(question, key)
         for remark in remarks:
@@ -295,7 +295,7 @@ def _of_channel(row: Row) -> Said:
     return GOES_THROUGH, row.element.identity, row.kinds
 
 
-def _said(question: Question, row: Row) -> Said:
+def _row_key(question: Question, row: Row) -> Said:
     return question.about, row.element.identity, row.kinds
 
 
@@ -312,7 +312,7 @@ def allowed(question: Question, picked: Collection[int] = ()) -> tuple[str, ...]
         keys = tuple(key for key in keys if key != PASSES)  # it may be a leak: look at each
     refuse = all(row.refused for row in question.rows)
     exactly = refuse and YES in keys and len(rows) < len(question.rows)
-    by_kind = any(row.each for row in rows)
+    by_kind = any(row.by_kind for row in rows)
     more = ((EXACTLY, exactly), (NO, refuse), (OPEN, len(rows) > 1), (EACH_KIND, by_kind), (SKIP, True))
     return (*keys, *(key for key, there in more if there))
 
@@ -353,7 +353,7 @@ def by_likeness(rows: Iterable[Row]) -> tuple[tuple[Row, ...], ...]:
 
 def line_of(row: Row, reply: Reply) -> str:
     """Return the line that says a reply of a row."""
-    ((role, value),) = reply.label.said.items()
+    ((role, value),) = reply.label.roles.items()
     kinds = [f"{kind} {method}" for kind, method in value.items()] if isinstance(value, dict) else value
     return " ".join([row.element.name, row.element.kind, role, *kinds])
 

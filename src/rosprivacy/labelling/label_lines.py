@@ -66,7 +66,13 @@ def updated(policies: tuple[str, ...], labels: tuple[str, ...], settings: Settin
     standard = standard_channels(graph, vocabulary, settings)
     there = [element for element in graph.elements if element.is_node or element.is_channel]
     left_out = standard | infrastructure_of(there, vocabulary)
-    said = {channel for file in known if not file.shipped for entry in file.entries for channel in _meant(there, entry)}
+    said = {
+        channel
+        for file in known
+        if not file.shipped
+        for entry in file.entries
+        for channel in _channels_of(there, entry)
+    }
     new = sorted({(e.kind, e.name) for e in there} - said - left_out)
     listed = {(e.kind, e.name) for e in there if e.is_channel} - left_out
     restored = _restored(own, standard, said_by_name={(k, e.name) for e in own.entries for k in e.kinds})
@@ -137,7 +143,7 @@ def _own(labels: tuple[str, ...], vocabulary: Vocabulary, settings: Settings) ->
     return read, data.decode("utf-8-sig")
 
 
-def _meant(elements: Iterable[Element], entry: Entry) -> Iterator[Channel]:
+def _channels_of(elements: Iterable[Element], entry: Entry) -> Iterator[Channel]:
     """(kind, name) of what an entry speaks of."""
     for kind in entry.kinds:
         yield from ((kind, name) for name in covered(entry.name, {e.name for e in elements if e.kind == kind}))

@@ -53,10 +53,14 @@ LONGEST = 200  # signs of a name, a type or a comment
 CHANNELS, TYPES, COMMENTS = 20, 3, 10  # of one element, at most
 SIZE = 12_000  # signs of elements in a request, some 4,000 tokens; the list of kinds has as many
 TOGETHER = 60  # elements in a request: an answer about more is too long for many models, and cut short
-MOST = 5  # answers of one element: more than a person would read
+MAX_ANSWERS = 5  # answers of one element: more than a person would read
 KEYS = ("id", "role", "kind", "to", "quote")  # of one answer, each a text
 NO_FORM, NO_ELEMENT, NO_ROLE = "not of the form asked for", "no element that was sent", "no role that was asked for"
-NO_KIND, NO_QUOTE, TOO_MANY = "no kind that there is", "no evidence in the input", f"more than {MOST} of one element"
+NO_KIND, NO_QUOTE, TOO_MANY = (
+    "no kind that there is",
+    "no evidence in the input",
+    f"more than {MAX_ANSWERS} of one element",
+)
 NOTHING_ASKED = "no element is without a label: nothing to ask a language model"
 ROLES = {
     SOURCE: "a node that brings data of the kind in, from a sensor, a person or from outside the robot",
@@ -69,7 +73,7 @@ INSTRUCTION = (
     "services, actions) and a list of kinds of personal data. Say which element may have which role for which kind.\n"
     "Roles of nodes and channels:\n" + "".join(f"- {role}: {what}.\n" for role, what in ROLES.items()) + "Rules:\n"
     "- Use ids of elements, roles and kinds from the lists only. Say nothing of an element if you are not sure.\n"
-    f"- At most {MOST} suggestions for one element. Take the narrowest kind that fits.\n"
+    f"- At most {MAX_ANSWERS} suggestions for one element. Take the narrowest kind that fits.\n"
     "- quote: copy, letter by letter, the part of the element's own names, types or comments that says so. What has no "
     "such quote is thrown away.\n"
     "- to: only for derivation; else an empty text.\n"
@@ -202,7 +206,7 @@ class Mask:
     def __init__(self, words: Collection[str], texts: Collection[str] = ()) -> None:
         self._words, self._texts = frozenset(words), frozenset(texts)
         self._placeholders: dict[str, str] = {}
-        self._meant: dict[str, str] = {}
+        self._originals: dict[str, str] = {}
 
     def masked(self, text: str) -> str:
         """Return a text with placeholders; upper and lower case count alike."""
@@ -210,7 +214,7 @@ class Mask:
 
     def unmasked(self, text: str) -> str:
         """Return a text with the words in place of their placeholders, each as it was first written."""
-        return _PLACEHOLDER.sub(lambda found: self._meant.get(found[0], found[0]), text)
+        return _PLACEHOLDER.sub(lambda found: self._originals.get(found[0], found[0]), text)
 
     def _hidden(self, match: re.Match[str]) -> str:
         word = match[0].casefold()
@@ -218,7 +222,7 @@ class Mask:
             return match[0]
         if word not in self._placeholders:
             made = f"x{len(self._placeholders) + 1}"
-            self._placeholders[word], self._meant[made] = made, match[0]
+            self._placeholders[word], self._originals[made] = made, match[0]
         return self._placeholders[word]
 
 
@@ -245,7 +249,7 @@ def common_words(rules: NameRules, types: Iterable[str]) -> frozenset[str]:
 class Question(NamedTuple):
     """One request: its elements by id, and the bytes that are sent."""
 
-    asked: Mapping[str, Asked]
+    elements: Mapping[str, Asked]
     body: bytes
 
 
@@ -372,7 +376,7 @@ def judged(
         if made in evidence:
             continue
         of_elements[answer["id"]] += 1
-        if of_elements[answer["id"]] > MOST:
+        if of_elements[answer["id"]] > MAX_ANSWERS:
             dropped[TOO_MANY] += 1
         else:
             evidence[made] = None
@@ -416,7 +420,7 @@ class Asking(NamedTuple):
     model: str
     url: str
     masked: bool
-    most: int
+    limit: int
     recorded: str = ""
 
 
@@ -428,7 +432,7 @@ class Interview:
     ----------
     carry
         Takes a question to the model and brings its answer back.
-    told
+    notify
         Is told what is sent, before it is, and what was dropped.
     rests_on
         (file, SHA-256) of the file in which the answers stand already.
@@ -438,7 +442,7 @@ class Interview:
 
     asking: Asking
     carry: Callable[[bytes], bytes]
-    told: Callable[[str], None]
+    notify: Callable[[str], None]
     rests_on: tuple[tuple[str, str], ...] = ()
     exchanges: list[Exchange] = field(default_factory=list)
     unread: Counter[str] = field(default_factory=Counter)
@@ -456,7 +460,7 @@ class Interview:
         """
         mask = mask_of(basis.result.vocabulary) if self.asking.masked else None
         asked = asked_of(basis, self.asking, mask)
-        self.told(what_is_sent(asked, self.asking) if asked else NOTHING_ASKED)
+        self.notify(what_is_sent(asked, self.asking) if asked else NOTHING_ASKED)
         kinds, found = basis.result.vocabulary.categories, 0
         unheard: Counter[str] = Counter()  # elements of which nothing was heard
         for question in asked:
@@ -466,17 +470,17 @@ class Interview:
             answered = answers_in(data, f"model {self.asking.model}")
             if answered.unread:
                 self.unread[answered.unread] += 1
-                unheard[answered.unread] += len(question.asked)
+                unheard[answered.unread] += len(question.elements)
             shown = mask.unmasked if mask else str
-            left = judged(answered.answers, question.asked, kinds, self.asking.model, shown)
+            left = judged(answered.answers, question.elements, kinds, self.asking.model, shown)
             self.dropped += left.dropped
             found += len(left.evidence)
             yield from left.evidence
-        for line in self._left_out(found, unheard) if asked else ():
-            self.told(line)
+        for line in self._losses(found, unheard) if asked else ():
+            self.notify(line)
 
-    def _left_out(self, found: int, unheard: Counter[str]) -> Iterator[str]:
-        yield f"model {self.asking.model}: {counted(found, 'answer')} taken, each as 'may'"
+    def _losses(self, answers: int, unheard: Counter[str]) -> Iterator[str]:
+        yield f"model {self.asking.model}: {counted(answers, 'answer')} taken, each as 'may'"
         for reason, times in sorted(self.unread.items()):
             lost = f"{counted(times, 'request')} with {counted(unheard[reason], 'element')}"
             yield f"model {self.asking.model}: {lost} without an answer that can be read: {reason}"
@@ -507,19 +511,19 @@ def asked_of(basis: Basis, asking: Asking, mask: Mask | None = None) -> tuple[Qu
     graph, bound = basis.result.analysis.graph, basis.bound
     elements = asked_elements(graph, bound, traffic(graph, bound), basis.places, basis.comments)
     sent = [one.changed(mask.masked) for one in elements] if mask else elements
-    return questions(sent, tuple(basis.result.vocabulary.categories.values()), asking.model, asking.most)
+    return questions(sent, tuple(basis.result.vocabulary.categories.values()), asking.model, asking.limit)
 
 
-def what_is_sent(asked: tuple[Question, ...], asking: Asking) -> str:
+def what_is_sent(requests: tuple[Question, ...], asking: Asking) -> str:
     """Return how much goes where, in one line.
 
     >>> from rosprivacy.labelling.model_interview import Question
     >>> what_is_sent((Question({}, b"{}"),), Asking("m", "http://localhost/v1/chat/completions", True, 9))
     'model m at http://localhost/v1/chat/completions: 1 request with 0 elements, 2 bytes, names masked'
     """
-    size = sum(len(one.body) for one in asked)
-    elements = counted(sum(len(one.asked) for one in asked), "element")
+    size = sum(len(one.body) for one in requests)
+    elements = counted(sum(len(one.elements) for one in requests), "element")
     names = "names masked" if asking.masked else "names as they are"
-    much = f"{counted(len(asked), 'request')} with {elements}, {counted(size, 'byte')}, {names}"
+    much = f"{counted(len(requests), 'request')} with {elements}, {counted(size, 'byte')}, {names}"
     when = f", recorded on {asking.recorded}: nothing is sent" if asking.recorded else ""
     return f"model {asking.model} at {asking.url}: {much}{when}"

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from rosprivacy.settings import Settings
 
     Ends = tuple[Spot, ...]
-    Seen = Mapping[str, Mapping[Ends, set[str]]]  # file -> element or flow -> kinds
+    Arrivals = Mapping[str, Mapping[Ends, set[str]]]  # file -> element or flow -> kinds
 
 
 def pinned(policies: tuple[str, ...], labels: tuple[str, ...], settings: Settings) -> Iterator[Written]:
@@ -59,12 +59,12 @@ def pinned(policies: tuple[str, ...], labels: tuple[str, ...], settings: Setting
     vocabulary = question_of(settings).vocabulary
     files = read_label_files(labels, vocabulary, settings)
     result = answer_robot(policies, tuple(_bare(file) for file in files), settings)
-    seen: dict[str, dict[Ends, set[str]]] = defaultdict(lambda: defaultdict(set))
+    arrivals: dict[str, dict[Ends, set[str]]] = defaultdict(lambda: defaultdict(set))
     for row in _rows(result):
         ends = tuple(spot(element) for element in (row.element, row.to) if element)
         for place in row.places:
-            seen[place.file][ends].update(row.categories)
-    yield from _written({file.file: file for file in files if not file.shipped}, seen, vocabulary)
+            arrivals[place.file][ends].update(row.categories)
+    yield from _written({file.file: file for file in files if not file.shipped}, arrivals, vocabulary)
 
 
 def pinned_in_fleet(fleet: str, settings: Settings) -> Iterator[Written]:
@@ -74,17 +74,17 @@ def pinned_in_fleet(fleet: str, settings: Settings) -> Iterator[Written]:
     read.system()  # reads the label files
     files = {key: labels for key, labels in read.reader.labels.items() if not key[0].startswith(OURS)}
     system = read.under({key: _bare(labels) for key, labels in files.items()}, ())
-    seen: dict[str, dict[Ends, set[str]]] = defaultdict(lambda: defaultdict(set))
-    called, copies = _called(system), _copies(system)
+    arrivals: dict[str, dict[Ends, set[str]]] = defaultdict(lambda: defaultdict(set))
+    called, copies = _spots_of(system), _copies(system)
     for row in _rows(answer(system, question, count_paths=False)):
         sides = [called[element.identity] for element in (row.element, row.to) if element]
         for member in set(sides[0]).intersection(*sides[1:]):
             ends = tuple(side[member] for side in sides)
             for file in {name for place in row.places for name in copies.get((member, place.file), ())}:
-                seen[file][ends].update(row.categories)
+                arrivals[file][ends].update(row.categories)
     first = {name: labels for (name, _), labels in files.items()}
     every = {name: first[file] for (_, file), names in copies.items() for name in names if file in first}
-    yield from _written(every, seen, question.vocabulary)
+    yield from _written(every, arrivals, question.vocabulary)
 
 
 def _bare(labels: Labels) -> Labels:
@@ -95,7 +95,7 @@ def _rows(result: Result) -> tuple[ByGlobs, ...]:
     return answered_by_globs(result.analysis.spread, result.bound, result.vocabulary.hierarchy)
 
 
-def _called(system: FleetSystem) -> Mapping[tuple[str, str, str], Mapping[str, Spot]]:
+def _spots_of(system: FleetSystem) -> Mapping[tuple[str, str, str], Mapping[str, Spot]]:
     """Identity of an element of the fleet -> robot -> what its label files call it."""
     placed = [replace(system.members[g.robots[0].id], robot=robot) for g in system.groups for robot in g.placed]
     called: dict[tuple[str, str, str], dict[str, Spot]] = defaultdict(dict)
@@ -117,14 +117,14 @@ def _copies(system: FleetSystem) -> Mapping[tuple[str, str], tuple[str, ...]]:
     return {key: tuple(names) for key, names in copies.items()}
 
 
-def _written(files: Mapping[str, Labels], seen: Seen, vocabulary: Vocabulary) -> Iterator[Written]:
+def _written(files: Mapping[str, Labels], arrivals: Arrivals, vocabulary: Vocabulary) -> Iterator[Written]:
     """The texts, each file once, whatever the names that lead to it."""
     pins: dict[str, dict[Ends, set[str]]] = defaultdict(lambda: defaultdict(set))
     names: dict[str, str] = {}
     for name in sorted(files):
         at = os.path.realpath(name)
         names.setdefault(at, name)
-        for ends, kinds in seen.get(name, {}).items():
+        for ends, kinds in arrivals.get(name, {}).items():
             pins[at][ends].update(kinds)
     for at, name in names.items():
         labels = files[name]
@@ -152,14 +152,14 @@ def _check(name: str, text: str, new: str, pins: tuple[Pin, ...] | None, vocabul
     try:
         after = parse_labels(new, vocabulary, name=name)
         there = None if after.pins is None else _facts(after.pins)
-        same = all(_facts(old) == _facts(now) for old, now in zip(*map(_said, (before, after)), strict=True))
+        same = all(_facts(old) == _facts(now) for old, now in zip(*map(_parts, (before, after)), strict=True))
     except InputErrors:  # the paper's six lists
         there, same = None, False
     if not same or there != (None if pins is None else _facts(pins)):
         raise LabelError(name, 0, "has no place for pins", "begin it with 'labels: 1', a line for each section")
 
 
-def _said(labels: Labels) -> tuple[Iterable[object], ...]:
+def _parts(labels: Labels) -> tuple[Iterable[object], ...]:
     return labels.entries, labels.flows, labels.elements, labels.limits
 
 

@@ -121,10 +121,10 @@ def with_accepted(
     def result(new: str) -> Result:
         return answer_robot(policies, read(new), settings)
 
-    def known(new: str) -> list[tuple[str, str]]:
+    def findings_under(new: str) -> list[tuple[str, str]]:
         return [(one.category, one_line(one)) for one in result(new).analysis.findings]
 
-    done = accept(file, text, names, who, today(os.environ), vocabulary, known if policies else None)
+    done = accept(file, text, names, who, today(os.environ), vocabulary, findings_under if policies else None)
     new_data = brings(done.labels)
     told: Iterable[str] = ()
     if new_data and policies:
@@ -175,7 +175,7 @@ def _author(file: str, text: str) -> str:
 
 def brings(labels: Iterable[NewOrWritten]) -> tuple[NewOrWritten, ...]:
     """Return the labels by which there are data, or an end of data, that were not there."""
-    return tuple(one for one in labels if any(role in BRINGING for role in one.said))
+    return tuple(one for one in labels if any(role in BRINGING for role in one.roles))
 
 
 def limits_on_the_way(before: Result, after: Result) -> Iterator[str]:
@@ -260,7 +260,7 @@ def _limits(statement: Statement, label: NewLabel, vocabulary: Vocabulary) -> bo
 
 def _kinds(label: NewLabel) -> list[str]:
     """What there is more of: of a derivation what it makes."""
-    ((_, value),) = label.said.items()
+    ((_, value),) = label.roles.items()
     return [str(one["to"] if isinstance(one, dict) else one) for one in value]
 
 

@@ -197,7 +197,7 @@ def asked_by(
     if any(refused.of_robots.values()):
         reached = reached_kinds(result.analysis)
         made = tuple(one for one in made if not refused.silences(one.label, reached))
-    return unsaid(_once(made, result), result.analysis.graph, result.bound, result.vocabulary.hierarchy)
+    return unsaid(_one_of_alike(made, result), result.analysis.graph, result.bound, result.vocabulary.hierarchy)
 
 
 def basis_of(result: Result, sources: Sequence[str] = ()) -> Basis:
@@ -253,7 +253,7 @@ def _not_by_code_alone(evidence: Iterable[Evidence], result: Result) -> Iterator
         yield one._replace(family="") if by_code else one
 
 
-def _once(proposals: tuple[Proposal, ...], result: Result) -> Iterable[Proposal]:
+def _one_of_alike(proposals: tuple[Proposal, ...], result: Result) -> Iterable[Proposal]:
     """Proposals without those for the second of robots that are alike: the first stands for all (rule S10)."""
     if result.fleet is None:
         return proposals

@@ -36,8 +36,8 @@ class _Lasting(NamedTuple):
     graph: FlowGraph
     types: Mapping[int, tuple[MessageType, ...]]
     standard: Collection[int]
-    told: Traffic
-    said: Mapping[Identity, Sequence[Evidence]]
+    traffic: Traffic
+    evidence: Mapping[Identity, Sequence[Evidence]]
 
     def holds(self, result: Result) -> bool:
         """Whether the same would be found now."""
@@ -55,7 +55,7 @@ class Suggester:
     """
 
     def __init__(self, knowledge: Known) -> None:
-        self.known = knowledge
+        self.knowledge = knowledge
         self._last: _Lasting | None = None
 
     def under(self, result: Result, order: Mapping[Shown, Behind]) -> Suggestions:
@@ -67,24 +67,24 @@ class Suggester:
             ``result.review_order``, which others have need of, too.
         """
         if self._last is None or not self._last.holds(result):
-            self._last = self._found(result)
-        return Suggestions(self.known, self._last, result, order)
+            self._last = self._build(result)
+        return Suggestions(self.knowledge, self._last, result, order)
 
-    def _found(self, result: Result) -> _Lasting:
+    def _build(self, result: Result) -> _Lasting:
         graph, bound = result.analysis.graph, result.bound
-        told = traffic(graph, bound)
-        said: dict[Identity, list[Evidence]] = defaultdict(list)
-        of_packages = nodes_of_packages(graph, bound.types, self.known.packages)
-        for one in lasting_evidence(graph, bound, told, of_packages, self.known, {}):
-            said[one.label.element.identity].append(one)
-        return _Lasting(graph, bound.types, standard_in(bound), told, dict(said))
+        ends = traffic(graph, bound)
+        found: dict[Identity, list[Evidence]] = defaultdict(list)
+        of_packages = nodes_of_packages(graph, bound.types, self.knowledge.packages)
+        for one in lasting_evidence(graph, bound, ends, of_packages, self.knowledge, {}):
+            found[one.label.element.identity].append(one)
+        return _Lasting(graph, bound.types, standard_in(bound), ends, dict(found))
 
 
 class Suggestions:
     """What could be said of the elements of one answer; made by ``Suggester.under``."""
 
     def __init__(self, knowledge: Known, lasting: _Lasting, result: Result, order: Mapping[Shown, Behind]) -> None:
-        self._known, self._lasting, self._result, self._order = knowledge, lasting, result, order
+        self._knowledge, self._lasting, self._result, self._order = knowledge, lasting, result, order
 
     def of(self, identity: Identity) -> tuple[Proposal, ...]:
         """Return what could be said of one element."""
@@ -92,7 +92,7 @@ class Suggestions:
 
     def of_role(self, *roles: str) -> tuple[tuple[Proposal, ...], ...]:
         """Return for each element of which one of some roles could be said all that could be, in review order."""
-        there = {at for at, said in self._lasting.said.items() if any(one.label.role in roles for one in said)}
+        there = {at for at, said in self._lasting.evidence.items() if any(one.label.role in roles for one in said)}
         if LEAK in roles:  # where data ends; of no other role of these is anything said of what is open
             there |= {question.element.identity for question in self._result.analysis.open}
         asked = self._of(there)
@@ -104,23 +104,23 @@ class Suggestions:
 
     def although_a_glob(self) -> tuple[Proposal, ...]:
         """Return what says of nodes that they let data out although a glob calls them conduits."""
-        there = {at for at, said in self._lasting.said.items() if any(one.label.role == LEAK for one in said)}
+        there = {at for at, said in self._lasting.evidence.items() if any(one.label.role == LEAK for one in said)}
         return tuple(one for one in self._of(there) if one.evidence[0].ground == GLOBBED)
 
     def _of(self, identities: Collection[Identity]) -> tuple[Proposal, ...]:
         if not identities:
             return ()
         result, lasting = self._result, self._lasting
-        said = [one for at in identities for one in lasting.said.get(at, ())]
+        said = [one for at in identities for one in lasting.evidence.get(at, ())]
         questions = [one for one in result.analysis.open if one.element.identity in identities]
         if questions:
-            said += of_open(questions, lasting.graph, result.bound, lasting.told, self._known.rules)
-        asked = tuple(asked_by(said, result, self._found, self._refused))
+            said += of_open(questions, lasting.graph, result.bound, lasting.traffic, self._knowledge.rules)
+        asked = tuple(asked_by(said, result, self._found_kinds, self._refused))
         alone = len({one.label.element.identity for one in asked}) <= 1  # then its place decides nothing
         return in_review_order(asked, {} if alone else self._places, result.vocabulary.categories)
 
     @cached_property
-    def _found(self) -> frozenset[str]:
+    def _found_kinds(self) -> frozenset[str]:
         return with_findings(self._result)
 
     @cached_property

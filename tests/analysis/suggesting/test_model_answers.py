@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from rosprivacy.analysis.model import Confidence, Element
 from rosprivacy.analysis.suggesting.evidence import HIDING, MODEL, NAMED, TYPE, Evidence
 from rosprivacy.analysis.suggesting.weighing import proposals
-from rosprivacy.labelling.model_interview import KEYS, MOST, Asked, Mask, judged
+from rosprivacy.labelling.model_interview import KEYS, MAX_ANSWERS, Asked, Mask, judged
 
 KINDS = ("FaceTemplate", "Video", "Voice")
 TYPES = ("acme_msgs/msg/Badge",)
@@ -66,9 +66,9 @@ def test_an_answer_of_any_form_is_counted(odd: Any) -> None:
 
 def test_no_element_gets_more_than_a_person_would_read() -> None:
     kinds = [f"Kind{number}" for number in range(9)]
-    done = judged([GOOD | {"kind": kind} for kind in (*kinds, *kinds[:MOST])], ASKED, kinds, "m")
-    assert len(done.evidence) == MOST
-    assert done.dropped.total() == 9 - MOST
+    done = judged([GOOD | {"kind": kind} for kind in (*kinds, *kinds[:MAX_ANSWERS])], ASKED, kinds, "m")
+    assert len(done.evidence) == MAX_ANSWERS
+    assert done.dropped.total() == 9 - MAX_ANSWERS
 
 
 WORDS = st.sampled_from(["n1", "n2", "n3", "leak", "never", "source", "sanitizer", "derivation", *KINDS, "", "badges"])

@@ -171,7 +171,7 @@ def test_two_trials_are_tried_together(explore: Explore, labels: Path) -> None:
         there = page(client, client.post(form.get("action"), data=said).headers["location"])
     assert text(there, "element").count("A storage is added") == 2
     found = explorer.session.scenarios["Trial 5"]
-    assert {flow[1] for flow in found.what.flows} == {"storage on trial", "storage on trial 2"}
+    assert {flow[1] for flow in found.what_if.flows} == {"storage on trial", "storage on trial 2"}
     closed, opened = ({*explorer.session.scenarios[f"Trial {n}"].difference.opened} for n in (1, 5))
     assert not closed
     assert {*explorer.session.scenarios["Trial 2"].difference.opened} < opened

@@ -91,7 +91,7 @@ class TestNames:
     def test_what_has_no_counterpart_is_new_or_gone(self) -> None:
         found = compare({("/a_100",): {}, ("/a_200",): {}, ("/b",): {}}, {("/a_300",): {}, ("/c",): {}})
         assert [change.key for change in found.new] == [("/c",)]
-        assert [change.key for change in found.gone] == [("/a_200",), ("/b",)]
+        assert [change.key for change in found.removed] == [("/a_200",), ("/b",)]
 
     def test_names_inside_a_record_are_compared_without_it_too(self) -> None:
         before: Facts = {("/x",): {"way": ["/a_100", "/b"]}}

@@ -36,7 +36,7 @@ def test_the_table_of_recipients_does_not_say_no_path(told: Outline) -> None:
 
 
 def test_all_who_read_beside_a_sanitizer_are_named(told: Outline, document: dict[str, Any]) -> None:
-    rows = {row.name: row.beside for row in told.cleanings}
+    rows = {row.name: row.other_readers for row in told.cleanings}
     assert rows["/blur"] == (
         "/face_recognizer",
         "/uplink (said to clean it, too)",

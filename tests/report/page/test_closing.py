@@ -52,7 +52,7 @@ def test_of_a_fleet_and_of_a_document_alone_it_says_why_nothing_is_proposed() ->
     assert "Changes are proposed for the policies of one robot" in str(written(fleet, "html"))
     alone = told(care()).closing
     assert alone
-    assert alone.said == (
+    assert alone.sentences == (
         "No change can be proposed here: the policies behind this report are not at hand.",
     )  # fmt: skip
 
@@ -70,7 +70,7 @@ def test_what_is_not_proven_is_not_proposed_and_what_stays_is_named() -> None:
     index = Index(document, Words("en"))
     report = closing(index, told(document).entries, proposals)
     assert report
-    assert (report.said, report.changes) == (("No change that can be proposed removes these paths.",), ())
+    assert (report.sentences, report.changes) == (("No change that can be proposed removes these paths.",), ())
     last["keeps"] = [{"finding": document["findings"][0]["id"], "kind": "disclosure", "category": "Voice"}]
     report = closing(index, told(document).entries, proposals)
     assert report

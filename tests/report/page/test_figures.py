@@ -110,7 +110,7 @@ def test_the_time_that_a_picture_takes_decides_nothing(monkeypatch: pytest.Monke
 
 def test_hostile_names_stay_text() -> None:
     found = hostile()
-    for one in made(found, most=100):
+    for one in made(found, bound=100):
         root = checked(one.svg)
         assert "<script>alert(1)</script>" in "".join(root.itertext())
 

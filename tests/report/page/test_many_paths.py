@@ -75,12 +75,12 @@ def test_the_first_paths_of_each_kind_are_told_and_all_are_counted(report: Outli
     }
     assert shown == {"Video": BOUND - VOICE, "Voice": VOICE}
     assert report.opening.headline == f"You have to decide {VIDEO + VOICE:,} things"
-    assert {kind.name: (kind.to_assess, kind.left) for kind in report.kinds} == {
+    assert {kind.name: (kind.to_assess, kind.not_detailed) for kind in report.kinds} == {
         "Video": (VIDEO, VIDEO - BOUND + VOICE),
         "Voice": (VOICE, 0),
     }
     assert len(report.assessment.risks) == BOUND
-    assert report.assessment.left == VIDEO + VOICE - BOUND
+    assert report.assessment.unlisted == VIDEO + VOICE - BOUND
 
 
 @pytest.mark.slow
@@ -103,11 +103,11 @@ def test_every_link_of_the_page_leads_somewhere(root: Any) -> None:
 def test_a_sanitizer_names_the_first_paths_past_it_and_counts_the_others(report: Outline) -> None:
     (row,) = report.cleanings
     assert [number for _, number in row.past] == list(range(1, 101))
-    assert row.more == f"and {VIDEO - 100:,} more"
+    assert row.remainder == f"and {VIDEO - 100:,} more"
 
 
 def test_what_a_person_has_answered_is_not_left_out(many: dict[str, Any], report: Outline) -> None:
-    last = [entry for entry in report.entries if not entry.told][-1]
+    last = [entry for entry in report.entries if not entry.detailed][-1]
     answers = Answers({f"risk.{last.id}.measures": "none yet"}, "answers.json", "0" * 64)
     assessment = told(many, answers=answers).assessment
     assert assessment.unmatched == ()
@@ -116,5 +116,5 @@ def test_what_a_person_has_answered_is_not_left_out(many: dict[str, Any], report
 
 
 def test_a_page_of_few_paths_leaves_nothing_out() -> None:
-    assert all(entry.told for entry in told(care()).entries)
+    assert all(entry.detailed for entry in told(care()).entries)
     assert all("--format json" not in text for text in texts(care()))

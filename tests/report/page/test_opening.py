@@ -30,7 +30,7 @@ def test_the_report_begins_with_what_is_to_be_decided_the_worst_first() -> None:
         ("voice", "/microphone", "/uplink"),
         ("video of persons (pseudonymised)", "/camera", "/recorder"),
     ]
-    assert opening.said == (
+    assert opening.sentences == (
         "Face template, voice can get to /uplink; video of persons (pseudonymised) can get to /recorder.",
     )
     first = dict(opening.rows[0].facts)
@@ -65,16 +65,16 @@ def test_one_flow_that_is_two_findings_is_decided_once() -> None:
 def test_every_finding_that_is_neither_accepted_nor_dismissed_is_in_a_row() -> None:
     for document in (care(), with_outside(care()), with_decisions(care()), hospital().document(), run(2)):
         report = told(dict(document))
-        there = {finding for row in report.opening.rows for e in row.entries for finding in (e.id, *e.others)}
+        there = {finding for row in report.opening.rows for e in row.entries for finding in (e.id, *e.alike)}
         waiting = {f["id"] for f in document["findings"] if not f["dismissed"] and not f.get("accepted")}
         assert there == waiting
-        assert not report.opening.more
+        assert not report.opening.remainder
 
 
 def test_what_is_decided_stands_last_and_is_not_counted_as_waiting() -> None:
     report = told(with_decisions(care()))
     assert report.opening.headline == "You have to decide 1 thing"
-    assert report.opening.said[1] == "1 more is decided and not yet carried out."
+    assert report.opening.sentences[1] == "1 more is decided and not yet carried out."
     assert [(row.data, row.waits) for row in report.opening.rows] == [
         ("voice", True), ("video of persons (pseudonymised)", False),
     ]  # fmt: skip
@@ -114,16 +114,16 @@ def test_what_nobody_reviewed_is_told_beside_it() -> None:  # S11
     document = run(2)
     assert document["open"]
     report = told(document)
-    assert report.opening.said[-1].startswith("Not reviewed, though personal data can get there: 4 elements.")
+    assert report.opening.sentences[-1].startswith("Not reviewed, though personal data can get there: 4 elements.")
     for text in texts(document):
-        assert report.opening.said[-1] in text
+        assert report.opening.sentences[-1] in text
 
 
 def test_without_a_finding_it_says_what_is_not_known_and_never_that_there_is_nothing_to_decide() -> None:  # S12
     document = run(2) | {"findings": [], "verdict": "undetermined"}
     opening = told(document).opening
     assert opening.headline.startswith("Not determined")
-    assert opening.said[-1].startswith("Review first: /")
+    assert opening.sentences[-1].startswith("Review first: /")
     for text in texts(document):
         assert "You have to decide" not in text
 
@@ -137,8 +137,8 @@ def test_many_are_counted_and_those_below_told() -> None:
     opening = told(document).opening
     assert opening.headline == "You have to decide 23 things"
     assert len(opening.rows) == 12
-    assert opening.more == "11 more are listed below, among the paths to assess."
-    assert "face template can get to r0:/to0, r1:/to1, r2:/to2, and 17 more;" in opening.said[0]
+    assert opening.remainder == "11 more are listed below, among the paths to assess."
+    assert "face template can get to r0:/to0, r1:/to1, r2:/to2, and 17 more;" in opening.sentences[0]
 
 
 def test_a_transfer_that_rests_on_article_6_alone_says_what_it_lacks() -> None:

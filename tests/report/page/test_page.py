@@ -166,4 +166,4 @@ def test_a_name_is_replaced_by_the_same_one_in_both_documents() -> None:
     copies = redacted([care(), old])
     assert copies[0]["findings"][0] == copies[1]["findings"][0]
     differ = changes(copies[1], copies[0])
-    assert (len(differ.new), differ.gone, dict(differ.changed)) == (1, (), {})
+    assert (len(differ.new), differ.removed, dict(differ.changed)) == (1, (), {})

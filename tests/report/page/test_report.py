@@ -113,7 +113,7 @@ def test_open_elements_are_told_in_the_order_of_review() -> None:
 
 def test_what_passes_beside_a_sanitizer_is_told() -> None:
     (row,) = told(run(5)).cleanings
-    assert (row.name, row.beside) == ("/filter", ("/emergency_stop",))
+    assert (row.name, row.other_readers) == ("/filter", ("/emergency_stop",))
 
 
 def test_a_way_that_does_not_lead_through_a_sanitizer_is_named_beside_it() -> None:

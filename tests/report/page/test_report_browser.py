@@ -49,7 +49,7 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     everything = with_decisions(with_outside(care()))
     harm = hostile(folder)
     evil = pictures.hostile()
-    drawn = [*pictures_of(evil, evil.findings), *pictures_of(evil, evil.findings, Wishes(most=100))]
+    drawn = [*pictures_of(evil, evil.findings), *pictures_of(evil, evil.findings, Wishes(bound=100))]
     harmful = Figures({finding["id"]: one for finding, one in zip(harm["findings"], drawn * 9, strict=False) if one})
     all_told = outline(everything, "en", earlier=old)
     several = outline(hospital().document(), "de")

@@ -32,7 +32,7 @@ def test_new_gone_and_changed_ways_are_told() -> None:
     gone = new["findings"].pop(0)
     old["findings"].pop(2)
     differ = changes(old, new)
-    assert [finding["id"] for finding in differ.gone] == [gone["id"]]
+    assert [finding["id"] for finding in differ.removed] == [gone["id"]]
     assert differ.new == (new["findings"][1]["id"],)
     assert differ.changed == {new["findings"][0]["id"]: ("witness",)}
     report = told(new, earlier=earlier(old))

@@ -61,7 +61,7 @@ def test_names_that_are_made_up_at_each_start_are_no_change() -> None:
         assert not changes(old, new).marks()
         other = changes(old, renamed(care(), name, f"{name}_of_somebody_else"))
         assert other.new
-        assert other.gone
+        assert other.removed
 
 
 def test_what_is_the_same_is_the_same_for_diff() -> None:
@@ -70,7 +70,7 @@ def test_what_is_the_same_is_the_same_for_diff() -> None:
     for before, now in ((old, care()), (care(), new), (run(1), run(2)), (run(2), run(1))):
         report, diff = changes(before, now), difference(snapshot(before, None), snapshot(now, None))
         assert len(report.new) == len(diff["findings"]["new"])
-        assert len(report.gone) == len(diff["findings"]["gone"])
+        assert len(report.removed) == len(diff["findings"]["gone"])
 
 
 def test_a_fleet_has_the_same_ways_whichever_robot_is_shown() -> None:
@@ -84,7 +84,7 @@ def test_a_fleet_has_the_same_ways_whichever_robot_is_shown() -> None:
     for pattern in before["fleet"]["patterns"]:
         pattern["finding"] = ids[pattern["finding"]]
     differ = changes(before, now)
-    assert (differ.new, differ.gone, differ.opened, differ.closed) == ((), (), (), ())
+    assert (differ.new, differ.removed, differ.opened, differ.closed) == ((), (), (), ())
     assert set(differ.changed.values()) == {("robots",)}
 
 

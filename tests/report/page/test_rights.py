@@ -13,15 +13,15 @@ def test_each_group_that_labels_name_has_its_places() -> None:
     assert set(groups["residents"]) == {"/recorder", "/uplink"}
     assert groups["visitors"]["/uplink"].data == "face template"  # the microphone is not about visitors
     assert groups["residents"]["/uplink"].data == "face template, voice"
-    assert (groups["staff"]["/uplink"].kept, groups["staff"]["/uplink"].who) == ("not known", "not known")
+    assert (groups["staff"]["/uplink"].retention, groups["staff"]["/uplink"].recipient) == ("not known", "not known")
 
 
 def test_a_storage_stands_first_with_how_long_it_keeps_what() -> None:
     residents, _, visitors, _ = told(with_outside(care())).rights
     assert residents.places[0].name == "archive"
-    assert residents.places[0].kept.startswith("video of persons: 30 days")
+    assert residents.places[0].retention.startswith("video of persons: 30 days")
     speech = next(place for place in residents.places if place.name == "speech service")
-    assert speech.who == "Speech Inc., US (adequacy decision for some recipients)"
+    assert speech.recipient == "Speech Inc., US (adequacy decision for some recipients)"
     assert "speech service" not in {place.name for place in visitors.places}  # it gets voices only
 
 

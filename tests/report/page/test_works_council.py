@@ -25,7 +25,7 @@ def test_every_group_with_every_place_is_there_as_in_the_report(language: str) -
         for group in report.rights:
             assert group.name in text
             for place in group.places:
-                assert all(said in text for said in (place.name, place.data, place.kept, place.who))
+                assert all(said in text for said in (place.name, place.data, place.retention, place.recipient))
         for row in report.cleanings:
             assert row.name in text
 

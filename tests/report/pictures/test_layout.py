@@ -91,12 +91,12 @@ def test_without_graphviz_it_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch,
 
 
 def test_a_layout_that_is_done_in_time_needs_no_words(picture: Picture) -> None:
-    assert drawn(picture, "svg").said == ()
+    assert drawn(picture, "svg").remarks == ()
 
 
 def test_a_large_picture_has_a_simpler_layout_that_is_said_in_words_and_in_the_picture(picture: Picture) -> None:
     done = drawn(picture, "svg", ways=(Way("dot", {}, 10), *WAYS[1:]))
-    (said,) = done.said
+    (said,) = done.remarks
     assert said == (
         "Laid out by Graphviz's sfdp, since it is large: boxes stand near what they are joined to, unordered; "
         "--finding, --around, --most and --fold draw less"
@@ -140,7 +140,7 @@ def test_a_large_picture_is_the_same_bytes_each_time() -> None:
     picture = pipeline(520, 953)
     first, second = (drawn(picture, "svg", direction="", seconds=seconds) for seconds in (600, 300))
     assert first == second
-    assert "sfdp" in first.said[0]
+    assert "sfdp" in first.remarks[0]
 
 
 def test_without_a_direction_it_is_the_one_that_can_be_drawn_larger_on_a_page() -> None:
@@ -158,7 +158,9 @@ def test_without_a_direction_it_is_the_one_that_can_be_drawn_larger_on_a_page() 
         assert by_shape != drawn(picture, "svg", direction=other).data
 
 
-@pytest.mark.parametrize("way", [replace(way, most=inf) for way in WAYS], ids=lambda way: "-".join(way.attributes))
+@pytest.mark.parametrize(
+    "way", [replace(way, max_crossings=inf) for way in WAYS], ids=lambda way: "-".join(way.attributes)
+)
 def test_every_layout_draws_every_box(way: Way) -> None:
     picture = views.privacy_view(hostile([f"/t{i}" for i in range(60)]))
     text = drawn(picture, "svg", ways=(way,)).data.decode()
@@ -171,4 +173,4 @@ def test_a_png_is_of_a_bounded_size_and_says_when_it_was_made_smaller() -> None:
     picture = views.privacy_view(hostile([f"/topic_number_{i}" for i in range(400)]))
     done = drawn(picture, "png")
     assert max(struct.unpack(">II", done.data[16:24])) <= 7200
-    assert any("made smaller" in said for said in done.said)
+    assert any("made smaller" in said for said in done.remarks)

@@ -122,7 +122,7 @@ def _offer(offer: Proposal, standing: Standing, words: Words) -> Pane:
     fields = [("role", role), ("about" if role != forms.SOURCE else "brings", label.kind or forms.EVERY)]
     fields += [("method", str(label.method.value))] if label.method else []
     fields += [("makes", label.to)] if label.to else []
-    entry = written(label).said
+    entry = written(label).roles
     closes = could_close(entry, _findings(standing, words), standing.vocabulary)
     return Pane(
         told=words(f"explorer.offer.{role}", data=title_of(label.kind, standing.vocabulary, words), to=to),

@@ -63,13 +63,15 @@ class Trials:
     def together(self, form: Form) -> Tried:
         """Return what two trials that a form names try, as one, and what a person is told of it."""
         names = form.choice("first", self.names), form.choice("second", self.names)
-        first, second = (self._session.scenarios[name].what for name in names)
+        first, second = (self._session.scenarios[name].what_if for name in names)
         return Tried(together(first, second), tuple(dict.fromkeys(line for name in names for line in self.says(name))))
 
     def combinable(self, name: str) -> Iterator[str]:
         """Yield the others that can be tried together with one: on the same robots."""
         kept = self._session.scenarios
-        yield from (other for other in kept if other != name and kept[other].what.robots == kept[name].what.robots)
+        yield from (
+            other for other in kept if other != name and kept[other].what_if.robots == kept[name].what_if.robots
+        )
 
     def drop(self, name: str) -> None:
         """Forget one."""
@@ -78,12 +80,12 @@ class Trials:
 
     def says(self, name: str) -> tuple[str, ...]:
         """Return what is tried, in sentences."""
-        return self._says.get(name) or (summary_of(self._session.scenarios[name].what),)
+        return self._says.get(name) or (summary_of(self._session.scenarios[name].what_if),)
 
     def scenario(self, name: str) -> Scenario:
         """Return what follows, compared with how it stands now."""
         scenario = self._session.scenarios[name]
-        return scenario if scenario.version == self._session.version else self._session.scenario(name, scenario.what)
+        return scenario if scenario.version == self._session.version else self._session.scenario(name, scenario.what_if)
 
     def standing(self, name: str) -> Standing:
         """Return how the session would stand; errors as of ``scenario``."""
@@ -104,8 +106,8 @@ def trial_pane(now: Standing, trials: Trials, view: View, words: Words) -> Pane:
         (len(difference.opened), "opens", True),
         (len(difference.plainer), "plainer", False),
         (left, "left", True),
-        (difference.fewer, "fewer", False),
-        (difference.more, "more", False),
+        (difference.no_longer_open, "fewer", False),
+        (difference.newly_open, "more", False),
     ]
     opened = [*_findings(difference, OPENED, then, within, words), *_findings(difference, PLAINER, then, within, words)]
     return Pane(
