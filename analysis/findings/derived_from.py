@@ -10,7 +10,7 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.findings.units import Units
+from rosprivacy.analysis.findings.near_robots import Units
 from rosprivacy.analysis.kernel.search import START, Search, path_to, search
 from rosprivacy.analysis.kernel.states import Net
 

@@ -314,12 +314,12 @@ def _note(transaction: ManagedTransaction, load: Run | None, state: str, written
         run(transaction, cypher.MERGE_LOAD, id=load.id, properties=facts)
 
 
-def _note_changes(transaction: ManagedTransaction, robots: list[RobotRows], known: list[str], load: Run) -> None:
+def _note_changes(transaction: ManagedTransaction, robots: list[RobotRows], stored: list[str], load: Run) -> None:
     """Write which findings of robots that are there come and go; before they do."""
     before = _patterns(
-        (record["robot"], record["properties"]) for record in transaction.run(cypher.READ_PATTERNS, names=known)
+        (record["robot"], record["properties"]) for record in transaction.run(cypher.READ_PATTERNS, names=stored)
     )
-    there = set(known)
+    there = set(stored)
     now = _patterns((r.robot, row["properties"]) for r in robots if r.robot in there for row in r.findings)
     rows = []
     for robot, pattern in sorted(before.keys() | now.keys()):

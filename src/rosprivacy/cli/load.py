@@ -195,8 +195,8 @@ def _run() -> Run:
 
 
 @contextmanager
-def _waiting(what: str) -> Iterator[None]:
-    """Say on a terminal what is done, and for how long it has been."""
+def _waiting(stage: str) -> Iterator[None]:
+    """Say on a terminal which stage the work is at, and for how long it has been."""
     if not sys.stderr.isatty():
         yield
         return
@@ -205,7 +205,7 @@ def _waiting(what: str) -> Iterator[None]:
 
     columns = (SpinnerColumn(), TextColumn("{task.description}", markup=False), TimeElapsedColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
-        progress.add_task(what, total=None)
+        progress.add_task(stage, total=None)
         yield
 
 
