@@ -19,9 +19,9 @@ from rosprivacy.analysis.bounds import BOUNDS, Tally
 from rosprivacy.analysis.case import Case
 from rosprivacy.analysis.findings.closures import closed_by_shipped
 from rosprivacy.analysis.findings.concerns import concerns, shown_arrivals
+from rosprivacy.analysis.findings.near_robots import Units
 from rosprivacy.analysis.findings.open_questions import grounds, lacking, open_questions, unknown_ends
 from rosprivacy.analysis.findings.paths_of_source import PathsOfSource
-from rosprivacy.analysis.findings.near_robots import Units
 from rosprivacy.analysis.findings.witness import witness_of
 from rosprivacy.analysis.kernel import spreading, standard_channels
 from rosprivacy.analysis.kernel.bits import bits_of
@@ -78,8 +78,8 @@ class Options(NamedTuple):
         make; None for all.
     shared
         Names under which a fleet files what no robot has. With them, and with ``choose``, each search looks at the
-        robot of its source, at what is shared and at the robots between (``near_robots.py``): ways are as short, and paths
-        that share no flow are counted there only.
+        robot of its source, at what is shared and at the robots between (``near_robots.py``): ways are as short, and
+        paths that share no flow are counted there only.
     bounds
         Above ``path_steps`` paths are not counted, which a warning says.
     """
