@@ -113,7 +113,8 @@ _ARRIVES = """\
     leak STRING name of the leak
     pseudonymised BOOLEAN it arrives in pseudonymised form only"""
 _WAY = """\
-    disjoint_paths INTEGER paths that share no flow; absent from one robot to another
+    disjoint_paths INTEGER paths that share no flow; of a fleet those of its robot, of what is shared and of robots
+        between; absent from one robot to another
     article9 STRING strongest verdict under Art. 9(1) where its source works
     in_context STRINGS what it may reveal, or what concerns it, where its source works, `care: GDPR Art. 9(1) …`
     special_from STRING element that makes a special category of other data; absent if none does"""
