@@ -25,8 +25,8 @@ from rosprivacy.ingest.fleet.alike_robots import Alike
 from rosprivacy.ingest.fleet.fleet_graph import place
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.question import Question
-from rosprivacy.reading.fleet_system import fleet_system
 from rosprivacy.settings import Settings
+from rosprivacy.systems.fleet_system import fleet_system
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -13,8 +13,8 @@ from measure import NotMeasured, Row, compared, side_by_side, wall
 
 from rosprivacy.parts.fleet_on_spark import run_on_spark
 from rosprivacy.parts.session import session
-from rosprivacy.reading.fleet_system import answer_fleet
 from rosprivacy.settings import Settings
+from rosprivacy.systems.fleet_system import answer_fleet
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -21,7 +21,7 @@ from turtlebot import chosen_categories
 from rosprivacy.answering import answer
 from rosprivacy.ingest.database.fleet_rows import MOST_ACROSS
 from rosprivacy.ontology.vocabulary import load
-from rosprivacy.reading.fleet_system import fleet_system, rows_of_fleet
+from rosprivacy.systems.fleet_system import fleet_system, rows_of_fleet
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

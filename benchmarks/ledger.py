@@ -15,8 +15,8 @@ from turtlebot import POLICY, labels_of
 
 from rosprivacy.analysis.findings.findings import analyse
 from rosprivacy.analysis.whatif.ledger import ledger
-from rosprivacy.reading.robot_system import answer_robot
 from rosprivacy.settings import Settings
+from rosprivacy.systems.robot_system import answer_robot
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -17,8 +17,8 @@ from turtlebot import POLICY, chosen_categories, labels_of
 
 from rosprivacy.analysis.findings.findings import analyse
 from rosprivacy.analysis.whatif.reliance import reliances
-from rosprivacy.reading.robot_system import answer_robot
 from rosprivacy.settings import Settings
+from rosprivacy.systems.robot_system import answer_robot
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -21,8 +21,8 @@ from measure import Row, calls, compared, counted, processor
 
 from rosprivacy.cli import ENOUGH
 from rosprivacy.labelling.suggesting import suggested
-from rosprivacy.reading.robot_system import answer_robot
 from rosprivacy.settings import Settings
+from rosprivacy.systems.robot_system import answer_robot
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.model import Suggestion
     from rosprivacy.analysis.model.recording import JudgedBag, TopicKinds
-    from rosprivacy.report.contract.bags import BagEntry, BagsDocument, BagTopicEntry, SuggestionEntry
+    from rosprivacy.report.schemas.bags import BagEntry, BagsDocument, BagTopicEntry, SuggestionEntry
 
 FORMAT = "rosprivacy.bags/1"
 WORST_FIRST = tuple(BagVerdict)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from rosprivacy.analysis.model import Breach, LintRule
-    from rosprivacy.report.contract.policies import BreachEntry, LintDocument
+    from rosprivacy.report.schemas.policies import BreachEntry, LintDocument
 
 FORMAT = "rosprivacy.lint/1"
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from rosprivacy.analysis.fleet.patterns import FleetView, Pattern
-    from rosprivacy.report.contract.analysis import FormEntry
+    from rosprivacy.report.schemas.analysis import FormEntry
 
 SHOWN_AT_MOST = 30  # robots in a row
 FORMS = {

@@ -17,10 +17,10 @@ import rosprivacy
 from rosprivacy.ingest.database.loading import load
 from rosprivacy.ingest.policies.saved_graph import as_dict
 from rosprivacy.private_neo4j import connection
-from rosprivacy.reading.robot_system import robot_of
-from rosprivacy.reading.stored_system import answer_stored
 from rosprivacy.report.json_text import as_text
 from rosprivacy.settings import Settings
+from rosprivacy.systems.robot_system import robot_of
+from rosprivacy.systems.stored_system import answer_stored
 from tests.helpers.written_systems import Written, told, written
 
 if TYPE_CHECKING:

@@ -10,8 +10,8 @@ import pytest
 
 import rosprivacy
 from rosprivacy.analysis.model import ACCESS_GAP
-from rosprivacy.reading.granted import read_granted
 from rosprivacy.settings import Settings
+from rosprivacy.systems.granted import read_granted
 from tests.helpers.keystores import Keystore, governance, grant, permissions, rule, topic_rule
 
 if TYPE_CHECKING:

@@ -21,8 +21,8 @@ from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, Change, chang
 from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.ingest.policies.policy_xml import read_policy
 from rosprivacy.question import question_of
-from rosprivacy.reading.robot_system import system_reader
 from rosprivacy.settings import Settings
+from rosprivacy.systems.robot_system import system_reader
 from tests.helpers.enclaves import PATHS, RIGHTS, Enclaves, systems, write
 
 if TYPE_CHECKING:

@@ -16,12 +16,12 @@ from rosprivacy.ingest.types.type_table import excluded, read_table
 from rosprivacy.ontology.iris import STORED
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.private_neo4j import connection
-from rosprivacy.reading.robot_system import robot_of
-from rosprivacy.reading.stored_system import answer_stored
 from rosprivacy.report.pictures import views
 from rosprivacy.report.pictures.dot import dot
 from rosprivacy.report.text.why_not import lines as why_not_lines
 from rosprivacy.settings import Settings
+from rosprivacy.systems.robot_system import robot_of
+from rosprivacy.systems.stored_system import answer_stored
 from tests.helpers.fleet_files import policy
 
 if TYPE_CHECKING:

@@ -11,10 +11,10 @@ import pytest
 import rosprivacy
 from rosprivacy.ingest.database.loading import load
 from rosprivacy.private_neo4j import connection
-from rosprivacy.reading.robot_system import robot_of
-from rosprivacy.reading.stored_system import answer_stored
 from rosprivacy.report.compare.changes import changes
 from rosprivacy.settings import Settings
+from rosprivacy.systems.robot_system import robot_of
+from rosprivacy.systems.stored_system import answer_stored
 from tests.helpers.command import cli
 from tests.helpers.keystores import Keystore, governance, grant, permissions, rule, topic_rule
 from tests.helpers.parts import documents, in_list

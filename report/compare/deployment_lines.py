@@ -11,7 +11,7 @@ from rosprivacy.analysis.text import counted
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from rosprivacy.report.contract.policies import CheckDocument, DifferenceEntry
+    from rosprivacy.report.schemas.policies import CheckDocument, DifferenceEntry
 
 SAME, NOT_KNOWN = (
     "what is deployed is what the policy says",

@@ -116,7 +116,7 @@ def problems(document: Any) -> list[str]:
 
 @cache
 def _validator(form: str) -> Validator:
-    schema = files("rosprivacy.report.contract").joinpath(SCHEMAS[form])
+    schema = files("rosprivacy.report.schemas").joinpath(SCHEMAS[form])
     return validator(json.loads(schema.read_text("utf-8")))
 
 

@@ -41,8 +41,9 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.findings.sanitizing import Making
     from rosprivacy.analysis.kernel.overruled import Overruled
     from rosprivacy.analysis.model import Diagnostic, Doubt, Element, Flow, FlowGraph
-    from rosprivacy.report.contract.analysis import AnalysisDocument, Assumptions, ShortDocument
-    from rosprivacy.report.contract.records import (
+    from rosprivacy.report.document.contents import Document
+    from rosprivacy.report.schemas.analysis import AnalysisDocument, Assumptions, ShortDocument
+    from rosprivacy.report.schemas.records import (
         DeniedEntry,
         DiagnosticEntry,
         ElementEntry,
@@ -51,8 +52,7 @@ if TYPE_CHECKING:
         OpenEntry,
         Stopped,
     )
-    from rosprivacy.report.contract.stated import DerivationEntry, OverruledEntry, SanitizerEntry, WaysEntry
-    from rosprivacy.report.document.contents import Document
+    from rosprivacy.report.schemas.stated import DerivationEntry, OverruledEntry, SanitizerEntry, WaysEntry
 
 FORMAT = "rosprivacy.analysis/1"
 SHORT = "rosprivacy.analysis/2"

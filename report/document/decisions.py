@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.decisions import Decided, Decision, State
     from rosprivacy.analysis.findings.beyond import Added, DenyLine, Right
-    from rosprivacy.report.contract.analysis import AddedEntry, AnalysisDocument, DenyEntry, EnforcedEntry, LostEntry
-    from rosprivacy.report.contract.records import ChangedSince, DecisionEntry, FindingEntry, ListedDecision, Target
     from rosprivacy.report.document.contents import EnforcedFacts
+    from rosprivacy.report.schemas.analysis import AddedEntry, AnalysisDocument, DenyEntry, EnforcedEntry, LostEntry
+    from rosprivacy.report.schemas.records import ChangedSince, DecisionEntry, FindingEntry, ListedDecision, Target
 
 
 def with_decisions(document: AnalysisDocument, decided: Decided) -> AnalysisDocument:

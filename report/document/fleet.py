@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.analysis.fleet.patterns import Deviant, FleetView, Pattern
     from rosprivacy.analysis.fleet.tallies import Share
-    from rosprivacy.report.contract.analysis import (
+    from rosprivacy.report.schemas.analysis import (
         AnalysisDocument,
         DeviantEntry,
         FleetEntry,

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.whatif.ledger import GlobUse, TakenAway
     from rosprivacy.analysis.whatif.reliance import Reliance
     from rosprivacy.analysis.whatif.why_not import WhyNot
-    from rosprivacy.report.contract.records import GlobEntry, LedgerRow, RelianceEntry
+    from rosprivacy.report.schemas.records import GlobEntry, LedgerRow, RelianceEntry
 
 
 WHY_NOT = "rosprivacy.why-not/1"

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.mitigation.limits import Limits
     from rosprivacy.analysis.mitigation.proposals import Proposal, ProposedStep, Protect
     from rosprivacy.analysis.model import Element, Grant
-    from rosprivacy.report.contract.analysis import AnalysisDocument
-    from rosprivacy.report.contract.mitigation import (
+    from rosprivacy.report.schemas.analysis import AnalysisDocument
+    from rosprivacy.report.schemas.mitigation import (
         AffectedEntry,
         ChangedGrant,
         MarkedElement,

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Finding, Step
     from rosprivacy.analysis.contexts import Contexts
     from rosprivacy.analysis.model import Doubt, Element, Grant, Legal, Place
-    from rosprivacy.report.contract.records import (
+    from rosprivacy.report.schemas.records import (
         DoubtEntry,
         ElementEntry,
         FindingEntry,

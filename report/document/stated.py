@@ -29,9 +29,10 @@ if TYPE_CHECKING:
     )
     from rosprivacy.analysis.model.recording import Recording
     from rosprivacy.ontology.vocabulary import Vocabulary
-    from rosprivacy.report.contract.analysis import AnalysisDocument, ClosedEntry
-    from rosprivacy.report.contract.notation import Texts
-    from rosprivacy.report.contract.stated import (
+    from rosprivacy.report.document.contents import Document
+    from rosprivacy.report.schemas.analysis import AnalysisDocument, ClosedEntry
+    from rosprivacy.report.schemas.notation import Texts
+    from rosprivacy.report.schemas.stated import (
         CategoryEntry,
         ContextEntry,
         NonRosEntry,
@@ -46,7 +47,6 @@ if TYPE_CHECKING:
         TypeEntry,
         TypesEntry,
     )
-    from rosprivacy.report.document.contents import Document
 
 # Of what is stated of an element outside ROS: what stands in other entries of the document.
 IN_OTHER_ENTRIES = ("limits", "adequacy", "until", "place", "day")

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 from rdflib import RDF, Literal, URIRef
 from rdflib.namespace import PROV
 
-from rosprivacy.report.contract.notation import terms_of
-from rosprivacy.report.contract.stated import NonRosStated, SubjectsEntry, SurroundingsEntry
 from rosprivacy.report.rdf.concepts import category_triples, provision_triples
 from rosprivacy.report.rdf.individuals import foreign
 from rosprivacy.report.rdf.terms import RP, Triple, about, text
+from rosprivacy.report.schemas.notation import terms_of
+from rosprivacy.report.schemas.stated import NonRosStated, SubjectsEntry, SurroundingsEntry
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping

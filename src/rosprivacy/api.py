@@ -12,9 +12,9 @@ from rosprivacy.analysis.errors import InputError
 from rosprivacy.ingest.labels import label_file
 from rosprivacy.ingest.labels.label_file import Labels
 from rosprivacy.ontology.vocabulary import TOP, load
-from rosprivacy.reading.fleet_system import answer_fleet
-from rosprivacy.reading.robot_system import answer_robot
 from rosprivacy.settings import FleetOptions, RobotOptions, Settings, several
+from rosprivacy.systems.fleet_system import answer_fleet
+from rosprivacy.systems.robot_system import answer_robot
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

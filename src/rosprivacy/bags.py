@@ -24,8 +24,8 @@ from rosprivacy.ingest.running.bag_folders import read_bags
 from rosprivacy.ingest.types import TABLE
 from rosprivacy.ingest.types.type_table import read_table
 from rosprivacy.question import question_of
-from rosprivacy.reading.robot_system import answer_robot, read_label_files
 from rosprivacy.report.bags import bags_document
+from rosprivacy.systems.robot_system import answer_robot, read_label_files
 from rosprivacy.version import __version__
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.ingest.types.type_table import TypeTable
     from rosprivacy.ontology.vocabulary import Vocabulary
-    from rosprivacy.report.contract.bags import BagsDocument
+    from rosprivacy.report.schemas.bags import BagsDocument
     from rosprivacy.result import Result
     from rosprivacy.settings import Settings
 

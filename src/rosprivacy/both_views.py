@@ -31,7 +31,7 @@ from rosprivacy.ingest.policies.changed_graph import changed_graph
 from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, Change
 from rosprivacy.ingest.policies.names import DDS, is_pattern, writable
 from rosprivacy.question import question_of
-from rosprivacy.reading.robot_system import system_reader
+from rosprivacy.systems.robot_system import system_reader
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
@@ -76,7 +76,7 @@ def both_views_of_fleet(file: str, settings: Settings) -> Result:
     InputErrors
         With every problem of the input, one line each.
     """
-    from rosprivacy.reading.fleet_system import fleet_reader  # noqa: PLC0415 - light start
+    from rosprivacy.systems.fleet_system import fleet_reader  # noqa: PLC0415 - light start
 
     return _both_views(settings, lambda question: fleet_reader(file, question))
 

@@ -16,8 +16,8 @@ from rosprivacy.ingest.deployed.differences import differences, generator_losses
 from rosprivacy.ingest.mitigation.deny_lines import with_denied
 from rosprivacy.ingest.mitigation.deny_patch import Patch, patch
 from rosprivacy.ingest.running.granted_and_used import usage
-from rosprivacy.reading.granted import ZENOH, read_granted
-from rosprivacy.reading.robot_system import read_graphs, read_system
+from rosprivacy.systems.granted import ZENOH, read_granted
+from rosprivacy.systems.robot_system import read_graphs, read_system
 from rosprivacy.version import __version__
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Diagnostic, Grant, Place, Policy
     from rosprivacy.ingest.deployed.differences import Difference, Loss
     from rosprivacy.ingest.running.granted_and_used import Usage, Use
-    from rosprivacy.report.contract.policies import CheckDocument, DifferenceEntry
+    from rosprivacy.report.schemas.policies import CheckDocument, DifferenceEntry
     from rosprivacy.settings import Settings
 
 CHECK_FORMAT = "rosprivacy.check/1"

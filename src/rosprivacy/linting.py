@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import InputError
 from rosprivacy.ingest.lint import OF_LABELS, RULES, enclave_breaches, grant_breaches, include_breaches, read_breaches
 from rosprivacy.question import question_of
-from rosprivacy.reading.robot_system import robot_system
+from rosprivacy.systems.robot_system import robot_system
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.bounds import Bounds
     from rosprivacy.analysis.mitigation.proposals import Proposal
     from rosprivacy.analysis.model import Bound, FlowGraph, Grant
-    from rosprivacy.report.contract.mitigation import MitigationDocument
+    from rosprivacy.report.schemas.mitigation import MitigationDocument
     from rosprivacy.result import Result
 
 REPORTED = 20  # findings for which a report proposes changes

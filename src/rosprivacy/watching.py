@@ -18,7 +18,7 @@ from rosprivacy.ingest.running.observation import continued
 from rosprivacy.ingest.types.types_file import read_types
 from rosprivacy.observing import written
 from rosprivacy.question import question_of
-from rosprivacy.reading.robot_system import lenient_system, read_label_files
+from rosprivacy.systems.robot_system import lenient_system, read_label_files
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

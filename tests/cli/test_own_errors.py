@@ -110,6 +110,6 @@ def test_the_library_raises_a_defect_as_it_is(system: Path, monkeypatch: pytest.
     """An error of ours is no InputError: who catches those would take it for one of theirs."""
     import rosprivacy
 
-    monkeypatch.setattr("rosprivacy.reading.robot_system.answer", raising(KeyError))
+    monkeypatch.setattr("rosprivacy.systems.robot_system.answer", raising(KeyError))
     with pytest.raises(KeyError):
         rosprivacy.analyze(system / "p.xml")

@@ -13,8 +13,8 @@ from rosprivacy.ingest.policies.names import covered
 from rosprivacy.labelling.asking import asked_now, closing, with_answer
 from rosprivacy.labelling.conversation import Conversation
 from rosprivacy.labelling.suggesting import suggest_labels
-from rosprivacy.reading.robot_system import answer_robot
 from rosprivacy.settings import Settings
+from rosprivacy.systems.robot_system import answer_robot
 from tests.decisions.scripted_person import Knowledge, ScriptedPerson
 from tests.decisions.truths import entries
 

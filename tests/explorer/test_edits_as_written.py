@@ -19,8 +19,8 @@ from rosprivacy.explorer.edited_file import Saved
 from rosprivacy.explorer.edits import Edit
 from rosprivacy.explorer.questions import questions
 from rosprivacy.explorer.session import Session
-from rosprivacy.reading.robot_system import answer_robot
 from rosprivacy.settings import Settings
+from rosprivacy.systems.robot_system import answer_robot
 from tests.helpers.written_systems import NODES, TOPICS, Written, written
 
 if TYPE_CHECKING:

@@ -13,8 +13,8 @@ from rosprivacy.analysis.mitigation.limits import FILTER
 from rosprivacy.analysis.mitigation.proposals import ProposedStep
 from rosprivacy.analysis.model import Element
 from rosprivacy.explorer.scenarios import WhatIf, together
-from rosprivacy.reading.fleet_system import answer_fleet
 from rosprivacy.settings import Settings
+from rosprivacy.systems.fleet_system import answer_fleet
 
 if TYPE_CHECKING:
     from pathlib import Path

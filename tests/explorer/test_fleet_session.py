@@ -13,8 +13,8 @@ import rosprivacy
 from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.explorer.edited_file import Conflict, Saved
 from rosprivacy.explorer.session import Session
-from rosprivacy.reading.fleet_system import answer_fleet
 from rosprivacy.settings import Settings
+from rosprivacy.systems.fleet_system import answer_fleet
 
 if TYPE_CHECKING:
     from rosprivacy.result import Result

@@ -12,8 +12,8 @@ from rosprivacy.explorer.edits import Edit
 from rosprivacy.explorer.scenarios import WhatIf
 from rosprivacy.explorer.session import Session
 from rosprivacy.question import question_of
-from rosprivacy.reading.robot_system import robot_system
 from rosprivacy.settings import Settings
+from rosprivacy.systems.robot_system import robot_system
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -35,9 +35,9 @@ from rosprivacy.ingest.policies.policy_xml import read_policy
 from rosprivacy.ingest.policies.saved_graph import read_saved
 from rosprivacy.ingest.running.bag_folders import read_bags
 from rosprivacy.ingest.running.node_info import TextFiles
-from rosprivacy.ingest.suggestions.accepting import accept
-from rosprivacy.ingest.suggestions.comments import taken_apart
-from rosprivacy.ingest.suggestions.rule_files import read_library_rules, read_name_rules
+from rosprivacy.ingest.suggesting.accepting import accept
+from rosprivacy.ingest.suggesting.comments import taken_apart
+from rosprivacy.ingest.suggesting.rule_files import read_library_rules, read_name_rules
 from rosprivacy.labelling.annotating import annotated, differences
 from rosprivacy.labelling.model_interview import Asked, judged
 from rosprivacy.mitigation import run_mitigation

@@ -9,11 +9,11 @@ import json
 import types
 from typing import TYPE_CHECKING, Annotated, Any, NotRequired, Union, get_args, get_origin, get_type_hints, is_typeddict
 
-from rosprivacy.report.contract.analysis import AnalysisDocument, ShortDocument
-from rosprivacy.report.contract.bags import BagsDocument
-from rosprivacy.report.contract.mitigation import MitigationDocument
-from rosprivacy.report.contract.policies import CheckDocument, LintDocument
-from rosprivacy.report.contract.suggested import ExchangesDocument, SuggestionsDocument
+from rosprivacy.report.schemas.analysis import AnalysisDocument, ShortDocument
+from rosprivacy.report.schemas.bags import BagsDocument
+from rosprivacy.report.schemas.mitigation import MitigationDocument
+from rosprivacy.report.schemas.policies import CheckDocument, LintDocument
+from rosprivacy.report.schemas.suggested import ExchangesDocument, SuggestionsDocument
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ PAGE = ROOT / "docs" / "documents.md"
 HEAD = """\
 # The JSON documents, field by field
 
-Written by `python -m tests.test_docs` from the types in `report/contract/`; do not edit. The same as JSON schemas: {}.
+Written by `python -m tests.test_docs` from the types in `report/schemas/`; do not edit. The same as JSON schemas: {}.
 
 A field in *italics* may be absent: where there is nothing to say, or in documents of earlier versions.
 """

@@ -21,9 +21,9 @@ from rosprivacy.explorer.web.guard import Door
 from rosprivacy.explorer.web.review_site import ReviewSite
 from rosprivacy.explorer.web.serving import bound_socket, server
 from rosprivacy.question import question_of
-from rosprivacy.reading.robot_system import robot_system
 from rosprivacy.report.catalogs.words import Words
 from rosprivacy.settings import Settings
+from rosprivacy.systems.robot_system import robot_system
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:

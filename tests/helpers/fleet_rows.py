@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 from rosprivacy.answering import answer
 from rosprivacy.ontology.vocabulary import load as load_vocabulary
 from rosprivacy.question import question_of
-from rosprivacy.reading.fleet_system import fleet_system, rows_of_fleet
 from rosprivacy.settings import Settings
+from rosprivacy.systems.fleet_system import fleet_system, rows_of_fleet
 
 if TYPE_CHECKING:
     from rosprivacy.ingest.database.fleet_rows import FleetRows

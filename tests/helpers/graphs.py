@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import rosprivacy
 from rosprivacy.ingest.database.fleet_rows import robot_rows
-from rosprivacy.reading.fleet_system import answer_fleet
 from rosprivacy.settings import Settings
+from rosprivacy.systems.fleet_system import answer_fleet
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:

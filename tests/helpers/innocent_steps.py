@@ -19,8 +19,8 @@ from rosprivacy.cli.exit_code import FailOn, exit_code
 from rosprivacy.ingest.labels.label_file import infrastructure_of, parse_labels
 from rosprivacy.ingest.labels.label_template import template
 from rosprivacy.question import question_of
-from rosprivacy.reading.robot_system import robot_system, standard_channels
 from rosprivacy.settings import Settings
+from rosprivacy.systems.robot_system import robot_system, standard_channels
 from tests.helpers.brute import Brute
 
 if TYPE_CHECKING:

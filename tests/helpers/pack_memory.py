@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import Finding
     from rosprivacy.analysis.model import Element
-    from rosprivacy.reading.fleet_system import FleetSystem
     from rosprivacy.result import Result
+    from rosprivacy.systems.fleet_system import FleetSystem
 
 QUESTION = question_of(Settings())._replace(every=True)
 VOCABULARY, HIERARCHY = QUESTION.vocabulary, QUESTION.vocabulary.hierarchy

@@ -22,8 +22,8 @@ from rosprivacy.parts.fleet_on_spark import file_reader, result
 from rosprivacy.parts.shown_robots import shown
 from rosprivacy.parts.workers import filled
 from rosprivacy.question import Question
-from rosprivacy.reading.fleet_system import answer_fleet
 from rosprivacy.settings import Settings
+from rosprivacy.systems.fleet_system import answer_fleet
 from tests.helpers.fleet_files import policy, write
 from tests.helpers.random_fleets import Case, found_in
 from tests.helpers.systems import HIERARCHY

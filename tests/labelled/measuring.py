@@ -17,13 +17,13 @@ from rosprivacy.analysis.suggesting.library_rules import PYTHON, NodeUse
 from rosprivacy.analysis.suggesting.name_rules import NameRules
 from rosprivacy.analysis.suggesting.weighing import proposals, unsaid
 from rosprivacy.ingest.packages.package_folders import read_packages
-from rosprivacy.ingest.suggestions.rule_files import read_library_rules, read_name_rules
+from rosprivacy.ingest.suggesting.rule_files import read_library_rules, read_name_rules
 from rosprivacy.ingest.types import TABLE
 from rosprivacy.ingest.types.type_table import read_table
 from rosprivacy.labelling.knowledge import Known, evidence
 from rosprivacy.ontology.vocabulary import load
-from rosprivacy.reading.robot_system import answer_robot
 from rosprivacy.settings import Settings
+from rosprivacy.systems.robot_system import answer_robot
 from tests.labelled.labelled_set import DERIVES, LEAK, SOURCE, Pair, judged, met
 
 if TYPE_CHECKING:

@@ -14,8 +14,8 @@ from hypothesis import given
 
 from rosprivacy.analysis.answer import Verdict
 from rosprivacy.analysis.errors import InputErrors
-from rosprivacy.reading.fleet_system import answer_fleet
 from rosprivacy.settings import Settings
+from rosprivacy.systems.fleet_system import answer_fleet
 from tests.helpers.fleet_files import policy, write
 from tests.helpers.parts import FLEET, documents, fleet_file, in_list, same, scattered
 from tests.helpers.paths import ROOT

@@ -23,11 +23,11 @@ from rosprivacy.parts import session as spark
 from rosprivacy.parts.fleet_on_spark import run_on_spark
 from rosprivacy.parts.parquet import check_new, read
 from rosprivacy.private_neo4j import connection
-from rosprivacy.reading.fleet_system import answer_fleet
-from rosprivacy.reading.stored_system import answer_stored
 from rosprivacy.report.atomic import check_outputs
 from rosprivacy.report.installing import command_for
 from rosprivacy.settings import Settings
+from rosprivacy.systems.fleet_system import answer_fleet
+from rosprivacy.systems.stored_system import answer_stored
 from tests.helpers.command import XI
 from tests.helpers.fleet_files import policy, write
 from tests.helpers.fleet_rows import rows as rows_in_memory

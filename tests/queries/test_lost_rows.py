@@ -14,10 +14,10 @@ import rosprivacy
 from rosprivacy.analysis.errors import InputErrors, QueryError
 from rosprivacy.ingest.database.loading import load
 from rosprivacy.queries.library import find
-from rosprivacy.reading.robot_system import robot_of
-from rosprivacy.reading.stored_rows import rows_of
-from rosprivacy.reading.stored_system import answer_stored
 from rosprivacy.settings import Settings
+from rosprivacy.systems.robot_system import robot_of
+from rosprivacy.systems.stored_rows import rows_of
+from rosprivacy.systems.stored_system import answer_stored
 from tests.helpers.daily import one_in
 from tests.helpers.fleet_files import policy
 from tests.helpers.fleet_rows import VOCABULARY

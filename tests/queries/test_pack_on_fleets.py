@@ -15,7 +15,7 @@ from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.answering import answer
 from rosprivacy.ingest.database.loading import load
 from rosprivacy.queries.library import find, pack
-from rosprivacy.reading.fleet_system import fleet_system, rows_of_fleet
+from rosprivacy.systems.fleet_system import fleet_system, rows_of_fleet
 from tests.helpers.pack_memory import QUESTION, VOCABULARY, Fleet, Memory, place_of
 from tests.helpers.written_fleets import KINDS, fleet
 

@@ -30,10 +30,10 @@ from rosprivacy.private_neo4j import connection
 from rosprivacy.queries.graph_values import Path
 from rosprivacy.queries.library import COLUMN_TYPES, find, pack
 from rosprivacy.queries.run import run
-from rosprivacy.reading.robot_system import beyond_of, read_system
 from rosprivacy.report.stored import StoredNames
 from rosprivacy.report.text.graph_words import GraphWords
 from rosprivacy.settings import Settings
+from rosprivacy.systems.robot_system import beyond_of, read_system
 from tests.helpers.daily import one_in
 from tests.helpers.paths import ROOT
 

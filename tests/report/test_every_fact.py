@@ -17,9 +17,9 @@ from rosprivacy.answering import answer
 from rosprivacy.formats import FORMATS, Style, written
 from rosprivacy.private_neo4j import connection
 from rosprivacy.question import question_of
-from rosprivacy.reading.fleet_system import fleet_system, rows_of_fleet
 from rosprivacy.report.catalogs.words import Words
 from rosprivacy.settings import Settings
+from rosprivacy.systems.fleet_system import fleet_system, rows_of_fleet
 from tests.helpers.paths import ROOT
 from tests.helpers.word import text_of
 
@@ -268,8 +268,8 @@ def fleet(tmp_path_factory: pytest.TempPathFactory) -> Result:
 @pytest.fixture(scope="module")
 def stored(neo4j_server: Connection, tmp_path_factory: pytest.TempPathFactory) -> Result:
     from rosprivacy.ingest.database.loading import load
-    from rosprivacy.reading.robot_system import robot_of
-    from rosprivacy.reading.stored_system import answer_stored
+    from rosprivacy.systems.robot_system import robot_of
+    from rosprivacy.systems.stored_system import answer_stored
 
     folder = robot_in(tmp_path_factory.mktemp("stored"))
     with chdir(folder), connection.open_driver(neo4j_server) as driver:

@@ -324,8 +324,8 @@ def _each_alone(
     inputs: Inputs, settings: Settings, form: str, style: Style, output: Path | None, fail_on: tuple[FailOn, ...]
 ) -> int:
     from rosprivacy.cli import per_policy
-    from rosprivacy.reading.robot_system import answer_each
     from rosprivacy.report.json_text import as_text
+    from rosprivacy.systems.robot_system import answer_each
 
     if form not in ("text", "json", "json1"):
         raise typer.BadParameter("--per-policy writes text, json and json1")

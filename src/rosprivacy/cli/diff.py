@@ -143,9 +143,9 @@ def _snapshot(state: str, labels: tuple[str, ...], settings: Settings) -> Snapsh
     """Read a state, whatever it is."""
     from dataclasses import replace
 
-    from rosprivacy.reading.fleet_system import answer_fleet
-    from rosprivacy.reading.robot_system import answer_robot
     from rosprivacy.report.compare.snapshot import snapshot
+    from rosprivacy.systems.fleet_system import answer_fleet
+    from rosprivacy.systems.robot_system import answer_robot
 
     kind = _kind(state)
     if kind == "analysis":

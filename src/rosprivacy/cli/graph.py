@@ -214,7 +214,7 @@ def _drawn_of(inputs: Inputs, *, both_views: bool) -> tuple[Result, dict[str, tu
         return inputs.result(settings, both_views=both_views), {}
     from rosprivacy.answering import answer
     from rosprivacy.question import question_of
-    from rosprivacy.reading.fleet_system import fleet_system
+    from rosprivacy.systems.fleet_system import fleet_system
 
     question = question_of(settings)
     system = fleet_system(inputs.fleet, question)

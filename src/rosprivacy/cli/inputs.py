@@ -122,15 +122,15 @@ class Inputs(NamedTuple):
         if both_views:
             return self._result_of_both(settings)
         if self.from_database:
-            from rosprivacy.reading.stored_system import answer_stored
+            from rosprivacy.systems.stored_system import answer_stored
 
             with driver_of(self.neo4j) as driver:
                 return answer_stored(driver, settings)
         if self.fleet:
-            from rosprivacy.reading.fleet_system import answer_fleet
+            from rosprivacy.systems.fleet_system import answer_fleet
 
             return answer_fleet(self.fleet, settings)
-        from rosprivacy.reading.robot_system import answer_robot
+        from rosprivacy.systems.robot_system import answer_robot
 
         return answer_robot(self.required_policies, tuple(self.labels or ()), settings)
 

@@ -163,7 +163,7 @@ def _first(inputs: Inputs, output: Path | None) -> tuple[str, Path | None, dict[
     from rosprivacy.ingest.labels.label_template import SCHEMA_FILE, template
     from rosprivacy.ingest.policies.flow_graph import build
     from rosprivacy.ontology.vocabulary import load
-    from rosprivacy.reading.robot_system import read_graphs, read_system, standard_channels
+    from rosprivacy.systems.robot_system import read_graphs, read_system, standard_channels
 
     settings = inputs.settings
     vocabulary = load(ontologies=settings.ontologies)

@@ -68,7 +68,7 @@ def load(
         refuse("--fleet", "the names of the fleet file", ["--robot"] if robot is not None else [])
         _load_fleet(inputs.fleet, settings, inputs.neo4j, both_views=both)
         return
-    from rosprivacy.reading.robot_system import robot_of
+    from rosprivacy.systems.robot_system import robot_of
 
     name = database.check_robot_name(name_of(inputs) if robot is None else robot)
     result = inputs.result(settings, both_views=both)
@@ -135,7 +135,7 @@ def _load_fleet(file: str, settings: Settings, neo4j: str | None, *, both_views:
     from rosprivacy.answering import answer
     from rosprivacy.ingest.database.fleet_rows import MOST_ACROSS
     from rosprivacy.question import question_of
-    from rosprivacy.reading.fleet_system import fleet_system, rows_of_fleet
+    from rosprivacy.systems.fleet_system import fleet_system, rows_of_fleet
 
     question = question_of(settings)._replace(every=True, most_across=MOST_ACROSS)
     with _waiting(f"Reading the robots of {shown(file)}"):

@@ -59,9 +59,9 @@ def answer(rows: Rows, form: RowFormat, title: str, *, wide: bool) -> str | byte
 def _drawing(rows: Rows, title: str) -> bytes:
     """All nodes, relationships and paths of some rows as one SVG; an error if there are none."""
     from rosprivacy.queries.graph_values import graph_values
-    from rosprivacy.reading.stored_rows import STORED_NAMES
     from rosprivacy.report.pictures.layout import drawn
     from rosprivacy.report.pictures.query_view import query_view
+    from rosprivacy.systems.stored_rows import STORED_NAMES
 
     if not rows.rows:
         raise QueryError(f"{title}: no rows, so nothing can be drawn; take --format table to have that as an answer")
@@ -80,10 +80,10 @@ def _drawing(rows: Rows, title: str) -> bytes:
 def _text(rows: Rows, form: RowFormat, *, wide: bool) -> str:
     from rosprivacy.queries.graph_values import plain
     from rosprivacy.queries.run import as_cell
-    from rosprivacy.reading.stored_rows import STORED_NAMES
     from rosprivacy.report.json_text import as_text
     from rosprivacy.report.spreadsheet import as_csv
     from rosprivacy.report.text.graph_words import GraphWords
+    from rosprivacy.systems.stored_rows import STORED_NAMES
 
     if form is RowFormat.json:
         objects = [dict(zip(rows.columns, map(plain, row), strict=True)) for row in rows.rows]

@@ -142,7 +142,7 @@ def suggest(
 
 def _answer(suggested: Suggested, format_: TextOrJson) -> str:
     from rosprivacy.report.json_text import as_text
-    from rosprivacy.report.suggest.suggestion_lines import suggestion_lines
+    from rosprivacy.report.suggesting.suggestion_lines import suggestion_lines
 
     document = suggested.document()
     return (
@@ -154,7 +154,7 @@ def _would_be_sent(inputs: Inputs, labels: tuple[str, ...], sources: Sequence[st
     """Every request as it would go out, but for the key."""
     from rosprivacy.labelling.model_interview import NOTHING_ASKED, asked_of, mask_of
     from rosprivacy.labelling.suggesting import basis_of
-    from rosprivacy.reading.robot_system import answer_robot
+    from rosprivacy.systems.robot_system import answer_robot
 
     asking = options.asking
     basis = basis_of(answer_robot(inputs.required_policies, labels, inputs.settings), sources)
@@ -168,7 +168,7 @@ def _result(inputs: Inputs) -> Result:
     if not inputs.from_database:
         return inputs.result(inputs.settings)
     from rosprivacy.cli.driver import driver_of
-    from rosprivacy.reading.stored_system import answer_unwritten
+    from rosprivacy.systems.stored_system import answer_unwritten
 
     with driver_of(inputs.neo4j) as driver:
         return answer_unwritten(driver, inputs.settings)

@@ -32,9 +32,9 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.fleet.fleet_file import Fleet, Robot
     from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.question import Question
-    from rosprivacy.reading.fleet_system import FleetRead, FleetSystem
     from rosprivacy.result import Result
     from rosprivacy.system import System
+    from rosprivacy.systems.fleet_system import FleetRead, FleetSystem
 
 
 class Targets:

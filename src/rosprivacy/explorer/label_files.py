@@ -14,7 +14,7 @@ from rosprivacy.explorer.edits import Edit, differences, place_of
 from rosprivacy.explorer.scenarios import tried
 from rosprivacy.explorer.watched_files import files_in
 from rosprivacy.ingest.labels.label_file import Labels
-from rosprivacy.reading.robot_system import read_label_files, robot_system
+from rosprivacy.systems.robot_system import read_label_files, robot_system
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

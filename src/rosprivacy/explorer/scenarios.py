@@ -22,9 +22,9 @@ from rosprivacy.ingest.fleet.dds_domains import pseudo_robot
 from rosprivacy.ingest.labels.edited_entries import KINDS, same_name
 from rosprivacy.ingest.labels.label_file import parse_labels
 from rosprivacy.ingest.mitigation.deny_lines import open_ended, with_denied
-from rosprivacy.reading.fleet_system import FleetSystem
-from rosprivacy.reading.robot_reader import Tried
-from rosprivacy.reading.robot_system import lenient_system
+from rosprivacy.systems.fleet_system import FleetSystem
+from rosprivacy.systems.robot_reader import Tried
+from rosprivacy.systems.robot_system import lenient_system
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sized

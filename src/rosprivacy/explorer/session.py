@@ -24,9 +24,9 @@ from rosprivacy.explorer.label_files import RobotFiles
 from rosprivacy.explorer.scenarios import Scenario, WhatIf
 from rosprivacy.ingest.decisions.decision_writer import text_in
 from rosprivacy.question import question_of
-from rosprivacy.reading.fleet_system import read_once
 from rosprivacy.report.document.analysis import label_key
 from rosprivacy.settings import Settings
+from rosprivacy.systems.fleet_system import read_once
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
@@ -153,7 +153,7 @@ class Session:
         DatabaseError
             If the server refuses.
         """
-        from rosprivacy.reading.stored_system import stored_system  # noqa: PLC0415 - light start
+        from rosprivacy.systems.stored_system import stored_system  # noqa: PLC0415 - light start
 
         question = question_of(settings or Settings())._replace(every=True)
         return cls.of_stored(stored_system(driver, question.vocabulary), question)

@@ -25,10 +25,10 @@ from rosprivacy.ingest.policies.names import covered
 from rosprivacy.ingest.reading.bounded_file import read_regular
 from rosprivacy.ingest.reading.yaml_values import MAX_BYTES
 from rosprivacy.ontology.vocabulary import load
-from rosprivacy.reading.robot_system import answer_robot, read_graphs, read_label_files, read_system, standard_channels
 from rosprivacy.report.review_groups import next_round, sources_of
 from rosprivacy.report.text.review import candidates, lacking_step, review_text
 from rosprivacy.report.verdict import lacking
+from rosprivacy.systems.robot_system import answer_robot, read_graphs, read_label_files, read_system, standard_channels
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping

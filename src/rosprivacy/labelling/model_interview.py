@@ -34,7 +34,7 @@ from rosprivacy.analysis.suggesting.evidence import (
 )
 from rosprivacy.analysis.text import counted
 from rosprivacy.ingest.language_model import Exchange, answers_in
-from rosprivacy.ingest.suggestions.rule_files import read_name_rules
+from rosprivacy.ingest.suggesting.rule_files import read_name_rules
 from rosprivacy.ingest.types import TABLE
 from rosprivacy.ingest.types.type_table import read_table
 
@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.suggesting.name_rules import NameRules
     from rosprivacy.labelling.knowledge import Basis
     from rosprivacy.ontology.vocabulary import Vocabulary
-    from rosprivacy.report.contract.suggested import ModelEntry
+    from rosprivacy.report.schemas.suggested import ModelEntry
 
 LONGEST = 200  # signs of a name, a type or a comment
 CHANNELS, TYPES, COMMENTS = 20, 3, 10  # of one element, at most

@@ -27,9 +27,9 @@ from rosprivacy.ingest.reading import yaml_values
 from rosprivacy.ingest.reading.bounded_file import read_utf8
 from rosprivacy.labelling.label_lines import Written, own_file
 from rosprivacy.question import question_of
-from rosprivacy.reading.fleet_system import read_once
-from rosprivacy.reading.robot_reader import files_of
-from rosprivacy.reading.robot_system import answer_robot, read_label_files
+from rosprivacy.systems.fleet_system import read_once
+from rosprivacy.systems.robot_reader import files_of
+from rosprivacy.systems.robot_system import answer_robot, read_label_files
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -37,9 +37,9 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.answer import ByGlobs
     from rosprivacy.ingest.labels.pins import Spot
     from rosprivacy.ontology.vocabulary import Vocabulary
-    from rosprivacy.reading.fleet_system import FleetSystem
     from rosprivacy.result import Result
     from rosprivacy.settings import Settings
+    from rosprivacy.systems.fleet_system import FleetSystem
 
     Ends = tuple[Spot, ...]
     Arrivals = Mapping[str, Mapping[Ends, set[str]]]  # file -> element or flow -> kinds

@@ -24,11 +24,11 @@ from rosprivacy.ingest.labels.label_file import parse_labels
 from rosprivacy.ingest.labels.label_writer import NEW, facts_of
 from rosprivacy.ingest.reading import yaml_values
 from rosprivacy.ingest.reading.bounded_file import read_utf8
-from rosprivacy.ingest.suggestions.accepting import LIMITING, NewLabel, accept, overlap
-from rosprivacy.ingest.suggestions.comments import comment_of, taken_apart, with_comments
+from rosprivacy.ingest.suggesting.accepting import LIMITING, NewLabel, accept, overlap
+from rosprivacy.ingest.suggesting.comments import comment_of, taken_apart, with_comments
 from rosprivacy.labelling.label_lines import Written, own_file
 from rosprivacy.ontology.vocabulary import load
-from rosprivacy.reading.robot_system import answer_robot, read_label_files
+from rosprivacy.systems.robot_system import answer_robot, read_label_files
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence

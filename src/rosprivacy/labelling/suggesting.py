@@ -25,10 +25,10 @@ from rosprivacy.ingest.labels.label_file import OURS
 from rosprivacy.ingest.packages.package_folders import replacements
 from rosprivacy.ingest.reading.bounded_file import read_utf8
 from rosprivacy.ingest.reading.yaml_values import MAX_BYTES
-from rosprivacy.ingest.suggestions.comments import refusal_key, refusals_in
+from rosprivacy.ingest.suggesting.comments import refusal_key, refusals_in
 from rosprivacy.labelling.knowledge import NO_FILES, Basis, CodeSaid, code_said, evidence, what_is_known
 from rosprivacy.ontology.vocabulary import TOP
-from rosprivacy.reading.robot_system import answer_robot
+from rosprivacy.systems.robot_system import answer_robot
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.labelling.knowledge import Known, UserFiles
     from rosprivacy.labelling.model_interview import Interview
-    from rosprivacy.report.contract.suggested import ModelEntry, SuggestionsDocument
+    from rosprivacy.report.schemas.suggested import ModelEntry, SuggestionsDocument
     from rosprivacy.result import Result
     from rosprivacy.settings import Settings
 
@@ -87,7 +87,7 @@ class Suggested:
 
     def document(self) -> SuggestionsDocument:
         """Return the JSON document ``rosprivacy.suggestions/1``."""
-        from rosprivacy.report.suggest.suggestion_document import suggestions_document  # noqa: PLC0415 - light start
+        from rosprivacy.report.suggesting.suggestion_document import suggestions_document  # noqa: PLC0415 - light start
 
         return suggestions_document(
             self.proposals,

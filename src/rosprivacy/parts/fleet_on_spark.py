@@ -32,8 +32,8 @@ from rosprivacy.parts.shown_robots import shown
 from rosprivacy.parts.unit_rows import Plan
 from rosprivacy.parts.units import crossing_lines, split
 from rosprivacy.question import in_contexts, question_of
-from rosprivacy.reading.robot_reader import Reader
 from rosprivacy.system import System
+from rosprivacy.systems.robot_reader import Reader
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

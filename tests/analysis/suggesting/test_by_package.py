@@ -13,8 +13,8 @@ from rosprivacy.analysis.suggesting.packages import nodes_of_packages, package_e
 from rosprivacy.ingest.packages.package_folders import catalogue
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.question import question_of
-from rosprivacy.reading.robot_system import robot_system
 from rosprivacy.settings import Settings
+from rosprivacy.systems.robot_system import robot_system
 from tests.helpers.fleet_files import policy
 
 if TYPE_CHECKING:

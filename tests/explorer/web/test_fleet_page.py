@@ -10,8 +10,8 @@ import pytest
 from lxml import html
 
 from rosprivacy.explorer.element_ids import element_id
-from rosprivacy.reading.fleet_system import answer_fleet
 from rosprivacy.settings import Settings
+from rosprivacy.systems.fleet_system import answer_fleet
 from tests.helpers.explorers import Explorer, label, version
 from tests.helpers.paths import ROOT
 

@@ -11,9 +11,9 @@ from lxml import html
 from rosprivacy.explorer.element_ids import element_id
 from rosprivacy.explorer.web.answered_entries import left_of
 from rosprivacy.explorer.web.review_panes import open_elements
-from rosprivacy.reading.fleet_system import answer_fleet
 from rosprivacy.report.catalogs.words import Words
 from rosprivacy.settings import Settings
+from rosprivacy.systems.fleet_system import answer_fleet
 from tests.helpers.languages import english_in
 from tests.helpers.paths import ROOT
 from tests.helpers.reviews import NAME, answer, heading, insiders_in, page, to_the_end

@@ -12,9 +12,9 @@ from rosprivacy.explorer.web.application import Site
 from rosprivacy.explorer.web.guard import Door
 from rosprivacy.ingest.database.loading import load
 from rosprivacy.private_neo4j import connection
-from rosprivacy.reading.stored_system import answer_unwritten
 from rosprivacy.report.catalogs.words import Words
 from rosprivacy.settings import Settings
+from rosprivacy.systems.stored_system import answer_unwritten
 from tests.helpers.explorers import PORT
 from tests.helpers.graphs import care_home, rows_of
 

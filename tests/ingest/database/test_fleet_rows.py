@@ -14,8 +14,8 @@ from rosprivacy.ingest.database.fleet_rows import FleetRows
 from rosprivacy.ingest.database.loading import load, unload
 from rosprivacy.ingest.database.read_back import read_stored
 from rosprivacy.ingest.database.write_back import write_back
-from rosprivacy.reading.stored_system import answer_stored
 from rosprivacy.settings import Settings
+from rosprivacy.systems.stored_system import answer_stored
 from tests.helpers.fleet_rows import VOCABULARY, rows
 from tests.helpers.graphs import dump
 from tests.helpers.paths import ROOT

@@ -26,9 +26,9 @@ from rosprivacy.ingest.database.bag_rows import load_bags
 from rosprivacy.ingest.database.loading import load
 from rosprivacy.ingest.database.schema import NODES, RELATIONSHIPS
 from rosprivacy.question import question_of
-from rosprivacy.reading.fleet_system import fleet_system, rows_of_fleet
-from rosprivacy.reading.robot_system import answer_robot, robot_of
 from rosprivacy.settings import Settings
+from rosprivacy.systems.fleet_system import fleet_system, rows_of_fleet
+from rosprivacy.systems.robot_system import answer_robot, robot_of
 from tests.golden.runs import FLEETS, ROBOTS, lay_out
 
 if TYPE_CHECKING:

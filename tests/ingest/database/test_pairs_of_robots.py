@@ -9,8 +9,8 @@ import pytest
 
 from rosprivacy.answering import answer
 from rosprivacy.question import question_of
-from rosprivacy.reading.fleet_system import fleet_system, rows_of_fleet
 from rosprivacy.settings import Settings
+from rosprivacy.systems.fleet_system import fleet_system, rows_of_fleet
 from tests.helpers.fleet_files import policy, write
 
 if TYPE_CHECKING:

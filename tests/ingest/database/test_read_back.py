@@ -23,9 +23,9 @@ from rosprivacy.ingest.labels.entries import EXACT
 from rosprivacy.ingest.running.node_info import read_node_info
 from rosprivacy.ingest.running.observed_files import policy_xml, prepared
 from rosprivacy.ontology.vocabulary import load as load_vocabulary
-from rosprivacy.reading.robot_system import robot_of
-from rosprivacy.reading.stored_system import answer_stored
 from rosprivacy.settings import Settings
+from rosprivacy.systems.robot_system import robot_of
+from rosprivacy.systems.stored_system import answer_stored
 from tests.helpers.additions import ADD_STORAGE
 from tests.helpers.cases import CASES
 from tests.helpers.daily import one_in

@@ -10,9 +10,9 @@ import pytest
 import rosprivacy
 from rosprivacy.ingest.database.loading import load
 from rosprivacy.queries.library import find
-from rosprivacy.reading.robot_system import robot_of
-from rosprivacy.reading.stored_system import answer_stored
 from rosprivacy.settings import Settings
+from rosprivacy.systems.robot_system import robot_of
+from rosprivacy.systems.stored_system import answer_stored
 from tests.helpers.fleet_files import policy, write
 from tests.helpers.fleet_rows import VOCABULARY, rows
 

@@ -9,8 +9,8 @@ import pytest
 
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.files_read import one_run, read_as
-from rosprivacy.reading.fleet_system import answer_fleet
 from rosprivacy.settings import Settings
+from rosprivacy.systems.fleet_system import answer_fleet
 from tests.helpers.command import Cli, refused
 from tests.helpers.fleet_files import policy, write
 

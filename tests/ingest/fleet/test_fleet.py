@@ -19,8 +19,8 @@ from rosprivacy.ingest.fleet.alike_robots import alike
 from rosprivacy.ingest.fleet.fleet_schema import fleet_schema
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.question import Question
-from rosprivacy.reading.fleet_system import answer_fleet, fleet_system
 from rosprivacy.settings import Settings
+from rosprivacy.systems.fleet_system import answer_fleet, fleet_system
 from tests.helpers.fleet_files import MODELS, folder, policy, read, write
 from tests.helpers.paths import ROOT
 from tests.helpers.schema_places import places

@@ -11,8 +11,8 @@ import rosprivacy
 from rosprivacy.ingest.database.loading import load
 from rosprivacy.ingest.fleet.alike_robots import alike
 from rosprivacy.private_neo4j import connection
-from rosprivacy.reading.stored_system import answer_stored
 from rosprivacy.settings import Settings
+from rosprivacy.systems.stored_system import answer_stored
 from tests.helpers.fleet_files import policy, read, write
 from tests.helpers.fleet_rows import VOCABULARY, rows
 

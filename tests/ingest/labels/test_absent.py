@@ -10,9 +10,9 @@ import rosprivacy
 from rosprivacy.ingest.database.loading import load as load_robots
 from rosprivacy.mitigation import run_mitigation
 from rosprivacy.private_neo4j import connection
-from rosprivacy.reading.robot_system import robot_of
-from rosprivacy.reading.stored_system import answer_stored
 from rosprivacy.settings import Settings
+from rosprivacy.systems.robot_system import robot_of
+from rosprivacy.systems.stored_system import answer_stored
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -10,9 +10,9 @@ import rosprivacy
 from rosprivacy.ingest.database.loading import load
 from rosprivacy.ingest.running.observed_files import policy_xml, prepared, types_yaml
 from rosprivacy.private_neo4j import connection
-from rosprivacy.reading.robot_system import robot_of
-from rosprivacy.reading.stored_system import answer_stored
 from rosprivacy.settings import Settings
+from rosprivacy.systems.robot_system import robot_of
+from rosprivacy.systems.stored_system import answer_stored
 from tests.helpers.observed import endpoint, saw
 from tests.helpers.written_systems import told
 

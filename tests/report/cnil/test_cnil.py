@@ -25,12 +25,12 @@ from rosprivacy.documents import document_of
 from rosprivacy.ingest.database.loading import load as load_robots
 from rosprivacy.ontology.vocabulary import Vocabulary, load
 from rosprivacy.private_neo4j import connection
-from rosprivacy.reading.robot_system import robot_of
-from rosprivacy.reading.stored_system import answer_stored
 from rosprivacy.report.catalogs.words import plain
 from rosprivacy.report.cnil import told
 from rosprivacy.report.cnil.pia import cnil_pia
 from rosprivacy.settings import Settings
+from rosprivacy.systems.robot_system import robot_of
+from rosprivacy.systems.stored_system import answer_stored
 from tests.helpers.additions import ADD_STORAGE
 from tests.helpers.answers import accepting, answer_of, as_json
 from tests.helpers.fleet_files import policy

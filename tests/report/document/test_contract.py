@@ -10,7 +10,7 @@ import pytest
 
 import rosprivacy
 from rosprivacy.mitigation import run_mitigation
-from rosprivacy.report.contract.analysis import Assumptions
+from rosprivacy.report.schemas.analysis import Assumptions
 from tests.helpers import contract
 from tests.helpers.cases import CASES, FLEETS
 from tests.helpers.daily import one_in

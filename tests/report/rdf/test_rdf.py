@@ -599,5 +599,5 @@ def test_a_sanitizer_that_states_no_method_is_a_measure_that_nobody_stated() -> 
 
 
 def test_rdflib_is_imported_only_where_it_is_used() -> None:
-    code = "import sys, rosprivacy.cli.app, rosprivacy.reading.robot_system; print('rdflib' in sys.modules)"
+    code = "import sys, rosprivacy.cli.app, rosprivacy.systems.robot_system; print('rdflib' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "False\n"

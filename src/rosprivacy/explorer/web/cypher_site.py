@@ -32,11 +32,11 @@ from rosprivacy.queries.graph_values import graph_values, nodes_in
 from rosprivacy.queries.library import Query, pack
 from rosprivacy.queries.run import as_cell
 from rosprivacy.queries.saved import written_out
-from rosprivacy.reading.stored_rows import STORED_NAMES, rows_of
 from rosprivacy.report.page.html import in_html
 from rosprivacy.report.pictures.live_svg import Links
 from rosprivacy.report.pictures.query_view import query_view
 from rosprivacy.report.text.graph_words import GraphWords
+from rosprivacy.systems.stored_rows import STORED_NAMES, rows_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

@@ -29,13 +29,13 @@ from rosprivacy.ingest.labels.label_file import parse_labels
 from rosprivacy.ingest.labels.label_writer import NewLine, add_line, facts_of
 from rosprivacy.ingest.policies.names import covered
 from rosprivacy.ingest.reading.kept_yaml import FAILURES, changed, keeps_comments
-from rosprivacy.ingest.suggestions.comments import as_written, hides, taken_apart, with_comments, without_refusals
+from rosprivacy.ingest.suggesting.comments import as_written, hides, taken_apart, with_comments, without_refusals
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.ingest.labels.entries import Entry
-    from rosprivacy.ingest.suggestions.comments import Comment
+    from rosprivacy.ingest.suggesting.comments import Comment
     from rosprivacy.ontology.vocabulary import Vocabulary
 LIMITING = frozenset(["sanitizer", "never", "mundane", "only"])  # roles that take data away
 BRINGS_OR_LETS_OUT, PASSES_OR_ENDS = ("source", "leak"), ("conduit", "sanitizer")

@@ -9,7 +9,7 @@ import pytest
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.model import Confidence
 from rosprivacy.analysis.suggesting.name_rules import has_word, of_node, of_topic, of_topic_nothing
-from rosprivacy.ingest.suggestions.rule_files import read_name_rules
+from rosprivacy.ingest.suggesting.rule_files import read_name_rules
 from rosprivacy.ontology.vocabulary import load
 
 if TYPE_CHECKING:

@@ -2,7 +2,7 @@
 
 from typing import Annotated, NotRequired, TypedDict
 
-from rosprivacy.report.contract.notation import (
+from rosprivacy.report.schemas.notation import (
     Count,
     Day,
     Id,
@@ -14,7 +14,7 @@ from rosprivacy.report.contract.notation import (
     closed,
     one_of,
 )
-from rosprivacy.report.contract.records import (
+from rosprivacy.report.schemas.records import (
     DeniedEntry,
     DiagnosticEntry,
     DoubtEntry,
@@ -32,7 +32,7 @@ from rosprivacy.report.contract.records import (
     Stopped,
     UnknownEnd,
 )
-from rosprivacy.report.contract.stated import (
+from rosprivacy.report.schemas.stated import (
     Carried,
     CategoryEntry,
     ContextEntry,

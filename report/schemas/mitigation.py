@@ -2,8 +2,8 @@
 
 from typing import Annotated, Any, NotRequired, TypedDict
 
-from rosprivacy.report.contract.analysis import Assumptions
-from rosprivacy.report.contract.notation import (
+from rosprivacy.report.schemas.analysis import Assumptions
+from rosprivacy.report.schemas.notation import (
     Always,
     Cause,
     Change,
@@ -18,7 +18,7 @@ from rosprivacy.report.contract.notation import (
     one_of,
     without_keys_of,
 )
-from rosprivacy.report.contract.records import DiagnosticEntry, DoubtEntry, LineEntry
+from rosprivacy.report.schemas.records import DiagnosticEntry, DoubtEntry, LineEntry
 
 
 @closed

@@ -2,7 +2,7 @@
 
 from typing import Annotated, NotRequired, TypedDict
 
-from rosprivacy.report.contract.notation import (
+from rosprivacy.report.schemas.notation import (
     Always,
     Article9,
     Context,

@@ -24,8 +24,8 @@ from rosprivacy.ingest.policies.joint_policies import joint_warnings
 from rosprivacy.ingest.policies.merged_policies import OF_ONE_ROBOT, merging_notices
 from rosprivacy.ingest.policies.namespaces import notices, pushed
 from rosprivacy.ingest.types.channel_types import matching_nothing
-from rosprivacy.reading.granted import read_granted
-from rosprivacy.reading.robot_system import read_types_files, with_types
+from rosprivacy.systems.granted import read_granted
+from rosprivacy.systems.robot_system import read_types_files, with_types
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -2,8 +2,8 @@
 
 from typing import Annotated, Any, NotRequired, TypedDict
 
-from rosprivacy.report.contract.notation import SHA256, Confidence, Count, Keywords, Positive, Sha256, Verdict, one_of
-from rosprivacy.report.contract.records import FileEntry
+from rosprivacy.report.schemas.notation import SHA256, Confidence, Count, Keywords, Positive, Sha256, Verdict, one_of
+from rosprivacy.report.schemas.records import FileEntry
 
 
 class EvidenceEntry(TypedDict):

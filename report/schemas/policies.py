@@ -2,8 +2,8 @@
 
 from typing import Annotated, NotRequired, TypedDict
 
-from rosprivacy.report.contract.notation import Cause, Count, Keywords, Severity, closed, one_of
-from rosprivacy.report.contract.records import FileEntry
+from rosprivacy.report.schemas.notation import Cause, Count, Keywords, Severity, closed, one_of
+from rosprivacy.report.schemas.records import FileEntry
 
 
 class DifferenceEntry(TypedDict):

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Diagnostic
     from rosprivacy.analysis.suggesting.evidence import Evidence, Label, Proposal
     from rosprivacy.analysis.suggesting.library_rules import NodeUse
-    from rosprivacy.report.contract.suggested import EvidenceEntry, ModelEntry, ProposalEntry, SuggestionsDocument
+    from rosprivacy.report.schemas.suggested import EvidenceEntry, ModelEntry, ProposalEntry, SuggestionsDocument
 
 FORMAT = "rosprivacy.suggestions/1"
 

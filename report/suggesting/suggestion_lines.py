@@ -13,7 +13,7 @@ from rosprivacy.analysis.text import counted, printable
 if TYPE_CHECKING:
     from collections.abc import Container, Iterable, Iterator, Sequence
 
-    from rosprivacy.report.contract.suggested import NoticeEntry, ProposalEntry, RobotEntry, SuggestionsDocument
+    from rosprivacy.report.schemas.suggested import NoticeEntry, ProposalEntry, RobotEntry, SuggestionsDocument
 
 NOTHING = "nothing to suggest: no rule speaks of what nobody has labelled"
 BY_HAND = ", and it would close a finding: only by hand"

@@ -2,7 +2,7 @@
 
 from typing import Annotated, NotRequired, TypedDict
 
-from rosprivacy.report.contract.notation import (
+from rosprivacy.report.schemas.notation import (
     Article9,
     Context,
     ContextVerdict,
@@ -17,7 +17,7 @@ from rosprivacy.report.contract.notation import (
     one_of,
     texts,
 )
-from rosprivacy.report.contract.records import ElementEntry, PlaceEntry, Reached
+from rosprivacy.report.schemas.records import ElementEntry, PlaceEntry, Reached
 
 
 class _Provision(TypedDict):

@@ -20,10 +20,10 @@ from rosprivacy.ingest.fleet.joins import joins_nothing, let_out
 from rosprivacy.ingest.labels.pins import PIN_OF_NOTHING
 from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, Change
 from rosprivacy.question import question_of
-from rosprivacy.reading.robot_reader import Reader, Tried
-from rosprivacy.reading.robot_system import beyond_of
 from rosprivacy.robot_doubts import breaking, doubt_lines, doubts_by_robot
 from rosprivacy.system import System
+from rosprivacy.systems.robot_reader import Reader, Tried
+from rosprivacy.systems.robot_system import beyond_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping

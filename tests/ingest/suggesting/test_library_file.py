@@ -11,7 +11,7 @@ from ruamel.yaml import YAML
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.model import Confidence, Place
 from rosprivacy.analysis.suggesting.library_rules import CPP, PYTHON, NodeUse
-from rosprivacy.ingest.suggestions.rule_files import SECTIONS, read_library_rules
+from rosprivacy.ingest.suggesting.rule_files import SECTIONS, read_library_rules
 from rosprivacy.ontology.vocabulary import FOLDER, load
 
 if TYPE_CHECKING:

@@ -28,8 +28,8 @@ from rosprivacy.ingest.policies.joint_policies import joint_warnings
 from rosprivacy.ingest.policies.merged_policies import merging_notices
 from rosprivacy.ingest.types.channel_types import channel_types, matching_nothing
 from rosprivacy.question import question_of
-from rosprivacy.reading.granted import Read, read_granted
 from rosprivacy.system import System
+from rosprivacy.systems.granted import Read, read_granted
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence

@@ -2,7 +2,7 @@
 
 from typing import Annotated, Any, NotRequired, TypedDict
 
-from rosprivacy.report.contract.notation import BagVerdict, Confidence, Count, Keywords
+from rosprivacy.report.schemas.notation import BagVerdict, Confidence, Count, Keywords
 
 
 class SuggestionEntry(TypedDict):
