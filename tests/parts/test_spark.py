@@ -5,8 +5,12 @@ from __future__ import annotations
 import json
 import os
 import shutil
+import signal
+import socket
 import subprocess
 import sys
+import time
+from contextlib import ExitStack, suppress
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,6 +26,7 @@ from rosprivacy.ingest.fleet.joins import OF_FLEET
 from rosprivacy.parts import session as spark
 from rosprivacy.parts.fleet_on_spark import run_on_spark
 from rosprivacy.parts.parquet import check_new, read
+from rosprivacy.parts.session import HOST
 from rosprivacy.private_neo4j import connection
 from rosprivacy.report.atomic import check_outputs
 from rosprivacy.report.installing import command_for
@@ -37,7 +42,7 @@ from tests.helpers.paths import ROOT
 from tests.helpers.random_fleets import Case, fleets
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Collection, Iterator
 
     from pyspark.sql import SparkSession
 
@@ -411,6 +416,78 @@ def test_nothing_of_a_checkout_is_run(checkout: Path, folder: str) -> None:
     assert not (checkout.parent / "ran").exists(), (checkout.parent / "ran").read_text("utf-8")
     assert done.returncode == 1, done.stderr
     assert "ModuleNotFoundError" not in done.stderr
+
+
+OPENED = [f"--add-opens=java.base/{name}=ALL-UNNAMED" for name in ("java.lang", "java.nio", "sun.nio.ch", "java.util")]
+
+
+@pytest.fixture
+def cluster(tmp_path: Path) -> Iterator[tuple[str, list[int]]]:
+    """A master and two workers of Spark, processes of their own: the address, and the workers' numbers."""
+    home, java = spark._spark_home(), spark._java_home(tmp_path)
+    environment = {name: value for name, value in os.environ.items() if not name.startswith(("PYTHON", "PYSPARK"))}
+    environment |= {"SPARK_LOCAL_IP": HOST, "SPARK_HOME": str(home), "JAVA_HOME": str(java)}
+    environment |= {"SPARK_SCALA_VERSION": "2.13"}  # the scripts of Spark set it
+    with socket.socket() as some:
+        some.bind((HOST, 0))
+        port = int(some.getsockname()[1])
+    address = f"spark://{HOST}:{port}"
+    deploy, common = "org.apache.spark.deploy", ["--host", HOST, "--webui-port", "0"]
+    roles = [
+        [f"{deploy}.master.Master", *common, "--port", str(port)],
+        *([f"{deploy}.worker.Worker", *common, "-c", "1", "-m", "1g", "-d", str(tmp_path / n), address] for n in "ab"),
+    ]
+    with ExitStack() as stack:
+        numbers = []
+        for number, role in enumerate(roles):
+            log = stack.enter_context((tmp_path / f"{number}.log").open("wb"))
+            process = subprocess.Popen(
+                [str(java / "bin" / "java"), *OPENED, "-Xmx300m", "-cp", str(home / "jars" / "*"), *role],
+                cwd=tmp_path, env=environment, stdout=log, stderr=log,
+            )  # fmt: skip
+            stack.callback(process.wait)
+            stack.callback(process.terminate)
+            numbers.append(process.pid)
+            for _ in range(600 if number == 0 else 0):
+                with suppress(OSError), socket.create_connection((HOST, port), 1):
+                    break
+                time.sleep(0.1)
+        yield address, numbers[1:]
+
+
+def children(parents: Collection[int]) -> list[int]:
+    """The processes that some have started."""
+    numbers = []
+    for entry in Path("/proc").glob("[0-9]*/stat"):
+        with suppress(OSError):
+            if int(entry.read_text("ascii", "replace").rpartition(")")[2].split()[1]) in parents:
+                numbers.append(int(entry.parent.name))
+    return numbers
+
+
+def test_on_a_cluster_an_executor_may_be_killed(cluster: tuple[str, list[int]], tmp_path: Path) -> None:
+    """From an environment that is not activated; the findings are those of memory."""
+    address, workers = cluster
+    environment = {
+        name: value for name, value in os.environ.items() if not name.startswith(("PYTHON", "SPARK", "PYSPARK"))
+    }
+    command = [sys.executable, "-P", "-m", "rosprivacy", "analyze", "--fleet", FILE, "--format", "json"]
+    answers = []
+    for spark_options in ([], ["--engine", "spark", "--master", address]):
+        process = subprocess.Popen(
+            [*command, *spark_options], cwd=tmp_path, env={**environment, "PATH": os.defpath}, stdout=subprocess.PIPE
+        )
+        killed = not spark_options
+        while process.poll() is None and not killed:
+            for number in children(workers)[:1]:
+                os.kill(number, signal.SIGKILL)
+                killed = True
+            time.sleep(0.05)
+        answers.append(json.loads(process.communicate(timeout=300)[0]))
+        assert process.returncode == 1
+        assert killed
+    memory, parts = ({key: answer[key] for key in ("verdict", "findings", "fleet")} for answer in answers)
+    assert parts == memory
 
 
 def test_without_the_extra_it_says_how_to_get_it(tmp_path: Path) -> None:

@@ -60,6 +60,9 @@ done
 exec {java} "$@"
 """
 
+LOGS = "see the log of its driver and workers"
+OTHER_PYTHON = "set PYSPARK_PYTHON to the Python of the workers that has rosprivacy"
+
 
 @dataclass(frozen=True, slots=True)
 class Partitions:
@@ -155,7 +158,8 @@ def cluster_errors(master: str = "") -> Iterator[None]:
         lines = [line.strip() for line in str(error).splitlines() if re.match(r"\s*[\w.]*(Error|Exception)\b", line)]
         what = shown(lines[-1] if lines else str(error).partition("\n")[0])
         where = f"Spark at {shown(master)}" if master else "Spark"
-        raise ClusterError(f"{where} fails: {what}; see the log of its driver and workers") from error
+        hint = OTHER_PYTHON if re.search(r"No module named 'rosprivacy|Cannot run program", what) else LOGS
+        raise ClusterError(f"{where} fails: {what}; {hint}") from error
 
 
 def _our_own(message: str) -> bool:
@@ -193,10 +197,12 @@ def _environment(master: str, folder: Path) -> Iterator[None]:
     changed = dict(SAFE_PATH)
     if "SPARK_HOME" not in os.environ:  # pyspark would look in the parent of the current folder first
         changed["SPARK_HOME"] = str(_spark_home())
-    if master.startswith("local"):
+    is_local = master.startswith("local")
+    if is_local:
         changed["SPARK_LOCAL_IP"] = HOST
-        # Only the environment says which Python the workers are: pyspark does not ask ``spark.pyspark.python``, which
-        # is for spark-submit, and takes the first python3 of PATH without it.
+    # Only the environment says which Python the workers are: pyspark does not ask ``spark.pyspark.python``, which is
+    # for spark-submit, and takes the first python3 of PATH without it. On a cluster another one can be named.
+    if is_local or "PYSPARK_PYTHON" not in os.environ:
         changed["PYSPARK_PYTHON"] = sys.executable
     if os.name == "posix":
         changed["JAVA_HOME"] = str(_java_home(folder))
