@@ -427,7 +427,7 @@ def cluster(tmp_path: Path) -> Iterator[tuple[str, list[int]]]:
     home, java = spark._spark_home(), spark._java_home(tmp_path)
     environment = {name: value for name, value in os.environ.items() if not name.startswith(("PYTHON", "PYSPARK"))}
     environment |= {"SPARK_LOCAL_IP": HOST, "SPARK_HOME": str(home), "JAVA_HOME": str(java)}
-    environment |= {"SPARK_SCALA_VERSION": "2.13"}  # the scripts of Spark set it
+    environment |= {"SPARK_SCALA_VERSION": "2.13", "PATH": os.defpath}  # the first is set by the scripts of Spark
     with socket.socket() as some:
         some.bind((HOST, 0))
         port = int(some.getsockname()[1])
