@@ -91,9 +91,10 @@ def test_what_a_source_names_the_channel_for_is_not_taken_away() -> None:
     assert rosprivacy.analyze("p.xml", "named.yaml").findings
 
 
-def test_what_a_derivation_makes_is_not_taken_away_where_it_is_written() -> None:
+@pytest.mark.parametrize("written", ["/a", "/a*"])
+def test_what_a_derivation_makes_is_not_taken_away_where_it_is_written(written: str) -> None:
     """S15: whoever says that a node makes video says that it goes out there, whatever the types of its channels."""
-    Path("p.xml").write_text(policy("/cam>/x", "/door>/a</x", "/sink</a"), "utf-8")
+    Path("p.xml").write_text(policy("/cam>/x", f"/door>{written}</x", "/sink</a"), "utf-8")
     text = LABELS.format(a=BOOL, door="{derives: [{from: Location, to: Video}]}")
     text = text.replace("source: [Video]", "source: [Location]")
     Path("l.yaml").write_text(text, "utf-8")

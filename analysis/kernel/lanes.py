@@ -40,6 +40,8 @@ class Lanes(NamedTuple):
     >>> lanes = Lanes.of([7, 9], 4)
     >>> bin(lanes.every(0b11)), bin(lanes.lane_of(9, 0b1)), lanes.merged(0b0001_0100)
     ('0b110011', '0b10000', 5)
+    >>> list(lanes.apart(0b0001_0101))
+    [(7, 5), (9, 1)]
     """
 
     number: Mapping[int, int]

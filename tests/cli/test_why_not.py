@@ -117,8 +117,12 @@ def test_a_deny_within_a_wildcard_or_of_a_whole_one_stands_in_the_ledger(cli: Cl
          [("no-source", "/blur", ""), ("no-leak", "/uplink", "")]),
         ("/clean", {"{sanitizer: {Video: drop}}": "conduit"}, ("/camera", "/uplink"), True, []),
         ("/clean", {}, ("/uplink", "/camera"), False, []),  # no chain of policy lines leads there
+        ("/still", {"source: [Video]": "source: {Video: [/video]}"}, ("/camera", "/uplink"), False,
+         [("other-channels", "/camera", "")]),
+        ("/still", {"channels:": "flows: [{from: /still, to: /uplink, never: [Video]}]\nchannels:"},
+         ("/camera", "/uplink"), False, [("never", "/still", "l.yaml:6")]),
     ],
-    ids=["denied", "cleaned", "no leak", "no source", "gets there", "no chain"],
+    ids=["denied", "cleaned", "no leak", "no source", "gets there", "no chain", "other channel", "closed flow"],
 )  # fmt: skip
 def test_the_path_with_the_fewest_obstacles_is_told(
     cli: Cli,

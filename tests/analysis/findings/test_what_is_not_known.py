@@ -93,11 +93,13 @@ class TestPlainBesidePseudonymised:
             assert after["verdict"] == "leak"
 
     def test_on_a_fleet_it_is_a_pattern_of_its_own(self, cli: Cli) -> None:
-        robot = "{policies: [p.xml], labels: [l.yaml]}"
-        Path("f.yaml").write_text(f"fleet: 1\nrobots: {{a: {robot}, b: {robot}}}\n", "utf-8")
+        """Also where the first robot, which stands for the others, has the pseudonymised data only."""
+        Path("q.xml").write_text(Path("p.xml").read_text("utf-8").replace("/raw_clips", "/kept_clips", 1), "utf-8")
+        robots = (f"{name}: {{policies: [{policy}.xml], labels: [l.yaml]}}" for name, policy in ("aq", "bp", "cp"))
+        Path("f.yaml").write_text(f"fleet: 1\nrobots: {{{', '.join(robots)}}}\n", "utf-8")
         document = json.loads(cli("analyze", "--fleet", "f.yaml", "--format", "json").stdout)
         patterns = [(p["findings"], p["dismissed"], p["pseudonymised"]) for p in document["fleet"]["patterns"]]
-        assert patterns == [(2, 0, 2), (2, 2, 0), (2, 0, 0)]
+        assert patterns == [(3, 0, 3), (3, 0, 0), (2, 2, 0)]
 
 
 class TestRestrictions:

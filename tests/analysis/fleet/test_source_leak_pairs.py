@@ -91,10 +91,11 @@ def through(system: System, flow: int) -> Bound:
     return replace(bound, elements=elements, through=ways)
 
 
-def test_a_source_that_names_one_channel_is_still_a_leak_by_itself() -> None:
-    """Rule S10: a node that is source and leak of one category is a finding by itself."""
+@pytest.mark.parametrize("back", [[], [(1, 0)]])
+def test_a_source_that_names_one_channel_is_still_a_leak_by_itself(back: list[tuple[int, int]]) -> None:
+    """Rule S10: a node that is source and leak of one category is a finding by itself, also if nothing comes back."""
     said = {0: [statement("source", "Any"), statement("leak", "Any")]}
-    system = System(1, 1, [(0, 1), (1, 0)], said, {})
+    system = System(1, 1, [(0, 1), *back], said, {})
     found = analyse(system.graph(), through(system, 0), system.hierarchy)
     assert [len(finding.witness) for finding in found.findings] == [1]
     same(system, through(system, 0))

@@ -121,14 +121,15 @@ class TestRobots:
         assert len(fleet.limits) == 1
 
     def test_a_robots_own_labels_outrank_its_models(self) -> None:
-        write("own.yaml", "labels: 1\nnodes: {'/scr*': conduit}\nelements: {disk: {kind: storage, country: DE}}\n")
-        write("eye.yaml", "labels: 1\nnodes: {/camera: {source: [Video], leak: [Video]}, /uplink: {leak: [Video]}}\n")
-        write("own.yaml", "labels: 1\nnodes: {/uplink: {leak: none, conduit: [Video]}}\n")
+        cloud = "elements: {{cloud: {{kind: external-system, {}}}}}\n".format
+        nodes = "nodes: {/camera: {source: [Video], leak: [Video]}, /uplink: {leak: [Video]}}\n"
+        write("eye.yaml", f"labels: 1\n{nodes}{cloud('leak: [Video]')}flows: [{{from: /camera, to: cloud}}]\n")
+        write("own.yaml", "labels: 1\nnodes: {/uplink: {leak: none, conduit: [Video]}}\n" + cloud("leak: none"))
         write("f.yaml", f"fleet: 1\n{MODELS}robots: {{a: {{model: eye}}, b: {{model: eye, labels: own.yaml}}}}\n")
         question = Question(Settings(), load(), None, None, "", every=True)
         result = answer(fleet_system("f.yaml", question), question)
         assert [(f.leak.robot, f.leak.name) for f in result.analysis.findings] == [
-            ("a", "/camera"), ("a", "/uplink"), ("b", "/camera"),
+            ("a", "/camera"), ("a", "/uplink"), ("a", "cloud"), ("b", "/camera"),
         ]  # fmt: skip
 
     def test_a_robots_own_facts_take_the_place_of_its_models(self) -> None:

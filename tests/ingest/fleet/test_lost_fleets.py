@@ -288,8 +288,8 @@ class TestANameWrittenAbsolute:
             assert analysed(cli, own).returncode == code, (written, denied)
 
     def test_robots_whose_names_lie_in_their_namespace_are_not_alike(self, cli: Cli) -> None:
-        """The uplink reads /r1/video in full: on r1 that is the camera's, on r2 it is not."""
-        write("p.xml", policy("/camera>video", "/uplink</r2/video"))
+        """The uplink reads /r2/video in full: on r2 that is the camera's, on r1 it is not; /health is nobody's."""
+        write("p.xml", policy("/camera>video,/health", "/uplink</r2/video"))
         write("l.yaml", LABELS.partition("channels")[0])
         fleet = f"{self.MODEL}groups: [{{robots: 2, model: m, id: r*}}]\n"
         assert findings(cli, fleet) == (1, [("r2:/camera", "r2:/uplink")])

@@ -172,6 +172,7 @@ def test_the_bare_line_of_an_older_template_is_answered_with_what_to_write() -> 
     result = analyze(f'{ENDS}channels: {{"/*": mundane}}\n')
     (warning,) = [d for d in result.diagnostics if d.code == "glob-like-a-wildcard"]
     assert (str(warning.place), warning.severity) == ("l.yaml:5", "warning")
+    assert "2 more elements" in warning.message
     assert 'write "=/*"' in warning.message
     for other in (  # the file tells them apart; and the line as the template had it, not filled in
         'topics: {"/*": sensitive, "=/*": mundane}',

@@ -274,6 +274,10 @@ def test_some_name_is_left_as_by_brute_force_over_short_names(wanted: list[str],
     assert some_name(tuple(wanted), tuple(denied)) is left
 
 
-def test_what_is_too_large_to_tell_is_taken_as_left() -> None:
-    many = tuple(f"/*{letter}{'?' * 12}" for letter in "abcdefgh")
-    assert some_name(("/*",), (*many, "/*"))  # nothing is left, but that takes too many steps
+@pytest.mark.parametrize(
+    "denied",
+    [[f"/*{letter}{'?' * 12}" for letter in "abcdefgh"], ["/" + "".join(map(chr, range(0x4E00, 0x4E00 + 3_300)))]],
+    ids=["many states", "many letters"],
+)
+def test_what_is_too_large_to_tell_is_taken_as_left(denied: list[str]) -> None:
+    assert some_name(("/*",), (*denied, "/*"))  # nothing is left, but that takes too many steps
