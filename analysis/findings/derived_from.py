@@ -86,10 +86,17 @@ def origins(spread: Spread, shared: AbstractSet[str] | None = None) -> tuple[Ori
 
 
 def pairs_at_most(spread: Spread) -> int:
-    """Return a number that (maker, source) of one category cannot exceed; a search finds out how many there are."""
-    makers = Counter(spread.bits.category(made) for pairs in spread.derives.values() for _, made in pairs)
+    """Return a number that (maker, source) of one category cannot exceed; a search finds out how many there are.
+
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> pairs_at_most(spread(*factory()))  # a camera, and what makes face templates
+    1
+    """
+    category = spread.bits.category
+    makers = Counter(number for pairs in spread.derives.values() for number in {category(made) for _, made in pairs})
     sources = sum(1 for vertex in spread.facts if spread.begins(vertex))
-    return sources * max((makers[category] for category in spread.made_categories), default=0)
+    return sources * max((makers[number] for number in spread.made_categories), default=0)
 
 
 def _stop(spread: Spread, category: int) -> dict[int, int]:

@@ -129,6 +129,17 @@ def blocks(spread: Spread, kinds: Sequence[Concern], mask: int) -> Iterator[Bloc
     -----
     Two runs of the kernel per category and so many sources: one that stops at leaks of the category, one that does not.
     So many are ``MOST_WORDS`` times 64 for each form, fewer in a large graph.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.findings.concerns import concerns
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> graph, bound, hierarchy = factory()
+    >>> carried = spread(graph, bound, hierarchy)
+    >>> some = list(blocks(carried, tuple(concerns(carried, bound, hierarchy)), carried.all_bits))
+    >>> [(block.kind, block.forms.tolist()) for block in some][:2]  # of face templates
+    [('disclosure', [[0]]), ('storage-limitation', [[0]])]
     """
     ends = [as_bits(spread, len(spread.graph.elements), concern.taken_up(spread), 0) for concern in kinds]
     network: GraphArrays | None = None
