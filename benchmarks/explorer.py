@@ -29,7 +29,7 @@ import rosprivacy
 from rosprivacy.explorer.element_ids import element_id
 from rosprivacy.explorer.session import Session
 from rosprivacy.explorer.web.application import Site
-from rosprivacy.explorer.web.guard import Door
+from rosprivacy.explorer.web.guard import RequestDoor
 from rosprivacy.explorer.web.serving import collect_garbage
 from rosprivacy.report.catalogs.words import Words
 from rosprivacy.report.pictures.page_pictures import Pictures
@@ -77,7 +77,7 @@ class Browser:
 
     def __init__(self, system: System, portal: BlockingPortal) -> None:
         settings = Settings()
-        self._portal, door = portal, Door(PORT)
+        self._portal, door = portal, RequestDoor(PORT)
         self.session = Session.open([system.policy], [system.labels], settings)
         self.site = Site(self.session, settings, Words("en"), door)
         self._client = AsyncClient(

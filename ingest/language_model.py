@@ -103,7 +103,7 @@ def _is_local(host: str) -> bool:
     return address.is_loopback or address.is_link_local or any(address in network for network in networks)
 
 
-class Server:
+class ModelServer:
     """Who answers.
 
     Parameters

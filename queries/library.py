@@ -56,7 +56,7 @@ TEXT = re.compile(r"'(?:[^'\\]|\\.)*'|\"(?:[^\"\\]|\\.)*\"|//[^\n]*|/\*.*?\*/", 
 
 
 @dataclass(frozen=True, slots=True)
-class Field:
+class QueryField:
     """A parameter or a column.
 
     Attributes
@@ -88,8 +88,8 @@ class Query:
     name: str
     kind: str
     description: str
-    parameters: tuple[Field, ...]
-    columns: tuple[Field, ...]
+    parameters: tuple[QueryField, ...]
+    columns: tuple[QueryField, ...]
     order: tuple[str, ...]
     text: str
 
@@ -120,7 +120,7 @@ class Query:
         return values
 
 
-def _value(field: Field, text: str) -> str | int | bool | list[str]:
+def _value(field: QueryField, text: str) -> str | int | bool | list[str]:
     text.encode()  # what the command line could not decode is a ValueError
     if field.type == "integer":
         if abs(int(text)) > LARGEST:
@@ -167,7 +167,7 @@ def parse(stem: str, text: str) -> Query:
     """
     header = [line for line in text.splitlines() if line.startswith("//")]
     head: dict[str, str] = {}
-    fields: dict[str, list[Field]] = {"param": [], "returns": []}
+    fields: dict[str, list[QueryField]] = {"param": [], "returns": []}
     problems: list[str] = []
 
     def problem(fault: str) -> None:
@@ -203,20 +203,20 @@ def parse(stem: str, text: str) -> Query:
     return query
 
 
-def _field(name: str, rest: str, types: Mapping[str, type]) -> Field:
+def _field(name: str, rest: str, types: Mapping[str, type]) -> QueryField:
     type_, comma, meaning = rest.partition(", ")
     if type_ not in types or not comma:
         raise ValueError(f"the type is one of {', '.join(types)}; write 'TYPE, meaning'")
     meaning, _, text = meaning.partition(", default ")
     if not text:
-        return Field(name, type_, meaning)
+        return QueryField(name, type_, meaning)
     default: Any = None
     with suppress(ValueError):
         default = json.loads(text)
     of_its_type = type(default) is types[type_]
     if not of_its_type:
         raise ValueError(f"the default is no {type_}; write it as JSON")
-    return Field(name, type_, meaning, default)
+    return QueryField(name, type_, meaning, default)
 
 
 def _faults(query: Query, stem: str) -> Iterator[str]:

@@ -1,6 +1,6 @@
 """Cypher -> rows: read-only by the server's own plan and access mode, with bounds on rows, size and time.
 
-In: a driver, Cypher, values. Out: ``Rows`` of plain values. What does more than read the graph is refused.
+In: a driver, Cypher, values. Out: ``QueryRows`` of plain values. What does more than read the graph is refused.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ WAY = "path"  # the column of the pack that names elements in the order of the f
 
 
 @dataclass(frozen=True, slots=True)
-class Rows:
+class QueryRows:
     """What a query gives.
 
     Attributes
@@ -65,7 +65,7 @@ def run(
     limit: int | None = LIMIT,
     timeout: float | None = TIMEOUT,
     known_names: KnownNames | None = None,
-) -> Rows:
+) -> QueryRows:
     """Run Cypher that only reads.
 
     Parameters
@@ -93,9 +93,9 @@ def run(
         return answer() if timeout is None else _in_time(answer, timeout + GRACE)
 
 
-def _in_time(answer: Callable[[], Rows], seconds: float) -> Rows:
+def _in_time(answer: Callable[[], QueryRows], seconds: float) -> QueryRows:
     """Wait for an answer so long: what then still waits for the server ends when the driver is closed."""
-    answers: SimpleQueue[Rows | BaseException] = SimpleQueue()
+    answers: SimpleQueue[QueryRows | BaseException] = SimpleQueue()
 
     def work() -> None:
         try:
@@ -121,7 +121,7 @@ def _answer(
     limit: int | None,
     timeout: float | None,
     known_names: KnownNames | None,
-) -> Rows:
+) -> QueryRows:
     import neo4j  # noqa: PLC0415 - light start
 
     with (
@@ -141,13 +141,13 @@ def _answer(
         held = 0
         for record in result:
             if limit is not None and len(rows) == limit:
-                return Rows(columns, _with_ends(transaction, rows), truncated=True)
+                return QueryRows(columns, _with_ends(transaction, rows), truncated=True)
             row = tuple(value_of(value) for value in record.values())
             held += _size([plain(value) for value in row])
             if held > LARGEST:
                 raise QueryError(f"the rows take more than {LARGEST // 2**20} MB; ask for less")
             rows.append(row)
-        return Rows(columns, _with_ends(transaction, rows))
+        return QueryRows(columns, _with_ends(transaction, rows))
 
 
 def _with_ends(transaction: Transaction, rows: list[tuple[Any, ...]]) -> tuple[tuple[Any, ...], ...]:

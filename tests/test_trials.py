@@ -17,7 +17,7 @@ from rosprivacy.analysis.modes import View
 from rosprivacy.answering import answer
 from rosprivacy.both_views import Trials, both_views
 from rosprivacy.ingest.policies.changed_graph import changed_graph
-from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, Change, changed
+from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, PolicyChange, changed
 from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.ingest.policies.policy_xml import read_policy
 from rosprivacy.question import question_of
@@ -33,15 +33,15 @@ if TYPE_CHECKING:
 
 
 @st.composite
-def changes(draw: st.DrawFn, enclaves: Enclaves) -> Change:
+def changes(draw: st.DrawFn, enclaves: Enclaves) -> PolicyChange:
     """Enclaves split, a profile moved, or DENY lines of what somebody grants."""
     profiles = [(path, node) for path, nodes in enclaves.items() for node in nodes]
     if draw(st.booleans()):
-        return Change(split=frozenset(draw(st.sets(st.sampled_from(PATHS), min_size=1))))
+        return PolicyChange(split=frozenset(draw(st.sets(st.sampled_from(PATHS), min_size=1))))
     if draw(st.booleans()):
-        return Change(move=frozenset({draw(st.sampled_from(profiles))}))
+        return PolicyChange(move=frozenset({draw(st.sampled_from(profiles))}))
     lines = draw(st.sets(st.tuples(st.sampled_from(profiles), st.sampled_from(RIGHTS)), min_size=1, max_size=3))
-    return Change(
+    return PolicyChange(
         deny=frozenset(DenyLine("p.xml", *profile, role, kind, name) for profile, (role, kind, name, _) in lines)
     )
 

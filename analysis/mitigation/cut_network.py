@@ -24,7 +24,7 @@ At = tuple[int, int]  # vertex, number of the category
 
 
 @dataclass(frozen=True, slots=True)
-class Group:
+class CutGroup:
     """Sources of which the same is decided.
 
     Attributes
@@ -75,7 +75,7 @@ class CutNetwork:
     past: set[int] = field(default_factory=set)
 
 
-def cut_network(net: Net, groups: Iterable[Group], categories: Collection[int]) -> CutNetwork:
+def cut_network(net: Net, groups: Iterable[CutGroup], categories: Collection[int]) -> CutNetwork:
     """Return the network of all paths from the sources of each group to its open findings.
 
     Parameters
@@ -94,7 +94,7 @@ def cut_network(net: Net, groups: Iterable[Group], categories: Collection[int]) 
     >>> from rosprivacy.analysis.kernel.spreading import spread
     >>> from rosprivacy.analysis.kernel.states import Net
     >>> net = Net.of(spread(*factory()))
-    >>> network = cut_network(net, [Group((CAMERA,))], [net.spread.categories.index("FaceTemplate")])
+    >>> network = cut_network(net, [CutGroup((CAMERA,))], [net.spread.categories.index("FaceTemplate")])
     >>> flows = [net.spread.graph.flows[arc.flow] for arc in network.arcs if arc.flow >= 0]
     >>> [(NAMES[flow.source], NAMES[flow.target]) for flow in flows]
     [('/camera', '/video'), ('/video', '/face_id'), ('/face_id', '/faces'), ('/faces', '/archive')]
@@ -111,7 +111,7 @@ def cut_network(net: Net, groups: Iterable[Group], categories: Collection[int]) 
 class _Builder:
     """Walks forward from what the sources of one group emit, to where one category may not get."""
 
-    def __init__(self, net: Net, group: Group, category: int, network: CutNetwork, *, past: bool) -> None:
+    def __init__(self, net: Net, group: CutGroup, category: int, network: CutNetwork, *, past: bool) -> None:
         self.spread, self.bits = net.spread, net.spread.bits
         self.group = group
         self.category = category
@@ -203,7 +203,7 @@ def a_path(network: CutNetwork, passable: Callable[[Arc], bool]) -> list[Arc] | 
     >>> from rosprivacy.analysis.kernel.spreading import spread
     >>> from rosprivacy.analysis.kernel.states import Net
     >>> net = Net.of(spread(*factory()))
-    >>> network = cut_network(net, [Group((CAMERA,))], [net.spread.categories.index("FaceTemplate")])
+    >>> network = cut_network(net, [CutGroup((CAMERA,))], [net.spread.categories.index("FaceTemplate")])
     >>> [arc.flow for arc in a_path(network, lambda arc: True) if arc.flow >= 0]
     [2, 7, 3, 5]
     >>> a_path(network, lambda arc: arc.flow != 7) is None
@@ -241,7 +241,7 @@ def open_ends(network: CutNetwork, passable: Callable[[Arc], bool]) -> Iterator[
     >>> from rosprivacy.analysis.kernel.spreading import spread
     >>> from rosprivacy.analysis.kernel.states import Net
     >>> net = Net.of(spread(*factory()))
-    >>> network = cut_network(net, [Group((CAMERA,))], [net.spread.categories.index("FaceTemplate")])
+    >>> network = cut_network(net, [CutGroup((CAMERA,))], [net.spread.categories.index("FaceTemplate")])
     >>> [(NAMES[vertex], past, len(path)) for (vertex, _), past, path in open_ends(network, lambda arc: True)]
     [('/archive', False, 9)]
     """

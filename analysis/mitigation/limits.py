@@ -28,7 +28,7 @@ class Weights:
 
 
 @dataclass(frozen=True, slots=True)
-class Rule:
+class LimitRule:
     """What the user says of some places.
 
     Attributes
@@ -63,4 +63,4 @@ class Limits:
     weights: Weights = field(default_factory=Weights)
     kinds: frozenset[str] = frozenset(CHANGES)
     critical: frozenset[int] = frozenset()
-    rules: tuple[Rule, ...] = ()
+    rules: tuple[LimitRule, ...] = ()

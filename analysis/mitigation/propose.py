@@ -21,7 +21,7 @@ from rosprivacy.analysis.mitigation.affected import affected
 from rosprivacy.analysis.mitigation.candidates import candidates, uncut
 from rosprivacy.analysis.mitigation.change_sites import ChangeSites
 from rosprivacy.analysis.mitigation.changed_system import opened, with_changes
-from rosprivacy.analysis.mitigation.cut_network import Group, a_path, cut_network, open_ends
+from rosprivacy.analysis.mitigation.cut_network import CutGroup, a_path, cut_network, open_ends
 from rosprivacy.analysis.mitigation.limits import DENY, FILTER, REVIEW, Limits
 from rosprivacy.analysis.mitigation.min_cut import BUDGET, cheapest
 from rosprivacy.analysis.mitigation.proposals import ITSELF, NOT_ALLOWED, Kept, Proposal, ProposedStep, Protect
@@ -151,7 +151,7 @@ class _Work:
         self,
         narrowed: CutNetwork,
         options: Sequence[Candidate],
-        groups: Sequence[Group],
+        groups: Sequence[CutGroup],
         remaining: Sequence[Kept],
         budget: int,
     ) -> Iterator[tuple[ChangeSet, CutNetwork]]:
@@ -168,7 +168,9 @@ class _Work:
                 later += [(replace(cut, chosen=tuple(numbers[n] for n in cut.chosen)), network) for cut in cuts]
         yield from sorted(later, key=lambda pair: pair[0].cost)
 
-    def _opened(self, options: Iterable[Candidate], groups: Iterable[Group], remaining: Iterable[Kept]) -> CutNetwork:
+    def _opened(
+        self, options: Iterable[Candidate], groups: Iterable[CutGroup], remaining: Iterable[Kept]
+    ) -> CutNetwork:
         """The paths that there are when wildcards get past all filters that could be made."""
         graph, bound = self.system.graph, self.system.bound
         filtered = sorted({flow for change in options if not change.private for flow in change.flows})
@@ -177,7 +179,7 @@ class _Work:
         others = [self._group(v) for v in grown.facts if grown.begins(v) and (v,) not in known]
         return cut_network(Net.of(grown), self._grouped([*groups, *others], remaining), self.categories)
 
-    def _group(self, source: int) -> Group:
+    def _group(self, source: int) -> CutGroup:
         """What is decided of one source."""
         accepted: set[At] = set()
         others: set[At] = set()
@@ -192,12 +194,12 @@ class _Work:
                 accepted.add(at)
         begun = self.analysis.spread.bits.merged(self.analysis.spread.begins(source))
         itself = {(source, i) for i in bits_of(begun) if self._leaks((source, i))}
-        return Group((source,), frozenset(accepted), frozenset(itself), frozenset(others))
+        return CutGroup((source,), frozenset(accepted), frozenset(itself), frozenset(others))
 
     def _leaks(self, at: At) -> bool:
         return bool(self.analysis.spread.leaks.get(at[0], 0) & self.analysis.spread.bits.pair(at[1]))
 
-    def _remaining_of_source(self, group: Group, options: Sequence[Candidate]) -> Iterable[Kept]:
+    def _remaining_of_source(self, group: CutGroup, options: Sequence[Candidate]) -> Iterable[Kept]:
         """The findings of one source that no change removes, with a path on which none can be made."""
         (source,) = group.sources
         mine: dict[tuple[At, bool], list[Finding]] = defaultdict(list)
@@ -222,7 +224,7 @@ class _Work:
                 shown.append(element)
         return tuple(shown)
 
-    def _grouped(self, groups: Iterable[Group], remaining: Iterable[Kept]) -> list[Group]:
+    def _grouped(self, groups: Iterable[CutGroup], remaining: Iterable[Kept]) -> list[CutGroup]:
         """Sources of which the same is decided together: in one network, each flow is one arc."""
         stays: dict[tuple[int, bool], set[At]] = defaultdict(set)
         for one in remaining:
@@ -232,7 +234,7 @@ class _Work:
             (source,) = group.sources
             leaks, others = stays[source, True], stays[source, False]
             together[group.accepted, group.remaining | leaks, group.other_kinds - others].append(source)
-        return [Group(tuple(sources), *decided) for decided, sources in together.items()]
+        return [CutGroup(tuple(sources), *decided) for decided, sources in together.items()]
 
     def _proven(self, plain: Proposal, chosen: Sequence[tuple[Candidate, frozenset[int]]]) -> Proposal:
         """Apply the changes, analyse anew, and take the proposal only if nothing is left but what is kept."""

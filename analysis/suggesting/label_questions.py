@@ -115,7 +115,7 @@ class Row(NamedTuple):
         return self._replace(replies=tuple(one for one in self.replies if one.key == key))
 
 
-class Question(NamedTuple):
+class LabelQuestion(NamedTuple):
     """Rows that are asked about together.
 
     Attributes
@@ -148,7 +148,7 @@ def questions(
     ends: Traffic,
     hierarchy: Hierarchy,
     refused: Callable[[Label], bool] = lambda _: False,
-) -> tuple[Question, ...]:
+) -> tuple[LabelQuestion, ...]:
     """Return what a person is asked next, in review order.
 
     Parameters
@@ -173,7 +173,7 @@ def questions(
     """
     asked = _Asked(proposals, analysis, bound, ends, hierarchy, refused)
     groups = [*asked.ends().items(), (GOES_ON, asked.nodes()), (GOES_THROUGH, asked.channels())]
-    return tuple(Question(about, tuple(some)) for about, rows in groups for some in _parted(rows))
+    return tuple(LabelQuestion(about, tuple(some)) for about, rows in groups for some in _parted(rows))
 
 
 def one_line(finding: Finding) -> str:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.model import Confidence, Place
     from rosprivacy.analysis.suggesting.evidence import Label
-    from rosprivacy.analysis.suggesting.name_rules import Rule
+    from rosprivacy.analysis.suggesting.name_rules import NameRule
 
 PYTHON, CPP = "python", "c++"
 PROGRAM = "$ "  # before the name of a program that code starts
@@ -42,7 +42,7 @@ class NodeUse(NamedTuple):
 class RuleOfUse(NamedTuple):
     """A rule, and the first use that it speaks about."""
 
-    rule: Rule
+    rule: NameRule
     use: NodeUse
 
     def evidence(self, label: Label, sure: Confidence, consequence: str = "") -> Evidence:
@@ -59,15 +59,15 @@ class Names:
     """Rules by name, by what names begin with (written with ``*`` at its end), and by a part of an address.
 
     >>> from rosprivacy.analysis.model import Confidence, Place
-    >>> from rosprivacy.analysis.suggesting.name_rules import Rule
-    >>> rule = Rule(("Voice",), Confidence.LIKELY, "a microphone", Place("libraries.yaml", 1))
+    >>> from rosprivacy.analysis.suggesting.name_rules import NameRule
+    >>> rule = NameRule(("Voice",), Confidence.LIKELY, "a microphone", Place("libraries.yaml", 1))
     >>> names = Names(dict.fromkeys(["sounddevice.InputStream", "Pa_Open*", "@ api.openai.com"], rule))
     >>> asked = ("sounddevice.InputStream.read", "sounddevice.play", "Pa_OpenStream", "@ https://api.openai.com/v1")
     >>> [bool(names.of(name)) for name in asked]
     [True, False, True, True]
     """
 
-    rules: Mapping[str, Rule]
+    rules: Mapping[str, NameRule]
 
     @cached_property
     def _starred(self) -> list[str]:
@@ -78,7 +78,7 @@ class Names:
         parts = (name.removeprefix(ADDRESS) for name in self.rules if name.startswith(ADDRESS))
         return sorted(parts, key=len, reverse=True)
 
-    def of(self, name: str) -> tuple[str, Rule] | None:
+    def of(self, name: str) -> tuple[str, NameRule] | None:
         """Return the longest name that is this one, or above it, with its rule; of an address the longest part."""
         if name.startswith(ADDRESS):
             part = next((one for one in self._parts if one in name), None)
@@ -104,7 +104,7 @@ class LibraryRules(NamedTuple):
     makes: Mapping[str, Names]
     silent: Mapping[str, frozenset[str]]
 
-    def spoken(self, section: Mapping[str, Names], use: NodeUse) -> Rule | None:
+    def spoken(self, section: Mapping[str, Names], use: NodeUse) -> NameRule | None:
         """Return the rule of a section that speaks about a use, if there is one."""
         found = section[use.language].of(use.name) if use.language in section else None
         if found is None:
@@ -117,7 +117,7 @@ class LibraryRules(NamedTuple):
         """Return by section the rules that speak about the uses of a node."""
         found: dict[str, list[RuleOfUse]] = {"brings_in": [], "makes": [], "lets_out": []}
         for name in found if uses else ():
-            speaking: dict[Rule, NodeUse] = {}
+            speaking: dict[NameRule, NodeUse] = {}
             for use in uses:
                 if rule := self.spoken(getattr(self, name), use):
                     speaking.setdefault(rule, use)

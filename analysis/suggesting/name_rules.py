@@ -22,7 +22,7 @@ _HUMP = re.compile("([a-z])([A-Z])")
 _NO_LETTERS = re.compile("[^a-z]+")
 
 
-class Rule(NamedTuple):
+class NameRule(NamedTuple):
     """What some words of a name, or the use of a library, suggest.
 
     Attributes
@@ -60,14 +60,14 @@ class NameRules:
     """The rules of all files; a field is a section of the file, which says what it means (docs/suggestions.md)."""
 
     # phrase -> rule: of topics what is sent through them, and that nothing is; of nodes what they bring in or let out
-    carries: Mapping[Phrase, Rule] = field(default_factory=dict)
-    nothing: Mapping[Phrase, Rule] = field(default_factory=dict)
-    brings_in: Mapping[Phrase, Rule] = field(default_factory=dict)
-    lets_out: Mapping[Phrase, Rule] = field(default_factory=dict)
-    unprompted: Mapping[Phrase, Rule] = field(default_factory=dict)  # what who writes such a topic, and reads none
+    carries: Mapping[Phrase, NameRule] = field(default_factory=dict)
+    nothing: Mapping[Phrase, NameRule] = field(default_factory=dict)
+    brings_in: Mapping[Phrase, NameRule] = field(default_factory=dict)
+    lets_out: Mapping[Phrase, NameRule] = field(default_factory=dict)
+    unprompted: Mapping[Phrase, NameRule] = field(default_factory=dict)  # what who writes such a topic, and reads none
     # category -> category -> rule: what nodes make of it; what of persons a node may tell that takes such data
-    becomes: Mapping[str, Mapping[str, Rule]] = field(default_factory=dict)
-    tells: Mapping[str, Mapping[str, Rule]] = field(default_factory=dict)
+    becomes: Mapping[str, Mapping[str, NameRule]] = field(default_factory=dict)
+    tells: Mapping[str, Mapping[str, NameRule]] = field(default_factory=dict)
     silent: frozenset[Phrase] = frozenset()  # suggest nothing wherever they stand last, such as camera_info
     neutral: frozenset[str] = frozenset()  # words that say nothing by themselves, such as raw
     simulated: frozenset[str] = frozenset()  # a node or topic with one stands for what nobody measured
@@ -79,7 +79,7 @@ class NameRules:
 class Spoken(NamedTuple):
     """A rule that speaks about a name, and the words of the name that it is about."""
 
-    rule: Rule
+    rule: NameRule
     words: Phrase
 
     @property
@@ -133,7 +133,7 @@ def has_word(name: str, words: frozenset[str]) -> bool:
     return not words.isdisjoint(_own(name))
 
 
-def of_node(name: str, rules: Mapping[Phrase, Rule], silent: frozenset[Phrase] = frozenset()) -> Spoken | None:
+def of_node(name: str, rules: Mapping[Phrase, NameRule], silent: frozenset[Phrase] = frozenset()) -> Spoken | None:
     """Return the rule that speaks about a node of this name, by its own part of the name.
 
     Parameters
@@ -157,7 +157,7 @@ def _speaking(parts: Sequence[str], rules: NameRules) -> Phrase:
     return next((part for part in map(words, parts) if not rules.neutral.issuperset(part)), ())
 
 
-def _last(part: Phrase, rules: Mapping[Phrase, Rule], silent: frozenset[Phrase]) -> Spoken | None:
+def _last(part: Phrase, rules: Mapping[Phrase, NameRule], silent: frozenset[Phrase]) -> Spoken | None:
     """The rule about the last words of a part that a rule is about; of several phrases there the longest."""
     for phrase in _phrases(part):
         if phrase in silent:

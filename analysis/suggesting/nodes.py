@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Bound, Element, FlowGraph
     from rosprivacy.analysis.suggesting.channels import Rules, Traffic
     from rosprivacy.analysis.suggesting.library_rules import LibraryRules, NodeUse, RuleOfUse
-    from rosprivacy.analysis.suggesting.name_rules import NameRules, Rule
+    from rosprivacy.analysis.suggesting.name_rules import NameRule, NameRules
 
     Clues = Mapping[int, tuple[Clue, ...]]
 MAY, LIKELY = Confidence.MAY, Confidence.LIKELY
@@ -227,7 +227,7 @@ class _Node:
         if rule and free and nothing_else:
             yield from self._unprompted(rule, f"{'asks for' if free.element.leg else 'writes'} {free.element.name}")
 
-    def _unprompted(self, rule: Rule, does: str) -> Iterator[Evidence]:
+    def _unprompted(self, rule: NameRule, does: str) -> Iterator[Evidence]:
         reason = f"{does}, and reads no topic: {rule.why}"
         yield from (Evidence(self._label(kind), DATA_FLOW, rule.confidence, reason, rule.place) for kind in rule.kinds)
 

@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.suggesting.evidence import Identity, Label
 
 
-class Row(NamedTuple):
+class WeighingRow(NamedTuple):
     """A row of the table of weighing: of these grounds together, where the surest is at least ``floor``, what follows.
 
     Without ``agreed`` that is what the surest says, and no more than ``ceiling``.
@@ -62,12 +62,12 @@ class Row(NamedTuple):
 
 def _alone(
     *grounds: str, floor: Confidence = Confidence.MAY, ceiling: Confidence = Confidence.CERTAIN
-) -> tuple[Row, ...]:
-    return tuple(Row(frozenset([ground]), floor, ceiling) for ground in grounds)
+) -> tuple[WeighingRow, ...]:
+    return tuple(WeighingRow(frozenset([ground]), floor, ceiling) for ground in grounds)
 
 
-def _together(*grounds: str) -> Row:
-    return Row(frozenset(grounds), agreed=Confidence.LIKELY)
+def _together(*grounds: str) -> WeighingRow:
+    return WeighingRow(frozenset(grounds), agreed=Confidence.LIKELY)
 
 
 WEIGHING = {  # what is in no row is may
@@ -157,7 +157,7 @@ def _by_table(role: str, reasons: tuple[tuple[str, Confidence, bool], ...]) -> C
     return min((_row(row, reasons) for row in WEIGHING[role]), key=SURENESS.__getitem__)
 
 
-def _row(row: Row, reasons: Iterable[tuple[str, Confidence, bool]]) -> Confidence:
+def _row(row: WeighingRow, reasons: Iterable[tuple[str, Confidence, bool]]) -> Confidence:
     """What a row of the table says of reasons: may, if not all of its grounds are there."""
     speaking = [
         (ground, confidence)

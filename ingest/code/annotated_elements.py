@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.errors import InputError
     from rosprivacy.analysis.model import Statement
-    from rosprivacy.ingest.code.source_code import Code, Lines, Site
+    from rosprivacy.ingest.code.source_code import CallSite, Code, SourceLines
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 SECTION = {NODE: "nodes", "topic": "topics", "service": "services", "action": "actions"}
@@ -94,8 +94,8 @@ def attach(
 
 def _of_file(code: Code, names: CodeNames, vocabulary: Vocabulary) -> Iterator[Labelled | LabelError]:
     beside = _Beside(code, names)
-    notes: list[tuple[Site, Annotation]] = []
-    elements: dict[Site, list[Labelled]] = defaultdict(list)  # what others beside a call are about
+    notes: list[tuple[CallSite, Annotation]] = []
+    elements: dict[CallSite, list[Labelled]] = defaultdict(list)  # what others beside a call are about
     for comment in code.comments:
         read = read_annotation(comment.text, Place(code.file, comment.line), vocabulary)
         if read is None:
@@ -127,7 +127,7 @@ def _by_name(annotation: Annotation) -> Labelled:
     return Labelled(section, annotation.name, annotation.place, annotation.statements, annotation.note)
 
 
-def _at_site(code: Code, names: CodeNames, site: Site, annotation: Annotation) -> Labelled | LabelError:
+def _at_site(code: Code, names: CodeNames, site: CallSite, annotation: Annotation) -> Labelled | LabelError:
     name = names.name(code, site)
     if site.kind == NODE:
         if annotation.word in OF_CHANNELS:
@@ -150,7 +150,7 @@ def _at_site(code: Code, names: CodeNames, site: Site, annotation: Annotation) -
     )
 
 
-def _source(code: Code, names: CodeNames, site: Site, annotation: Annotation) -> Labelled | LabelError:
+def _source(code: Code, names: CodeNames, site: CallSite, annotation: Annotation) -> Labelled | LabelError:
     """A call that writes: its node is a source, through this channel (rule S8)."""
     if site.role not in WRITES:
         return LabelError(
@@ -168,7 +168,7 @@ def _source(code: Code, names: CodeNames, site: Site, annotation: Annotation) ->
     )
 
 
-def _no_name(annotation: Annotation, site: Site, example: str, says: str = "") -> LabelError:
+def _no_name(annotation: Annotation, site: CallSite, example: str, says: str = "") -> LabelError:
     written = site.written
     if written is not None and not is_ros_name(written):
         what = f"{shown(written)!r} is no full name of ROS"
@@ -189,7 +189,7 @@ class _Beside:
         self.above = comments_above(code)
         self.sites = [site for site in code.sites if site.kind != NODE or names.is_node(code, site)]
 
-    def of(self, line: int) -> Site | LabelError:
+    def of(self, line: int) -> CallSite | LabelError:
         """Return the site; a call alone goes before the statement that it is a part of."""
         sites = [site for site in self.sites if self._claims(site.lines, line)]
         sites = sites or [site for site in self.sites if self._claims(site.statement, line)]
@@ -202,7 +202,7 @@ class _Beside:
             return LabelError(*place, what, "put each on a line of its own, or name the element: privacy(/name): …")
         return sites[0]
 
-    def _claims(self, lines: Lines, line: int) -> bool:
+    def _claims(self, lines: SourceLines, line: int) -> bool:
         return self.above.get(lines.first, lines.first) <= line <= lines.last
 
 

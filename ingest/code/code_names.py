@@ -20,7 +20,7 @@ from rosprivacy.ingest.policies.names import resolve
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from rosprivacy.ingest.code.source_code import Code, Site
+    from rosprivacy.ingest.code.source_code import CallSite, Code
 
     PlacedName = tuple[str, str]  # kind and full name of an element
 
@@ -55,7 +55,7 @@ class CodeNames:
                     self._of_file[code.file, site.owner].add(name)
                     self._of_language[code.language, site.owner].add(name)
 
-    def is_node(self, code: Code, site: Site) -> bool:
+    def is_node(self, code: Code, site: CallSite) -> bool:
         """Return whether a site that may be one of a node is one."""
         name, classes = class_of(site.owner), self._node_classes[code.language]
         if not name:
@@ -71,7 +71,7 @@ class CodeNames:
         names = here or (self._of_language.get((code.language, owner), set()) if class_of(owner) else set())
         return next(iter(names)) or "" if len(names) == 1 else ""
 
-    def name(self, code: Code, site: Site) -> str:
+    def name(self, code: Code, site: CallSite) -> str:
         """Return the full name at a site; empty where it is not known."""
         if site.kind == NODE:
             return self.node(code, site.owner) if site.head else self._of_site(site) or ""
@@ -85,7 +85,7 @@ class CodeNames:
         space, _, base = node.rpartition("/") if node else (self.namespace, "", "")
         return resolve(written, space or ROOT, base)
 
-    def _of_site(self, site: Site) -> str | None:
+    def _of_site(self, site: CallSite) -> str | None:
         """The name of a node where it is made."""
         written, space = site.written or "", site.namespace
         if not written.isascii() or not written.isidentifier() or space is None:
@@ -175,8 +175,8 @@ def code_comments(codes: Sequence[Code], namespace: str = ROOT) -> dict[PlacedNa
 
     Examples
     --------
-    >>> from rosprivacy.ingest.code.source_code import Code, Comment, Lines, Site
-    >>> call = Site("topic", "/faces", Lines(3, 3), Lines(3, 3), "", "publish")
+    >>> from rosprivacy.ingest.code.source_code import Code, Comment, Lines, CallSite
+    >>> call = CallSite("topic", "/faces", Lines(3, 3), Lines(3, 3), "", "publish")
     >>> said = (Comment(1, "of guests", True), Comment(2, "with names", True), Comment(9, "other", True))
     >>> code_comments([Code("a.py", "python", said, (), (call,))])
     {('topic', '/faces'): ('of guests', 'with names')}

@@ -34,13 +34,13 @@ from rosprivacy.ingest.code.source_code import (
     LONGEST_USE,
     NODE,
     NODE_CLASSES,
+    CallSite,
     Code,
-    Comment,
-    Lines,
+    NameUse,
     NodeClass,
     OutOfTime,
-    Site,
-    Use,
+    SourceComment,
+    SourceLines,
     Where,
     class_owner,
     clock,
@@ -125,7 +125,7 @@ class _Names:
         """Note the first use of a name in a unit."""
         self._used.setdefault((unit, name), line)
 
-    def uses(self) -> tuple[Use, ...]:
+    def uses(self) -> tuple[NameUse, ...]:
         """What is used, each name once in a unit, by line."""
         found: dict[tuple[str, str], int] = {}
         for (unit, name), line in self._used.items():
@@ -133,7 +133,7 @@ class _Names:
             plain = known == name and "::" not in name and name.isidentifier()
             for meant in [known, *(f"{space}::{name}" for space in dict.fromkeys(self.namespaces) if plain)]:
                 found[unit, meant] = min(line, found.get((unit, meant), line))
-        uses = (Use(name, line, unit) for (unit, name), line in found.items() if len(name) <= LONGEST_USE)
+        uses = (NameUse(name, line, unit) for (unit, name), line in found.items() if len(name) <= LONGEST_USE)
         return tuple(sorted(uses, key=lambda use: (use.line, use.name)))
 
 
@@ -169,9 +169,9 @@ class _Reader:
         self.data = data
         self.names = _Names()
         self.parts_of_names: set[int] = set()
-        self.comments: list[Comment] = []
+        self.comments: list[SourceComment] = []
         self.classes: list[NodeClass] = []
-        self.sites: list[Site] = []
+        self.sites: list[CallSite] = []
         self.understood: list[tuple[int, int]] = []  # comments and strings, by byte
 
     def read(self, nodes: Iterable[tuple[Node, Where]]) -> Code:
@@ -204,11 +204,11 @@ class _Reader:
         classes, lost = tuple(self.classes), tuple(self._lost())
         return Code(self.file, "c++", tuple(self.comments), classes, sites, lost, self.names.uses())
 
-    def _comment(self, node: Node) -> Iterator[Comment]:
+    def _comment(self, node: Node) -> Iterator[SourceComment]:
         before = self.data[self.data.rfind(b"\n", 0, node.start_byte) + 1 : node.start_byte]
         for at, line in enumerate(text_of(node).split("\n")):
             text = line.rstrip("\r \t\\").removesuffix("*/").strip(SIGNS)
-            yield Comment(line_of(node) + at, text, at > 0 or not before.strip())
+            yield SourceComment(line_of(node) + at, text, at > 0 or not before.strip())
 
     def _lost(self) -> Iterator[LabelError]:
         """Annotations that stand in no comment and no string."""
@@ -233,41 +233,41 @@ class _Reader:
         bases = tuple(
             last_of(child) for child in (clause.named_children if clause else ()) if "access" not in child.type
         )
-        lines = Lines(where.first if where.templated else line_of(node), line_of(body))
+        lines = SourceLines(where.first if where.templated else line_of(node), line_of(body))
         self.classes.append(NodeClass(last_of(name), bases, lines))
-        self.sites.append(Site(NODE, None, lines, lines, class_owner(last_of(name)), head=True))
+        self.sites.append(CallSite(NODE, None, lines, lines, class_owner(last_of(name)), head=True))
 
     def _initializer(self, node: Node, where: Where) -> None:
         """``: Node("camera")`` of a constructor; whether it is one of a node's class is known later."""
         arguments = next((child for child in node.children if child.type in ARGUMENTS), None)
         if arguments is not None and where.of_class:
             base = last_of(node.children[0])
-            lines = Lines(where.first, end_of(node))
-            self._node(arguments, lines, class_owner(where.of_class), Lines(line_of(node), end_of(node)), base)
+            lines = SourceLines(where.first, end_of(node))
+            self._node(arguments, lines, class_owner(where.of_class), SourceLines(line_of(node), end_of(node)), base)
 
     def _declared(self, declaration: Node, where: Where) -> None:
         """``rclcpp::Node node("camera")``."""
         type_name = declaration.child_by_field_name("type")
         if type_name is None or last_of(type_name) not in NODE_CLASSES:
             return
-        lines = Lines(line_of(declaration), end_of(declaration))
+        lines = SourceLines(line_of(declaration), end_of(declaration))
         for node in declaration.children_by_field_name("declarator"):
             target, value = node.child_by_field_name("declarator"), node.child_by_field_name("value")
             if node.type == "init_declarator" and value and value.type in ARGUMENTS:
                 self._node(value, lines, variable(brief(target), where) if target else "", lines, "")
 
-    def _node(self, arguments: Node, statement: Lines, owner: str, lines: Lines, base: str) -> None:
+    def _node(self, arguments: Node, statement: SourceLines, owner: str, lines: SourceLines, base: str) -> None:
         given = arguments_of(arguments)
         name = literal_of(given[0]) if given else None
         space = literal_of(given[1]) if len(given) > 1 and "literal" in given[1].type else ""
-        self.sites.append(Site(NODE, name, lines, statement, owner, namespace=space, base=base))
+        self.sites.append(CallSite(NODE, name, lines, statement, owner, namespace=space, base=base))
 
     def _call(self, node: Node, where: Where) -> None:
         function, arguments = node.child_by_field_name("function"), node.child_by_field_name("arguments")
         if function is None or arguments is None:
             return
         path, template, receiver = path_of(function)
-        lines = Lines(line_of(node), end_of(node))
+        lines = SourceLines(line_of(node), end_of(node))
         statement = where.statement or lines
         last, before = path[-1], path[-2] if len(path) > 1 else ""
         shared = last == "make_shared"
@@ -298,8 +298,8 @@ class _Reader:
             self.names.use(started, line, unit)
 
     def _endpoint(
-        self, path: list[str], template: list[Node], receiver: str, arguments: list[Node], at: tuple[Lines, Lines],
-        where: Where,
+        self, path: list[str], template: list[Node], receiver: str, arguments: list[Node],
+        at: tuple[SourceLines, SourceLines], where: Where,
     ) -> None:  # fmt: skip
         kind, role = CALLS[path[-1]]
         space = path[-2] if len(path) > 1 else ""
@@ -317,4 +317,4 @@ class _Reader:
         images = space == IMAGES
         found = IMAGE if images else found
         more = images and role == "publish"
-        self.sites.append(Site(kind, name, *at, owner, role, found, prefix=more))
+        self.sites.append(CallSite(kind, name, *at, owner, role, found, prefix=more))

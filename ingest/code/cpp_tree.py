@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosprivacy.ingest.code.source_code import Lines, Where
+from rosprivacy.ingest.code.source_code import SourceLines, Where
 
 if TYPE_CHECKING:
     from tree_sitter import Node
@@ -50,7 +50,7 @@ def _inside(node: Node, where: Where) -> Where:
     elif kind == "template_declaration":
         where = where._replace(first=line_of(node), templated=True)
     elif kind in STATEMENTS:
-        where = where._replace(statement=Lines(line_of(node), end_of(node)), target="")
+        where = where._replace(statement=SourceLines(line_of(node), end_of(node)), target="")
     elif kind in ("init_declarator", "assignment_expression"):
         target = node.child_by_field_name("declarator") or node.child_by_field_name("left")
         where = where._replace(target=brief(target) if target else "")

@@ -31,7 +31,7 @@ from rosprivacy.ingest.code.source_code import NODE, class_of
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-    from rosprivacy.ingest.code.source_code import Code, Site
+    from rosprivacy.ingest.code.source_code import CallSite, Code
 
 INIT = "__init__.py"
 FOLDERS = ("src", "include")  # of a package of C++
@@ -273,7 +273,7 @@ def _sorted(uses: Iterable[NodeUse]) -> tuple[NodeUse, ...]:
     return tuple(sorted(uses, key=lambda use: (use.place, use.name)))
 
 
-def _own_name(site: Site) -> str:
+def _own_name(site: CallSite) -> str:
     """The name of a node of which only the namespace is not known; policies have it in some namespace."""
     return f"{ROOT}{site.written}" if site.namespace is None and site.written and is_ros_name(site.written) else ""
 

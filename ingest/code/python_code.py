@@ -23,13 +23,13 @@ from rosprivacy.ingest.code.source_code import (
     INTERFACES,
     NODE,
     NODE_CLASSES,
+    CallSite,
     Code,
-    Comment,
     Launch,
-    Lines,
     NodeClass,
     Script,
-    Site,
+    SourceComment,
+    SourceLines,
     Where,
     class_owner,
     clock,
@@ -100,18 +100,18 @@ def read_python(file: str, data: bytes) -> Code:
         if isinstance(node, ast.ClassDef):
             classes.append(_class(node, imports))
             lines = classes[-1].lines
-            sites.append(Site(NODE, None, lines, lines, class_owner(node.name), head=True))
+            sites.append(CallSite(NODE, None, lines, lines, class_owner(node.name), head=True))
         elif isinstance(node, ast.Call) and (site := _site(node, where, imports)):
             sites.append(site)
     own = comments, tuple(classes), tuple(sites)
     return Code(file, "python", *own, (), used.uses(late), used.units, *launched(tree), pairs)
 
 
-def _comments(text: str) -> Iterator[Comment]:
+def _comments(text: str) -> Iterator[SourceComment]:
     for token in tokenize.generate_tokens(io.StringIO(text).readline):
         if token.type == tokenize.COMMENT:
             alone = not token.line[: token.start[1]].strip()
-            yield Comment(token.start[0], token.string.lstrip("#!: ").rstrip(), alone)
+            yield SourceComment(token.start[0], token.string.lstrip("#!: ").rstrip(), alone)
 
 
 def _parts(node: ast.AST, where: Where) -> list[tuple[ast.AST, Where]]:
@@ -131,9 +131,9 @@ def _inside(node: ast.AST, child: ast.AST, where: Where) -> Where:
     return where._replace(target=named)
 
 
-def _lines(node: ast.AST) -> Lines:
+def _lines(node: ast.AST) -> SourceLines:
     first = int(getattr(node, "lineno", 1))
-    return Lines(first, int(getattr(node, "end_lineno", None) or first))
+    return SourceLines(first, int(getattr(node, "end_lineno", None) or first))
 
 
 def _class(node: ast.ClassDef, imports: Mapping[str, str]) -> NodeClass:
@@ -143,7 +143,7 @@ def _class(node: ast.ClassDef, imports: Mapping[str, str]) -> NodeClass:
     last = max([node.lineno, *(_lines(one).last for one in head)])
     named = [name for name in map(_dotted, node.bases) if name]
     bases = tuple((_whole(name, imports) or name).rpartition(".")[2] for name in named)
-    return NodeClass(node.name, bases, Lines(first, last))
+    return NodeClass(node.name, bases, SourceLines(first, last))
 
 
 def _dotted(node: ast.AST) -> str:
@@ -155,7 +155,7 @@ def _dotted(node: ast.AST) -> str:
     return ".".join([node.id, *reversed(parts)]) if isinstance(node, ast.Name) else ""
 
 
-def _site(call: ast.Call, where: Where, imports: Mapping[str, str]) -> Site | None:
+def _site(call: ast.Call, where: Where, imports: Mapping[str, str]) -> CallSite | None:
     function = _dotted(call.func)
     last = call.func.attr if isinstance(call.func, ast.Attribute) else function
     lines = _lines(call)
@@ -165,7 +165,7 @@ def _site(call: ast.Call, where: Where, imports: Mapping[str, str]) -> Site | No
     if last == "create_node" or (last in NODE_CLASSES and _whole(function, imports).startswith("rclpy.")):
         owner = _variable(where.target, where) if where.target else ""
         name, space = _text(_argument(call, 0, "node_name")), _namespace(call)
-        return Site(NODE, name, *at, owner, namespace=space)
+        return CallSite(NODE, name, *at, owner, namespace=space)
     how = METHODS.get(last) if isinstance(call.func, ast.Attribute) else None
     how = how or ACTIONS.get(last)
     if how is None:
@@ -173,10 +173,10 @@ def _site(call: ast.Call, where: Where, imports: Mapping[str, str]) -> Site | No
     node = _argument(call, *how.node) if how.node else getattr(call.func, "value", None)
     owner = _variable(_dotted(node), where) if node is not None else ""
     found = _message_type(_dotted(_argument(call, *how.type) or ast.Constant(None)), imports)
-    return Site(how.kind, _text(_argument(call, *how.name)), *at, owner, how.role, found)
+    return CallSite(how.kind, _text(_argument(call, *how.name)), *at, owner, how.role, found)
 
 
-def _own_constructor(call: ast.Call, where: Where, at: tuple[Lines, Lines]) -> Site | None:
+def _own_constructor(call: ast.Call, where: Where, at: tuple[SourceLines, SourceLines]) -> CallSite | None:
     """``super().__init__('camera')`` or ``Node.__init__(self, 'camera')``."""
     before = call.func.value if isinstance(call.func, ast.Attribute) else None
     if isinstance(before, ast.Call) and _dotted(before.func) == "super":
@@ -186,7 +186,7 @@ def _own_constructor(call: ast.Call, where: Where, at: tuple[Lines, Lines]) -> S
     else:
         return None
     name = _text(_argument(call, place, "node_name"))
-    return Site(NODE, name, *at, class_owner(where.of_class), namespace=_namespace(call), base=base)
+    return CallSite(NODE, name, *at, class_owner(where.of_class), namespace=_namespace(call), base=base)
 
 
 def _namespace(call: ast.Call) -> str | None:

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.suggesting.library_rules import ADDRESS
-from rosprivacy.ingest.code.source_code import LONGEST_USE, Lines, Unit, Use, in_time, program
+from rosprivacy.ingest.code.source_code import LONGEST_USE, NameUse, SourceLines, SourceUnit, in_time, program
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -61,7 +61,7 @@ class PythonUses:
     def __init__(self, tree: ast.Module, file: str) -> None:
         self.tree = tree
         self.units = tuple(
-            Unit(one.name, Lines(_first(one), one.end_lineno or one.lineno))
+            SourceUnit(one.name, SourceLines(_first(one), one.end_lineno or one.lineno))
             for one in tree.body
             if isinstance(one, DEFINITIONS)
         )
@@ -74,7 +74,7 @@ class PythonUses:
         self._built: dict[tuple[str, str], set[str]] = defaultdict(set)  # by unit and variable: what makes its values
         self._commands: dict[tuple[str, str], list[ast.expr]] = defaultdict(list)  # lists and texts that variables are
 
-    def uses(self, late: Callable[[], bool]) -> tuple[Use, ...]:
+    def uses(self, late: Callable[[], bool]) -> tuple[NameUse, ...]:
         """Return what is used, each name once in a unit, in the order of the text.
 
         Raises
@@ -85,14 +85,14 @@ class PythonUses:
         pieces = [(node, unit) for unit, top in self._tops() for node in ast.walk(top)]
         for node, unit in in_time(pieces, late):
             self._note(node, unit)
-        found: dict[tuple[str, str], Use] = {}
+        found: dict[tuple[str, str], NameUse] = {}
         inside: set[int] = set()  # parts of what has been looked at as a whole
         for node, unit in in_time(pieces, late):
             if id(node) in inside or not isinstance(node, PIECES):
                 continue
             of_text = isinstance(node, ast.Constant | ast.JoinedStr)
             for name in _addresses(node, inside) if of_text else self._names(node, unit, inside):
-                one = Use(name, node.lineno, unit)
+                one = NameUse(name, node.lineno, unit)
                 first = found.setdefault((unit, name), one)
                 found[unit, name] = min(first, one, key=lambda use: use.line)
         return tuple(sorted(found.values(), key=lambda use: (use.line, use.name)))

@@ -35,14 +35,14 @@ LONGEST = 3  # words that are kept of these: ros2 bag record
 WORD = re.compile(r"[A-Za-z_][\w.-]*", re.ASCII)
 
 
-class Lines(NamedTuple):
+class SourceLines(NamedTuple):
     """From one line of a file to another, both included."""
 
     first: int
     last: int
 
 
-class Comment(NamedTuple):
+class SourceComment(NamedTuple):
     """One line of a comment.
 
     Attributes
@@ -69,10 +69,10 @@ class NodeClass(NamedTuple):
 
     name: str
     bases: tuple[str, ...]
-    lines: Lines
+    lines: SourceLines
 
 
-class Site(NamedTuple):
+class CallSite(NamedTuple):
     """A class, or a call, that an annotation can stand beside.
 
     Attributes
@@ -101,8 +101,8 @@ class Site(NamedTuple):
 
     kind: str
     written: str | None
-    lines: Lines
-    statement: Lines
+    lines: SourceLines
+    statement: SourceLines
     owner: str
     role: str = ""
     type: str = ""
@@ -112,7 +112,7 @@ class Site(NamedTuple):
     head: bool = False
 
 
-class Use(NamedTuple):
+class NameUse(NamedTuple):
     """One name that code uses, as the imports of the file resolve it.
 
     Attributes
@@ -129,11 +129,11 @@ class Use(NamedTuple):
     unit: str = ""
 
 
-class Unit(NamedTuple):
+class SourceUnit(NamedTuple):
     """A class or function at the top of a file."""
 
     name: str
-    lines: Lines
+    lines: SourceLines
 
 
 class Launch(NamedTuple):
@@ -166,19 +166,19 @@ class Code(NamedTuple):
 
     file: str
     language: str
-    comments: tuple[Comment, ...] = ()
+    comments: tuple[SourceComment, ...] = ()
     classes: tuple[NodeClass, ...] = ()
-    sites: tuple[Site, ...] = ()
+    sites: tuple[CallSite, ...] = ()
     problems: tuple[InputError, ...] = ()
-    uses: tuple[Use, ...] = ()
-    units: tuple[Unit, ...] = ()
+    uses: tuple[NameUse, ...] = ()
+    units: tuple[SourceUnit, ...] = ()
     launches: tuple[Launch, ...] = ()
     scripts: tuple[Script, ...] = ()
     imports: tuple[tuple[str, str], ...] = ()
 
 
 def class_owner(name: str) -> str:
-    """Return what stands for the nodes of a class in ``Site.owner``; see ``class_of``.
+    """Return what stands for the nodes of a class in ``CallSite.owner``; see ``class_of``.
 
     >>> class_owner("Camera"), class_of(class_owner("Camera")), class_of("/3:0:node")
     ('class Camera', 'Camera', '')
@@ -211,7 +211,7 @@ class Where(NamedTuple):
     of_class: str = ""
     function: str = ""
     first: int = 0
-    statement: Lines | None = None
+    statement: SourceLines | None = None
     target: str = ""
     broken: bool = False
     templated: bool = False

@@ -1,7 +1,7 @@
 """What a policy says and what is deployed, side by side: the rights that only one of them has, and how they were lost.
 
-In: policies of both sides. Out: ``Difference`` by enclave, and ``Loss`` by the line that does not hold; sorted. Of a
-plain name it is exact. A wildcard of one side is held by the other if one expression there covers it and nothing is
+In: policies of both sides. Out: ``GrantDifference`` by enclave, and ``Loss`` by the line that does not hold; sorted. Of
+a plain name it is exact. A wildcard of one side is held by the other if one expression there covers it and nothing is
 taken out of it there that is not taken out here too; else it is told, also where several expressions together would do
 (rules S4, S5). A loss is a difference that the known generator of Zenoh's lists makes.
 
@@ -43,7 +43,7 @@ FAULTS = {
 }
 
 
-class Difference(NamedTuple):
+class GrantDifference(NamedTuple):
     """A right that one side has and the other has not.
 
     Attributes
@@ -68,7 +68,7 @@ class Difference(NamedTuple):
 
 def differences(
     stated: Iterable[Policy], deployed: Iterable[Policy], name_of: Callable[[Grant], str] = lambda grant: grant.enclave
-) -> tuple[Difference, ...]:
+) -> tuple[GrantDifference, ...]:
     """Return what differs, by enclave.
 
     Parameters
@@ -84,14 +84,14 @@ def differences(
         {name: _Rights(grants) for name, grants in _by_name(policies, by).items()}
         for policies, by in ((stated, name_of), (deployed, lambda grant: grant.enclave))
     )
-    found: set[Difference] = set()
+    found: set[GrantDifference] = set()
     for enclave in sorted({*ours, *theirs}):
         first, second = ours.get(enclave, _NO_RIGHTS), theirs.get(enclave, _NO_RIGHTS)
         for one, other, is_stated in ((first, second, True), (second, first, False)):
             for grant, end in one.rights():
                 if end.dds != ADDED and not other.holds(end, one.takes_out(grant, end)):
                     of_end = end.writes, end.kind, end.name, end.leg, end.dds
-                    found.add(Difference(enclave, is_stated, *of_end, grant.place))
+                    found.add(GrantDifference(enclave, is_stated, *of_end, grant.place))
     return tuple(sorted(found))
 
 
@@ -170,7 +170,7 @@ class Loss(NamedTuple):
 def generator_losses(
     stated: Iterable[Policy],
     deployed: Iterable[Policy],
-    differences: Iterable[Difference],
+    differences: Iterable[GrantDifference],
     name_of: Callable[[Grant], str],
 ) -> tuple[Loss, ...]:
     """Return the differences that the known generator makes, by the line that does not hold.
@@ -187,8 +187,8 @@ def generator_losses(
     stated, deployed = tuple(stated), tuple(deployed)
     lists = _by_name(deployed, lambda grant: grant.enclave)
     files = {profile.enclave: profile.place.file for policy in deployed for profile in policy.profiles}
-    missing: dict[str, list[Difference]] = defaultdict(list)
-    more: dict[str, list[Difference]] = defaultdict(list)
+    missing: dict[str, list[GrantDifference]] = defaultdict(list)
+    more: dict[str, list[GrantDifference]] = defaultdict(list)
     for one in differences:
         (missing if one.stated else more)[one.enclave].append(one)
     losses: list[Loss] = list(_profiles(stated, files))
@@ -201,7 +201,7 @@ def generator_losses(
     return tuple(sorted(set(losses)))
 
 
-def _deny(grant: Grant, grants: Iterable[Grant], differences: Iterable[Difference]) -> Iterator[Loss]:
+def _deny(grant: Grant, grants: Iterable[Grant], differences: Iterable[GrantDifference]) -> Iterator[Loss]:
     """A DENY of which the list allows something."""
     for end in _ends(grant):
         for extra in differences:
@@ -216,7 +216,7 @@ def _deny(grant: Grant, grants: Iterable[Grant], differences: Iterable[Differenc
 
 
 def _lost(
-    grant: Grant, missing: Iterable[Difference], grants: Iterable[Grant], listed: list[Grant], file: str
+    grant: Grant, missing: Iterable[GrantDifference], grants: Iterable[Grant], listed: list[Grant], file: str
 ) -> Iterator[Loss]:
     """An ALLOW that the list does not have, or not under this name."""
     lacking = {(one.writes, one.dds) for one in missing}
@@ -250,7 +250,7 @@ def _profiles(stated: Iterable[Policy], files: dict[str, str]) -> Iterator[Loss]
                 yield _of_profile(profile, ENCLAVE, f"enclave {shown(profile.enclave)} has no list for it here")
 
 
-def _below(differences: Iterable[Difference], listed: Iterable[Grant]) -> Iterator[Loss]:
+def _below(differences: Iterable[GrantDifference], listed: Iterable[Grant]) -> Iterator[Loss]:
     """Names below a name that the same line of a list opens."""
     opened = {(grant.place, grant.role == "publish", grant.name) for grant in listed if grant.allow}
     for extra in differences:

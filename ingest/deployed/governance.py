@@ -19,7 +19,7 @@ from rosprivacy.analysis.model import ACCESS_GAP, Diagnostic, Place, Policy, Pro
 from rosprivacy.ingest.deployed.permissions import DIRECTIONS, NOWHERE, dds_grant
 from rosprivacy.ingest.deployed.security_xml import (
     LAST_OF_ROS,
-    Source,
+    XmlSource,
     common,
     security_entries,
     warning,
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.model import Profile
     from rosprivacy.ingest.deployed.permissions import Permissions
-    from rosprivacy.ingest.deployed.security_xml import Domains, Section, Spans
+    from rosprivacy.ingest.deployed.security_xml import Domains, Spans, XmlSection
 
 ENCRYPTING = ("ENCRYPT", "ENCRYPT_WITH_ORIGIN_AUTHENTICATION")
 BASIC = ("NONE", "SIGN", "ENCRYPT")
@@ -123,13 +123,13 @@ class Governance:
 
 def read_governance(data: bytes, file: str, before: int = 0) -> Governance:
     """Read the text of a governance file, before which so many lines stand; ``InputErrors`` has every problem."""
-    source = Source(file, before)
+    source = XmlSource(file, before)
     rules = tuple(map(_domain_rule, security_entries(data, source, "domain_access_rules", "domain_rule")))
     source.check()
     return Governance(file, rules)
 
 
-def _domain_rule(rule: Section) -> DomainRule:
+def _domain_rule(rule: XmlSection) -> DomainRule:
     parts = {tag: rule.child(tag, OF_DOMAIN) for tag in OF_DOMAIN}
     domains, topics = parts["domains"], parts["topic_access_rules"]
     return DomainRule(
@@ -142,7 +142,7 @@ def _domain_rule(rule: Section) -> DomainRule:
     )
 
 
-def _topic_rule(rule: Section) -> TopicRule:
+def _topic_rule(rule: XmlSection) -> TopicRule:
     parts = {tag: _optional(rule, tag) if tag in LATER else rule.child(tag, OF_TOPIC) for tag in OF_TOPIC}
     expression = parts["topic_expression"]
     if expression and not expression.text:
@@ -157,15 +157,15 @@ def _topic_rule(rule: Section) -> TopicRule:
     )
 
 
-def _optional(rule: Section, tag: str) -> Section | None:
+def _optional(rule: XmlSection, tag: str) -> XmlSection | None:
     return next((child for child in rule.children(OF_TOPIC) if child.tag == tag), None)
 
 
-def _is_true(part: Section | None) -> bool:
+def _is_true(part: XmlSection | None) -> bool:
     return part is not None and part.boolean()
 
 
-def _protection_kind(part: Section | None) -> str:
+def _protection_kind(part: XmlSection | None) -> str:
     return part.chosen({**OF_DOMAIN, **OF_TOPIC}[part.tag], "NONE") if part else "NONE"
 
 

@@ -17,14 +17,14 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputErrors, PolicyError, shown
 from rosprivacy.analysis.model import SEVERAL_PROFILES, Diagnostic, Grant, Policy, Profile, Severity
-from rosprivacy.ingest.deployed.security_xml import Domains, Source, security_entries, warning
+from rosprivacy.ingest.deployed.security_xml import Domains, XmlSource, security_entries, warning
 from rosprivacy.ingest.policies.names import DDS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from rosprivacy.analysis.model import Place
-    from rosprivacy.ingest.deployed.security_xml import Section
+    from rosprivacy.ingest.deployed.security_xml import XmlSection
 
 RULES = {"allow_rule": True, "deny_rule": False}
 CRITERIA = ("publish", "subscribe", "relay")
@@ -35,7 +35,7 @@ _TIME = re.compile(r"(\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d)(?:\.\d+)?(Z|[+-]\d\d:\d\d)
 
 
 @dataclass(frozen=True, slots=True)
-class Criterion:
+class PermissionCriterion:
     """What one ``<publish>``, ``<subscribe>`` or ``<relay>`` is about.
 
     Attributes
@@ -56,12 +56,12 @@ class Criterion:
 
 
 @dataclass(frozen=True, slots=True)
-class Rule:
+class PermissionRule:
     """``<allow_rule>`` or ``<deny_rule>``; the first that matches decides."""
 
     allow: bool
     domains: Domains
-    criteria: tuple[Criterion, ...]
+    criteria: tuple[PermissionCriterion, ...]
     place: Place
 
 
@@ -83,7 +83,7 @@ class SubjectGrant:
     subject: str
     not_before: datetime
     not_after: datetime
-    rules: tuple[Rule, ...]
+    rules: tuple[PermissionRule, ...]
     allow: bool
     default: Place
     place: Place
@@ -99,13 +99,13 @@ class Permissions:
 
 def read_permissions(data: bytes, file: str, before: int = 0) -> Permissions:
     """Read the text of a permissions file, before which so many lines stand; ``InputErrors`` has every problem."""
-    source = Source(file, before)
+    source = XmlSource(file, before)
     grants = tuple(map(_subject_grant, security_entries(data, source, "permissions", "grant")))
     source.check()
     return Permissions(file, grants)
 
 
-def _subject_grant(grant: Section) -> SubjectGrant:
+def _subject_grant(grant: XmlSection) -> SubjectGrant:
     tags = {"subject_name", "validity", "default", *RULES}
     parts = {tag: grant.child(tag, tags) for tag in ("subject_name", "validity", "default")}
     subject, validity, default = parts["subject_name"], parts["validity"], parts["default"]
@@ -125,13 +125,13 @@ def _subject_grant(grant: Section) -> SubjectGrant:
     )
 
 
-def _ends(validity: Section | None) -> tuple[Section | None, Section | None]:
+def _ends(validity: XmlSection | None) -> tuple[XmlSection | None, XmlSection | None]:
     if validity is None:
         return None, None
     return validity.child("not_before", {"not_after"}), validity.child("not_after", {"not_before"})
 
 
-def _time(end: Section | None) -> datetime:
+def _time(end: XmlSection | None) -> datetime:
     """A moment of the XML schema's ``dateTime``; whole seconds."""
     if end is None:
         return datetime.min.replace(tzinfo=UTC)
@@ -147,13 +147,13 @@ def _time(end: Section | None) -> datetime:
     return written if written.tzinfo else written.replace(tzinfo=UTC)
 
 
-def _rule(rule: Section) -> Rule:
+def _rule(rule: XmlSection) -> PermissionRule:
     domains = rule.child("domains", CRITERIA)
     criteria = tuple(_criterion(child) for child in rule.children({"domains", *CRITERIA}) if child.tag in CRITERIA)
-    return Rule(RULES[rule.tag], domains.domains() if domains else NOWHERE, criteria, rule.place)
+    return PermissionRule(RULES[rule.tag], domains.domains() if domains else NOWHERE, criteria, rule.place)
 
 
-def _criterion(criterion: Section) -> Criterion:
+def _criterion(criterion: XmlSection) -> PermissionCriterion:
     topics: list[tuple[str, Place]] = []
     partitions: list[str] = []
     tags = False
@@ -164,10 +164,10 @@ def _criterion(criterion: Section) -> Criterion:
             partitions += (name.text for name in _domains_named(part, "partition"))
         else:
             tags = True
-    return Criterion(criterion.tag, tuple(topics), tuple(partitions), tags, criterion.place)
+    return PermissionCriterion(criterion.tag, tuple(topics), tuple(partitions), tags, criterion.place)
 
 
-def _domains_named(part: Section, tag: str) -> Iterator[Section]:
+def _domains_named(part: XmlSection, tag: str) -> Iterator[XmlSection]:
     names = list(part.children({tag}))
     if not names:
         part.source.problem(part.element, f"<{part.tag}> is empty", f"add a <{tag}>")
@@ -247,12 +247,12 @@ def _grants(file: str, profile: Profile, grant: SubjectGrant, domain: int | None
             yield dds_grant(profile, file, grant.default, direction, "*", allow=True, rank=rank, dead=dead)
 
 
-def _rules(grant: SubjectGrant, domain: int | None) -> list[tuple[int, Rule]]:
+def _rules(grant: SubjectGrant, domain: int | None) -> list[tuple[int, PermissionRule]]:
     """The rules of a domain, with their places from 1."""
     return [(rank, rule) for rank, rule in enumerate(grant.rules, 1) if domain is None or domain in rule.domains]
 
 
-def is_about_ros(criterion: Criterion) -> bool:
+def is_about_ros(criterion: PermissionCriterion) -> bool:
     """Return whether a DENY takes away what ROS 2 writes and reads: in the default partition, without data tags."""
     here = not criterion.partitions or any(name in DEFAULT_PARTITION for name in criterion.partitions)
     return here and not criterion.tags
@@ -277,7 +277,7 @@ def _remarks(grant: SubjectGrant, domain: int | None) -> Iterator[Diagnostic]:
         yield warning(grant.default, f"{message}; Fast DDS refuses it")
 
 
-def _narrowed(rule: Rule, criterion: Criterion) -> Iterator[Diagnostic]:
+def _narrowed(rule: PermissionRule, criterion: PermissionCriterion) -> Iterator[Diagnostic]:
     if criterion.direction not in DIRECTIONS:
         message = f"<{criterion.direction}> is not read: no ROS node relays"
         yield Diagnostic(criterion.place, Severity.NOTICE, shown(message))

@@ -1,8 +1,8 @@
 """DDS-Security XML from anybody -> elements in their order, with every problem at its line; and DDS domains.
 
-In: the text of a permissions or governance file. Out: a ``Section`` that is asked for its children one after the other,
-as the schemas demand them, and notes what is missing, misplaced or no value of its kind; ``Domains`` that a rule is
-about.
+In: the text of a permissions or governance file. Out: a ``XmlSection`` that is asked for its children one after the
+other, as the schemas demand them, and notes what is missing, misplaced or no value of its kind; ``Domains`` that a rule
+is about.
 
 Source: DDS-Security 1.1, 9.4.1.2 (governance) and 9.4.1.3 (permissions), with their XML schemas. Where the middlewares
 take more than the schema (``TRUE``, elements of a topic rule in another order), it is taken here too. A range of
@@ -125,7 +125,7 @@ def written(spans: Spans) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class Source:
+class XmlSource:
     """Where a text stands, and what was found wrong in it.
 
     Attributes
@@ -168,7 +168,7 @@ def section_of(data: bytes, file: str) -> str:
     return str(root[0].tag).rpartition("}")[2] if len(root) else ""
 
 
-def security_entries(data: bytes, source: Source, section: str, entry: str) -> list[Section]:
+def security_entries(data: bytes, source: XmlSource, section: str, entry: str) -> list[XmlSection]:
     """Return the entries of ``<dds><section>`` in a text; that there are none is a problem.
 
     Raises
@@ -181,7 +181,7 @@ def security_entries(data: bytes, source: Source, section: str, entry: str) -> l
     except PolicyError as error:
         line = error.line + source.before if error.line else 0
         raise InputErrors([PolicyError(error.file, line, error.problem, error.hint)]) from None
-    top = Section(root, source)
+    top = XmlSection(root, source)
     if top.tag != "dds":
         source.problem(root, f"the root element is <{shown(top.tag)}>, not <dds>", f"name a file with <{section}>")
         return []
@@ -193,11 +193,11 @@ def security_entries(data: bytes, source: Source, section: str, entry: str) -> l
 
 
 @dataclass(frozen=True, slots=True)
-class Section:
+class XmlSection:
     """An element and where it stands."""
 
     element: etree._Element
-    source: Source
+    source: XmlSource
 
     @property
     def tag(self) -> str:
@@ -214,17 +214,17 @@ class Section:
         """What stands in it, as the middlewares read it: comments taken out, nothing trimmed."""
         return self.element.text or ""
 
-    def children(self, allowed: Collection[str]) -> Iterator[Section]:
+    def children(self, allowed: Collection[str]) -> Iterator[XmlSection]:
         """Yield the children that belong here; what does not is a problem."""
         for element in self.element:
-            child = Section(element, self.source)
+            child = XmlSection(element, self.source)
             if child.tag in allowed:
                 yield child
             else:
                 expected = " or ".join(f"<{name}>" for name in sorted(allowed))
                 self.source.problem(element, f"<{shown(child.tag)}> in <{self.tag}>", f"here comes {expected}")
 
-    def child(self, tag: str, among: Collection[str] = ()) -> Section | None:
+    def child(self, tag: str, among: Collection[str] = ()) -> XmlSection | None:
         """Return the child of a name, others of which are ``among``; that it is missing or there twice is a problem."""
         found = [child for child in self.children({tag, *among}) if child.tag == tag]
         if not found:

@@ -59,7 +59,7 @@ _NAMES = tuple(PROPERTIES.index(name) for name in ("cert_common_names", "usernam
 RulesHeld = dict["Identity", list["AccessRule"]]
 
 
-class Right(NamedTuple):
+class ZenohRight(NamedTuple):
     """What a line allows or denies: ``publish`` or ``subscribe`` of a DDS topic."""
 
     allow: bool
@@ -114,7 +114,7 @@ def keys_of(access: AccessFile, domain: int | None, namespaces: Iterable[str]) -
     return Keys(first or ONE, own)
 
 
-def rights(access: AccessFile, rules_held: RulesHeld, keys: Keys, remarks: list[Diagnostic]) -> Iterator[Right]:
+def rights(access: AccessFile, rules_held: RulesHeld, keys: Keys, remarks: list[Diagnostic]) -> Iterator[ZenohRight]:
     """Yield what passes a list between its process and those at the other end of a link.
 
     Parameters
@@ -126,7 +126,7 @@ def rights(access: AccessFile, rules_held: RulesHeld, keys: Keys, remarks: list[
     """
     if access.allow or not access.enabled:
         everything = [*(f"{begins}/*" for begins, _ in LEGS.values()), f"{NON_ROS_KEYS[0]}*", f"{NON_ROS_KEYS[1]}*"]
-        yield from (Right(True, role, dds, access.place) for role in OTHER_WAY for dds in everything)
+        yield from (ZenohRight(True, role, dds, access.place) for role in OTHER_WAY for dds in everything)
     everywhere = not access.allow or any(not any(identity) for identity in rules_held)
     rules = dict.fromkeys(rule for rules in rules_held.values() for rule in rules)
     late = frozenset(OTHER_WAY) if access.allow else _late(rules, keys)
@@ -149,14 +149,16 @@ def _remarks(access: AccessFile, keys: Keys) -> Iterator[Diagnostic]:
                 yield _warning(place, f"{what} {shown(access.namespace)!r}")
 
 
-def _of_rule(rule: AccessRule, keys: Keys) -> Iterator[Right]:
+def _of_rule(rule: AccessRule, keys: Keys) -> Iterator[ZenohRight]:
     for key, place in rule.key_expressions:
         for some in channels(key, keys):
             for flow, message in product(rule.flows, rule.messages):
-                yield from (Right(True, role, dds, place) for role, dds in _of_message(some, message, ROLES[flow]))
+                yield from (ZenohRight(True, role, dds, place) for role, dds in _of_message(some, message, ROLES[flow]))
 
 
-def _of_deny(rule: AccessRule, keys: Keys, remarks: list[Diagnostic], late: frozenset[str] | None) -> Iterator[Right]:
+def _of_deny(
+    rule: AccessRule, keys: Keys, remarks: list[Diagnostic], late: frozenset[str] | None
+) -> Iterator[ZenohRight]:
     """What a deny takes away, and what is said where it takes nothing.
 
     Parameters
@@ -177,7 +179,7 @@ def _of_deny(rule: AccessRule, keys: Keys, remarks: list[Diagnostic], late: froz
                 if not why and served and "reply" not in rule.messages:
                     remarks.append(_nothing(key, place, f"{LATE[role]} by reply all the same; deny both in one rule"))
                 elif not why:
-                    yield from (Right(False, role, dds, place) for role, dds in _of_message(some, message, role))
+                    yield from (ZenohRight(False, role, dds, place) for role, dds in _of_message(some, message, role))
             if why:
                 remarks.append(_nothing(key, place, why))
 
@@ -258,7 +260,7 @@ def open_remarks(files: Mapping[AccessFile, Keys]) -> Iterator[Diagnostic]:
         yield _warning(access.place, message, ACCESS_GAP)
 
 
-def _left_to(process: str, access: AccessFile, keys: Keys, processes: Collection[str]) -> Iterable[Right]:
+def _left_to(process: str, access: AccessFile, keys: Keys, processes: Collection[str]) -> Iterable[ZenohRight]:
     """What passes to and from a process by its name, or those that are not told apart."""
     of_all = identities(access) if access.decides else {}
     held = {

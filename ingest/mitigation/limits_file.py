@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import InputError, LimitsError, shown
-from rosprivacy.analysis.mitigation.limits import CHANGES, LARGEST_COST, Limits, Rule, Weights
+from rosprivacy.analysis.mitigation.limits import CHANGES, LARGEST_COST, LimitRule, Limits, Weights
 from rosprivacy.analysis.written_names import A_LITTLE, FEW, bare_name, did_you_mean, literal, nearest
 from rosprivacy.ingest.policies.names import covered
 from rosprivacy.ingest.reading.format_reader import FileReader, read_values
@@ -79,7 +79,7 @@ class _Reader(FileReader):
             return Weights()
         return Weights(**{key: self._number(item, key) for key, _, item in self.entries_of(value, tuple(names))})
 
-    def _place(self, item: Value) -> Iterator[Rule]:
+    def _place(self, item: Value) -> Iterator[LimitRule]:
         if item.kind != "map":
             self.problem(item.line, f"a place is a map, not a {item.kind}", "write {at: /a, never: all}")
             return
@@ -102,7 +102,7 @@ class _Reader(FileReader):
             self.problem(item.line, "a place without never or factor says nothing", "write {at: /a, never: all}")
         never = frozenset(self._kinds(said["never"])) if "never" in said else frozenset[str]()
         factor = self._number(said["factor"], "factor") if "factor" in said else 1
-        yield Rule(frozenset(flows), vertices, never, factor)
+        yield LimitRule(frozenset(flows), vertices, never, factor)
 
     def _kinds(self, value: Value) -> Iterator[str]:
         """Kinds of change, ``all`` of them, or one."""

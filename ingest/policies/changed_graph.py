@@ -1,8 +1,9 @@
 """Graph of the enforced view -> the same after a change of the policies, where that takes flows away and no more.
 
-In: the graph, the policies that it was built from, and a ``Change``. Out: the graph that ``build`` makes of the changed
-policies, but for the names of new enclaves; or None where only that tells: a DENY of a wildcard or of a new name makes
-other elements, rules of permissions have an order, an endpoint of no node may be several profiles (rules S4 to S6).
+In: the graph, the policies that it was built from, and a ``PolicyChange``. Out: the graph that ``build`` makes of the
+changed policies, but for the names of new enclaves; or None where only that tells: a DENY of a wildcard or of a new
+name makes other elements, rules of permissions have an order, an endpoint of no node may be several profiles (rules S4
+to S6).
 """
 
 from __future__ import annotations
@@ -22,14 +23,14 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.meeting import Meeting
     from rosprivacy.analysis.model import Element, FlowGraph, Grant, Policy
-    from rosprivacy.ingest.policies.changed_policies import Change
+    from rosprivacy.ingest.policies.changed_policies import PolicyChange
 
 ANYONE = ""  # a node that no change is about by its name
 _ends = attrgetter("source", "target", "role")  # of a flow
 Where = tuple[str, str, bool]  # policy, enclave, whether it is about writing
 
 
-def changed_graph(graph: FlowGraph, policies: Sequence[Policy], change: Change) -> FlowGraph | None:
+def changed_graph(graph: FlowGraph, policies: Sequence[Policy], change: PolicyChange) -> FlowGraph | None:
     """Return the graph after a change, None where the policies have to be looked at anew; O(flows that are stored).
 
     Parameters
@@ -76,14 +77,14 @@ class _Kept:
         Nodes of profiles that go.
     """
 
-    change: Change
+    change: PolicyChange
     enclaves: frozenset[str]
     denied: Mapping[Where, frozenset[str]]
     channels: frozenset[int] | None
     moved: frozenset[str]
 
     @classmethod
-    def of(cls, policies: Iterable[Policy], change: Change, elements: Iterable[Element]) -> _Kept | None:
+    def of(cls, policies: Iterable[Policy], change: PolicyChange, elements: Iterable[Element]) -> _Kept | None:
         denied: dict[Where, set[str]] = defaultdict(set)
         names = set()
         for line in change.deny:
@@ -177,7 +178,7 @@ class _Kept:
         )
 
 
-def _plain(policies: Iterable[Policy], change: Change, denied: Mapping[Where, Iterable[str]]) -> bool:
+def _plain(policies: Iterable[Policy], change: PolicyChange, denied: Mapping[Where, Iterable[str]]) -> bool:
     """Whether new DENY lines and the grants that they are about have no wildcards, nor an order."""
     if any(is_pattern(line.name) for line in change.deny):
         return False

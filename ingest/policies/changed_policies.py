@@ -1,6 +1,6 @@
 """Policies -> the same with something changed: enclaves split, a profile moved, DENY lines added (rules S5, S6).
 
-In: policies as they were read, and a ``Change``. Out: policies, as if somebody had written them so.
+In: policies as they were read, and a ``PolicyChange``. Out: policies, as if somebody had written them so.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Policy
 
 
-class Change(NamedTuple):
+class PolicyChange(NamedTuple):
     """What somebody could change.
 
     Attributes
@@ -35,10 +35,10 @@ class Change(NamedTuple):
     deny: frozenset[DenyLine] = frozenset()
 
 
-NO_CHANGE = Change()
+NO_CHANGE = PolicyChange()
 
 
-def changed(policies: Iterable[Policy], change: Change) -> tuple[Policy, ...]:
+def changed(policies: Iterable[Policy], change: PolicyChange) -> tuple[Policy, ...]:
     """Return policies with a change; DENY lines of an enclave go with each node that leaves it, so it opens nothing."""
     policies = tuple(policies)
     if change.split:

@@ -17,7 +17,7 @@ from rosprivacy.analysis.errors import InputError, InputErrors, shown
 from rosprivacy.analysis.model import Confidence, Place
 from rosprivacy.analysis.suggesting.evidence import ANYTHING
 from rosprivacy.analysis.suggesting.library_rules import ADDRESS, CPP, PROGRAM, PYTHON, LibraryRules, Names
-from rosprivacy.analysis.suggesting.name_rules import LONGEST_PHRASE, NameRules, Rule, words
+from rosprivacy.analysis.suggesting.name_rules import LONGEST_PHRASE, NameRule, NameRules, words
 from rosprivacy.analysis.suggesting.packages import WHERE
 from rosprivacy.ingest.reading import yaml_values
 from rosprivacy.ingest.reading.format_reader import FileReader
@@ -119,7 +119,7 @@ def read_name_rules(files: Iterable[str], vocabulary: Vocabulary, bounds: Bounds
     readers, digests = _read_each(NAMES, files, vocabulary, bounds)
     fields: dict[str, Any] = dict(_joined(readers))
     for name in ("becomes", "tells"):
-        pairs: dict[str, dict[str, Rule]] = {}
+        pairs: dict[str, dict[str, NameRule]] = {}
         for (first, second), rule in fields[name].items():
             pairs.setdefault(first, {})[second] = rule
         fields[name] = pairs
@@ -160,9 +160,9 @@ def read_library_rules(
     return LibraryRules(**sections, silent=quiet), digests
 
 
-def _joined(readers: Iterable[_Reader]) -> dict[str, dict[Any, Rule]]:
+def _joined(readers: Iterable[_Reader]) -> dict[str, dict[Any, NameRule]]:
     """The rules of all files, by section: those of later files stand for the same ones of earlier files."""
-    joined: dict[str, dict[Any, Rule]] = {}
+    joined: dict[str, dict[Any, NameRule]] = {}
     for reader in readers:
         for name, rules in reader.sections.items():
             joined.setdefault(name, {}).update(rules)
@@ -214,7 +214,7 @@ class _Reader(FileReader):
 
     format: Format
     vocabulary: Vocabulary
-    sections: dict[str, dict[Any, Rule]] = field(default_factory=dict)
+    sections: dict[str, dict[Any, NameRule]] = field(default_factory=dict)
     lists: dict[str, frozenset[Any]] = field(default_factory=dict)
 
     def read(self, top: Value) -> None:
@@ -234,12 +234,12 @@ class _Reader(FileReader):
                 self.lists[name] = frozenset(word for phrase in phrases for word in phrase)
         self.lists |= {name: frozenset(self._kinds(entries, name)) for name in form.kinds}
 
-    def _section(self, entries: Mapping[str, Value], section: str) -> dict[Any, Rule]:
+    def _section(self, entries: Mapping[str, Value], section: str) -> dict[Any, NameRule]:
         """The rules of a section, by each name that they are about, or by the two kinds that they join."""
         required, optional = self.format.sections[section]
         named_by = () if "from" in required else self.format.named_by
         keys = tuple(dict.fromkeys((*named_by, *required, *optional, "confidence", "source")))
-        rules: dict[Any, Rule] = {}
+        rules: dict[Any, NameRule] = {}
         for item in self._items(entries, section):
             entry = self.values_of(item, keys)
             for key in required:
@@ -259,7 +259,7 @@ class _Reader(FileReader):
                     self._add_rule(rules, rule, name, self._phrase(name) if key == "words" else self._name(name, key))
         return rules
 
-    def _add_rule(self, rules: dict[Any, Rule], rule: Rule, name: Value, keys: Sequence[Any]) -> None:
+    def _add_rule(self, rules: dict[Any, NameRule], rule: NameRule, name: Value, keys: Sequence[Any]) -> None:
         """Put a rule beside the others of a section, by a name that it is about and that no other one is about."""
         if keys and keys[0] in rules:
             what = f"{shown(name.text)} again, first in line {rules[keys[0]].place.line}"
@@ -267,9 +267,9 @@ class _Reader(FileReader):
         for one in keys:
             rules.setdefault(one, rule)
 
-    def _rule(self, entry: Mapping[str, Value], line: int) -> Rule:
+    def _rule(self, entry: Mapping[str, Value], line: int) -> NameRule:
         anything = (ANYTHING,) if self.format is LIBRARIES and "kinds" not in entry else ()
-        return Rule(
+        return NameRule(
             self._kinds(entry, "kinds") or anything,
             Confidence(self._one_of(entry, "confidence", SURE) or Confidence.MAY),
             entry["why"].text if "why" in entry else "",

@@ -22,7 +22,7 @@ _MADE_UP = re.compile(r"(?=[a-f]*[0-9])[0-9a-f]{8,}|[0-9]{3,}")
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
+class ElementChange:
     """Something that is there before or after, or both and not the same.
 
     Attributes
@@ -42,9 +42,9 @@ class Change:
 class Changes:
     """What differs, each sorted by key."""
 
-    new: tuple[Change, ...]
-    removed: tuple[Change, ...]
-    changed: tuple[Change, ...]
+    new: tuple[ElementChange, ...]
+    removed: tuple[ElementChange, ...]
+    changed: tuple[ElementChange, ...]
 
     def __bool__(self) -> bool:
         return bool(self.new or self.removed or self.changed)
@@ -71,7 +71,7 @@ def _without_made_up(part: str) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class Pairs:
+class MatchedPairs:
     """Which key of before is which one of after; each sorted, ``common`` by the key after."""
 
     common: tuple[tuple[Key, Key], ...]
@@ -79,7 +79,7 @@ class Pairs:
     new: tuple[Key, ...]
 
 
-def paired(before: Collection[Key], after: Collection[Key]) -> Pairs:
+def paired(before: Collection[Key], after: Collection[Key]) -> MatchedPairs:
     """Return what is the same before and after: of the same name, or else of one that differs in what is made up."""
     both = set(before) & set(after)
     pairs = [(key, key) for key in both]
@@ -94,20 +94,20 @@ def paired(before: Collection[Key], after: Collection[Key]) -> Pairs:
         else:
             new.append(key)
     gone = sorted(key for keys in waiting.values() for key in keys)
-    return Pairs(tuple(sorted(pairs, key=lambda pair: pair[1])), tuple(gone), tuple(new))
+    return MatchedPairs(tuple(sorted(pairs, key=lambda pair: pair[1])), tuple(gone), tuple(new))
 
 
 def compare(before: Mapping[Key, Record], after: Mapping[Key, Record]) -> Changes:
     """Return what differs between two states; linear in their size, but for sorting."""
     pairs = paired(before.keys(), after.keys())
     changed = [
-        Change(theirs, before[ours], after[theirs])
+        ElementChange(theirs, before[ours], after[theirs])
         for ours, theirs in pairs.common
         if comparable(before[ours]) != comparable(after[theirs])
     ]
     return Changes(
-        tuple(Change(key, None, after[key]) for key in pairs.new),
-        tuple(Change(key, before[key], None) for key in pairs.removed),
+        tuple(ElementChange(key, None, after[key]) for key in pairs.new),
+        tuple(ElementChange(key, before[key], None) for key in pairs.removed),
         tuple(changed),
     )
 

@@ -43,7 +43,7 @@ ABROAD = (PARTLY, THIRD)  # areas to which a transfer needs a basis of its own, 
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class RecordEntry:
     """One row of the record; the fields are its columns, in order."""
 
     activity: str
@@ -69,20 +69,20 @@ class Entry:
 def record(document: Mapping[str, Any], language: str) -> str:
     """Return the record as CSV, lines ending as RFC 4180 says, with a byte order mark."""
     index = Index(document, Words(language))
-    columns = [field.name for field in fields(Entry)]
+    columns = [field.name for field in fields(RecordEntry)]
     head = [index.words(f"record.{column}") for column in columns]
     rows = ([getattr(entry, column) for column in columns] for entry in entries(index))
     last = {"activity": index.words("record.answer"), "note": verdict_sentence(document, index.words)}
     return BOM + as_csv(head, [*rows, [last.get(column, "") for column in columns]], separator=SEPARATORS[language])
 
 
-def entries(index: Index) -> tuple[Entry, ...]:
+def entries(index: Index) -> tuple[RecordEntry, ...]:
     """Return the rows, by kind of data and recipient."""
     facts = _Facts(index)
     return tuple(entry for category in index.categories for entry in _of_kind(category, facts))
 
 
-def _of_kind(category: str, facts: _Facts) -> Iterator[Entry]:
+def _of_kind(category: str, facts: _Facts) -> Iterator[RecordEntry]:
     groups = facts.recipients(category)
     for group in groups:
         yield _entry(category, group, facts)
@@ -118,7 +118,7 @@ class _Facts:
         return [row for (end, of), row in rows if of == category and (end in ends or not ends)]
 
 
-def _entry(category: str, group: Sequence[Mapping[str, Any]], facts: _Facts) -> Entry:
+def _entry(category: str, group: Sequence[Mapping[str, Any]], facts: _Facts) -> RecordEntry:
     index, words = facts.index, facts.index.words
     known = index.categories[category]
     findings = [finding for element in group for finding in facts.findings.get((category, key(element)), ())]
@@ -151,7 +151,9 @@ def _entry(category: str, group: Sequence[Mapping[str, Any]], facts: _Facts) -> 
         missing.add("d")
     if len(stated) < len(group) or any(_transfer_unknown(row) for row in stated):
         missing.add("e")
-    return Entry(**values, complete=words.row(words("record.letter", letter=letter) for letter in sorted(missing)))
+    return RecordEntry(
+        **values, complete=words.row(words("record.letter", letter=letter) for letter in sorted(missing))
+    )
 
 
 def _not_stated(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:

@@ -29,7 +29,7 @@ NOTHING: Mapping[str, str] = MappingProxyType({})
 
 
 @dataclass(frozen=True, slots=True)
-class Field:
+class AssessmentField:
     """A field: its key in the file, what it asks, what was answered, and what label files state beside it."""
 
     key: str
@@ -48,7 +48,7 @@ class Risk:
     """The risks of one flow to the persons (Article 35(7)(c))."""
 
     flow: ToDecide
-    fields: tuple[Field, ...]
+    fields: tuple[AssessmentField, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,11 +65,11 @@ class Assessment:
         Where the answers come from; empty if none were given.
     """
 
-    general: tuple[Field, ...]
-    criteria: tuple[Field, ...]
+    general: tuple[AssessmentField, ...]
+    criteria: tuple[AssessmentField, ...]
     risks: tuple[Risk, ...]
     unlisted: int
-    unmatched: tuple[Field, ...]
+    unmatched: tuple[AssessmentField, ...]
     file: str
     sha256: str
 
@@ -88,11 +88,11 @@ def assessment(
     """
     used: set[str] = set()
 
-    def field(key: str, label: str, additional: Iterable[str] = ()) -> Field:
+    def field(key: str, label: str, additional: Iterable[str] = ()) -> AssessmentField:
         known = [name for name in (key, *additional) if name in answers.texts]
         used.update(known)
         text = "\n".join(dict.fromkeys(answers.texts[name] for name in known))
-        return Field(key, words(label), text, stated.get(key.removeprefix("sign."), ""))
+        return AssessmentField(key, words(label), text, stated.get(key.removeprefix("sign."), ""))
 
     def risk(flow: ToDecide) -> Risk:
         ids = dict.fromkeys(one for e in flow.entries for one in (e.pattern or e.id, e.id, *e.alike))
@@ -107,5 +107,5 @@ def assessment(
     asked = flows if answers.texts else [flow for flow in flows if flow.entries[0].detailed]
     made = (risk(flow) for flow in asked)
     risks = tuple(one for one in made if one.flow.entries[0].detailed or any(field.text for field in one.fields))
-    left = tuple(Field(key, fit(key), text) for key, text in answers.texts.items() if key not in used)
+    left = tuple(AssessmentField(key, fit(key), text) for key, text in answers.texts.items() if key not in used)
     return Assessment(general, criteria, risks, len(flows) - len(risks), left, fit(answers.file), answers.sha256)

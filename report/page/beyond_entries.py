@@ -1,6 +1,6 @@
 """What a node could do beyond its own profile, as entries of a report: what only the enforced view has (rule S6).
 
-In: an ``Index``. Out: ``Beyond``, with what makes each possible and what takes it away, in words.
+In: an ``Index``. Out: ``BeyondEntry``, with what makes each possible and what takes it away, in words.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ NAMED_OPEN = 12  # elements in the sentence of what is open
 
 
 @dataclass(frozen=True, slots=True)
-class Beyond:
+class BeyondEntry:
     """A finding that only the enforced view has.
 
     Attributes
@@ -51,7 +51,7 @@ class Beyond:
         return " → ".join(hop.name for hop, _ in self.hops)
 
 
-def beyond_entries(index: Index) -> tuple[Beyond, ...]:
+def beyond_entries(index: Index) -> tuple[BeyondEntry, ...]:
     """Return what the enforced view adds, as many as are told one by one; nothing where nobody asked."""
     return tuple(_entry(added, index) for added in _added(index)[:BOUND])
 
@@ -73,9 +73,9 @@ def _added(index: Index) -> list[Mapping[str, Any]]:
     return list(index.document.get("enforced", {}).get("added", ()))
 
 
-def _entry(added: Mapping[str, Any], index: Index) -> Beyond:
+def _entry(added: Mapping[str, Any], index: Index) -> BeyondEntry:
     finding, beyond = added["finding"], set(added.get("beyond", ()))
-    return Beyond(
+    return BeyondEntry(
         id=finding["id"],
         source=name(finding["source"]),
         leak=name(finding["leak"]),

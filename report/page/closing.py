@@ -1,7 +1,7 @@
 """What closes the paths to decide: the proposals of ``mitigate`` in words, each proven by a new analysis.
 
-In: an ``Index``, the entries of the report and a mitigation document; or why there is none. Out: ``Closing``, in plain
-texts. A proposal is work for a person; what it takes from whom is told with it.
+In: an ``Index``, the entries of the report and a mitigation document; or why there is none. Out: ``ClosingEntry``, in
+plain texts. A proposal is work for a person; what it takes from whom is told with it.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class Proposed:
 
 
 @dataclass(frozen=True, slots=True)
-class Closing:
+class ClosingEntry:
     """What closes paths.
 
     Attributes
@@ -57,7 +57,7 @@ class Closing:
     stays: tuple[Entry, ...] = ()
 
 
-def closing(index: Index, entries: Iterable[Entry], proposals: Mapping[str, Any] | str) -> Closing | None:
+def closing(index: Index, entries: Iterable[Entry], proposals: Mapping[str, Any] | str) -> ClosingEntry | None:
     """Return what closes the paths of a report; None if there is none to close.
 
     Parameters
@@ -71,9 +71,9 @@ def closing(index: Index, entries: Iterable[Entry], proposals: Mapping[str, Any]
     if not index.to_assess:
         return None
     if isinstance(proposals, str):
-        return Closing((words(f"closing.none.{proposals}"),))
+        return ClosingEntry((words(f"closing.none.{proposals}"),))
     if not proposals["proposals"]:
-        return Closing((words("closing.none.graph"),))
+        return ClosingEntry((words("closing.none.graph"),))
     last = proposals["proposals"][-1]  # of all kinds together
     stays = {row["finding"] for row in last["keeps"]}
     steps = last["steps"] if last["proven"] else []
@@ -81,7 +81,7 @@ def closing(index: Index, entries: Iterable[Entry], proposals: Mapping[str, Any]
         words(f"closing.state.{row['kind']}", element=name(row["element"]), data=index.data(row["category"]))
         for row in last["statements"]
     }
-    return Closing(
+    return ClosingEntry(
         sentences=tuple(proposal_told(last, steps, index)),
         changes=tuple(change_told(step, index) for step in steps[:SHOWN]),
         remainder=words("closing.more", n=len(steps) - SHOWN) if len(steps) > SHOWN else "",

@@ -20,20 +20,20 @@ SHOWN_AT_MOST = 6
 
 
 @dataclass(frozen=True, slots=True)
-class Criterion:
+class AssessmentCriterion:
     """One criterion: its name, and what the analysis shows of it, empty if only a person can say."""
 
     name: str
     shows: str
 
 
-def criteria(index: Index) -> tuple[Criterion, ...]:
+def criteria(index: Index) -> tuple[AssessmentCriterion, ...]:
     """Return all nine, in their order."""
     words = index.words
     makes = _makes(index)
     new = _innovative(makes, index)
     shows = [makes, "", _observes(index), _special(index), _scale(index), _combines(index), _subjects(index), new, ""]
-    return tuple(Criterion(words(f"criterion.{number}"), said) for number, said in enumerate(shows, 1))
+    return tuple(AssessmentCriterion(words(f"criterion.{number}"), said) for number, said in enumerate(shows, 1))
 
 
 def _row(texts: list[str], index: Index) -> str:

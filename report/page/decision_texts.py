@@ -1,7 +1,7 @@
 """What people decided about findings, as a report shows it.
 
-In: a document with decisions, where there are any. Out: ``Decision`` of a finding, and those that match none. What the
-law asks for and nobody wrote down is named (``analysis/legal_bases.py``).
+In: a document with decisions, where there are any. Out: ``DecisionText`` of a finding, and those that match none. What
+the law asks for and nobody wrote down is named (``analysis/legal_bases.py``).
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ ACCEPT, ORPHANED = "accept", "orphaned"
 
 
 @dataclass(frozen=True, slots=True)
-class Decision:
+class DecisionText:
     """One decision, in words.
 
     Attributes
@@ -41,23 +41,23 @@ class Decision:
     flags: tuple[str, ...]
 
 
-def decision_of(finding: Mapping[str, Any], index: Index) -> Decision | None:
+def decision_of(finding: Mapping[str, Any], index: Index) -> DecisionText | None:
     """Return the decision that holds for a finding, or held until it expired; None if there is none."""
     said = finding.get("decision")
     return _decision(said, (finding,), index) if said else None
 
 
-def orphans(index: Index) -> tuple[Decision, ...]:
+def orphans(index: Index) -> tuple[DecisionText, ...]:
     """Return the decisions that match no finding, in the order of their file."""
     said = index.document.get("decisions", ())
     return tuple(_decision(entry, (), index) for entry in said if entry["state"] == ORPHANED)
 
 
-def _decision(decision: Mapping[str, Any], findings: Iterable[Mapping[str, Any]], index: Index) -> Decision:
+def _decision(decision: Mapping[str, Any], findings: Iterable[Mapping[str, Any]], index: Index) -> DecisionText:
     words, what = index.words, decision["choice"]
     rows = [(words(f"decision.{key}"), _value(decision[key], key, index)) for key in FIELDS if decision[key]]
     flags = (*_changed(decision, index), *(_flags(decision, findings, index) if what == ACCEPT else ()))
-    return Decision(words.of_value(f"decision.{what}", what), tuple(rows), flags)
+    return DecisionText(words.of_value(f"decision.{what}", what), tuple(rows), flags)
 
 
 def _changed(decision: Mapping[str, Any], index: Index) -> Iterator[str]:

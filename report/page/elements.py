@@ -23,7 +23,7 @@ PASSES = ("conduit", "sanitizer")  # what is said of data that may never get the
 
 
 @dataclass(frozen=True, slots=True)
-class Item:
+class ElementItem:
     """An element that data gets to.
 
     Attributes
@@ -52,7 +52,7 @@ class Enclave:
     nodes: str
 
 
-def items(index: Index) -> tuple[Item, ...]:
+def items(index: Index) -> tuple[ElementItem, ...]:
     """Return the elements that data gets to, in the order of the document."""
     said: dict[Any, dict[str, list[str]]] = {}
     there = {  # with broader kinds: of these the document names the narrowest
@@ -75,12 +75,12 @@ def items(index: Index) -> tuple[Item, ...]:
     return tuple(_item(group, said, open_at, index) for group in grouped(index.document["carries"], merge_key))
 
 
-def _item(group: list[Mapping[str, Any]], entry: Mapping[Any, Any], open_at: set[Any], index: Index) -> Item:
+def _item(group: list[Mapping[str, Any]], entry: Mapping[Any, Any], open_at: set[Any], index: Index) -> ElementItem:
     row, words = group[0], index.words
     element, at = row["element"], key(row["element"])
     hidden = [index.data(category, pseudonymised=True) for category in row["pseudonymised"]]
     robots = weight((row["element"]["robot"] for row in group), index.alike)
-    return Item(
+    return ElementItem(
         name=name(element) if robots == 1 else fit(element["name"]),
         kind=words.kind(element),
         robots=robots,

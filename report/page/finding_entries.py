@@ -14,7 +14,7 @@ from rosprivacy.report.catalogs.words import finding_reason
 from rosprivacy.report.finding_order import in_order
 from rosprivacy.report.made_of import made_of
 from rosprivacy.report.naming import key, line, name
-from rosprivacy.report.page.decision_texts import Decision, decision_of
+from rosprivacy.report.page.decision_texts import DecisionText, decision_of
 from rosprivacy.report.page.entries_of_robots import finding_pattern, grouped
 from rosprivacy.report.page.index import anchor, kind_anchor, state
 from rosprivacy.report.page.look_at import revealed
@@ -31,7 +31,7 @@ SHOWN_AT_MOST = 3  # robots of one form that are named beside their number
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class EntryLine:
     """A policy line, and whose it is."""
 
     place: str
@@ -60,7 +60,7 @@ class Hop:
     open: bool
     end: str
     verb: str = ""
-    lines: tuple[Line, ...] = ()
+    lines: tuple[EntryLine, ...] = ()
     further_lines: int = 0
     data: str = ""
 
@@ -114,7 +114,7 @@ class Entry:
     alike: tuple[str, ...]
     robots: tuple[str, ...]
     paths: tuple[str, ...]
-    decision: Decision | None
+    decision: DecisionText | None
     mark: str = ""
     spread: tuple[str, ...] = ()
     pattern: str = ""
@@ -159,7 +159,7 @@ def _entry(
     number: int,
     group: list[Mapping[str, Any]],
     index: Index,
-    decided: Mapping[str, Decision | None],
+    decided: Mapping[str, DecisionText | None],
     marks: Mapping[str, str],
     *,
     detailed: bool,
@@ -329,10 +329,10 @@ def _label_texts(element: Mapping[str, Any], categories: Collection[str], index:
     return tuple(notes), any((key(element), category) in index.unreviewed for category in categories)
 
 
-def _lines(step: Mapping[str, Any], index: Index) -> Iterator[Line]:
+def _lines(step: Mapping[str, Any], index: Index) -> Iterator[EntryLine]:
     for grant in step["policy"]:
         of = index.words("policy.of", enclave=fit(grant["enclave"]), profile=fit(grant["profile"]))
-        yield Line(line(grant), of if grant["enclave"] or grant["profile"] else "")
+        yield EntryLine(line(grant), of if grant["enclave"] or grant["profile"] else "")
 
 
 BOUND = 2_000  # paths that one page tells one by one, some 8 MB

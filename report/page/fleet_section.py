@@ -1,6 +1,6 @@
 """A fleet in a report for people: its robots by model, which stand for which, and those that are not as most.
 
-In: an ``Index`` and the entries of the report. Out: ``Fleet``, in plain texts.
+In: an ``Index`` and the entries of the report. Out: ``FleetSection``, in plain texts.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Alike:
+class AlikeRow:
     """Robots that have the same policies and labels: the first one is shown."""
 
     model: str
@@ -28,7 +28,7 @@ class Alike:
 
 
 @dataclass(frozen=True, slots=True)
-class Difference:
+class DeviantDifference:
     """One thing in which robots differ from most of their model.
 
     Attributes
@@ -55,11 +55,11 @@ class Deviant:
 
     robots: tuple[str, ...]
     model: str
-    differences: tuple[Difference, ...]
+    differences: tuple[DeviantDifference, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Fleet:
+class FleetSection:
     """What a report tells of the robots.
 
     Attributes
@@ -70,11 +70,11 @@ class Fleet:
 
     intro: str
     models: tuple[tuple[str, int], ...]
-    alike: tuple[Alike, ...]
+    alike: tuple[AlikeRow, ...]
     deviants: tuple[Deviant, ...]
 
 
-def fleet_told(index: Index, entries: Iterable[Entry]) -> Fleet | None:
+def fleet_told(index: Index, entries: Iterable[Entry]) -> FleetSection | None:
     """Return the fleet of a document; None if it is of a single robot. Complexity: O(robots + differences)."""
     fleet = index.document.get("fleet")
     if not fleet:
@@ -87,10 +87,10 @@ def fleet_told(index: Index, entries: Iterable[Entry]) -> Fleet | None:
         for pattern in fleet["patterns"]
     }
     alike = tuple(
-        Alike(fit(group["model"]) or words("none"), fit(group["robot"]), tuple(map(fit, group["robots"])))
+        AlikeRow(fit(group["model"]) or words("none"), fit(group["robot"]), tuple(map(fit, group["robots"])))
         for group in fleet["alike"]
     )
-    return Fleet(
+    return FleetSection(
         words("fleet.intro", robots=words.count(fleet["robots"], "robot"), kinds=words.count(len(alike), "robot_kind")),
         tuple((fit(model) or words("none"), number) for model, number in fleet["models"].items()),
         alike,
@@ -102,12 +102,14 @@ def _deviant(
     deviant: Mapping[str, Any], of_pattern: Mapping[str, tuple[Entry, tuple[str, str]]], index: Index
 ) -> Deviant:
     shares = [
-        Difference(more, *of_pattern[share["pattern"]], _form(share, index))
+        DeviantDifference(more, *of_pattern[share["pattern"]], _form(share, index))
         for more, key in ((True, "more"), (False, "fewer"))
         for share in deviant[key]
     ]
     opened = [
-        Difference(more, None, ("", ""), index.words(f"fleet.{key}", names=index.words.row(index.names(deviant[key]))))
+        DeviantDifference(
+            more, None, ("", ""), index.words(f"fleet.{key}", names=index.words.row(index.names(deviant[key])))
+        )
         for more, key in ((True, "more_open"), (False, "fewer_open"))
         if deviant[key]
     ]

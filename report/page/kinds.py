@@ -1,7 +1,7 @@
 """The kinds of data of a document: what each is, which provisions to look at, who brings it in, how it stands.
 
-In: an ``Index`` and the entries of the report. Out: one ``Kind`` per emitted category: those with the worst finding
-first, then the others, in the document's order.
+In: an ``Index`` and the entries of the report. Out: one ``KindEntry`` per emitted category: those with the worst
+finding first, then the others, in the document's order.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class Provision:
 
 
 @dataclass(frozen=True, slots=True)
-class Kind:
+class KindEntry:
     """One kind of data.
 
     Attributes
@@ -107,7 +107,7 @@ class Kind:
         return sum(entry.state in ("open", "decided") for entry in self.entries)
 
 
-def kinds(index: Index, entries: Iterable[Entry]) -> tuple[Kind, ...]:
+def kinds(index: Index, entries: Iterable[Entry]) -> tuple[KindEntry, ...]:
     """Return the kinds of data."""
     by_category: dict[str, list[Entry]] = {}
     for entry in entries:
@@ -119,10 +119,10 @@ def kinds(index: Index, entries: Iterable[Entry]) -> tuple[Kind, ...]:
     return tuple(sorted(made, key=lambda kind: kind.entries[0].number if kind.entries else len(index.findings) + 1))
 
 
-def _kind(category: Mapping[str, Any], index: Index, entries: tuple[Entry, ...]) -> Kind:
+def _kind(category: Mapping[str, Any], index: Index, entries: tuple[Entry, ...]) -> KindEntry:
     language, of = index.words.language, category["name"]
     reached = [finding["leak"] for finding in index.findings if finding["category"] == of and not finding["dismissed"]]
-    return Kind(
+    return KindEntry(
         name=fit(of),
         title=index.data(of),
         iri=fit(as_published(category["iri"])),

@@ -1,6 +1,6 @@
 """What a report begins with: what a person has to decide, the worst first; one flow is decided once.
 
-In: an ``Index`` and the entries of the report, in the order of ``finding_order``. Out: ``Opening``, in plain
+In: an ``Index`` and the entries of the report, in the order of ``finding_order``. Out: ``OpeningSection``, in plain
 texts. What nobody has reviewed is told beside it: that little is listed never means that little can happen (rule S11).
 """
 
@@ -65,7 +65,7 @@ class ToDecide:
 
 
 @dataclass(frozen=True, slots=True)
-class Opening:
+class OpeningSection:
     """The beginning of a report.
 
     Attributes
@@ -85,7 +85,9 @@ class Opening:
     remainder: str = ""
 
 
-def opening(index: Index, flows: Iterable[ToDecide], verdict: str, means: str, doubts: tuple[str, ...] = ()) -> Opening:
+def opening(
+    index: Index, flows: Iterable[ToDecide], verdict: str, means: str, doubts: tuple[str, ...] = ()
+) -> OpeningSection:
     """Return what a report begins with.
 
     Parameters
@@ -103,14 +105,14 @@ def opening(index: Index, flows: Iterable[ToDecide], verdict: str, means: str, d
     rows = [flow for flow in flows if flow.entries[0].state in TO_DECIDE]
     waiting = sum(row.waits for row in rows)
     if not rows:
-        return Opening(verdict, (means, *doubts, *_first_to_review(index)))
+        return OpeningSection(verdict, (means, *doubts, *_first_to_review(index)))
     headline = words.count(waiting, "opening.decide") if waiting else words.count(len(rows), "opening.carry")
     said = [
         _can(rows, index),
         *([words.count(len(rows) - waiting, "opening.decided")] if 0 < waiting < len(rows) else []),
     ]
     more = words("opening.more", n=len(rows) - BOUND) if len(rows) > BOUND else ""
-    return Opening(headline, (*said, *_unreviewed(index), *doubts), tuple(rows[:BOUND]), len(rows), more)
+    return OpeningSection(headline, (*said, *_unreviewed(index), *doubts), tuple(rows[:BOUND]), len(rows), more)
 
 
 def flows(index: Index, entries: Iterable[Entry]) -> list[ToDecide]:

@@ -21,20 +21,20 @@ from rosprivacy.report.naming import name
 from rosprivacy.report.page import assumed, elements, rights, sanitizers, tables
 from rosprivacy.report.page.assessment import Assessment, assessment
 from rosprivacy.report.page.assessment_file import Answers
-from rosprivacy.report.page.beyond_entries import Beyond, beyond_entries, beyond_said
-from rosprivacy.report.page.closing import Closing, closing
-from rosprivacy.report.page.criteria import Criterion, criteria
-from rosprivacy.report.page.decision_texts import Decision, orphans
+from rosprivacy.report.page.beyond_entries import BeyondEntry, beyond_entries, beyond_said
+from rosprivacy.report.page.closing import ClosingEntry, closing
+from rosprivacy.report.page.criteria import AssessmentCriterion, criteria
+from rosprivacy.report.page.decision_texts import DecisionText, orphans
 from rosprivacy.report.page.doubts import Sort, doubts, in_doubt
 from rosprivacy.report.page.entries_of_robots import grouped
 from rosprivacy.report.page.finding_entries import Entry, finding_entries
-from rosprivacy.report.page.fleet_section import Fleet, fleet_told
+from rosprivacy.report.page.fleet_section import FleetSection, fleet_told
 from rosprivacy.report.page.index import Index, state
-from rosprivacy.report.page.kinds import Kind, kinds
+from rosprivacy.report.page.kinds import KindEntry, kinds
 from rosprivacy.report.page.look_at import LookAt, at_work, further, national
 from rosprivacy.report.page.non_ros import Outside, outside
-from rosprivacy.report.page.opening import Opening, flows, opening
-from rosprivacy.report.page.purposes import Row, processed, signed
+from rosprivacy.report.page.opening import OpeningSection, flows, opening
+from rosprivacy.report.page.purposes import PurposeRow, processed, signed
 from rosprivacy.report.page.reliance import Hanging, hanging
 from rosprivacy.report.page.review import Group, review
 from rosprivacy.report.page.typed_channels import Typed, only_by_types, typed
@@ -118,44 +118,44 @@ class Outline:
     code: str
     verdict: str
     sentence: str
-    opening: Opening
-    closing: Closing | None
+    opening: OpeningSection
+    closing: ClosingEntry | None
     means: tuple[str, ...]
     numbers: tuple[tuple[int, str], ...]
     glossary: tuple[tuple[str, str], ...]
     assumptions: tuple[str, ...]
     files: tuple[assumed.File, ...]
     remarks: tuple[assumed.Remark, ...]
-    closed: tuple[Closed, ...]
-    fleet: Fleet | None
+    closed: tuple[ClosedSection, ...]
+    fleet: FleetSection | None
     changes: Changed | None
-    subjects: tables.Table
+    subjects: tables.PageTable
     silent: tuple[str, ...]
-    recipients: tables.Table
-    processed: tuple[Row, ...]
-    kinds: tuple[Kind, ...]
+    recipients: tables.PageTable
+    processed: tuple[PurposeRow, ...]
+    kinds: tuple[KindEntry, ...]
     entries: tuple[Entry, ...]
-    beyond: tuple[Beyond, ...]
+    beyond: tuple[BeyondEntry, ...]
     beyond_said: tuple[str, ...]
-    orphans: tuple[Decision, ...]
+    orphans: tuple[DecisionText, ...]
     hanging: tuple[Hanging, ...] | None
     look_at: tuple[tuple[str, tuple[LookAt, ...]], ...]
     contexts: tuple[str, ...]
     at_work: tuple[LookAt, ...]
     national: tuple[str, ...]
     outside: tuple[Outside, ...]
-    cleanings: tuple[sanitizers.Cleaning, ...]
-    makings: tuple[sanitizers.Making, ...]
+    cleanings: tuple[sanitizers.CleaningEntry, ...]
+    makings: tuple[sanitizers.MakingEntry, ...]
     typed: tuple[Typed, ...]
     only_by_types: tuple[tuple[str, str], ...]
     questions: tuple[Group, ...]
     doubts: tuple[Sort, ...]
-    criteria: tuple[Criterion, ...]
+    criteria: tuple[AssessmentCriterion, ...]
     rights: tuple[rights.Persons, ...]
     assessment: Assessment
     size: str
     denied: str
-    items: tuple[elements.Item, ...]
+    items: tuple[elements.ElementItem, ...]
     rest: tuple[tuple[str, tuple[str, ...]], ...]
     enclaves: tuple[elements.Enclave, ...]
 
@@ -201,7 +201,7 @@ def outline(
     verdict = verdict_meaning(document)
     decided = flows(index, entries)
     begins = opening(index, decided, words(f"verdict.{verdict}"), _told_of(verdict, index), tuple(in_doubt(index)))
-    links = tables.Links(entries)
+    links = tables.TableLinks(entries)
     subjects, silent = tables.subjects(index, links)
     closes = closing(index, entries, proposals)
     of_types = bool(document.get("types"))
@@ -397,7 +397,7 @@ def _scope(differ: Changes, words: Words) -> Iterator[str]:
 
 
 @dataclass(frozen=True, slots=True)
-class Closed:
+class ClosedSection:
     """One row: where data ends, which data, on whose word, and where it would get to."""
 
     where: str
@@ -407,7 +407,7 @@ class Closed:
     behind: str
 
 
-def closed(index: Index) -> tuple[Closed, ...]:
+def closed(index: Index) -> tuple[ClosedSection, ...]:
     """Return the rows that closed a path; older documents have none."""
     rows = [row for row in index.document.get("taken_away", ()) if row["leak"] or row["open"] or row["perhaps"]]
     rows.sort(key=lambda row: row["leak"] is None)
@@ -420,7 +420,7 @@ def _normalised(row: Mapping[str, Any]) -> Any:
     return row["by"], tuple(ends), tuple(row["categories"]), places, row["note"]
 
 
-def _closed(rows: list[Mapping[str, Any]], index: Index) -> Closed:
+def _closed(rows: list[Mapping[str, Any]], index: Index) -> ClosedSection:
     words, row = index.words, rows[0]
 
     def of(end: str) -> str:
@@ -430,7 +430,7 @@ def _closed(rows: list[Mapping[str, Any]], index: Index) -> Closed:
     behind = [words("closed.leak", element=of("leak"))] if row["leak"] else []
     behind += [words("closed.open", element=of("open"))] if row["open"] else []
     said = words(f"closed.{row['by']}")
-    return Closed(
+    return ClosedSection(
         where=" → ".join(end for end in (of("element"), of("to")) if end),
         data=index.all_data(row["categories"]),
         statement=words("closed.glob", said=said) if row["glob"] else said,

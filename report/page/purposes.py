@@ -20,7 +20,7 @@ PURPOSE, BASIS = "purpose", "legal_basis"  # as a document says that they are mi
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class PurposeRow:
     """A kind of data where it begins or ends."""
 
     data: str
@@ -30,7 +30,7 @@ class Row:
     controllers: str
 
 
-def processed(index: Index) -> tuple[Row, ...]:
+def processed(index: Index) -> tuple[PurposeRow, ...]:
     """Return the rows, by kind of data; those of robots that say the same as one."""
     rows = []
     for category in index.categories:
@@ -40,7 +40,7 @@ def processed(index: Index) -> tuple[Row, ...]:
         ):
             names = index.words.row(index.names([row["element"] for row in group]))
             texts = purposes(group, index), bases(group, (), index), controllers(group, index)
-            rows.append(Row(index.data(category), names, *texts))
+            rows.append(PurposeRow(index.data(category), names, *texts))
     return tuple(rows)
 
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Question:
+class ReviewQuestion:
     """An element that data gets to and that no label covers.
 
     Attributes
@@ -44,7 +44,7 @@ class Question:
 
 
 @dataclass(frozen=True, slots=True)
-class Folded:
+class FoldedReview:
     """Questions that are one line: what they have in common, and their names."""
 
     text: str
@@ -57,8 +57,8 @@ class Group:
 
     key: str
     number: str
-    questions: tuple[Question, ...]
-    folded: tuple[Folded, ...] = ()
+    questions: tuple[ReviewQuestion, ...]
+    folded: tuple[FoldedReview, ...] = ()
 
 
 def review(index: Index) -> tuple[Group, ...]:
@@ -69,7 +69,7 @@ def review(index: Index) -> tuple[Group, ...]:
             _number(group.questions, index),
             tuple(_questions(group.now, index)),
             tuple(
-                Folded(
+                FoldedReview(
                     index.words(said, elements=index.words.count(count_rows(rows).elements, "element")),
                     _names(rows, index),
                 )
@@ -92,7 +92,7 @@ def _names(rows: Iterable[Mapping[str, Any]], index: Index) -> str:
     return index.words.row(index.names([row["element"] for row in rows]))
 
 
-def _questions(rows: Sequence[Mapping[str, Any]], index: Index) -> list[Question]:
+def _questions(rows: Sequence[Mapping[str, Any]], index: Index) -> list[ReviewQuestion]:
     words, brings = index.words, sources_of(index.document)
 
     def merge_key(row: Mapping[str, Any]) -> Any:
@@ -102,7 +102,7 @@ def _questions(rows: Sequence[Mapping[str, Any]], index: Index) -> list[Question
         return e["kind"], e["name"], e.get("leg", ""), facts, behind, tuple(brings.get(key(e), ()))
 
     return [
-        Question(
+        ReviewQuestion(
             name=_names(group, index),
             kind=words.kind(group[0]["element"]),
             data=index.all_data(group[0]["categories"]),

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class DataPlace:
     """Where data of a group can lie: a storage, an external recipient, or an element that lets data out."""
 
     name: str
@@ -37,7 +37,7 @@ class Persons:
     """A group of persons, and the places; none where no path of their data was found to one."""
 
     name: str
-    places: tuple[Place, ...]
+    places: tuple[DataPlace, ...]
 
 
 def rights(index: Index) -> tuple[Persons, ...]:
@@ -57,10 +57,10 @@ def rights(index: Index) -> tuple[Persons, ...]:
     return tuple(told)
 
 
-def _places(group: str | None, members: set[Key], index: Index) -> Iterator[Place]:
+def _places(group: str | None, members: set[Key], index: Index) -> Iterator[DataPlace]:
     """Storages first, then who receives data."""
     there = sorted(_kinds(group, members, index).items(), key=lambda one: (one[0][1] != STORAGE, one[0]))
-    alike: dict[tuple[str, Place], list[Mapping[str, Any]]] = {}
+    alike: dict[tuple[str, DataPlace], list[Mapping[str, Any]]] = {}
     for place, kinds in there:
         element = index.elements[place]
         alike.setdefault((element["name"], _place(element, kinds, index)), []).append(element)
@@ -83,7 +83,7 @@ def _kinds(group: str | None, members: set[Key], index: Index) -> dict[Key, dict
     return found
 
 
-def _place(element: Mapping[str, Any], kinds: Mapping[str, bool], index: Index) -> Place:
+def _place(element: Mapping[str, Any], kinds: Mapping[str, bool], index: Index) -> DataPlace:
     words, row = index.words, index.outside.get(key(element), {})
     durations = {category: retention_text(row, category, index) if row.get("retention") else "" for category in kinds}
     stated = {duration for duration in durations.values() if duration}
@@ -99,4 +99,4 @@ def _place(element: Mapping[str, Any], kinds: Mapping[str, bool], index: Index) 
     who = [fit(row["operator"])] if row.get("operator") else []
     who += [country(row, index)] if row.get("country") else []
     data = words.row(index.data(category, pseudonymised=hidden) for category, hidden in kinds.items())
-    return Place("", words.kind(element), data, said, words.row(who) or words("rights.unknown"))
+    return DataPlace("", words.kind(element), data, said, words.row(who) or words("rights.unknown"))

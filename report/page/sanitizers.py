@@ -27,7 +27,7 @@ SHOWN = 100  # entries of one row
 
 
 @dataclass(frozen=True, slots=True)
-class Cleaning:
+class CleaningEntry:
     """What an element does to some kinds of data in one way.
 
     Attributes
@@ -58,7 +58,7 @@ class Cleaning:
 
 
 @dataclass(frozen=True, slots=True)
-class Making:
+class MakingEntry:
     """That an element makes one kind of data of another; ``special`` if it can be a special category only then.
 
     ``recognises`` if persons are recognised or judged by what it makes.
@@ -71,7 +71,7 @@ class Making:
     recognises: bool = False
 
 
-def cleanings(index: Index, entries: Iterable[Entry]) -> tuple[Cleaning, ...]:
+def cleanings(index: Index, entries: Iterable[Entry]) -> tuple[CleaningEntry, ...]:
     """Return what sanitizers do."""
     past = _Past(index, entries)
 
@@ -110,7 +110,7 @@ class _Past:
         return sorted(first, key=lambda place: place[1])[:SHOWN], number
 
 
-def _cleaning(group: list[Mapping[str, Any]], past: _Past, index: Index) -> Cleaning:
+def _cleaning(group: list[Mapping[str, Any]], past: _Past, index: Index) -> CleaningEntry:
     row, words = group[0], index.words
     reached = dict.fromkeys(r["category"] for r in group if r["reached"])
     unreached = [c for c in dict.fromkeys(r["category"] for r in group) if c not in reached]
@@ -119,7 +119,7 @@ def _cleaning(group: list[Mapping[str, Any]], past: _Past, index: Index) -> Clea
     recognising = {key(r["element"]) for r in index.document["sanitizers"] if r.get("recognises")}
     too = _cleaning_too(group)
     first, number = past.of({without_leg(r["element"]) for r in group}, reached)
-    return Cleaning(
+    return CleaningEntry(
         name=words.row(index.names([r["element"] for r in group])),
         kinds=index.all_data(reached),
         method=words(f"method.{row['method']}" if row["stated"] else "method.unstated"),
@@ -144,13 +144,13 @@ def _cleaning_too(group: Iterable[Mapping[str, Any]]) -> list[Mapping[str, Any]]
     return [element for row in group for element in row.get("cleaning_beside", ())]
 
 
-def makings(index: Index) -> tuple[Making, ...]:
+def makings(index: Index) -> tuple[MakingEntry, ...]:
     """Return which element makes which kind of data of which."""
     article9 = {name: category["article9"] in SPECIAL for name, category in index.categories.items()}
     rows = [row for row in index.document["derivations"] if row["reached"]]
     groups = grouped(rows, lambda row: (key(row["element"])[1:], row["from"], row["to"]))
     return tuple(
-        Making(
+        MakingEntry(
             name=index.words.row(index.names([row["element"] for row in group])),
             made_of=index.data(group[0]["from"]),
             product=index.data(group[0]["to"]),

@@ -1,8 +1,8 @@
 """The two tables of a report: whose data by kind, who can get data by kind.
 
-In: an ``Index`` and the entries of the report. Out: ``Table``, cut into parts that are narrow enough for paper. Every
-kind of data is a column and every recipient a row, also where nothing was found: what is missing would look like an
-answer.
+In: an ``Index`` and the entries of the report. Out: ``PageTable``, cut into parts that are narrow enough for paper.
+Every kind of data is a column and every recipient a row, also where nothing was found: what is missing would look like
+an answer.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class Cell:
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class TableRow:
     """One row."""
 
     name: str
@@ -53,32 +53,32 @@ class Row:
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class TablePart:
     """Some columns of a table, with all of its rows."""
 
     number: int
     parts: int
     columns: tuple[str, ...]
-    rows: tuple[Row, ...]
+    rows: tuple[TableRow, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class PageTable:
     """A table."""
 
     columns: tuple[str, ...]
-    rows: tuple[Row, ...] = field(default=())
+    rows: tuple[TableRow, ...] = field(default=())
 
-    def parts(self) -> Iterator[Part]:
+    def parts(self) -> Iterator[TablePart]:
         """Return the parts, each with at most ``COLUMNS`` columns; none of a table without rows."""
         begins = range(0, len(self.columns), COLUMNS) if self.rows else range(0)
         for number, begin in enumerate(begins, 1):
             end = begin + COLUMNS
-            rows = tuple(Row(row.name, row.kind, row.cells[begin:end]) for row in self.rows)
-            yield Part(number, len(begins), self.columns[begin:end], rows)
+            rows = tuple(TableRow(row.name, row.kind, row.cells[begin:end]) for row in self.rows)
+            yield TablePart(number, len(begins), self.columns[begin:end], rows)
 
 
-class Links:
+class TableLinks:
     """Where the entry of a finding stands: findings that differ only in the robot share one."""
 
     def __init__(self, entries: Iterable[Any]) -> None:
@@ -89,7 +89,7 @@ class Links:
         return self._first.get(findings[0]["id"], anchor(findings[0]["id"])) if findings else ""
 
 
-def recipients(index: Index, links: Links) -> Table:
+def recipients(index: Index, links: TableLinks) -> PageTable:
     """Return who can get data: elements that let it out, keep it, or lie outside ROS."""
     found = {key(f["leak"]): f["leak"] for f in index.findings}
     found |= {element: index.elements[element] for element in index.of_role.get("leak", {})}
@@ -101,8 +101,8 @@ def recipients(index: Index, links: Links) -> Table:
     rows = []
     for group in grouped(ordered, lambda e: (e["kind"], e["name"])):
         cells = [_gets(group, category, findings, index, links) for category in index.categories]
-        rows.append(Row(index.words.row(index.names(group)), index.words.kind(group[0]), tuple(cells)))
-    return Table(_columns(index), tuple(rows))
+        rows.append(TableRow(index.words.row(index.names(group)), index.words.kind(group[0]), tuple(cells)))
+    return PageTable(_columns(index), tuple(rows))
 
 
 def _columns(index: Index) -> tuple[str, ...]:
@@ -111,7 +111,7 @@ def _columns(index: Index) -> tuple[str, ...]:
 
 def _gets(
     group: Sequence[Mapping[str, Any]], category: str, findings: Mapping[Any, list[Mapping[str, Any]]],
-    index: Index, links: Links,
+    index: Index, links: TableLinks,
 ) -> Cell:  # fmt: skip
     here = [finding for element in group for finding in findings.get((key(element), category), ())]
     words = index.words
@@ -136,7 +136,7 @@ def _cleaned(row: Mapping[str, Any], index: Index) -> str:
     return index.words("cell.cleaned", how=index.words.row(filter(None, (method, lines))))
 
 
-def subjects(index: Index, links: Links) -> tuple[Table, tuple[str, ...]]:
+def subjects(index: Index, links: TableLinks) -> tuple[PageTable, tuple[str, ...]]:
     """Return whose data by kind, and the names of sources of which labels do not say it."""
     sources = index.of_role.get("source", {})
     groups: dict[str, set[Key]] = defaultdict(set)
@@ -152,19 +152,19 @@ def subjects(index: Index, links: Links) -> tuple[Table, tuple[str, ...]]:
     for finding in index.findings:
         findings[key(finding["source"]), finding["category"]].append(finding)
     table = [
-        Row(
+        TableRow(
             index.words("subject.unknown") if name is None else fit(name),
             "",
             tuple(_about(name, members, c, findings, index, links) for c in index.categories),
         )
         for name, members in rows
     ]
-    return Table(_columns(index), tuple(table)), index.names([index.elements[s] for s in silent])
+    return PageTable(_columns(index), tuple(table)), index.names([index.elements[s] for s in silent])
 
 
 def _about(
     name: str | None, members: set[Key], category: str, findings: Mapping[Any, list[Mapping[str, Any]]],
-    index: Index, links: Links,
+    index: Index, links: TableLinks,
 ) -> Cell:  # fmt: skip
     here = [finding for member in sorted(members) for finding in findings.get((member, category), ())]
     open_findings = [finding for finding in here if state(finding) == "open"]

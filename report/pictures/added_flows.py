@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.findings.beyond import Added
     from rosprivacy.report.pictures.phrases import Phrases
-    from rosprivacy.report.pictures.picture import Box, Key, Line, Picture
+    from rosprivacy.report.pictures.picture import Box, Key, Picture, PictureLine
 
 BOUND = 16  # boxes of the paths of one finding, unless the shortest is longer
 
@@ -37,7 +37,7 @@ def marking(analysis: Analysis) -> Callable[[Picture], Picture]:
     return marked
 
 
-def _is_beyond(line: Line, declared: Collection[tuple[Key, Key, str]]) -> bool:
+def _is_beyond(line: PictureLine, declared: Collection[tuple[Key, Key, str]]) -> bool:
     return bool(line.places) and all((line.source, line.target, role) not in declared for role in line.roles)
 
 
@@ -74,7 +74,7 @@ def with_added(
     return replace(picture, boxes=sorted_boxes(boxes.values()), lines=lines, core=core).noted(note)
 
 
-def _new(lines: Iterable[Line], present: Collection[tuple[Key, Key]], view: str) -> Iterable[Line]:
+def _new(lines: Iterable[PictureLine], present: Collection[tuple[Key, Key]], view: str) -> Iterable[PictureLine]:
     for line in lines:
         if line.look == BEYOND:
             yield line

@@ -20,7 +20,7 @@ from rosprivacy.report.pictures.looks import (
     SHORTEST,
     SOURCE,
     TEXT,
-    Entry,
+    LegendEntry,
     Look,
     Shape,
     box_look,
@@ -32,7 +32,7 @@ from rosprivacy.report.pictures.wording import LONGEST_LINE, broken, quoted
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from rosprivacy.report.pictures.picture import Box, Line, Picture
+    from rosprivacy.report.pictures.picture import Box, Picture, PictureLine
 
 
 FONT = "Helvetica,Arial,sans-serif"
@@ -139,7 +139,7 @@ def hover(picture: Picture, box: Box) -> str:
     return f"{names} ({'; '.join(said)})"
 
 
-def line_hover(picture: Picture, line: Line) -> str:
+def line_hover(picture: Picture, line: PictureLine) -> str:
     """Return what is said of a line: its ends, the grants behind it, what goes along it."""
     arrow = picture.words("picture.to").join((shortened(line.source[2], 100), shortened(line.target[2], 100)))
     said = [line.words or picture.say(f"picture.look.{line.look}"), ", ".join(line.roles)]
@@ -152,7 +152,7 @@ def line_hover(picture: Picture, line: Line) -> str:
     return f"{arrow} ({'; '.join(text for text in said if text)})"
 
 
-def paired(picture: Picture) -> Iterator[tuple[Line, bool]]:
+def paired(picture: Picture) -> Iterator[tuple[PictureLine, bool]]:
     """Each line to be drawn, and whether it also stands for the one that goes back and looks the same."""
     looks = {(line.source, line.target, line.look, line.words): line for line in picture.lines}
     drawn = set()
@@ -179,7 +179,7 @@ def _box(picture: Picture, box: Box) -> str:
     return f"{picture.keys[box.key]} [{', '.join(attributes)}];"
 
 
-def _line(picture: Picture, line: Line, number: int, *, two_way: bool) -> str:
+def _line(picture: Picture, line: PictureLine, number: int, *, two_way: bool) -> str:
     look = LINE_LOOKS[line.look]
     attributes = [
         *line_style(look, dashed=line.pseudonymised),
@@ -245,7 +245,7 @@ def line_style(look: Look, *, dashed: bool = False) -> list[str]:
     ]
 
 
-def swatches(entries: Sequence[Entry], direction: str) -> Iterator[str]:
+def swatches(entries: Sequence[LegendEntry], direction: str) -> Iterator[str]:
     """Return the legend as a cluster: rows of boxes, then rows of lines, held together by lines that nobody sees."""
     boxes = [(f"l{number}", f"l{number}") for number, entry in enumerate(entries) if entry.shape]
     lines = [(f"s{number}", f"l{number}") for number, entry in enumerate(entries) if not entry.shape]
@@ -262,7 +262,7 @@ def swatches(entries: Sequence[Entry], direction: str) -> Iterator[str]:
     yield "  }"
 
 
-def _sample(entry: Entry, number: int) -> dict[str, str]:
+def _sample(entry: LegendEntry, number: int) -> dict[str, str]:
     """What stands for an entry: a box with its words in it, or a line that leads to them."""
     box, start = f"l{number}", f"s{number}"
     if entry.shape:

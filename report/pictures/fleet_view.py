@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.report.catalogs.words import IN_ENGLISH, Words, plain
 from rosprivacy.report.pictures.looks import DATA, DERIVATION, LEAK, OPEN, REVIEWED, SANITIZER, SHORTEST, SOURCE, WAY
-from rosprivacy.report.pictures.picture import Box, Line, Picture, sorted_boxes, sorted_lines
+from rosprivacy.report.pictures.picture import Box, Picture, PictureLine, sorted_boxes, sorted_lines
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -54,7 +54,7 @@ def represented(picture: Picture, likeness: Likeness) -> Picture:
         now = replace(box, key=moved(box.key))
         old = boxes.get(now.key)
         boxes[now.key] = _merged(old, now) if old else now
-    lines: dict[tuple[Key, Key, str], Line] = {}
+    lines: dict[tuple[Key, Key, str], PictureLine] = {}
     for line in picture.lines:
         source, target = moved(line.source), moved(line.target)
         if source != target:
@@ -80,7 +80,7 @@ def _merged(first: Box, second: Box) -> Box:
     return replace(first, look=look, words=words, open=first.open or second.open)
 
 
-def _joined(first: Line, second: Line) -> Line:
+def _joined(first: PictureLine, second: PictureLine) -> PictureLine:
     """What leads to a leak hides what leads to none."""
     lengths = [line.length for line in (first, second) if line.length]
     return replace(

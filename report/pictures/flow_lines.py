@@ -1,6 +1,6 @@
 """Lines in the making: flows of a graph -> the lines of a picture, one for all flows of one look between two boxes.
 
-In: flows, and what goes along them. Out: sorted ``Line`` facts.
+In: flows, and what goes along them. Out: sorted ``PictureLine`` facts.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.report.pictures.looks import CLEANED, DATA, SHORTEST, WAY
-from rosprivacy.report.pictures.picture import Line, sorted_lines
+from rosprivacy.report.pictures.picture import PictureLine, sorted_lines
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
@@ -27,11 +27,11 @@ def ends_of_flow(analysis: Analysis, flow: Flow) -> tuple[Key, Key]:
 
 
 @dataclass
-class Lines:
+class FlowLines:
     """Lines in the making: flows with the same ends and the same look become one."""
 
     boxes: Collection[Key]
-    lines: dict[tuple[Key, Key, str], Line] = field(default_factory=dict)
+    lines: dict[tuple[Key, Key, str], PictureLine] = field(default_factory=dict)
 
     def add(
         self,
@@ -58,12 +58,12 @@ class Lines:
             length = min((n for n in (length, old.length) if n), default=0)
             hidden = pseudonymised and old.pseudonymised
         told = tuple(sorted(places, key=_place))
-        self.lines[source, target, look] = Line(source, target, look, roles, kinds, hidden, told, length)
+        self.lines[source, target, look] = PictureLine(source, target, look, roles, kinds, hidden, told, length)
 
-    def drawn_lines(self) -> tuple[Line, ...]:
+    def drawn_lines(self) -> tuple[PictureLine, ...]:
         """The lines; data that goes to a leak hides data that goes the same line to none, and this what ends there."""
         ranks = {CLEANED: 0, DATA: 1, WAY: 2, SHORTEST: 3}
-        best: dict[tuple[Key, Key, str], Line] = {}
+        best: dict[tuple[Key, Key, str], PictureLine] = {}
         for (source, target, look), line in sorted(self.lines.items()):
             slot = (source, target, look if look not in ranks else "")
             old = best.get(slot)
@@ -74,7 +74,7 @@ class Lines:
         return sorted_lines(best.values())
 
 
-def _with(line: Line, addition: Line) -> Line:
+def _with(line: PictureLine, addition: PictureLine) -> PictureLine:
     """A line with what else goes along it."""
     return replace(
         line,
@@ -94,7 +94,7 @@ def flow_lines(
     flows: Iterable[int],
     lengths: Mapping[int, int],
     shortest: Collection[tuple[Key, Key]],
-) -> Lines:
+) -> FlowLines:
     """Return what goes along some flows.
 
     Parameters
@@ -104,7 +104,7 @@ def flow_lines(
     shortest
         Ends of the steps of the shortest paths.
     """
-    lines = Lines(boxes)
+    lines = FlowLines(boxes)
     for index in flows:
         carries, pseudonymised = reached.along(index)
         if not carries and index not in lengths:
@@ -117,7 +117,7 @@ def flow_lines(
     return lines
 
 
-def add_cleaned(lines: Lines, reached: Reached, cleaned: Mapping[int, Collection[str]]) -> None:
+def add_cleaned(lines: FlowLines, reached: Reached, cleaned: Mapping[int, Collection[str]]) -> None:
     """Add the flows along which data gets to where a label says that it is cleaned."""
     for index, kinds in cleaned.items():
         flow = reached.graph.flows[index]
@@ -130,7 +130,7 @@ def data_lines(
     flows: Iterable[int],
     lengths: Mapping[int, int],
     shortest: Collection[tuple[Key, Key]],
-) -> Lines:
+) -> FlowLines:
     """Return what goes along some flows, and between the boxes what ends where it gets, as a label says.
 
     See ``flow_lines``; beside it O(flows), once for each ``reached``.

@@ -1,9 +1,9 @@
 """What the elements of an analysis are joined to by data, and which of them matter, seen from one of them.
 
 In: an ``Analysis``; the element in hand, the kinds of data that are shown. Out: neighbours, flows between elements,
-shortest paths, made once for many pictures; and a ``Choice``, few enough to be read, however large the system is: the
-shortest path to that element, paths to leaks, what it is joined to. Where nothing is in hand and nothing leaks, it is
-where data goes first.
+shortest paths, made once for many pictures; and a ``JoinedChoice``, few enough to be read, however large the system is:
+the shortest path to that element, paths to leaks, what it is joined to. Where nothing is in hand and nothing leaks, it
+is where data goes first.
 """
 
 from __future__ import annotations
@@ -141,7 +141,7 @@ LOOKED_AT, BEHIND = 200, 40  # neighbours, and what lies behind them, before cha
 
 
 @dataclass(frozen=True, slots=True)
-class Choice:
+class JoinedChoice:
     """What matters.
 
     Attributes
@@ -180,7 +180,7 @@ class Choice:
 
 def choose(
     joined: Joined, focus: Key | None, categories: Sequence[str], limit: int, way: Witness | None = None
-) -> Choice:
+) -> JoinedChoice:
     """Return what matters, seen from an element.
 
     Parameters
@@ -208,7 +208,7 @@ def choose(
             taken = more
     near = _near(joined, focus, categories) if focus else () if findings else _first(joined, categories, limit)
     others = [key for key in dict.fromkeys(near) if key not in taken]
-    return Choice(focus, paths, findings, len(every) - len(findings), others[:LOOKED_AT])
+    return JoinedChoice(focus, paths, findings, len(every) - len(findings), others[:LOOKED_AT])
 
 
 def _on(focus: Key | None, paths: Iterable[Witness]) -> set[Key]:

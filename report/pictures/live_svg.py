@@ -39,7 +39,7 @@ from rosprivacy.report.pictures.svg import NAMESPACE, alt_text
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
-    from rosprivacy.report.pictures.picture import Box, Key, Line, Picture
+    from rosprivacy.report.pictures.picture import Box, Key, Picture, PictureLine
     from rosprivacy.report.pictures.scenes import Scene
 
 
@@ -156,21 +156,21 @@ def levels(picture: Picture) -> dict[Key, int]:
     return found
 
 
-def caption(line: Line) -> Text:
+def caption(line: PictureLine) -> Text:
     """Return what stands on a line: the number of a step, or the type of a relationship that is no flow."""
     return Text("nn", is_name=True) if is_step(line) else Text(shortened(line.words, WIDEST_WORDS), is_name=False)
 
 
-def is_step(line: Line) -> bool:
+def is_step(line: PictureLine) -> bool:
     """Whether it is a numbered step to the element in hand."""
     return bool(line.words) and line.look != OTHER
 
 
-def _on_path(line: Line) -> bool:
+def _on_path(line: PictureLine) -> bool:
     return line.look == SHORTEST or is_step(line)
 
 
-def _weight(scene: Scene, line: Line) -> int:
+def _weight(scene: Scene, line: PictureLine) -> int:
     if _on_path(line):
         return STRAIGHT
     return QUIET if scene.focus in (line.source, line.target) else 1
@@ -295,7 +295,7 @@ def _box(sheet: etree._Element, drawn: etree._Element, scene: Scene, box: Box, l
         written.set("y", str(place.get("y")))
 
 
-def _line(sheet: etree._Element, drawn: etree._Element, scene: Scene, line: Line) -> None:
+def _line(sheet: etree._Element, drawn: etree._Element, scene: Scene, line: PictureLine) -> None:
     classes = ["line", f"look-{line.look}", *(["hidden"] if line.pseudonymised else [])]
     group, step = etree.SubElement(sheet, GROUP), is_step(line)
     group.set("class", " ".join([*classes, *(["step"] if step else [])]))

@@ -134,7 +134,7 @@ LINE_LOOKS = {
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class LegendEntry:
     """One line of a legend: how it looks, what it means; a box if it has a shape, else a line."""
 
     look: Look
@@ -147,20 +147,24 @@ def box_look(view: str, look: str) -> Look:
     return (DRAWN_ROLES if view == PRIVACY else KIND_LOOKS)[look]
 
 
-def legend(picture: Picture) -> list[Entry]:
+def legend(picture: Picture) -> list[LegendEntry]:
     """Return what of a picture needs to be explained: no more than what is in it."""
     kinds = [kind for kind in DRAWN if any(box.kind == kind for box in picture.boxes)]
     entries = []
     if picture.view == PRIVACY:
         used = {box.look for box in picture.boxes} | ({OPEN} if any(box.open for box in picture.boxes) else set())
         roles = {name: look for name, look in DRAWN_ROLES.items() if name in used}
-        entries += [Entry(look, picture.say(f"picture.look.{name}"), SHAPES["node"]) for name, look in roles.items()]
+        entries += [
+            LegendEntry(look, picture.say(f"picture.look.{name}"), SHAPES["node"]) for name, look in roles.items()
+        ]
         blank = Look("", PALE)
-        entries += [Entry(blank, picture.say(f"picture.look.{kind}"), SHAPES[kind]) for kind in kinds]
+        entries += [LegendEntry(blank, picture.say(f"picture.look.{kind}"), SHAPES[kind]) for kind in kinds]
     else:
-        entries += [Entry(KIND_LOOKS[kind], picture.say(f"picture.look.{kind}"), SHAPES[kind]) for kind in kinds]
+        entries += [LegendEntry(KIND_LOOKS[kind], picture.say(f"picture.look.{kind}"), SHAPES[kind]) for kind in kinds]
     drawn = {line.look for line in picture.lines}
-    entries += [Entry(look, picture.say(f"picture.look.{name}")) for name, look in LINE_LOOKS.items() if name in drawn]
+    entries += [
+        LegendEntry(look, picture.say(f"picture.look.{name}")) for name, look in LINE_LOOKS.items() if name in drawn
+    ]
     if any(line.pseudonymised for line in picture.lines):
-        entries.append(Entry(Look("", INK, style="dashed"), picture.say("picture.dashed")))
+        entries.append(LegendEntry(Look("", INK, style="dashed"), picture.say("picture.dashed")))
     return entries

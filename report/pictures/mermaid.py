@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rosprivacy.report.pictures.looks import Look
-    from rosprivacy.report.pictures.picture import Box, Line, Picture
+    from rosprivacy.report.pictures.picture import Box, Picture, PictureLine
 
 MOST_LINES, MOST_CHARACTERS = 500, 50_000  # what Mermaid draws unless its host says otherwise
 SAFE = frozenset("/_-.,()* ")
@@ -83,7 +83,7 @@ def _class(look: str) -> str:
     return "Look" + "".join(part.capitalize() for part in look.split("-"))
 
 
-def _arrow(line: Line, *, two_way: bool) -> str:
+def _arrow(line: PictureLine, *, two_way: bool) -> str:
     look = LINE_LOOKS[line.look]
     dashed = line.pseudonymised or look.style != "solid"
     body = "-.-" if dashed else "==" if look.width > 1 else "--"
@@ -92,7 +92,7 @@ def _arrow(line: Line, *, two_way: bool) -> str:
     return f"{tail}{body}{head}"
 
 
-def _stroke(line: Line) -> str:
+def _stroke(line: PictureLine) -> str:
     look = LINE_LOOKS[line.look]
     colour = "" if look.colour == INK else f"stroke:{look.colour},"  # the theme's own: it may be a dark one
     return f"{colour}stroke-width:{look.width:g}px"

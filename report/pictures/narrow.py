@@ -13,7 +13,7 @@ from rosprivacy.analysis.errors import DrawingError, shown
 from rosprivacy.analysis.text import counted
 from rosprivacy.analysis.written_names import FEW, did_you_mean, nearest
 from rosprivacy.report.pictures.looks import MATCHES
-from rosprivacy.report.pictures.picture import Box, Line, Picture, sorted_lines
+from rosprivacy.report.pictures.picture import Box, Picture, PictureLine, sorted_lines
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
@@ -150,7 +150,7 @@ def folded(picture: Picture, apart: Collection[Key] = ()) -> Picture:
         alike[box.key if alone else same].append(box)
     first = {box.key: boxes[0].key for boxes in alike.values() for box in boxes}
     boxes = tuple(_as_one(some) for some in alike.values())
-    lines: dict[tuple[Key, Key, str], Line] = {}
+    lines: dict[tuple[Key, Key, str], PictureLine] = {}
     for line in picture.lines:
         ends = first[line.source], first[line.target], line.look
         old = lines.get(ends)

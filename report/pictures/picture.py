@@ -86,7 +86,7 @@ class Box:
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class PictureLine:
     """All flows of one look from one box to another.
 
     Attributes
@@ -147,7 +147,7 @@ class Picture:
     view: str
     title: str
     boxes: tuple[Box, ...]
-    lines: tuple[Line, ...]
+    lines: tuple[PictureLine, ...]
     notes: tuple[str, ...] = ()
     ways: tuple[str, ...] = ()
     core: frozenset[Key] = frozenset()
@@ -182,6 +182,6 @@ def sorted_boxes(boxes: Iterable[Box]) -> tuple[Box, ...]:
     return tuple(sorted(boxes, key=lambda box: order(box.key)))
 
 
-def sorted_lines(lines: Iterable[Line]) -> tuple[Line, ...]:
+def sorted_lines(lines: Iterable[PictureLine]) -> tuple[PictureLine, ...]:
     """Sort as all output is."""
-    return tuple(sorted(lines, key=Line.sort_key))
+    return tuple(sorted(lines, key=PictureLine.sort_key))

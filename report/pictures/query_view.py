@@ -29,7 +29,16 @@ from rosprivacy.report.pictures.looks import (
     WAY,
 )
 from rosprivacy.report.pictures.phrases import Phrases
-from rosprivacy.report.pictures.picture import PRIVACY, RECORD, ROS, Box, Line, Picture, sorted_boxes, sorted_lines
+from rosprivacy.report.pictures.picture import (
+    PRIVACY,
+    RECORD,
+    ROS,
+    Box,
+    Picture,
+    PictureLine,
+    sorted_boxes,
+    sorted_lines,
+)
 from rosprivacy.report.pictures.privacy import BOUND
 from rosprivacy.report.stored import flow_said, record_kind, record_name
 
@@ -92,7 +101,7 @@ class _Graph:
             for key, nodes in together.items()
         ]
         looks = self._data_looks(kinds) if data else {}
-        lines: dict[tuple[object, ...], Line] = {}
+        lines: dict[tuple[object, ...], PictureLine] = {}
         for id_, relationship in self._relationships.items():
             ends = keys[relationship.start.id], keys[relationship.end.id]
             line = self._line(*ends, relationship, looks.get(id_))
@@ -126,16 +135,16 @@ class _Graph:
                         waiting.append(start)
         return looks
 
-    def _line(self, source: Key, target: Key, relationship: Relationship, look: str | None) -> Line:
+    def _line(self, source: Key, target: Key, relationship: Relationship, look: str | None) -> PictureLine:
         file, line = (relationship.properties.get(name) for name in ("file", "line"))
         places = (Place(str(file), line if isinstance(line, int) else 0),) if file else ()
         if look:
-            return Line(source, target, look, carries=(relationship.type,))
+            return PictureLine(source, target, look, carries=(relationship.type,))
         if relationship.type != self._names.flow:
-            return Line(source, target, OTHER, places=places, words=relationship.type)
+            return PictureLine(source, target, OTHER, places=places, words=relationship.type)
         role, denied = flow_said(relationship)
         look = DENIED if denied else MATCHES if role == "matches" else ALLOWED
-        return Line(source, target, look, (role,), places=places)
+        return PictureLine(source, target, look, (role,), places=places)
 
 
 def _key(node: Node, element: Mapping[str, Any] | None) -> Key:
@@ -202,7 +211,7 @@ def _written(name: str) -> str:
     return name.replace("_", "").upper()
 
 
-def _merged(first: Line, second: Line) -> Line:
+def _merged(first: PictureLine, second: PictureLine) -> PictureLine:
     places = sorted({*first.places, *second.places}, key=lambda place: (place.file, place.line))
     return replace(
         first,

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.text import shortened
 from rosprivacy.report.catalogs.words import plain
-from rosprivacy.report.pictures.flow_lines import Lines, add_cleaned, ends_of_flow, flow_lines
+from rosprivacy.report.pictures.flow_lines import FlowLines, add_cleaned, ends_of_flow, flow_lines
 from rosprivacy.report.pictures.joined import Joined, choose
 from rosprivacy.report.pictures.looks import (
     ALLOWED,
@@ -29,7 +29,7 @@ from rosprivacy.report.pictures.looks import (
 )
 from rosprivacy.report.pictures.narrow import folded
 from rosprivacy.report.pictures.phrases import Phrases
-from rosprivacy.report.pictures.picture import GROUP, PRIVACY, Box, Line, Picture, sorted_boxes, sorted_lines
+from rosprivacy.report.pictures.picture import GROUP, PRIVACY, Box, Picture, PictureLine, sorted_boxes, sorted_lines
 from rosprivacy.report.pictures.privacy import Reached
 from rosprivacy.report.pictures.views import in_words, pairs
 from rosprivacy.report.pictures.wording import listed
@@ -41,8 +41,8 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.findings.witness import WhyCarried, Witness
     from rosprivacy.analysis.model import Element
     from rosprivacy.report.catalogs.words import Words
-    from rosprivacy.report.pictures.joined import Choice
-    from rosprivacy.report.pictures.picture import Key, Line
+    from rosprivacy.report.pictures.joined import JoinedChoice
+    from rosprivacy.report.pictures.picture import Key, PictureLine
 
 LOOKS_OF_ROLES = {
     UNTOUCHED: "picture.explore.element",
@@ -54,7 +54,7 @@ Place = tuple[str, ...]  # names of levels, the widest first
 
 
 @dataclass(frozen=True, slots=True)
-class Folded:
+class FoldedScene:
     """A system in groups.
 
     Attributes
@@ -71,11 +71,11 @@ class Folded:
 
     boxes: tuple[Box, ...]
     single: frozenset[Key]
-    lines: tuple[Line, ...]
+    lines: tuple[PictureLine, ...]
     channels: int
 
 
-def folded_by_place(joined: Joined, alone: Collection[Key], bits: int, limit: int, words: Words) -> Folded:
+def folded_by_place(joined: Joined, alone: Collection[Key], bits: int, limit: int, words: Words) -> FoldedScene:
     """Return the groups of all elements but some.
 
     Parameters
@@ -106,7 +106,7 @@ def folded_by_place(joined: Joined, alone: Collection[Key], bits: int, limit: in
     box_of |= {key: key for key in (*single, *alone)}
     unjudged = joined.unjudged(bits)
     boxes = tuple(_box(joined, group, some, bits, unjudged.intersection(some), words) for group, some in groups.items())
-    return Folded(boxes, single, tuple(_lines(joined, box_of, bits)), sum(not place for place in places.values()))
+    return FoldedScene(boxes, single, tuple(_lines(joined, box_of, bits)), sum(not place for place in places.values()))
 
 
 def _places(joined: Joined, alone: Collection[Key]) -> Mapping[Key, Place]:
@@ -149,9 +149,9 @@ def _box(joined: Joined, key: Key, members: Collection[Key], bits: int, unjudged
     return Box(key, (key[2],), look, tuple(map(plain, said)), open=bool(unjudged))
 
 
-def _lines(joined: Joined, box_of: Mapping[Key, Key], bits: int) -> Iterator[Line]:
+def _lines(joined: Joined, box_of: Mapping[Key, Key], bits: int) -> Iterator[PictureLine]:
     """Where data goes between boxes, through channels that have none."""
-    lines = Lines(set(box_of.values()))
+    lines = FlowLines(set(box_of.values()))
     readers = _Readers(joined, box_of, bits)
     for key, box in box_of.items():
         for there in joined.after(key, bits):
@@ -289,7 +289,7 @@ class Scenes:
         every, standard = self._joined.elements()
         alone, notes = every | choice.core, list[str]()
         groups: tuple[Box, ...] = ()
-        between: tuple[Line, ...] = ()
+        between: tuple[PictureLine, ...] = ()
         if len(every) > limit:
             bits = sum(map(self.analysis.spread.forms_of, wanted))
             folded = folded_by_place(self._joined, choice.core, bits, max(1, limit - len(choice.core)), words)
@@ -310,7 +310,7 @@ class Scenes:
         words = self._say.words
         return listed(map(self._say.title, kinds), limit=4, words=words) or words("picture.empty")
 
-    def _ways(self, choice: Choice) -> tuple[str, ...]:
+    def _ways(self, choice: JoinedChoice) -> tuple[str, ...]:
         return tuple(in_words(finding, self._say) for finding in choice.findings)
 
     def _reached_by(self, categories: tuple[str, ...]) -> Reached:
@@ -320,7 +320,7 @@ class Scenes:
             )
         return self._reached[categories]
 
-    def _lines(self, reached: Reached, boxes: Collection[Key], choice: Choice) -> tuple[Line, ...]:
+    def _lines(self, reached: Reached, boxes: Collection[Key], choice: JoinedChoice) -> tuple[PictureLine, ...]:
         """What goes between the boxes; the steps to the element in hand are numbered."""
         graph, shortest = self.analysis.graph, pairs(choice.findings)
         flows = self._joined.flows(boxes)
@@ -333,7 +333,7 @@ class Scenes:
                 lines.add(*ends, ALLOWED, flow.role, flow.grants)
         return sorted_lines(_stepwise(lines.drawn_lines(), choice.steps()))
 
-    def _title(self, choice: Choice, categories: Iterable[str]) -> str:
+    def _title(self, choice: JoinedChoice, categories: Iterable[str]) -> str:
         arriving = sorted({(path.steps[-1].category if path.steps else "") for path in choice.paths} - {""})
         what = self._listed(arriving or categories)
         key = "leaks" if choice.findings else "data"
@@ -343,7 +343,7 @@ class Scenes:
         name = shortened(choice.focus[2], 60) if choice.focus else ""
         return plain(self._say.words(f"picture.explore.{key}", what=what, name=name))
 
-    def _bounded(self, picture: Picture, choice: Choice, limit: int) -> Picture:
+    def _bounded(self, picture: Picture, choice: JoinedChoice, limit: int) -> Picture:
         """The picture with no more boxes than asked for, and with what is not drawn of the system."""
         small, inside = folded(picture, choice.core), choice.core
         place = {key: number for number, key in enumerate(choice.near)}
@@ -363,7 +363,7 @@ class Scenes:
         return replace(small, notes=tuple(note for note in (left, rest, quiet) if note))
 
 
-def _stepwise(lines: Iterable[Line], steps: Mapping[tuple[Key, Key], int]) -> Iterator[Line]:
+def _stepwise(lines: Iterable[PictureLine], steps: Mapping[tuple[Key, Key], int]) -> Iterator[PictureLine]:
     """Lines with the steps to the element in hand."""
     for line in lines:
         number = steps.get((line.source, line.target))
@@ -374,7 +374,7 @@ def _stepwise(lines: Iterable[Line], steps: Mapping[tuple[Key, Key], int]) -> It
             yield replace(line, look=look, words=str(number) if number else "")
 
 
-def _dotted(lines: Iterable[Line]) -> Iterator[Line]:
+def _dotted(lines: Iterable[PictureLine]) -> Iterator[PictureLine]:
     """Lines of data as they are, but for those that only say that a wildcard covers a name."""
     for line in lines:
         yield replace(line, look=MATCHES) if line.look == DATA and line.roles == (MATCHES,) else line

@@ -22,10 +22,10 @@ from rosprivacy.analysis.text import shortened
 from rosprivacy.report.catalogs.words import IN_ENGLISH, Words, plain
 from rosprivacy.report.element_counts import count_elements
 from rosprivacy.report.made_of import making
-from rosprivacy.report.pictures.flow_lines import Lines, data_lines, ends_of_flow
+from rosprivacy.report.pictures.flow_lines import FlowLines, data_lines, ends_of_flow
 from rosprivacy.report.pictures.looks import ALLOWED, DENIED, MATCHES, SHORTEST
 from rosprivacy.report.pictures.phrases import Phrases
-from rosprivacy.report.pictures.picture import PRIVACY, ROS, Box, Line, Picture, order, sorted_boxes
+from rosprivacy.report.pictures.picture import PRIVACY, ROS, Box, Picture, PictureLine, order, sorted_boxes
 from rosprivacy.report.pictures.privacy import Reached
 from rosprivacy.report.pictures.wording import listed
 
@@ -69,7 +69,7 @@ def ros_view(
         if element.identity in boxes:
             boxes[element.identity] = replace(boxes[element.identity], types=types)
     covered: dict[Key, set[Key]] = defaultdict(set)
-    lines = Lines(boxes)
+    lines = FlowLines(boxes)
     for flow in graph.flows:
         if flow.role == "matches":
             one, other = ends_of_flow(analysis, flow)
@@ -91,7 +91,7 @@ def ros_view(
     return Picture(ROS, title, sorted_boxes(boxes.values()), lines.drawn_lines(), notes, words=words)
 
 
-def _deny(lines: Lines, grant: Grant, graph: FlowGraph, hidden: Collection[Key]) -> bool:
+def _deny(lines: FlowLines, grant: Grant, graph: FlowGraph, hidden: Collection[Key]) -> bool:
     """A DENY by itself is no flow; it is drawn where there is a channel of that name. Return whether it was."""
     robots = {element.robot for element in graph.elements}
     if len(robots) > 1:  # a policy line does not say whose it is
@@ -293,7 +293,7 @@ def bounded(picture: Picture, limit: int) -> Picture:
     return replace(picture, notes=notes, lines=tuple(lines)).part(kept, note)
 
 
-def _joined(lines: Iterable[Line]) -> set[Key]:
+def _joined(lines: Iterable[PictureLine]) -> set[Key]:
     return {key for line in lines for key in (line.source, line.target)}
 
 

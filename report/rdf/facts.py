@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
+class ChangeFact:
     """What an element of a witness makes of the data.
 
     Attributes
@@ -53,7 +53,7 @@ def kinds_along(finding: Finding) -> list[tuple[str, bool]]:
     return [*((step.category, step.pseudonymised) for step in finding.steps), (finding.category, finding.pseudonymised)]
 
 
-def changes(finding: Finding, emitted: Collection[str]) -> list[Change]:
+def changes(finding: Finding, emitted: Collection[str]) -> list[ChangeFact]:
     """Return where on the witness the data become another category or pseudonymised, source first.
 
     Parameters
@@ -64,7 +64,7 @@ def changes(finding: Finding, emitted: Collection[str]) -> list[Change]:
     kinds = kinds_along(finding)
     first = (kinds[0][0] if kinds[0][0] in emitted else "", False)
     rows = zip(finding.witness, [first, *kinds[:-1]], kinds, strict=True)
-    found = [Change(element, before, after) for element, before, after in rows]
+    found = [ChangeFact(element, before, after) for element, before, after in rows]
     return [change for change in found if change.derives or change.pseudonymises]
 
 

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.fleet.patterns import FleetView
     from rosprivacy.analysis.model import Element
     from rosprivacy.report.document.contents import Document
-    from rosprivacy.report.rdf.individuals import Names
+    from rosprivacy.report.rdf.individuals import IndividualNames
 
     Files = Mapping[str, Sequence[URIRef]]  # path -> what was read there
 
@@ -98,7 +98,7 @@ def rdf_graph(document: Document, when: datetime | None = None, base: str | None
     return graph
 
 
-def _robots(view: FleetView, names: Names) -> Iterator[Triple]:
+def _robots(view: FleetView, names: IndividualNames) -> Iterator[Triple]:
     """Which robots each finding stands for."""
     for pattern in view.patterns:
         iri = names.finding(pattern.finding)
@@ -119,13 +119,13 @@ class _Findings:
     """
 
     document: Document
-    names: Names
+    names: IndividualNames
     things: Things
     unreviewed: frozenset[tuple[object, str]]
     processes: Processes
 
     @classmethod
-    def of(cls, document: Document, names: Names, things: Things) -> _Findings:
+    def of(cls, document: Document, names: IndividualNames, things: Things) -> _Findings:
         analysis = document.analysis
         unstated = frozenset((element.shown_as, category) for element, category in analysis.unstated)
         unreviewed = frozenset((q.element.shown_as, category) for q in analysis.open for category in q.categories)
@@ -242,7 +242,7 @@ class _Findings:
 NO_VERDICT = "Labels are a person's word, and a path can be lawful. This is no legal verdict."
 
 
-def by_path(assumptions: Mapping[str, Any], names: Names) -> dict[str, tuple[URIRef, ...]]:
+def by_path(assumptions: Mapping[str, Any], names: IndividualNames) -> dict[str, tuple[URIRef, ...]]:
     """Return path -> IRIs of what was read there; several where robots were loaded at different times."""
     found: dict[str, dict[URIRef, None]] = {}
     for _, file, sha256 in files_read(assumptions):
@@ -251,7 +251,7 @@ def by_path(assumptions: Mapping[str, Any], names: Names) -> dict[str, tuple[URI
 
 
 def provenance(
-    analysis: Analysis, document: Mapping[str, Any], names: Names, things: Things, when: datetime | None
+    analysis: Analysis, document: Mapping[str, Any], names: IndividualNames, things: Things, when: datetime | None
 ) -> Iterator[Triple]:
     """Say what the run was, what it rests on and what it concluded.
 
@@ -308,7 +308,7 @@ def digest_of(document: Mapping[str, Any]) -> str:
     return hashlib.sha256(json.dumps(document, sort_keys=True).encode()).hexdigest()[:16]
 
 
-def _tool(run: URIRef, assumptions: Mapping[str, Any], names: Names) -> Iterator[Triple]:
+def _tool(run: URIRef, assumptions: Mapping[str, Any], names: IndividualNames) -> Iterator[Triple]:
     version = assumptions["rosprivacy"]
     tool = names.of("tool", version)
     yield from about(run, (PROV.wasAssociatedWith, [tool]))

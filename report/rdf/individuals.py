@@ -33,7 +33,7 @@ _NOT_IN_IRIS = re.compile(r'[\x00-\x20<>"{}|\\^`\x7f-\x9f]')
 
 
 @dataclass(frozen=True, slots=True)
-class Names:
+class IndividualNames:
     """What the individuals of a system are called.
 
     Attributes
@@ -47,7 +47,7 @@ class Names:
     def of(self, kind: str, *parts: object) -> URIRef:
         """Return the IRI of an individual: percent-encoded, so that no name can leave it, the same for no two.
 
-        >>> Names("urn:test:").of("element", "", "node", "/a> . <b")
+        >>> IndividualNames("urn:test:").of("element", "", "node", "/a> . <b")
         rdflib.term.URIRef('urn:test:element::node:/a%3E%20.%20%3Cb')
         """
         return URIRef(self.base + ":".join([kind, *(_encoded(str(part)) for part in parts)]))
@@ -73,7 +73,7 @@ class Names:
         return self.of("file", sha256, file)
 
 
-def names_of(document: Mapping[str, Any], base: str | None = None) -> Names:
+def names_of(document: Mapping[str, Any], base: str | None = None) -> IndividualNames:
     """Return the names of what a document is about.
 
     Parameters
@@ -92,7 +92,7 @@ def names_of(document: Mapping[str, Any], base: str | None = None) -> Names:
     if base is not None and not _BASE.fullmatch(base):
         hint = "give an IRI that ends in / or # or :, such as https://example.org/robots/r2/"
         raise InputError("base", 0, f"{shown(base)!r} is not a base of IRIs", hint)
-    return Names(base or f"urn:uuid:{uuid5(SYSTEMS, _seed(document))}#")
+    return IndividualNames(base or f"urn:uuid:{uuid5(SYSTEMS, _seed(document))}#")
 
 
 def below(parent: URIRef, *parts: object) -> URIRef:

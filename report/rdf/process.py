@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Finding
     from rosprivacy.analysis.model import Element
     from rosprivacy.report.document.contents import Document
-    from rosprivacy.report.rdf.facts import Change
-    from rosprivacy.report.rdf.individuals import Names
+    from rosprivacy.report.rdf.facts import ChangeFact
+    from rosprivacy.report.rdf.individuals import IndividualNames
     from rosprivacy.report.rdf.things import Things
 
 ALWAYS = "always"
@@ -58,12 +58,12 @@ class Processes:
     """
 
     document: Document
-    names: Names
+    names: IndividualNames
     things: Things
     unstated: frozenset[tuple[object, str]]
     processed: Mapping[tuple[Element, str], Processed]
 
-    def triples(self, finding: Finding, changed: list[Change]) -> Iterator[Triple]:
+    def triples(self, finding: Finding, changed: list[ChangeFact]) -> Iterator[Triple]:
         """Everything about the process of a finding."""
         iri, source = self.names.process(finding), self.things.element(finding.source)
         yield from about(
@@ -141,7 +141,7 @@ class Processes:
             (DPV.hasRisk, [risk, *([RISK.Reidentification] if finding.pseudonymised else [])]),
         )
 
-    def _measure(self, iri: URIRef, measure: URIRef, change: Change) -> Iterator[Triple]:
+    def _measure(self, iri: URIRef, measure: URIRef, change: ChangeFact) -> Iterator[Triple]:
         names = {name for name, _ in (change.before, change.after) if name}
         unstated = any((change.element.shown_as, name) in self.unstated for name in names)
         yield iri, DPV.hasTechnicalMeasure, measure

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.model import Element, Grant, Legal, NonRosFacts, Pointer
     from rosprivacy.report.document.contents import Document
-    from rosprivacy.report.rdf.individuals import Names
+    from rosprivacy.report.rdf.individuals import IndividualNames
 
 CLASSES = {
     "node": RP.RosNode, "topic": RP.Topic, "service": RP.Service, "action": RP.Action, "storage": RP.Storage,
@@ -41,7 +41,7 @@ class Things:
         Path -> IRIs of the files that were read there.
     """
 
-    def __init__(self, document: Document, names: Names, files: Mapping[str, tuple[URIRef, ...]]) -> None:
+    def __init__(self, document: Document, names: IndividualNames, files: Mapping[str, tuple[URIRef, ...]]) -> None:
         vocabulary = document.vocabulary
         self._categories = vocabulary.categories
         self._ancestors = vocabulary.hierarchy.ancestors

@@ -23,7 +23,7 @@ from rosprivacy.report.sarif.rules import (
     NO_LEAK,
     NOTHING_FOLLOWED,
     UNREVIEWED,
-    Rule,
+    SarifRule,
     rule_of,
     rule_of_doubt,
 )
@@ -200,7 +200,7 @@ class Results:
             result["suppressions"] = [{"kind": "external", "status": "accepted", "justification": why}]
         return result
 
-    def _rule_alone(self, rule: Rule) -> dict[str, Any]:
+    def _rule_alone(self, rule: SarifRule) -> dict[str, Any]:
         """A result about the whole system."""
         return {
             "ruleId": rule.id,

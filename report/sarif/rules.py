@@ -30,7 +30,7 @@ ASSESS = (
 
 
 @dataclass(frozen=True, slots=True)
-class Rule:
+class SarifRule:
     """What a kind of finding means.
 
     Attributes
@@ -56,14 +56,14 @@ class Rule:
 
 
 RULES = (
-    Rule(
+    SarifRule(
         "disclosure",
         "PersonalDataDisclosure",
         "Personal data can reach a place that lets it out: a path to assess.",
         "A node that brings personal data in and a place that lets it out of the system are connected by steps that "
         "the policies allow. The line is the last one that lets the data in there.",
     ),
-    Rule(
+    SarifRule(
         "storage-limitation",
         "PersonalDataStorage",
         "Personal data can reach a storage that keeps it without a stated limit, or longer than its kind may be kept.",
@@ -76,7 +76,7 @@ RULES = (
             DECIDE,
         ),
     ),
-    Rule(
+    SarifRule(
         "third-country-transfer",
         "PersonalDataTransfer",
         "Personal data can reach a recipient outside the European Economic Area with no stated basis for the transfer.",
@@ -84,7 +84,7 @@ RULES = (
         "the country is adequate nor a safeguard is stated for it.",
         ("State the basis of the transfer, or the country if it is another.", *ASSESS),
     ),
-    Rule(
+    SarifRule(
         "unprotected-channel",
         "PersonalDataUnprotected",
         "Personal data flows on a channel that others on the network can read.",
@@ -98,7 +98,7 @@ RULES = (
         ),
     ),
 )
-UNREVIEWED = Rule(
+UNREVIEWED = SarifRule(
     "unreviewed-element",
     "PersonalDataNotReviewed",
     "Personal data reaches a node that no label speaks of: a question to answer.",
@@ -110,7 +110,7 @@ UNREVIEWED = Rule(
     ),
     NONE,
 )
-BEYOND_PROFILE = Rule(
+BEYOND_PROFILE = SarifRule(
     "beyond-profile",
     "PersonalDataBeyondProfile",
     "Personal data can reach a place only if a node does what another profile of its enclave allows.",
@@ -124,7 +124,7 @@ BEYOND_PROFILE = Rule(
     ),
     "note",
 )
-NOTHING_FOLLOWED = Rule(
+NOTHING_FOLLOWED = SarifRule(
     "no-data-followed",
     "PersonalDataNotFollowed",
     "No data was followed: that nothing is found says nothing about the system.",
@@ -132,7 +132,7 @@ NOTHING_FOLLOWED = Rule(
     "or to standard channels only, so there was nothing to follow.",
     ("Name the nodes that bring personal data in, in a label file: rosprivacy labels --init writes a first one.",),
 )
-NO_LEAK = Rule(
+NO_LEAK = SarifRule(
     "no-leak-named",
     "PersonalDataLeakNotNamed",
     "No label says where data gets out: that nothing is found says nothing about the system.",
@@ -149,7 +149,7 @@ EARLIER = {  # rules that had an id before there was one list of doubts: viewers
 }
 
 
-def rule_of_doubt(name: str, *, breaks: bool) -> Rule:
+def rule_of_doubt(name: str, *, breaks: bool) -> SarifRule:
     """Return the rule of a sort of doubts: a warning where it breaks the verdict, a note where it rides on it.
 
     >>> rule_of_doubt("no-reader", breaks=False).name
@@ -159,10 +159,10 @@ def rule_of_doubt(name: str, *, breaks: bool) -> Rule:
     camel = "Doubt" + "".join(part.capitalize() for part in name.split("-"))
     full = f"{short}: that nothing is found does not say that there is nothing."
     steps = (f"{remedy[:1].upper()}{remedy[1:]}.",)
-    return Rule(EARLIER.get(name, f"doubt-{name}"), camel, f"{short}.", full, steps, WARNING if breaks else "note")
+    return SarifRule(EARLIER.get(name, f"doubt-{name}"), camel, f"{short}.", full, steps, WARNING if breaks else "note")
 
 
-def rule_of(kind: str) -> Rule:
+def rule_of(kind: str) -> SarifRule:
     """Return the rule of a kind of finding.
 
     >>> rule_of("disclosure").name
@@ -174,10 +174,10 @@ def rule_of(kind: str) -> Rule:
     known = {rule.id: rule for rule in RULES}
     name = "PersonalData" + "".join(part.capitalize() for part in identifier.split("-"))
     short = f"Personal data can reach a place that it perhaps should not: {shown(kind)}."
-    return known.get(identifier) or Rule(identifier, name, short, short)
+    return known.get(identifier) or SarifRule(identifier, name, short, short)
 
 
-def descriptors(rules: Iterable[Rule]) -> list[dict[str, Any]]:
+def descriptors(rules: Iterable[SarifRule]) -> list[dict[str, Any]]:
     """Return rules as SARIF's ``reportingDescriptor``; at most 10 tags are shown, so there are few."""
     return [
         {

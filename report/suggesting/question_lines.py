@@ -19,7 +19,7 @@ from rosprivacy.analysis.suggesting.label_questions import (
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
 
-    from rosprivacy.analysis.suggesting.label_questions import Question, Reply, Row
+    from rosprivacy.analysis.suggesting.label_questions import LabelQuestion, Reply, Row
 
 QUESTIONS = {
     BRINGS_IN: ("Does it bring such data in?", "Which of these bring such data in?"),
@@ -54,7 +54,7 @@ CLOSES_NONE, MAY_HANG = "of which this list closes none", "which may hang on thi
 SHOWN = 3  # reasons of an element, findings of a question, kinds of a key
 
 
-def question_lines(question: Question) -> Iterator[str]:
+def question_lines(question: LabelQuestion) -> Iterator[str]:
     """Yield what is asked, each row with its reasons, and the findings that may hang on the answer."""
     rows = question.rows
     yield ""
@@ -75,7 +75,7 @@ def question_lines(question: Question) -> Iterator[str]:
             yield f"       and {len(closes) - most} more findings"
 
 
-def _question_text(question: Question) -> str:
+def _question_text(question: LabelQuestion) -> str:
     rows = question.rows
     kinds = " and ".join(rows[0].kinds) if _same_kinds(rows) else SUCH_DATA
     if question.about != LISTED:
@@ -84,7 +84,7 @@ def _question_text(question: Question) -> str:
     return LISTS[role].format(kinds=kinds, left=", ".join(left))
 
 
-def help_lines(question: Question, keys: Collection[str]) -> Iterator[str]:
+def help_lines(question: LabelQuestion, keys: Collection[str]) -> Iterator[str]:
     """Yield what each key means, one line each.
 
     Parameters
@@ -104,11 +104,11 @@ def help_lines(question: Question, keys: Collection[str]) -> Iterator[str]:
     yield from (f"  {key}  {means}" for key, (_, means) in _meanings(question).items() if key in (*keys, *ALWAYS))
 
 
-def _meanings(question: Question) -> dict[str, tuple[str, str]]:
+def _meanings(question: LabelQuestion) -> dict[str, tuple[str, str]]:
     return KEYS | ({"n": NEITHER} if question.about == GOES_ON else {})
 
 
-def keys_line(question: Question, picked: Collection[int], keys: Collection[str]) -> str:
+def keys_line(question: LabelQuestion, picked: Collection[int], keys: Collection[str]) -> str:
     """Return which keys say what of the rows that are picked, or of all.
 
     Parameters
@@ -144,7 +144,7 @@ def _list_line(rows: int, out: Collection[int], key: str) -> str:
     return f"  {without}{confirm}A-Z take out or put back, o not as a list, s later, q stop, ? help"
 
 
-def _of_row(question: Question, row: Row) -> str:
+def _of_row(question: LabelQuestion, row: Row) -> str:
     """What a row is about, where rows differ in it."""
     if question.about == MAKES:
         (made,) = row.replies[0].label.roles["derives"]

@@ -28,7 +28,7 @@ from rosprivacy.answer import Enforced
 from rosprivacy.answering import answer
 from rosprivacy.ingest.deployed.zenoh_grants import ANY_SESSION
 from rosprivacy.ingest.policies.changed_graph import changed_graph
-from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, Change
+from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, PolicyChange
 from rosprivacy.ingest.policies.names import DDS, is_pattern, writable
 from rosprivacy.question import question_of
 from rosprivacy.systems.robot_system import system_reader
@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from rosprivacy.settings import Settings
     from rosprivacy.system import System
 
-    Reader = Callable[[Change], System]
+    Reader = Callable[[PolicyChange], System]
 
 TRIED = 20  # changes of each kind, each an analysis of its own
 
@@ -158,13 +158,13 @@ class Remedies:
     """
 
     trials: Trials
-    declared: Callable[[Change], System]
+    declared: Callable[[PolicyChange], System]
     granted: frozenset[Ends]
     enclaves: Mapping[str, frozenset[str]]
     second: Collection[str]
     hidden: Collection[str] = ()
-    tried: set[Change] = field(default_factory=set)
-    allowed: dict[Change, frozenset[Right]] = field(default_factory=dict)
+    tried: set[PolicyChange] = field(default_factory=set)
+    allowed: dict[PolicyChange, frozenset[Right]] = field(default_factory=dict)
     counts: dict[int, int] = field(default_factory=dict)
 
     def of(self, findings: Sequence[Finding], robots: tuple[str, ...] = ()) -> Added:
@@ -176,7 +176,7 @@ class Remedies:
         loses: frozenset[Right] = frozenset()
         if deny:
             try:
-                loses = self._rights(NO_CHANGE) - self._rights(Change(deny=frozenset(deny)))
+                loses = self._rights(NO_CHANGE) - self._rights(PolicyChange(deny=frozenset(deny)))
             except InputErrors:  # labels name what would be denied
                 deny = ()
         return Added(
@@ -209,12 +209,12 @@ class Remedies:
             if more == enclaves:
                 return ()
             enclaves = more
-            left = self._still_open(Change(split=enclaves), findings)
+            left = self._still_open(PolicyChange(split=enclaves), findings)
         return () if left is None else tuple(sorted(enclaves))
 
     def _move(self, finding: Finding, findings: Sequence[Finding]) -> tuple[str, str] | None:
         for enclave, node in dict.fromkeys(self._movable(finding)):
-            if self._still_open(Change(move=frozenset({(enclave, node)})), findings) == []:
+            if self._still_open(PolicyChange(move=frozenset({(enclave, node)})), findings) == []:
                 return enclave, node
         return None
 
@@ -241,7 +241,7 @@ class Remedies:
             if not more:
                 return ()
             lines |= more
-            left = self._still_open(Change(deny=lines), findings)
+            left = self._still_open(PolicyChange(deny=lines), findings)
         return () if left is None else tuple(sorted(lines))
 
     def _next_lines(self, finding: Finding, lines: frozenset[DenyLine]) -> frozenset[DenyLine]:
@@ -249,7 +249,7 @@ class Remedies:
         choices = [frozenset(_lines(finding, n)) - lines for n in beyond(finding, self.granted)]
         return min((choice for choice in choices if choice), key=lambda c: (len(c), sorted(c)), default=frozenset())
 
-    def _still_open(self, change: Change, findings: Iterable[Finding]) -> list[Finding] | None:
+    def _still_open(self, change: PolicyChange, findings: Iterable[Finding]) -> list[Finding] | None:
         """Those of the findings that still stand after a change; None where too many changes were tried."""
         if change not in self.tried:
             kind = next(n for n, part in enumerate(change) if part)
@@ -260,7 +260,7 @@ class Remedies:
         left = self.trials.still_open(change, findings)
         return [one for one in left if not (one.pseudonymised and one.id in self.hidden)]
 
-    def _rights(self, change: Change) -> frozenset[Right]:
+    def _rights(self, change: PolicyChange) -> frozenset[Right]:
         if change not in self.allowed:
             self.allowed[change] = rights(self.declared(change).graph)
         return self.allowed[change]
@@ -317,10 +317,10 @@ class Trials:
 
     system: System
     result: Result
-    read: Callable[[Change], System]
+    read: Callable[[PolicyChange], System]
     question: Question
-    nets: dict[Change, tuple[Net, Bound]] = field(default_factory=dict)
-    answers: dict[Change, Mapping[str, Finding]] = field(default_factory=dict)
+    nets: dict[PolicyChange, tuple[Net, Bound]] = field(default_factory=dict)
+    answers: dict[PolicyChange, Mapping[str, Finding]] = field(default_factory=dict)
 
     @cached_property
     def vertices(self) -> Mapping[Element, int]:
@@ -369,7 +369,7 @@ class Trials:
             }
         )
 
-    def still_open(self, change: Change, findings: Iterable[Finding]) -> list[Finding]:
+    def still_open(self, change: PolicyChange, findings: Iterable[Finding]) -> list[Finding]:
         """Return those of some findings that still stand after a change: all where labels do not fit what it leaves."""
         findings = tuple(findings)
         try:
@@ -378,14 +378,14 @@ class Trials:
             return list(findings)
         return [there[one.id] for one in findings if one.id in there]
 
-    def _all_findings(self, change: Change) -> Mapping[str, Finding]:
+    def _all_findings(self, change: PolicyChange) -> Mapping[str, Finding]:
         """All findings: robots of a fleet are put together first."""
         if change not in self.answers:
             found = answer(self.read(change), self.question).analysis.findings
             self.answers[change] = {one.id: one for one in found if not one.dismissed}
         return self.answers[change]
 
-    def _listed_only(self, change: Change, findings: Sequence[Finding]) -> Mapping[str, Finding]:
+    def _listed_only(self, change: PolicyChange, findings: Sequence[Finding]) -> Mapping[str, Finding]:
         if change not in self.nets:
             self.nets[change] = self._net(change)
         net, bound = self.nets[change]
@@ -402,7 +402,7 @@ class Trials:
         found = chosen_findings(net, bound, self.system.vocabulary.hierarchy, options, chosen)
         return {one.id: one for one in found if not one.dismissed}
 
-    def _net(self, change: Change) -> tuple[Net, Bound]:
+    def _net(self, change: PolicyChange) -> tuple[Net, Bound]:
         bound = self.result.bound
         named = bound.through or (bound.flows and change.deny)  # flows that labels name: are they still there?
         graph = None if named else changed_graph(self.system.graph, self.system.policies, change)

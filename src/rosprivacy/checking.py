@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from rosprivacy.analysis.model import Diagnostic, Grant, Place, Policy
-    from rosprivacy.ingest.deployed.differences import Difference, Loss
+    from rosprivacy.ingest.deployed.differences import GrantDifference, Loss
     from rosprivacy.ingest.running.granted_and_used import Usage, Use
     from rosprivacy.report.schemas.policies import CheckDocument, DifferenceEntry
     from rosprivacy.settings import Settings
@@ -48,7 +48,7 @@ def check_document(policy: str, deployed: tuple[str, ...], settings: Settings) -
     stated, said = read_granted([policy], replace(settings, permissions_ca=()))  # what is meant; nobody signs it
     zenoh = [name for name in deployed if name.endswith(ZENOH)]
     others = [name for name in deployed if not name.endswith(ZENOH)]
-    found: list[Difference] = []
+    found: list[GrantDifference] = []
     losses: tuple[Loss, ...] = ()
     read: list[Policy] = [*stated]
     for names, who in ((others, _enclave), (zenoh, _base_name)):
@@ -96,7 +96,7 @@ def _exposed(policy: Policy) -> Iterable[tuple[str, str, Place]]:
         yield from ((NOT_ENCRYPTED, one.expression, one.place) for one in protection.topics if not one.encrypted)
 
 
-def _entry(difference: Difference) -> DifferenceEntry:
+def _entry(difference: GrantDifference) -> DifferenceEntry:
     return {
         "enclave": difference.enclave,
         "only_in": "policy" if difference.stated else "deployed",

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 import rosprivacy
-from rosprivacy.analysis.suggesting.label_questions import GOES_THROUGH, Question
+from rosprivacy.analysis.suggesting.label_questions import GOES_THROUGH, LabelQuestion
 from rosprivacy.labelling.asking import asked_now
 from rosprivacy.labelling.conversation import FOUND_SINCE, Conversation
 from rosprivacy.labelling.suggesting import suggest_labels
@@ -199,7 +199,7 @@ def test_at_a_terminal_a_key_takes_away_of_one_row(robot: Path, keys: str, kept:
     question = next(one for one in asked_of(robot) if one.about == GOES_THROUGH)
     answered: list[str] = []
 
-    def keep(now: Question, key: str) -> tuple[str, ...]:
+    def keep(now: LabelQuestion, key: str) -> tuple[str, ...]:
         answered.append(f"{now.rows[0].element.name} {key}")
         return ()
 
@@ -214,15 +214,17 @@ def test_what_takes_data_away_is_asked_anew_if_a_finding_became_known_since(robo
     """Somebody writes a leak into the file while the question stands there; a single key closed the finding untold."""
     left = ["0", "q"]
 
-    def late(_: Question, __: frozenset[int]) -> str:
+    def late(_: LabelQuestion, __: frozenset[int]) -> str:
         (robot / "l.yaml").write_text(f"{SOURCE}  /customer_bridge: {{leak: [Video]}}\n", "utf-8")
         return left.pop(0)
 
-    def now() -> list[Question]:
+    def now() -> list[LabelQuestion]:
         channels = [one for one in asked_of(robot) if one.about == GOES_THROUGH]
-        return [Question(GOES_THROUGH, tuple(row for one in channels for row in one.rows if row.element.name == "/b"))]
+        return [
+            LabelQuestion(GOES_THROUGH, tuple(row for one in channels for row in one.rows if row.element.name == "/b"))
+        ]
 
-    def keep(question: Question, key: str) -> tuple[str, ...]:
+    def keep(question: LabelQuestion, key: str) -> tuple[str, ...]:
         raise AssertionError((question, key))
 
     person = Pressing(late)
@@ -230,7 +232,7 @@ def test_what_takes_data_away_is_asked_anew_if_a_finding_became_known_since(robo
     assert person.remarks == [FOUND_SINCE]
 
 
-def asked_of(robot: Path) -> tuple[Question, ...]:
+def asked_of(robot: Path) -> tuple[LabelQuestion, ...]:
     return asked_now(suggest_labels((str(robot / "p.xml"),), (str(robot / "l.yaml"),), Settings()))
 
 

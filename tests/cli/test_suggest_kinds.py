@@ -10,7 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import rosprivacy
-from rosprivacy.analysis.suggesting.label_questions import GOES_ON, GOES_THROUGH, LISTED, PASSES, Question
+from rosprivacy.analysis.suggesting.label_questions import GOES_ON, GOES_THROUGH, LISTED, PASSES, LabelQuestion
 from rosprivacy.labelling.asking import with_answer
 from rosprivacy.labelling.conversation import EACH_KIND, FEWEST, OPEN, QUIT, SKIP, allowed
 from rosprivacy.report.suggesting.question_lines import keys_line, question_lines
@@ -84,10 +84,10 @@ class Listing:
 
     def __init__(self, names: Sequence[str], key: str, *last: str) -> None:
         self.names, self.digit, self.last = names, key, [*last]
-        self.lists: list[Question] = []
+        self.lists: list[LabelQuestion] = []
         self.remarks: list[str] = []
 
-    def key(self, question: Question, picked: frozenset[int]) -> str:
+    def key(self, question: LabelQuestion, picked: frozenset[int]) -> str:
         if question.about == LISTED:
             self.lists.append(question)
             return self.last.pop(0) if self.last else str(len(question.rows))
@@ -149,7 +149,7 @@ def test_the_channel_by_which_alone_a_known_finding_is_left_is_asked_by_itself(r
     assert found(robot) == before
 
 
-def question_text(question: Question) -> str:
+def question_text(question: LabelQuestion) -> str:
     return "\n".join(question_lines(question))
 
 
@@ -219,7 +219,7 @@ def test_what_may_be_a_leak_comes_first_and_is_called_a_conduit_only_if_it_is_pi
     assert {picked: PASSES in allowed(question, picked) for picked in ((), (1,), (0, 2), (0, 1, 2))} == {
         (): False, (1,): True, (0, 2): True, (0, 1, 2): True,
     }  # fmt: skip
-    assert PASSES in allowed(Question(GOES_ON, (question.rows[1],)))
+    assert PASSES in allowed(LabelQuestion(GOES_ON, (question.rows[1],)))
     text = text_of(robot)
     assert "/uploader: {leak: [Video], note: \"answered by Ada on 2026-11-23: 'uploader' in the name" in text
 
@@ -293,7 +293,7 @@ def test_signs_that_come_at_once_pick_no_row(robot: Path, keys: str) -> None:
 
 
 def test_what_comes_later_is_not_asked_again_when_fewer_kinds_get_there(robot: Path) -> None:
-    def later(_: Question, __: frozenset[int]) -> str:
+    def later(_: LabelQuestion, __: frozenset[int]) -> str:
         (robot / "l.yaml").write_text(REVIEWED.replace("  /two: {source: [Voice]}\n", ""), "utf-8")
         return SKIP
 
@@ -305,7 +305,7 @@ def test_what_comes_later_is_not_asked_again_when_fewer_kinds_get_there(robot: P
 def test_what_is_written_by_hand_meanwhile_is_read_after_later(robot: Path) -> None:
     keys = ["A", SKIP]
 
-    def writing(_: Question, __: frozenset[int]) -> str:
+    def writing(_: LabelQuestion, __: frozenset[int]) -> str:
         (robot / "l.yaml").write_text(f"{REVIEWED}channels:\n  '/?': sensitive\n", "utf-8")
         return keys.pop(0) if keys else QUIT
 
@@ -355,7 +355,7 @@ def test_a_list_closes_no_known_finding_and_says_what_single_answers_say(
     assert found(tmp_path) == before
     alone = tmp_path / "alone.yaml"
     for row in [row for one in person.lists[:1] for row in one.rows]:
-        single = Question(GOES_THROUGH, (row,))
+        single = LabelQuestion(GOES_THROUGH, (row,))
         alone.write_text(with_answer(str(alone), single, key, "Ada", "2026-11-23", Settings()).text, "utf-8")
     assert said(tmp_path, "l.yaml") == said(tmp_path, "alone.yaml")
 
@@ -363,7 +363,7 @@ def test_a_list_closes_no_known_finding_and_says_what_single_answers_say(
 class EachKind(Listing):
     """The same, of each kind by itself: of every row that is about one kind."""
 
-    def key(self, question: Question, picked: frozenset[int]) -> str:
+    def key(self, question: LabelQuestion, picked: frozenset[int]) -> str:
         if question.about == GOES_THROUGH and any(row.by_kind for row in question.rows):
             return EACH_KIND
         return super().key(question, picked)
@@ -376,7 +376,7 @@ class Anybody:
         self.draw, self.left = draw, 40
         self.next: list[str] = []
 
-    def key(self, question: Question, picked: frozenset[int]) -> str:
+    def key(self, question: LabelQuestion, picked: frozenset[int]) -> str:
         self.left -= 1
         if self.left < 0:
             return QUIT
@@ -433,7 +433,7 @@ def test_whatever_is_pressed_no_known_finding_is_closed_but_by_what_is_said_of_o
     asking = conversation_in(tmp_path, Anybody(lambda keys: data.draw(st.sampled_from(keys))))
     keep = asking.keep
 
-    def kept(question: Question, key: str) -> tuple[str, ...]:
+    def kept(question: LabelQuestion, key: str) -> tuple[str, ...]:
         nonlocal known
         remarks = keep(question, key)
         now = let_out(tmp_path)

@@ -40,7 +40,7 @@ from tests.helpers.typist import POLICIES
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from rosprivacy.analysis.suggesting.label_questions import Question
+    from rosprivacy.analysis.suggesting.label_questions import LabelQuestion
     from tests.helpers.asked_by_keys import ByKeys
     from tests.helpers.little_robots import Nodes
 
@@ -182,7 +182,7 @@ def test_a_leak_that_becomes_known_while_a_list_is_shown_is_not_closed_by_it(rob
     (robot / "p.xml").write_text(policy_of(NODES | {"out": ([], ["/joints"])}), "utf-8")
     lists = 0
 
-    def late(question: Question, _: frozenset[int]) -> str:
+    def late(question: LabelQuestion, _: frozenset[int]) -> str:
         nonlocal lists
         if question.about != LISTED:
             return QUIT if lists else SKIP
@@ -204,7 +204,7 @@ def careless() -> Pressing:
 def picking(last: str = "") -> Pressing:
     """Somebody who picks all channels that are asked about together, says that nothing goes through, and confirms."""
 
-    def key(question: Question, picked: frozenset[int]) -> str:
+    def key(question: LabelQuestion, picked: frozenset[int]) -> str:
         if question.about == LISTED:
             return last or str(len(question.rows))
         if question.about != GOES_THROUGH or len(question.rows) == 1:
@@ -251,7 +251,7 @@ def test_of_rows_that_nobody_picked_nothing_is_said_together(robot: Path) -> Non
     assert NOTHING in allowed(question, {0, 1})
 
 
-def asked_of(robot: Path) -> tuple[Question, ...]:
+def asked_of(robot: Path) -> tuple[LabelQuestion, ...]:
     return asked_now(suggest_labels((str(robot / "p.xml"),), (str(robot / "l.yaml"),), Settings()))
 
 

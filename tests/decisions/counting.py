@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
     from pathlib import Path
 
-    from rosprivacy.analysis.suggesting.label_questions import Question, Row
+    from rosprivacy.analysis.suggesting.label_questions import LabelQuestion, Row
     from rosprivacy.result import Result
     from tests.decisions.scripted_person import Identity
     from tests.decisions.truths import Entry, Truth
@@ -185,7 +185,7 @@ class _Session:
             _state(self._result(), part) == _state(self.goal, part) for part in ("verdict", "findings")
         )
 
-    def _now(self) -> tuple[Question, ...]:
+    def _now(self) -> tuple[LabelQuestion, ...]:
         if self._reached():
             return ()
         return asked_now(suggest_labels((self.truth.policy,), (str(self.file), *self.truth.more), self.settings))
@@ -193,7 +193,7 @@ class _Session:
     def _closing(self, rows: Sequence[Row]) -> Sequence[Row]:
         return closing(rows, self._result())
 
-    def _keep(self, question: Question, key: str) -> tuple[str, ...]:
+    def _keep(self, question: LabelQuestion, key: str) -> tuple[str, ...]:
         written = with_answer(str(self.file), question, key, WHO, DAY, self.settings)
         self.file.write_text(written.text, "utf-8")
         self.judged += len(question.rows)

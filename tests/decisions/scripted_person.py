@@ -14,7 +14,7 @@ from rosprivacy.analysis.suggesting.label_questions import (
     LISTED,
     MAKES,
     YES,
-    Question,
+    LabelQuestion,
 )
 from rosprivacy.labelling.conversation import EACH_KIND, EXACTLY, FEWEST, NO, OPEN, SKIP, allowed
 
@@ -40,7 +40,7 @@ class Knowledge:
         for vertex, said in result.bound.elements.items():
             self.of[result.analysis.graph.elements[vertex].identity] += [one for one in said if not one.shipped]
 
-    def key(self, question: Question, row: Row) -> str:
+    def key(self, question: LabelQuestion, row: Row) -> str:
         """The key that says of a row what is true, and nothing else; ``SKIP`` if none does."""
         said = self.of.get(row.element.identity, [])
         if any(one.naming == GLOB for one in said):
@@ -110,10 +110,10 @@ class ScriptedPerson:
         self.keys: list[str] = []
         self.remarks: list[str] = []
         self.rows = 0
-        self._shown: Question | None = None
+        self._shown: LabelQuestion | None = None
         self._next: Iterator[str] = iter(())
 
-    def key(self, question: Question, picked: frozenset[int]) -> str:
+    def key(self, question: LabelQuestion, picked: frozenset[int]) -> str:
         """Give the smaller parts of a question their answers, one key after the other; the largest part comes last."""
         del picked
         self.rows += len(question.rows) if question != self._shown else 0
@@ -129,7 +129,7 @@ class ScriptedPerson:
         """Keep what is said."""
         self.remarks.append(remark)
 
-    def _answer(self, question: Question) -> Iterator[str]:
+    def _answer(self, question: LabelQuestion) -> Iterator[str]:
         if question.about == LISTED:
             out = [at for at, row in enumerate(question.rows) if not row.reply(self.knowledge.key(question, row))]
             left = len(question.rows) - len(out)

@@ -39,7 +39,7 @@ from rosprivacy.ingest.suggesting.accepting import accept
 from rosprivacy.ingest.suggesting.comments import taken_apart
 from rosprivacy.ingest.suggesting.rule_files import read_library_rules, read_name_rules
 from rosprivacy.labelling.annotating import annotated, differences
-from rosprivacy.labelling.model_interview import Asked, judged
+from rosprivacy.labelling.model_interview import AskedModel, judged
 from rosprivacy.mitigation import run_mitigation
 from rosprivacy.observing import written
 from rosprivacy.ontology.own import with_own
@@ -176,8 +176,8 @@ def _taken_up() -> None:
 
 def _answered() -> None:
     """Whatever a language model answered, it takes nothing away, and is said of what was asked."""
-    asked = {"n1": Asked(Element("node", "/robot/eye"), "/robot/eye", (), (), (), ())}
-    asked["n2"] = Asked(Element("topic", "/c/image"), "/c/image", (), (), (), ())
+    asked = {"n1": AskedModel(Element("node", "/robot/eye"), "/robot/eye", (), (), (), ())}
+    asked["n2"] = AskedModel(Element("topic", "/c/image"), "/c/image", (), (), (), ())
     for one in read_exchanges("asked.json").exchanges:
         for said in judged(answers_in(one.answer or b"", "m").answers, asked, load().categories, "m").evidence:
             assert said.confidence is Confidence.MAY

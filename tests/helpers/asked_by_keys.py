@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from rosprivacy.analysis.suggesting.label_questions import Question
+    from rosprivacy.analysis.suggesting.label_questions import LabelQuestion
     from rosprivacy.labelling.conversation import Person
     from rosprivacy.labelling.suggesting import Suggested
     from tests.helpers.command import Cli, Done
@@ -64,12 +64,12 @@ def by_keys(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> ByKeys:
 class Pressing:
     """Somebody whose keys a function chooses of a question and the rows that are picked; what is asked is kept."""
 
-    def __init__(self, choose: Callable[[Question, frozenset[int]], str]) -> None:
+    def __init__(self, choose: Callable[[LabelQuestion, frozenset[int]], str]) -> None:
         self.choose = choose
-        self.asked: list[Question] = []
+        self.asked: list[LabelQuestion] = []
         self.remarks: list[str] = []
 
-    def key(self, question: Question, picked: frozenset[int]) -> str:
+    def key(self, question: LabelQuestion, picked: frozenset[int]) -> str:
         if not picked:
             self.asked.append(question)
         return self.choose(question, picked)
@@ -98,11 +98,11 @@ def conversation(policy: Path, file: Path, person: Person) -> Conversation:
     """Return a conversation about a policy, whose answers go into a label file."""
     last: list[Suggested] = []
 
-    def now() -> tuple[Question, ...]:
+    def now() -> tuple[LabelQuestion, ...]:
         last[:] = [suggest_labels((str(policy),), (str(file),), Settings())]
         return asked_now(last[0])
 
-    def keep(question: Question, key: str) -> tuple[str, ...]:
+    def keep(question: LabelQuestion, key: str) -> tuple[str, ...]:
         written = with_answer(str(file), question, key, "Ada", "2026-11-23", Settings())
         file.write_text(written.text, "utf-8")
         return written.remarks

@@ -11,7 +11,7 @@ from starlette.testclient import TestClient
 
 from rosprivacy.explorer.session import Session
 from rosprivacy.explorer.web.cypher_site import StoredSite
-from rosprivacy.explorer.web.guard import Door
+from rosprivacy.explorer.web.guard import RequestDoor
 from rosprivacy.ingest.database.loading import load
 from rosprivacy.private_neo4j import connection
 from rosprivacy.report.catalogs.words import Words
@@ -52,7 +52,7 @@ def told(answer: Any) -> str:
 def asker(to: Connection, *, read_only: bool = True, language: str = "en", seconds: float = 20.0) -> Iterator[Asker]:
     with connection.open_driver(to) as driver:
         session = Session.open_database(driver)
-    door = Door(PORT, read_only)
+    door = RequestDoor(PORT, read_only)
     opens = partial(connection.open_driver, to)
     site = StoredSite(session, Settings(), Words(language), door, opens, seconds)
     with closing(site):

@@ -17,7 +17,7 @@ from rosprivacy.explorer.element_ids import element_id
 from rosprivacy.explorer.session import Session
 from rosprivacy.explorer.web.application import Site
 from rosprivacy.explorer.web.cypher_site import StoredSite
-from rosprivacy.explorer.web.guard import Door
+from rosprivacy.explorer.web.guard import RequestDoor
 from rosprivacy.explorer.web.review_site import ReviewSite
 from rosprivacy.explorer.web.serving import bound_socket, server
 from rosprivacy.question import question_of
@@ -59,7 +59,7 @@ class Explorer:
         decisions: Path | None = None,
     ) -> None:  # fmt: skip
         settings = Settings(include_root=str(root) if root else None, decisions=str(decisions) if decisions else None)
-        self.labels, self.door = labels, Door(port, read_only)
+        self.labels, self.door = labels, RequestDoor(port, read_only)
         self.session = (
             Session.open_fleet(str(policy), settings, journal=journal)
             if fleet
@@ -82,7 +82,11 @@ class _Stored(Explorer):
     def __init__(self, policy: Path, labels: Path, *, port: int = PORT) -> None:
         asked = question_of(Settings())._replace(every=True)
         system = replace(robot_system((str(policy),), (str(labels),), asked), under=None)
-        self.labels, self.door, self.session = labels, Door(port, read_only=True), Session.of_stored(system, asked)
+        self.labels, self.door, self.session = (
+            labels,
+            RequestDoor(port, read_only=True),
+            Session.of_stored(system, asked),
+        )
         self.site = StoredSite(self.session, Settings(), Words("en"), self.door, _gone)
         self.app = self.site.application()
 

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import rosprivacy
-from rosprivacy.explorer.web.guard import Door
+from rosprivacy.explorer.web.guard import RequestDoor
 from tests.helpers import browser as chrome
 from tests.helpers import explorers
 from tests.helpers.browser import DESKTOP, PHONE
@@ -46,9 +46,9 @@ def served(browser: WebDriver, policy: Path, labels: Path, **how: Any) -> Iterat
 class Reader:
     """A person who has nothing but keys, and has opened the link."""
 
-    def __init__(self, browser: WebDriver, explorer: Explorer | Door, width: int = DESKTOP) -> None:
+    def __init__(self, browser: WebDriver, explorer: Explorer | RequestDoor, width: int = DESKTOP) -> None:
         self.browser, self.width = browser, width
-        door = explorer if isinstance(explorer, Door) else explorer.door
+        door = explorer if isinstance(explorer, RequestDoor) else explorer.door
         chrome.open_page(browser, door.link, width=width)
 
     def press(self, *keys: str) -> None:

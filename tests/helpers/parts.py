@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.fleet.dds_domains import Member
     from rosprivacy.ingest.fleet.fleet_file import Robot
     from rosprivacy.parts.distributed import Found
-    from rosprivacy.parts.shown_robots import Shown
+    from rosprivacy.parts.shown_robots import ShownRobots
     from rosprivacy.parts.units import Unit
     from rosprivacy.result import Result
 
@@ -49,7 +49,7 @@ def question(case: Case) -> Task:
     return Task(fleet, alike(fleet), "declared", partial(given_members, members), HIERARCHY)
 
 
-def rows(found: Found, told: Shown) -> Any:
+def rows(found: Found, told: ShownRobots) -> Any:
     """Verdict, patterns, deviants; and what each pattern shows."""
     patterns = {
         (p.id, p.count, p.robots, p.across, p.dismissed, p.pseudonymised, p.finding.source, p.finding.leak,

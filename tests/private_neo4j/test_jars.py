@@ -91,7 +91,7 @@ def mirror(cache: Path) -> Iterator[Callable[[bytes], None]]:
 def one(monkeypatch: pytest.MonkeyPatch) -> Path:
     """One small jar is pinned, not Neo4j's; return where it is in a repository."""
     path = PurePosixPath("org/example/some/1.0/some-1.0-natives.jar")
-    only = jars.Pinned(hashlib.sha256(a_jar("good")).hexdigest(), path)
+    only = jars.PinnedJar(hashlib.sha256(a_jar("good")).hexdigest(), path)
     monkeypatch.setattr(jars, "pinned", lambda: (only,))
     return Path(path)
 
@@ -177,7 +177,7 @@ def test_jars_that_another_list_verified_are_verified_again(
     mirror(a_jar("good"))
     assert jars.jar_files(tmp_path) == [cache / one]
     monkeypatch.setattr(jars, "_list", lambda: "another")
-    other = jars.Pinned("0" * 64, PurePosixPath(one))
+    other = jars.PinnedJar("0" * 64, PurePosixPath(one))
     monkeypatch.setattr(jars, "pinned", lambda: (other,))
     assert "its SHA-256 differs" in refused(lambda: jars.jar_files(tmp_path))
 

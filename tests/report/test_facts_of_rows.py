@@ -109,7 +109,7 @@ def check(case: Case) -> None:
     brute = case.system.brute()
     bound = replace(case.system.bound(), subjects=case.persons)
     answer = answer_of(analysis, VOCABULARY, REST, bound=bound)
-    columns = {WORDS(f"record.{name}"): name for name in article30.Entry.__dataclass_fields__}
+    columns = {WORDS(f"record.{name}"): name for name in article30.RecordEntry.__dataclass_fields__}
     text = article30.record(json_document(document_of(answer, (LEDGER, RELIANCE))), "en").removeprefix("\ufeff")
     vertices = {element.name: vertex for vertex, element in enumerate(case.system.graph().elements)}
     for cells in csv.DictReader(io.StringIO(text)):

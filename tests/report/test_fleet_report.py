@@ -20,7 +20,7 @@ from rosprivacy.report.page.markdown import markdown
 from rosprivacy.report.page.outline import Outline, outline
 from rosprivacy.report.pictures.dot import dot
 from rosprivacy.report.pictures.fleet_view import label, represented
-from rosprivacy.report.pictures.picture import PRIVACY, Box, Line, Picture
+from rosprivacy.report.pictures.picture import PRIVACY, Box, Picture, PictureLine
 from rosprivacy.report.redact import redacted
 from rosprivacy.report.robots import note
 from tests.helpers.answers import as_json
@@ -167,7 +167,7 @@ def test_what_is_counted_as_not_drawn_is_that_of_the_robots_that_are_drawn() -> 
 def test_a_way_from_one_robot_to_another_like_it_is_drawn_from_it_to_itself() -> None:
     keys = [(robot, "node", name) for robot, name in (("carrier_01", "/a"), ("carrier_02", "/b"), ("carrier_01", "/b"))]
     boxes = tuple(Box(key, (key[2],), look) for key, look in zip(keys, ("source", "leak", "reviewed"), strict=True))
-    lines = (Line(keys[0], keys[1], "shortest", length=1), Line(keys[0], keys[2], "data"))
+    lines = (PictureLine(keys[0], keys[1], "shortest", length=1), PictureLine(keys[0], keys[2], "data"))
     picture = represented(Picture(PRIVACY, "", boxes, lines), likeness())
     assert [(box.key[2], box.look) for box in picture.boxes] == [("/a", "source"), ("/b", "leak")]
     assert [(line.source[2], line.target[2], line.look) for line in picture.lines] == [("/a", "/b", "shortest")]

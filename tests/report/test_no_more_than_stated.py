@@ -106,7 +106,7 @@ def outputs(said: Said) -> tuple[list[dict[str, str]], dict[int, str]]:
         Path("l.yaml").write_text(said.labels(), "utf-8")
         result = rosprivacy.analyze("p.xml", "l.yaml")
         record, file = result.to("article30"), json.loads(result.to("cnil-pia"))
-    columns = {WORDS(f"record.{name}"): name for name in article30.Entry.__dataclass_fields__}
+    columns = {WORDS(f"record.{name}"): name for name in article30.RecordEntry.__dataclass_fields__}
     *rows, _ = csv.DictReader(io.StringIO(record.removeprefix("\ufeff")))  # the last is the answer it rests on
     answers = {one["reference_to"]: one["data"]["text"] or "\n".join(one["data"]["list"]) for one in file["answers"]}
     answers[0] = "\n".join(measure["content"] for measure in file["measures"])

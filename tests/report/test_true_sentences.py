@@ -73,7 +73,7 @@ def seen(result: Result, name: str, language: str = "en") -> str:
 
 def rows(result: Result) -> dict[tuple[str, str], dict[str, str]]:
     text = seen(result, "article30").removeprefix("\ufeff")
-    columns = {Words("en")(f"record.{name}"): name for name in article30.Entry.__dataclass_fields__}
+    columns = {Words("en")(f"record.{name}"): name for name in article30.RecordEntry.__dataclass_fields__}
     found = [{columns[key]: cell for key, cell in row.items()} for row in csv.DictReader(io.StringIO(text))]
     return {(row["category"], row["exit"]): row for row in found}
 

@@ -17,7 +17,7 @@ import typer
 from rosprivacy.analysis.errors import RosPrivacyError
 from rosprivacy.analysis.files_read import one_run
 from rosprivacy.cli.exit_code import OWN_ERROR
-from rosprivacy.cli.help import ANALYSE, DECIDE, LABEL, MANY, OBSERVE, SEE, Group
+from rosprivacy.cli.help import ANALYSE, DECIDE, LABEL, MANY, OBSERVE, SEE, HelpGroup
 from rosprivacy.version import __version__
 
 COMMANDS = {  # name -> its group in help; each stands in the module of its name
@@ -53,7 +53,7 @@ def program(command_name: str = "") -> typer.Typer:
     app = typer.Typer(
         name="rosprivacy",
         help="Where personal data can go in a ROS 2 system, per kind of data.",
-        cls=Group,
+        cls=HelpGroup,
         no_args_is_help=True,
         pretty_exceptions_enable=False,
         context_settings={"help_option_names": ["-h", "--help"]},

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from rosprivacy.analysis.errors import InputError, reason
-from rosprivacy.cli.help import Group
+from rosprivacy.cli.help import HelpGroup
 from rosprivacy.cli.output import emit
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 DISPLAYS = ("DISPLAY", "WAYLAND_DISPLAY")
 CLIPBOARDS = {"wl-copy": "", "xclip": " -selection clipboard", "xsel": " -ib", "pbcopy": ""}
-app = typer.Typer(cls=Group, no_args_is_help=True)
+app = typer.Typer(cls=HelpGroup, no_args_is_help=True)
 
 
 @app.command()

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
     from pathlib import Path
 
-    from rosprivacy.analysis.suggesting.label_questions import Question
+    from rosprivacy.analysis.suggesting.label_questions import LabelQuestion
     from rosprivacy.labelling.label_lines import Written
     from rosprivacy.labelling.suggesting import Suggested
     from rosprivacy.settings import Settings
@@ -65,7 +65,7 @@ def ask(file: Path, progress: Callable[[], Suggested], by: str | None, settings:
                 person.remark(line)
         brought.clear()
 
-    def now() -> tuple[Question, ...]:
+    def now() -> tuple[LabelQuestion, ...]:
         ask_again()
         return asked_now(last[0])
 
@@ -77,7 +77,7 @@ def ask(file: Path, progress: Callable[[], Suggested], by: str | None, settings:
                 brought.extend(brings(labels))
         return written.remarks
 
-    def keep(question: Question, key: str) -> tuple[str, ...]:
+    def keep(question: LabelQuestion, key: str) -> tuple[str, ...]:
         labels = (reply.label for row in question.rows if (reply := row.reply(key)))
         return write(lambda day: with_answer(str(file), question, key, who, day, settings), labels)
 
@@ -108,10 +108,10 @@ class _Terminal:
 
     def __init__(self, label_of: Callable[[str], WrittenLabel | str]) -> None:
         self.label_of = label_of
-        self.last: Question | None = None
+        self.last: LabelQuestion | None = None
         self.next: list[str] = []  # the rest of what a line comes to
 
-    def key(self, question: Question, picked: frozenset[int]) -> str | WrittenLabel:
+    def key(self, question: LabelQuestion, picked: frozenset[int]) -> str | WrittenLabel:
         if question != self.last:
             _say(question_lines(question))
         self.last = question
@@ -128,7 +128,7 @@ class _Terminal:
                 return key
             _say(help_lines(question, allowed(question, picked)))
 
-    def _next(self, question: Question, picked: frozenset[int]) -> str | WrittenLabel | None:
+    def _next(self, question: LabelQuestion, picked: frozenset[int]) -> str | WrittenLabel | None:
         """The next key, or a label typed as a line; nothing if there is no more, None for what is neither."""
         if self.next:
             return self.next.pop(0)
@@ -139,7 +139,7 @@ class _Terminal:
             return self._piped(key, question, picked)
         return _number(key) if question.about == LISTED and key and DIGITS.issuperset(key) else key
 
-    def _line(self, line: str, question: Question, picked: frozenset[int]) -> str | WrittenLabel | None:
+    def _line(self, line: str, question: LabelQuestion, picked: frozenset[int]) -> str | WrittenLabel | None:
         """The keys that a line comes to, if the question offers what it says; or the label that it is."""
         self.next = list(keys_of(line, question, picked))
         if self.next:
@@ -158,7 +158,7 @@ class _Terminal:
     def remark(self, remark: str) -> None:
         typer.echo(remark)
 
-    def _piped(self, key: str, question: Question, picked: frozenset[int]) -> str:
+    def _piped(self, key: str, question: LabelQuestion, picked: frozenset[int]) -> str:
         """What a key of a file says; nothing if no more may be read."""
         whole = question.about == LISTED
         if key not in DIGITS or (key in (can := allowed(question, picked)) and not takes_away(question, key)):

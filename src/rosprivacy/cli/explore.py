@@ -61,7 +61,7 @@ def explore(
         raise InputError(", ".join(missing), 0, "not installed", command_for("explore"))
     from rosprivacy.explorer.journal import journal_folder
     from rosprivacy.explorer.web.application import Site
-    from rosprivacy.explorer.web.guard import Door
+    from rosprivacy.explorer.web.guard import RequestDoor
     from rosprivacy.explorer.web.review_site import ReviewSite
     from rosprivacy.explorer.web.serving import bound_socket
     from rosprivacy.report.catalogs.words import Words
@@ -77,7 +77,7 @@ def explore(
     journal = None if read_only else journal_folder()
     session, ask = _session(inputs, journal)
     with bound_socket(port) as listening:
-        door, words = Door(listening.getsockname()[1], read_only), Words(lang.value)
+        door, words = RequestDoor(listening.getsockname()[1], read_only), Words(lang.value)
         if ask:
             from rosprivacy.explorer.web.cypher_site import StoredSite
 

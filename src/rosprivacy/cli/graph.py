@@ -58,7 +58,7 @@ class Direction(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class GraphPart:
     """What is drawn of a view, as the options of these names say."""
 
     finding: str | None
@@ -175,7 +175,7 @@ def graph(
     lang: Annotated[Language, typer.Option(help="Language of titles, notes and legend.")] = Language.en,
 ) -> None:
     """Draw the ROS graph, or where personal data can go in it. Gives no verdict: exit code 0 once it is drawn."""
-    part = Part(finding, robot, around, steps, most, fold=fold, loose_ends=loose_ends)
+    part = GraphPart(finding, robot, around, steps, most, fold=fold, loose_ends=loose_ends)
     show = _shown(show, part, everything=everything)
     form = _format(format, output)
     not_for_a_terminal(form.upper() if form is not PictureFormat.mermaid else "a drawing", output)
@@ -197,7 +197,7 @@ def graph(
     _write(picture, form, output, direction, seconds)
 
 
-def _shown(show: Shown | None, part: Part, *, everything: bool) -> Shown:
+def _shown(show: Shown | None, part: GraphPart, *, everything: bool) -> Shown:
     """The view that is asked for; some options are of one view only."""
     of_privacy = bool(part.finding or part.bound)
     if show is Shown.ros and of_privacy:
@@ -235,7 +235,7 @@ def _format(option: PictureFormat | None, output: Path | None) -> PictureFormat:
 
 
 def _view(
-    result: Result, show: Shown, part: Part, language: Language, *, carried_only: bool, standard: bool
+    result: Result, show: Shown, part: GraphPart, language: Language, *, carried_only: bool, standard: bool
 ) -> Picture:
     from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.pictures import narrow, views
@@ -278,7 +278,7 @@ def _finding(result: Result, id_prefix: str, about: int | None, say: Phrases) ->
     return views.finding_view(result.analysis, narrow.the_finding(result.analysis, id_prefix), about, say)
 
 
-def _narrowed(picture: Picture, part: Part) -> Picture:
+def _narrowed(picture: Picture, part: GraphPart) -> Picture:
     from rosprivacy.report.pictures import narrow, views
 
     if part.robot:

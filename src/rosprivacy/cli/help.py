@@ -23,7 +23,7 @@ DECIDE = "Decide"
 MANY = "Fleet and database"
 
 
-class Group(TyperGroup):
+class HelpGroup(TyperGroup):
     """Commands whose flags are shown without ``<bool>``."""
 
     def get_params(self, ctx: Any) -> list[Any]:

@@ -122,11 +122,11 @@ class ModelOptions(NamedTuple):
             yield from self._live(output)
 
     def _live(self, output: Path | None) -> Iterator[Interview]:
-        from rosprivacy.ingest.language_model import KEY, Server, address_of
+        from rosprivacy.ingest.language_model import KEY, ModelServer, address_of
         from rosprivacy.labelling.model_interview import Interview
 
         address = address_of(self.url or "", unencrypted=self.unencrypted)
-        server = Server(address, os.environ.get(KEY, "").strip(), self.timeout, _progress)
+        server = ModelServer(address, os.environ.get(KEY, "").strip(), self.timeout, _progress)
         interview = Interview(self.asking, server, _progress)
         if self.record:
             _refuse_existing(self.record, output)

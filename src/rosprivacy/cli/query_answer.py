@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
     from rosprivacy.ingest.database.schema import Property
-    from rosprivacy.queries.run import Rows
+    from rosprivacy.queries.run import QueryRows
 
 WIDEST_TABLE = 400  # in a file or a pipe
 GAP = 2  # between columns
@@ -43,7 +43,7 @@ def not_drawn(title: str, columns: Iterable[str]) -> str:
     return f"{title}: gives no node, relationship or path to draw, only {names}; {hint}"
 
 
-def answer(rows: Rows, form: RowFormat, title: str, *, wide: bool) -> str | bytes:
+def answer(rows: QueryRows, form: RowFormat, title: str, *, wide: bool) -> str | bytes:
     """Return rows in a format.
 
     Parameters
@@ -56,7 +56,7 @@ def answer(rows: Rows, form: RowFormat, title: str, *, wide: bool) -> str | byte
     return _drawing(rows, title) if form is RowFormat.svg else _text(rows, form, wide=wide)
 
 
-def _drawing(rows: Rows, title: str) -> bytes:
+def _drawing(rows: QueryRows, title: str) -> bytes:
     """All nodes, relationships and paths of some rows as one SVG; an error if there are none."""
     from rosprivacy.queries.graph_values import graph_values
     from rosprivacy.report.pictures.layout import drawn
@@ -77,7 +77,7 @@ def _drawing(rows: Rows, title: str) -> bytes:
     return done.data
 
 
-def _text(rows: Rows, form: RowFormat, *, wide: bool) -> str:
+def _text(rows: QueryRows, form: RowFormat, *, wide: bool) -> str:
     from rosprivacy.queries.graph_values import plain
     from rosprivacy.queries.run import as_cell
     from rosprivacy.report.json_text import as_text

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
     from rosprivacy.analysis.model import Element
-    from rosprivacy.analysis.suggesting.label_questions import Question, Row
+    from rosprivacy.analysis.suggesting.label_questions import LabelQuestion, Row
     from rosprivacy.labelling.suggesting import Suggested
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.result import Result
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 FROM_AND_TO = 2
 
 
-def asked_now(suggestions: Suggested) -> tuple[Question, ...]:
+def asked_now(suggestions: Suggested) -> tuple[LabelQuestion, ...]:
     """Return what a person is asked under the labels that there are; no list of channels would close a finding."""
     result = suggestions.result
     graph = result.analysis.graph
@@ -49,7 +49,7 @@ def asked_now(suggestions: Suggested) -> tuple[Question, ...]:
     return tuple(_without_closing(one, result) for one in made)
 
 
-def with_answer(file: str, question: Question, key: str, person: str, day: str, settings: Settings) -> Written:
+def with_answer(file: str, question: LabelQuestion, key: str, person: str, day: str, settings: Settings) -> Written:
     """Return a label file with what a person has said of all rows of a question.
 
     Raises
@@ -90,7 +90,7 @@ def _begun(file: str, settings: Settings) -> tuple[str, Vocabulary]:
     return text, vocabulary
 
 
-def _labels(question: Question, key: str, note: str) -> Iterator[NewLabel]:
+def _labels(question: LabelQuestion, key: str, note: str) -> Iterator[NewLabel]:
     for row in question.rows:
         reply = row.reply(key)
         if reply:
@@ -98,12 +98,12 @@ def _labels(question: Question, key: str, note: str) -> Iterator[NewLabel]:
             yield NewLabel(*reply.label, f"{note}{why}")
 
 
-def _in_list(question: Question) -> str:
+def _in_list(question: LabelQuestion) -> str:
     """Who reads the label later sees that it was not looked at by itself."""
     return f" in a list of {len(question.rows)}" if question.about == LISTED else ""
 
 
-def _without_closing(question: Question, result: Result) -> Question:
+def _without_closing(question: LabelQuestion, result: Result) -> LabelQuestion:
     """Return a question whose rows are alike only where all of them together close no finding.
 
     Fewer labels close no more, so that rows can be taken out. One run of the analysis for each likeness; where it loses

@@ -33,7 +33,7 @@ from rosprivacy.analysis.suggesting.label_questions import (
     NOTHING,
     PASSES,
     YES,
-    Question,
+    LabelQuestion,
 )
 from rosprivacy.analysis.text import counted
 
@@ -64,7 +64,7 @@ FOUND_SINCE = "a finding of such data has become known since: nothing is kept, a
 class Person(Protocol):
     """Who answers."""
 
-    def key(self, question: Question, picked: frozenset[int]) -> str | WrittenLabel:
+    def key(self, question: LabelQuestion, picked: frozenset[int]) -> str | WrittenLabel:
         """Return a key, of a list also a number, or a label in place of an answer; nothing if there is no more."""
         ...
 
@@ -91,8 +91,8 @@ class Conversation:
         How many rows each list had that was confirmed.
     """
 
-    now: Callable[[], Iterable[Question]]
-    keep: Callable[[Question, str], tuple[str, ...]]
+    now: Callable[[], Iterable[LabelQuestion]]
+    keep: Callable[[LabelQuestion, str], tuple[str, ...]]
     person: Person
     closing: Callable[[Sequence[Row]], Sequence[Row]] = lambda rows: rows
     typed: Callable[[WrittenLabel], tuple[str, ...]] = lambda _: ("no label is kept here",)
@@ -110,7 +110,7 @@ class Conversation:
                 return False
         return True
 
-    def _round(self, pending: deque[Question]) -> bool:
+    def _round(self, pending: deque[LabelQuestion]) -> bool:
         """Ask until there is more to know of what is left; return False if the person stops."""
         answered: set[int] = set()
         while pending and not _waits(pending[0], answered):
@@ -133,9 +133,9 @@ class Conversation:
             else:
                 answered.add(STAGES[question.about])
             if rest := tuple(row for row in question.rows if row not in rows):
-                pending.appendleft(Question(question.about, rest))
+                pending.appendleft(LabelQuestion(question.about, rest))
             if key == OPEN:
-                pending.extendleft(Question(question.about, (row,)) for row in reversed(rows))
+                pending.extendleft(LabelQuestion(question.about, (row,)) for row in reversed(rows))
         return True
 
     def _would_close_untold(self, about: str, rows: Sequence[Row], key: str) -> bool:
@@ -147,7 +147,7 @@ class Conversation:
         near = (row for row in still if any((row.element.identity, kind) in said for kind in row.kinds))
         return not {one for row in near for one in row.closes} <= {one for row in rows for one in row.closes}
 
-    def _take_answer(self, question: Question, rows: Sequence[Row], key: str) -> bool:
+    def _take_answer(self, question: LabelQuestion, rows: Sequence[Row], key: str) -> bool:
         """Take an answer; return whether what is left to ask may have changed by it."""
         if key == EACH_KIND:
             self._kind_by_kind.update((question.about, row.element.identity) for row in rows)
@@ -159,41 +159,41 @@ class Conversation:
             self.person.remark(FOUND_SINCE)
             return True
         if key == EXACTLY:
-            self._keep_answer(Question(question.about, tuple(row for row in question.rows if row not in rows)), NO)
+            self._keep_answer(LabelQuestion(question.about, tuple(row for row in question.rows if row not in rows)), NO)
             self.answers -= 1  # both are one answer
-            self._keep_answer(Question(question.about, tuple(rows)), YES)
+            self._keep_answer(LabelQuestion(question.about, tuple(rows)), YES)
             return True
-        return self._keep_answer(Question(question.about, tuple(rows)), key)
+        return self._keep_answer(LabelQuestion(question.about, tuple(rows)), key)
 
     def _postponed(self, about: str, rows: Iterable[Row]) -> None:
         for row in rows:
             self._later[about, row.element.identity].update(row.kinds)
 
-    def _is_later(self, question: Question, row: Row) -> bool:
+    def _is_later(self, question: LabelQuestion, row: Row) -> bool:
         """Whether the person wants to answer later; also if by now fewer kinds of data get there."""
         return self._later[question.about, row.element.identity].issuperset(row.kinds)
 
-    def _pending(self) -> Iterator[Question]:
+    def _pending(self) -> Iterator[LabelQuestion]:
         """What is asked now, without what the person wants to answer later; what was opened stands alone."""
         for question in self._questions_now():
             rows = [row for row in question.rows if not self._is_later(question, row)]
             listed = [row for row in rows if row.alike and _row_key(question, row) not in self._taken_out | self._alone]
             lists = [part for part in by_likeness(listed) if len(part) >= FEWEST]
             in_lists = [row for part in lists for row in part]
-            yield from (Question(LISTED, tuple(row.saying(NOTHING) for row in part)) for part in lists)
+            yield from (LabelQuestion(LISTED, tuple(row.saying(NOTHING) for row in part)) for part in lists)
             together = [row for row in rows if row not in in_lists and _row_key(question, row) not in self._alone]
             for at in range(0, len(together), MOST_ROWS):
-                yield Question(question.about, tuple(together[at : at + MOST_ROWS]))
-            yield from (Question(question.about, (row,)) for row in rows if row not in (*together, *in_lists))
+                yield LabelQuestion(question.about, tuple(together[at : at + MOST_ROWS]))
+            yield from (LabelQuestion(question.about, (row,)) for row in rows if row not in (*together, *in_lists))
 
-    def _questions_now(self) -> Iterator[Question]:
+    def _questions_now(self) -> Iterator[LabelQuestion]:
         """What is asked now; where the person wants it, each kind of data by itself."""
         for question in self.now():
             apart = [
                 row.by_kind if (question.about, row.element.identity) in self._kind_by_kind and row.by_kind else (row,)
                 for row in question.rows
             ]
-            yield Question(question.about, tuple(one for rows in apart for one in rows))
+            yield LabelQuestion(question.about, tuple(one for rows in apart for one in rows))
 
     def _picked(self, rows: Sequence[Row]) -> bool:
         """Ask about channels that the person has picked, as a list; return False if the person stops."""
@@ -202,9 +202,9 @@ class Conversation:
             self.person.remark(f"{row.element.kind} {shown(row.element.name)}: {BY_ITSELF}")
         self._alone.update(map(_of_channel, apart))
         listed = tuple(row for row in rows if row not in apart)
-        return len(listed) < FEWEST or self._listed(Question(LISTED, listed), by_hand=True)
+        return len(listed) < FEWEST or self._listed(LabelQuestion(LISTED, listed), by_hand=True)
 
-    def _listed(self, question: Question, *, by_hand: bool = False) -> bool:
+    def _listed(self, question: LabelQuestion, *, by_hand: bool = False) -> bool:
         """Ask about a list; return False if the person stops.
 
         Parameters
@@ -228,14 +228,14 @@ class Conversation:
             elif key == SKIP:
                 self._postponed(GOES_THROUGH, rows)
             elif key == str(len(rows)) and len(rows) >= FEWEST:
-                self._confirmed(Question(LISTED, rows), by_hand=by_hand)
+                self._confirmed(LabelQuestion(LISTED, rows), by_hand=by_hand)
             else:
                 self.person.remark(f"{key!r} is no answer here; {counted(len(rows), 'row')} left")
                 continue
             self._taken_out.update(_of_channel(question.rows[one]) for one in out)
             return True
 
-    def _confirmed(self, question: Question, *, by_hand: bool) -> None:
+    def _confirmed(self, question: LabelQuestion, *, by_hand: bool) -> None:
         """Keep what is said of a list, if it would still be asked: the file may have changed meanwhile."""
         still = [row for one in self._questions_now() if one.about == GOES_THROUGH for row in one.rows]
         if by_hand:
@@ -254,7 +254,7 @@ class Conversation:
         self.answers += 1
         self.lists.append(len(question.rows))
 
-    def _answer(self, question: Question) -> tuple[str, list[Row]] | WrittenLabel | None:
+    def _answer(self, question: LabelQuestion) -> tuple[str, list[Row]] | WrittenLabel | None:
         """The key that is said of rows, and these, or a label in its place; None if the person stops."""
         picked: set[int] = set()
         while True:
@@ -277,7 +277,7 @@ class Conversation:
             self.person.remark(remark)
         self.answers += 1
 
-    def _keep_answer(self, question: Question, key: str) -> bool:
+    def _keep_answer(self, question: LabelQuestion, key: str) -> bool:
         """Keep an answer; return whether it changes what data get where."""
         remarks = self.keep(question, key)
         for remark in remarks:
@@ -295,17 +295,17 @@ def _of_channel(row: Row) -> Said:
     return GOES_THROUGH, row.element.identity, row.kinds
 
 
-def _row_key(question: Question, row: Row) -> Said:
+def _row_key(question: LabelQuestion, row: Row) -> Said:
     return question.about, row.element.identity, row.kinds
 
 
-def allowed(question: Question, picked: Collection[int] = ()) -> tuple[str, ...]:
+def allowed(question: LabelQuestion, picked: Collection[int] = ()) -> tuple[str, ...]:
     """Return the keys that answer a question about the rows that are picked, or about all.
 
     What takes data away of several channels asks about them as a list, if they are picked.
     """
     rows = tuple(row for at, row in enumerate(question.rows) if at in picked or not picked)
-    keys = Question(question.about, rows).keys()
+    keys = LabelQuestion(question.about, rows).keys()
     if question.about == GOES_THROUGH and len(picked) >= FEWEST:
         keys += tuple(one.key for one in rows[0].replies if takes_away_of_each(rows, one.key))
     if len(rows) > 1 and not picked and any(row.doubtful for row in rows):
@@ -328,13 +328,13 @@ def takes_away_of_each(rows: Sequence[Row], key: str) -> bool:
     return all(reply and reply.takes_away for reply in replies)
 
 
-def _waits(question: Question, answered: Collection[int]) -> bool:
+def _waits(question: LabelQuestion, answered: Collection[int]) -> bool:
     """Return whether what some stages were answered has to be worked out before a question can be asked."""
     stage = STAGES[question.about]
     return any(one < stage for one in answered) or (bool(answered) and _tells_findings(question))
 
 
-def _tells_findings(question: Question) -> bool:
+def _tells_findings(question: LabelQuestion) -> bool:
     """Whether a question has to tell findings that an answer before it may have made known: a leak among nodes is one.
 
     No answer about a channel makes a finding known.
@@ -358,13 +358,13 @@ def line_of(row: Row, reply: Reply) -> str:
     return " ".join([row.element.name, row.element.kind, role, *kinds])
 
 
-def takes_away(question: Question, key: str) -> bool:
+def takes_away(question: LabelQuestion, key: str) -> bool:
     """Return whether a key of some row takes data away."""
     replies = [row.reply(key) for row in question.rows]
     return any(reply and reply.takes_away for reply in replies)
 
 
-def lines_of(question: Question, key: str) -> tuple[str, ...]:
+def lines_of(question: LabelQuestion, key: str) -> tuple[str, ...]:
     """Return the lines that say of each row what a key would; of what takes nothing away none.
 
     Parameters
@@ -377,7 +377,7 @@ def lines_of(question: Question, key: str) -> tuple[str, ...]:
     return tuple(line_of(row, reply) for row, reply in replies if reply.takes_away)
 
 
-def keys_of(line: str, question: Question, picked: Collection[int]) -> tuple[str, ...]:
+def keys_of(line: str, question: LabelQuestion, picked: Collection[int]) -> tuple[str, ...]:
     """Return the keys that a line comes to; none if the question does not offer what it says.
 
     Parameters

@@ -87,7 +87,7 @@ _WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|[0-9]+|[^\x00-\x7f]+")
 _PLACEHOLDER = re.compile("x[0-9]+")
 
 
-class Asked(NamedTuple):
+class AskedModel(NamedTuple):
     """An element as a language model is told of it; the element itself is not sent.
 
     Attributes
@@ -119,14 +119,14 @@ class Asked(NamedTuple):
             yield "name", name
             yield from (("type", one) for one in types)
 
-    def changed(self, change: Callable[[str], str]) -> Asked:
+    def changed(self, change: Callable[[str], str]) -> AskedModel:
         """Return the same with another text in place of each."""
         writes, reads = (
             tuple((change(channel), tuple(map(change, of))) for channel, of in ends)
             for ends in (self.writes, self.reads)
         )
         name, types, comments = change(self.name), tuple(map(change, self.types)), tuple(map(change, self.comments))
-        return Asked(self.element, name, types, writes, reads, comments)
+        return AskedModel(self.element, name, types, writes, reads, comments)
 
 
 def asked_elements(
@@ -135,7 +135,7 @@ def asked_elements(
     flows: Traffic,
     places: Mapping[Identity, int],
     comments: Mapping[tuple[str, str], tuple[str, ...]],
-) -> tuple[Asked, ...]:
+) -> tuple[AskedModel, ...]:
     """Return the elements that are open, in the order of review, and then those that no label of a user names.
 
     Wildcards and standard channels are left out: no name of theirs says what they are for.
@@ -163,7 +163,7 @@ def asked_elements(
     wanted = [identity for identity, vertices in parts.items() if identity in places or _unlabelled(vertices, bound)]
     wanted.sort(key=lambda at: (places.get(at, len(places)), graph.elements[parts[at][0]].sort_key()))
     return tuple(
-        Asked(
+        AskedModel(
             whole(graph.elements[parts[identity][0]]),
             _fit(identity[2]),
             types(identity),
@@ -246,14 +246,16 @@ def common_words(rules: NameRules, types: Iterable[str]) -> frozenset[str]:
     return frozenset([*of_rules, *rules.neutral, *rules.simulated, *of_types])
 
 
-class Question(NamedTuple):
+class ModelQuestion(NamedTuple):
     """One request: its elements by id, and the bytes that are sent."""
 
-    elements: Mapping[str, Asked]
+    elements: Mapping[str, AskedModel]
     body: bytes
 
 
-def questions(elements: Iterable[Asked], kinds: Sequence[Category], model: str, limit: int) -> tuple[Question, ...]:
+def questions(
+    elements: Iterable[AskedModel], kinds: Sequence[Category], model: str, limit: int
+) -> tuple[ModelQuestion, ...]:
     """Return all requests, in the order of the elements.
 
     Parameters
@@ -268,7 +270,7 @@ def questions(elements: Iterable[Asked], kinds: Sequence[Category], model: str, 
     InputError
         If there would be more.
     """
-    parts: list[dict[str, Asked]] = []
+    parts: list[dict[str, AskedModel]] = []
     size = SIZE
     for number, element in enumerate(elements, 1):
         length = len(json.dumps(_entry("", element)))
@@ -280,10 +282,10 @@ def questions(elements: Iterable[Asked], kinds: Sequence[Category], model: str, 
     if len(parts) > limit:
         what = f"there are {counted(sum(map(len, parts)), 'element')} to ask about, in {counted(len(parts), 'request')}"
         raise InputError("--model", 0, what, f"allow them with --model-requests {len(parts)}, or label some by hand")
-    return tuple(Question(part, _body(part, kinds, model)) for part in parts)
+    return tuple(ModelQuestion(part, _body(part, kinds, model)) for part in parts)
 
 
-def _body(part: Mapping[str, Asked], kinds: Sequence[Category], model: str) -> bytes:
+def _body(part: Mapping[str, AskedModel], kinds: Sequence[Category], model: str) -> bytes:
     data = {
         "kinds": {kind.name: kind.definition for kind in kinds},
         "elements": [_entry(key, element) for key, element in part.items()],
@@ -315,7 +317,7 @@ def _object(properties: dict[str, Any]) -> dict[str, Any]:
     return {"type": "object", "additionalProperties": False, "required": required, "properties": properties}
 
 
-def _entry(key: str, element: Asked) -> dict[str, Any]:
+def _entry(key: str, element: AskedModel) -> dict[str, Any]:
     writes, reads = (
         [{"name": name, "types": types} if types else {"name": name} for name, types in ends]
         for ends in (element.writes, element.reads)
@@ -334,7 +336,7 @@ class Judged(NamedTuple):
 
 def judged(
     answers: Iterable[Any],
-    elements: Mapping[str, Asked],
+    elements: Mapping[str, AskedModel],
     kinds: Collection[str],
     model: str,
     shown: Callable[[str], str] = str,
@@ -353,7 +355,7 @@ def judged(
     Examples
     --------
     >>> from rosprivacy.analysis.model import Element
-    >>> asked = {"n1": Asked(Element("node", "/eye"), "/eye")}
+    >>> asked = {"n1": AskedModel(Element("node", "/eye"), "/eye")}
     >>> said = {"id": "n1", "role": "source", "kind": "Video", "to": "", "quote": "eye"}
     >>> done = judged([said, said | {"role": "never"}, said | {"quote": "camera"}], asked, ["Video"], "m")
     >>> done.evidence[0].label.role, done.evidence[0].reason, dict(done.dropped) == {NO_ROLE: 1, NO_QUOTE: 1}
@@ -383,7 +385,7 @@ def judged(
     return Judged(tuple(evidence), dropped)
 
 
-def _wrong(answer: Any, elements: Mapping[str, Asked], kinds: Collection[str]) -> str:
+def _wrong(answer: Any, elements: Mapping[str, AskedModel], kinds: Collection[str]) -> str:
     """Why an answer is none of the closed lists; empty if it is."""
     if (
         not isinstance(answer, dict)
@@ -401,7 +403,7 @@ def _wrong(answer: Any, elements: Mapping[str, Asked], kinds: Collection[str]) -
     return ""
 
 
-def _quoted(quote: str, element: Asked) -> tuple[str, str] | None:
+def _quoted(quote: str, element: AskedModel) -> tuple[str, str] | None:
     """What a quote was taken from, word for word; None if from nothing that was sent of the element."""
     if not _SAYS_SOMETHING.search(quote):
         return None
@@ -500,7 +502,7 @@ class Interview:
         }
 
 
-def asked_of(basis: Basis, asking: Asking, mask: Mask | None = None) -> tuple[Question, ...]:
+def asked_of(basis: Basis, asking: Asking, mask: Mask | None = None) -> tuple[ModelQuestion, ...]:
     """Return the requests that would be sent.
 
     Raises
@@ -514,11 +516,11 @@ def asked_of(basis: Basis, asking: Asking, mask: Mask | None = None) -> tuple[Qu
     return questions(sent, tuple(basis.result.vocabulary.categories.values()), asking.model, asking.limit)
 
 
-def what_is_sent(requests: tuple[Question, ...], asking: Asking) -> str:
+def what_is_sent(requests: tuple[ModelQuestion, ...], asking: Asking) -> str:
     """Return how much goes where, in one line.
 
-    >>> from rosprivacy.labelling.model_interview import Question
-    >>> what_is_sent((Question({}, b"{}"),), Asking("m", "http://localhost/v1/chat/completions", True, 9))
+    >>> from rosprivacy.labelling.model_interview import ModelQuestion
+    >>> what_is_sent((ModelQuestion({}, b"{}"),), Asking("m", "http://localhost/v1/chat/completions", True, 9))
     'model m at http://localhost/v1/chat/completions: 1 request with 0 elements, 2 bytes, names masked'
     """
     size = sum(len(one.body) for one in requests)

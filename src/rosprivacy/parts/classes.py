@@ -17,7 +17,7 @@ from rosprivacy.analysis.fleet.source_leak_pairs import CategoryRun
 from rosprivacy.analysis.kernel.fixpoint import WORD
 from rosprivacy.parts import workers
 from rosprivacy.parts.border import STOPS, ends_of, how
-from rosprivacy.parts.part_patterns import CORE, End, Source
+from rosprivacy.parts.part_patterns import CORE, PartEnd, PartSource
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -96,16 +96,16 @@ class Classes:
             for stop in STOPS:
                 self.leaving.setdefault((number, stop), np.zeros((len(self._middle.border), 0), np.uint64))
 
-    def own_sources(self) -> list[Source]:
+    def own_sources(self) -> list[PartSource]:
         """Return the sources of the core."""
         names, elements = self._ours.categories, self._piece.graph.elements
         return [
-            Source(names[number], elements[vertex], CORE, len(self.numbers[number]) + i)
+            PartSource(names[number], elements[vertex], CORE, len(self.numbers[number]) + i)
             for number, category in self._categories.items()
             for i, vertex in enumerate(category.sources.tolist())
         ]
 
-    def own_ends(self) -> list[End]:
+    def own_ends(self) -> list[PartEnd]:
         """Return the leaks and the like of the core, and how each class gets there."""
         found = []
         elements = self._piece.graph.elements
@@ -119,10 +119,10 @@ class Classes:
             for kind, codes in how(category, carried, ends, n, category.sources, own).items():
                 for row in np.flatnonzero(codes.any(axis=1)).tolist():
                     name, element = self._ours.categories[number], elements[int(ends[kind][row])]
-                    found.append(End(kind, name, element, CORE, codes[row].tobytes()))
+                    found.append(PartEnd(kind, name, element, CORE, codes[row].tobytes()))
         return found
 
-    def bringers(self, groups: Iterable[Group], sources: Iterable[Source]) -> set[str]:
+    def bringers(self, groups: Iterable[Group], sources: Iterable[PartSource]) -> set[str]:
         """Return the units that bring the classes of what is shown to where they get."""
         wanted: dict[tuple[str, Element], set[bool]] = defaultdict(set)
         for group in groups:

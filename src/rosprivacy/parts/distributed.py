@@ -204,7 +204,7 @@ class _Run:
         classes = Classes(ours, piece, middle, ways, task.hierarchy)
         classes.number(kernels.map(workers.classes).collect())
         classes.carry(kernels)
-        asked = workers.Asked(leaving, classes.leaving, classes.numbers, classes.counts, mask, task.hierarchy)
+        asked = workers.PartQuestion(leaving, classes.leaving, classes.numbers, classes.counts, mask, task.hierarchy)
         answers = ready.map(partial(workers.answered, forms=ways, question=asked)).collect()
         return self._put_together(answers, classes, report, at, piece, ours, wanted, mask, leaving, ready)
 
@@ -260,7 +260,7 @@ class _Run:
                 return leaving
 
     def _put_together(
-        self, answers: Sequence[workers.Answer], classes: Classes, report: Report, at: Border, piece: Piece,
+        self, answers: Sequence[workers.PartAnswer], classes: Classes, report: Report, at: Border, piece: Piece,
         ours: Spread, categories: Sequence[str], mask: int, leaving: Bits, ready: Parts[workers.Ready],
     ) -> Found:  # fmt: skip
         sources = [*classes.own_sources(), *(source for answer in answers for source in answer.sources)]
@@ -326,7 +326,7 @@ def _one_of_each(closed: Iterable[ClosedByShipped], likeness: Likeness) -> tuple
 
 
 def _opened(
-    answers: Iterable[workers.Answer], likeness: Likeness
+    answers: Iterable[workers.PartAnswer], likeness: Likeness
 ) -> tuple[dict[str, frozenset[Element]], int, set[str]]:
     """What is open on each robot; on how many elements of the fleet; and a robot for each kind of open element."""
     open_at: dict[str, frozenset[Element]] = {}

@@ -33,7 +33,7 @@ from rosprivacy.parts.unit_rows import Plan
 from rosprivacy.parts.units import crossing_lines, split
 from rosprivacy.question import in_contexts, question_of
 from rosprivacy.system import System
-from rosprivacy.systems.robot_reader import Reader
+from rosprivacy.systems.robot_reader import RobotReader
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.fleet.dds_domains import Member
     from rosprivacy.ingest.fleet.fleet_file import Fleet, Robot
     from rosprivacy.parts.distributed import Found
-    from rosprivacy.parts.shown_robots import Shown
+    from rosprivacy.parts.shown_robots import ShownRobots
     from rosprivacy.parts.units import Unit
     from rosprivacy.parts.workers import Read
     from rosprivacy.question import Question
@@ -149,7 +149,7 @@ def _check_whole(task: Task) -> None:
         raise InputErrors(problems)
 
 
-def result(task: Task, whole: Found, sample: Shown, question: Question) -> Result:
+def result(task: Task, whole: Found, sample: ShownRobots, question: Question) -> Result:
     """Put together what a report says."""
     rests_on = {
         **({"countries_as_of": countries().as_of} if whole.report.countries else {}),
@@ -182,7 +182,7 @@ def result(task: Task, whole: Found, sample: Shown, question: Question) -> Resul
 
 def file_reader(settings: Settings, folder: str, root: str) -> Read:
     """Return what reads robots from files below a root, on a worker; names are relative to a folder there."""
-    reader = Reader(load(ontologies=settings.ontologies), settings, root)
+    reader = RobotReader(load(ontologies=settings.ontologies), settings, root)
 
     def read(robot: Robot) -> Member:
         if folder == os.getcwd():  # noqa: PTH109 - as it is compared

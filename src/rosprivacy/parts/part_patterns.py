@@ -35,7 +35,7 @@ class Within:
 
 
 @dataclass(frozen=True, slots=True)
-class Source:
+class PartSource:
     """A source with its unit, and the number of its class among those of the category."""
 
     category: str
@@ -45,7 +45,7 @@ class Source:
 
 
 @dataclass(frozen=True, slots=True)
-class End:
+class PartEnd:
     """A leak or the like with its unit, and how each class of the category gets there from the border."""
 
     kind: str
@@ -101,7 +101,7 @@ class Crossed:
                     key = self.tallies.add(some, form, Count.of(count, form))
                     self.tallies.share(key, (source.robot,), (leak.robot,), form, across=across)
 
-    def between(self, sources: Iterable[Source], ends: Iterable[End]) -> None:
+    def between(self, sources: Iterable[PartSource], ends: Iterable[PartEnd]) -> None:
         """Take all sources and ends, and count the pairs of different units, and those of the core."""
         likeness = self._likeness
         by_class: dict[tuple[str, int], dict[Element, _Many]] = defaultdict(lambda: defaultdict(_Many))

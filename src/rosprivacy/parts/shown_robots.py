@@ -36,7 +36,7 @@ Choice = dict[int, set[tuple[str, int, int, bool]]]
 
 
 @dataclass(frozen=True, slots=True)
-class Shown:
+class ShownRobots:
     """What a report is made of.
 
     Attributes
@@ -51,7 +51,7 @@ class Shown:
     members: dict[str, Member]
 
 
-def shown(task: Task, whole: Found, paths: str, max_paths: int) -> Shown:
+def shown(task: Task, whole: Found, paths: str, max_paths: int) -> ShownRobots:
     """Look for the ways of what is shown.
 
     Notes
@@ -83,7 +83,7 @@ def shown(task: Task, whole: Found, paths: str, max_paths: int) -> Shown:
     analysis = replace(analysis, verdict=whole.verdict, emitted=whole.emitted, lacking=whole.lacking, diagnostics=told)
     known = {row.channel.identity: row for row in (*whole.closed, *analysis.closed_by_shipped)}
     analysis = replace(analysis, closed_by_shipped=tuple(known[key] for key in sorted(known)))
-    return Shown(analysis, view, placed, members)
+    return ShownRobots(analysis, view, placed, members)
 
 
 def place_groups(

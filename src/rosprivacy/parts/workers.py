@@ -26,7 +26,7 @@ from rosprivacy.ingest.fleet.fleet_graph import Some, likeness, place_some
 from rosprivacy.ingest.fleet.joins import let_out
 from rosprivacy.ingest.labels.pins import PIN_OF_NOTHING
 from rosprivacy.parts.border import Bringer, Class, Crossing, PartNetwork
-from rosprivacy.parts.part_patterns import End, Source, Within
+from rosprivacy.parts.part_patterns import PartEnd, PartSource, Within
 from rosprivacy.parts.units import HUB, Lines, Piece, crossing_lines, naming_lines, units_piece
 
 if TYPE_CHECKING:
@@ -328,7 +328,7 @@ def classes_carried(
 
 
 @dataclass(frozen=True, slots=True)
-class Answer:
+class PartAnswer:
     """What a part has to say in the end.
 
     Attributes
@@ -344,8 +344,8 @@ class Answer:
     """
 
     within: tuple[Within, ...]
-    sources: tuple[Source, ...]
-    ends: tuple[End, ...]
+    sources: tuple[PartSource, ...]
+    ends: tuple[PartEnd, ...]
     open: Mapping[str, int]
     sets: tuple[frozenset[tuple[Element, tuple[str, ...]]], ...]
     grounds: Grounds
@@ -354,7 +354,7 @@ class Answer:
 
 
 @dataclass(frozen=True, slots=True)
-class Asked:
+class PartQuestion:
     """What the driver found out about the border, for the last round.
 
     Attributes
@@ -386,14 +386,14 @@ def filled(part: Ready, leaving: Bits) -> Spread:
     return spread
 
 
-def answered(part: Ready, forms: Mapping[int, tuple[int, ...]], question: Asked) -> Answer:
+def answered(part: Ready, forms: Mapping[int, tuple[int, ...]], question: PartQuestion) -> PartAnswer:
     """Return pairs, ends, open elements and counts of a part."""
     spread = filled(part, question.leaving)
     cut = _spread_and_cut(part)[1]
     graph, names = part.piece.graph, part.names
     within: list[Within] = []
-    sources: list[Source] = []
-    ends: list[End] = []
+    sources: list[PartSource] = []
+    ends: list[PartEnd] = []
     crossings = kernel(part, forms, question.hierarchy).categories
     for number, crossing in crossings.items():
         name, n = spread.categories[number], question.counts[number]
@@ -401,7 +401,7 @@ def answered(part: Ready, forms: Mapping[int, tuple[int, ...]], question: Asked)
             continue
         of_source = {vertex: question.numbers[number][met] for vertex, met in crossing.classes().items()}
         for vertex, klass in of_source.items():
-            sources.append(Source(name, graph.elements[vertex], names[int(cut.unit[vertex])], klass))
+            sources.append(PartSource(name, graph.elements[vertex], names[int(cut.unit[vertex])], klass))
         arriving = crossing.arriving((question.runs[number, True], question.runs[number, False]), n)
         for kind, source, end, how in crossing.within(arriving, of_source):
             within.append(Within(kind, name, graph.elements[source], graph.elements[end], how))
@@ -409,12 +409,12 @@ def answered(part: Ready, forms: Mapping[int, tuple[int, ...]], question: Asked)
             for row in np.flatnonzero(codes.any(axis=1)).tolist():
                 vertex = int(crossing.ends[kind][row])
                 unit = names[int(cut.unit[vertex])]
-                ends.append(End(kind, name, graph.elements[vertex], unit, codes[row].tobytes()))
+                ends.append(PartEnd(kind, name, graph.elements[vertex], unit, codes[row].tobytes()))
     on_robots, sets = _open(part, spread, question.mask)
     border = set(part.piece.border)
     counts = counted(graph, spread, part.likeness, border, {v for v in border if graph.elements[v].robot == HUB})
     closed = doubtful(spread, question.mask, part.piece.border, part.piece.unit)
-    return Answer(
+    return PartAnswer(
         tuple(within), tuple(sources), tuple(ends), on_robots, sets, grounds(spread, question.mask), counts, closed
     )
 

@@ -33,7 +33,7 @@ LIST = "neo4j-jars.sha256"
 DOWNLOADS = 8  # at once
 
 
-class Pinned(NamedTuple):
+class PinnedJar(NamedTuple):
     """A jar file that belongs to the server."""
 
     sha256: str
@@ -41,11 +41,11 @@ class Pinned(NamedTuple):
 
 
 @cache
-def pinned() -> tuple[Pinned, ...]:
+def pinned() -> tuple[PinnedJar, ...]:
     """Return the jar files in the order of the class path."""
     lines = _list().splitlines()
     parts = [line.split("  ", 1) for line in lines if not line.startswith("#")]
-    return tuple(Pinned(sha256, PurePosixPath(path)) for sha256, path in parts)
+    return tuple(PinnedJar(sha256, PurePosixPath(path)) for sha256, path in parts)
 
 
 def _list() -> str:
@@ -132,7 +132,7 @@ def _fetch() -> Iterator[Path]:
             pool.shutdown(cancel_futures=True)
 
 
-def _fetch_jar(context: MavenContext, jar: Pinned) -> Path:
+def _fetch_jar(context: MavenContext, jar: PinnedJar) -> Path:
     """Download a jar file if it is not there, and again if it was broken off."""
     *group, artifact, version, file = jar.path.parts
     classifier = file.removeprefix(f"{artifact}-{version}").removesuffix(".jar").removeprefix("-")

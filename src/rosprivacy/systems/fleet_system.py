@@ -18,11 +18,11 @@ from rosprivacy.ingest.fleet.fleet_file import Fleet, read_fleet
 from rosprivacy.ingest.fleet.fleet_graph import Placed, place
 from rosprivacy.ingest.fleet.joins import joins_nothing, let_out
 from rosprivacy.ingest.labels.pins import PIN_OF_NOTHING
-from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, Change
+from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, PolicyChange
 from rosprivacy.question import question_of
 from rosprivacy.robot_doubts import breaking, doubt_lines, doubts_by_robot
 from rosprivacy.system import System
-from rosprivacy.systems.robot_reader import Reader, Tried
+from rosprivacy.systems.robot_reader import RobotReader, Tried
 from rosprivacy.systems.robot_system import beyond_of
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ def fleet_system(file: str, question: Question) -> FleetSystem:
     return fleet_reader(file, question)(NO_CHANGE)
 
 
-def fleet_reader(file: str, question: Question) -> Callable[[Change], FleetSystem]:
+def fleet_reader(file: str, question: Question) -> Callable[[PolicyChange], FleetSystem]:
     """Read a fleet file and what it names, each kind of robot once; return what makes a system of it with a change.
 
     Parameters and errors as of ``read_once``.
@@ -95,7 +95,7 @@ def read_once(file: str, question: Question) -> FleetRead:
     """
     settings = question.settings
     fleet = read_fleet(file, question.vocabulary, include_root=settings.include_root, bounds=settings.bounds)
-    reader = Reader(question.vocabulary, settings, fleet.root)
+    reader = RobotReader(question.vocabulary, settings, fleet.root)
     return FleetRead(fleet, _groups(fleet, question), reader, question)
 
 
@@ -109,10 +109,10 @@ class FleetRead:
 
     fleet: Fleet
     groups: tuple[Alike, ...]
-    reader: Reader
+    reader: RobotReader
     question: Question
 
-    def system(self, change: Change = NO_CHANGE) -> FleetSystem:
+    def system(self, change: PolicyChange = NO_CHANGE) -> FleetSystem:
         """Return the fleet, if its policies had a change."""
         return _system(self.fleet, self.groups, self.reader, change, self.question)
 
@@ -171,8 +171,8 @@ class FleetRead:
 
 
 def _system(
-    fleet: Fleet, groups: tuple[Alike, ...], reader: Reader, change: Change, question: Question,
-    readers: Mapping[str, Reader] = {},
+    fleet: Fleet, groups: tuple[Alike, ...], reader: RobotReader, change: PolicyChange, question: Question,
+    readers: Mapping[str, RobotReader] = {},
 ) -> FleetSystem:  # fmt: skip
     """Make the system; some robots, by id, have a reader of their own."""
     settings, members = question.settings, {}

@@ -17,7 +17,7 @@ from rosprivacy.ingest.labels.add_non_ros import extended, told_of_bags
 from rosprivacy.ingest.labels.binding import join, remarks
 from rosprivacy.ingest.labels.label_file import OURS, read_labels
 from rosprivacy.ingest.mitigation.deny_lines import with_denied
-from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, Change, changed
+from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, PolicyChange, changed
 from rosprivacy.ingest.policies.comparisons import careful_warnings
 from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.ingest.policies.joint_policies import joint_warnings
@@ -58,7 +58,7 @@ def files_of(robot: Robot) -> list[tuple[str, bool]]:
     return [*((file, False) for file in robot.labels), *((file, True) for file in robot.own)]
 
 
-class Reader:
+class RobotReader:
     """Reads policies and label files, each once, and makes the graph of one robot of them.
 
     Attributes
@@ -81,7 +81,7 @@ class Reader:
         self._members: dict[object, Member] = {}
         self._change = NO_CHANGE
 
-    def member(self, robot: Robot, change: Change = NO_CHANGE) -> Member:
+    def member(self, robot: Robot, change: PolicyChange = NO_CHANGE) -> Member:
         """Return a robot with its graph, if its policies had a change; graphs of the change before are forgotten."""
         if change != self._change:
             self._members, self._change = {}, change
@@ -93,9 +93,9 @@ class Reader:
         said = notices(member.policies, who, robot.add)
         return replace(member, robot=robot, diagnostics=(*member.diagnostics, *said))
 
-    def trying(self, tried: Tried) -> Reader:
+    def trying(self, tried: Tried) -> RobotReader:
         """Return a reader of the same files, as they were read, with something otherwise."""
-        reader = Reader(self._vocabulary, self._settings, self._root, tried)
+        reader = RobotReader(self._vocabulary, self._settings, self._root, tried)
         reader.labels, reader.policies, reader.types = self.labels, self.policies, self.types
         return reader
 

@@ -21,7 +21,7 @@ from rosprivacy.ingest.labels.binding import GraphNames, bind, join, remarks
 from rosprivacy.ingest.labels.label_file import Labels, read_labels, unknown_categories
 from rosprivacy.ingest.labels.pins import PIN_OF_NOTHING
 from rosprivacy.ingest.labels.stated_facts import in_order
-from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, Change, changed
+from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, PolicyChange, changed
 from rosprivacy.ingest.policies.comparisons import careful_warnings
 from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.ingest.policies.joint_policies import joint_warnings
@@ -73,7 +73,7 @@ def robot_system(policies: tuple[str, ...], labels: tuple[str | Labels, ...], qu
 
 def system_reader(
     policies: tuple[str, ...], labels: tuple[str | Labels, ...], question: Question
-) -> Callable[[Change], System]:
+) -> Callable[[PolicyChange], System]:
     """Read policies once; return what makes a system of them with a change (rule S6).
 
     Raises
@@ -85,7 +85,7 @@ def system_reader(
     graphs = read_graphs(settings)
     (policies_read, remarks), types = read_system(policies, settings, graphs), observed_types(settings, graphs)
 
-    def read(change: Change) -> System:
+    def read(change: PolicyChange) -> System:
         there = changed(policies_read, change)
         graph = build(there, settings.view, settings.bounds)
         read_so = (there, remarks)

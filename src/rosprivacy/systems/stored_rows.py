@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.queries.library import Query
-    from rosprivacy.queries.run import Rows
+    from rosprivacy.queries.run import QueryRows
 
 STORED_NAMES = StoredNames({label: kind for kind, label in KIND_LABELS.items()}, FLOWS_TO.type, CARRIES)
 
@@ -36,7 +36,7 @@ class StoredRows(NamedTuple):
         That robots were loaded by another version, so that rows can be missing; empty if none was.
     """
 
-    rows: Rows
+    rows: QueryRows
     warning: str
 
 

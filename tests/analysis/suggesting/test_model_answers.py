@@ -11,13 +11,13 @@ from hypothesis import strategies as st
 from rosprivacy.analysis.model import Confidence, Element
 from rosprivacy.analysis.suggesting.evidence import HIDING, MODEL, NAMED, TYPE, Evidence
 from rosprivacy.analysis.suggesting.weighing import proposals
-from rosprivacy.labelling.model_interview import KEYS, MAX_ANSWERS, Asked, Mask, judged
+from rosprivacy.labelling.model_interview import KEYS, MAX_ANSWERS, AskedModel, Mask, judged
 
 KINDS = ("FaceTemplate", "Video", "Voice")
 TYPES = ("acme_msgs/msg/Badge",)
 ASKED = {
-    "n1": Asked(Element("node", "/wardlog"), "/wardlog", (), (), (("/badges", TYPES),), ("who comes",)),
-    "n2": Asked(Element("topic", "/badges"), "/badges", TYPES, (), (), ()),
+    "n1": AskedModel(Element("node", "/wardlog"), "/wardlog", (), (), (("/badges", TYPES),), ("who comes",)),
+    "n2": AskedModel(Element("topic", "/badges"), "/badges", TYPES, (), (), ()),
 }
 GOOD = {"id": "n1", "role": "leak", "kind": "Video", "to": "", "quote": "wardlog"}
 

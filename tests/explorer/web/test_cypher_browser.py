@@ -12,7 +12,7 @@ import pytest
 
 from rosprivacy.explorer.session import Session
 from rosprivacy.explorer.web.cypher_site import StoredSite
-from rosprivacy.explorer.web.guard import Door
+from rosprivacy.explorer.web.guard import RequestDoor
 from rosprivacy.explorer.web.serving import bound_socket, server
 from rosprivacy.ingest.database.loading import load
 from rosprivacy.private_neo4j import connection
@@ -52,13 +52,13 @@ def loaded(neo4j_server: Connection) -> Connection:
 
 
 @contextmanager
-def served(browser: WebDriver, to: Connection, language: str = "en") -> Iterator[Door]:
+def served(browser: WebDriver, to: Connection, language: str = "en") -> Iterator[RequestDoor]:
     """The page on a server that ends after the page was left; the console stays silent, and only it is asked."""
     opens = partial(connection.open_driver, to)
     with opens() as driver:
         session = Session.open_database(driver)
     with bound_socket(0) as listening:
-        door = Door(listening.getsockname()[1], True)
+        door = RequestDoor(listening.getsockname()[1], True)
         site = StoredSite(session, Settings(), Words(language), door, opens, 2.0)
         running = server(site.application())
         thread = threading.Thread(target=running.run, kwargs={"sockets": [listening]})

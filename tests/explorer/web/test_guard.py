@@ -18,7 +18,7 @@ from starlette.routing import Route
 from starlette.testclient import TestClient
 
 from rosprivacy.cli import ENOUGH
-from rosprivacy.explorer.web.guard import HEADERS, LARGEST, Door, Guard, refused
+from rosprivacy.explorer.web.guard import HEADERS, LARGEST, Guard, RequestDoor, refused
 from rosprivacy.explorer.web.serving import bound_socket, collect_garbage, server, tunnel
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ class Room:
     """An application behind a door, and who knocks."""
 
     def __init__(self, *, read_only: bool = False) -> None:
-        self.inner, self.door = Inner(), Door(PORT, read_only)
+        self.inner, self.door = Inner(), RequestDoor(PORT, read_only)
         self.link = self.door.link
         self.app = Guard(self.inner.app, self.door)
         self.client = self.stranger()
@@ -158,7 +158,7 @@ def test_the_length_of_a_form_is_said_and_bounded() -> None:
 
 
 def _status(more: dict[str, str]) -> int | None:
-    found = refused("POST", Headers({"host": HOST, **OURS, **more}), Door(PORT))
+    found = refused("POST", Headers({"host": HOST, **OURS, **more}), RequestDoor(PORT))
     return found and found.status
 
 

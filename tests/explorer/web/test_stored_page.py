@@ -9,7 +9,7 @@ import pytest
 from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.explorer.session import Session
 from rosprivacy.explorer.web.application import Site
-from rosprivacy.explorer.web.guard import Door
+from rosprivacy.explorer.web.guard import RequestDoor
 from rosprivacy.ingest.database.loading import load
 from rosprivacy.private_neo4j import connection
 from rosprivacy.report.catalogs.words import Words
@@ -35,7 +35,7 @@ def test_what_is_in_a_database_is_shown_and_not_changed(neo4j_server: Connection
         session = Session.open_database(driver)
         assert session.result.to("json1") == answer_unwritten(driver, Settings()).to("json1")
         after = driver.execute_query("MATCH (n)-[r]->(m) RETURN count(n), count(r)").records
-    door = Door(PORT, True)
+    door = RequestDoor(PORT, True)
     site = Site(session, Settings(), Words("en"), door)
     client = TestClient(site.application(), base_url=f"http://127.0.0.1:{PORT}", follow_redirects=False)
     client.headers["origin"] = f"http://127.0.0.1:{PORT}"

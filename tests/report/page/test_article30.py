@@ -22,7 +22,7 @@ def record(document: dict[str, Any], language: str = "en") -> list[dict[str, str
     text = article30.record(document, language)
     assert text.startswith("\ufeff")
     rows = csv.DictReader(io.StringIO(text.removeprefix("\ufeff")), delimiter=article30.SEPARATORS[language])
-    short = {Words(language)(f"record.{field}"): field for field in article30.Entry.__dataclass_fields__}
+    short = {Words(language)(f"record.{field}"): field for field in article30.RecordEntry.__dataclass_fields__}
     *found, answer = ({short[column]: cell for column, cell in row.items()} for row in rows)
     assert answer["note"].startswith(document["verdict"])  # the answer that the record rests on stands last
     return found

@@ -17,7 +17,7 @@ from rosprivacy.report.pictures import graphviz as module
 from rosprivacy.report.pictures import views
 from rosprivacy.report.pictures.graphviz import Graphviz, Job, TooLongError
 from rosprivacy.report.pictures.layout import WAYS, Way, crossings, drawn, way_of
-from rosprivacy.report.pictures.picture import ROS, Box, Line, Picture, sorted_boxes, sorted_lines
+from rosprivacy.report.pictures.picture import ROS, Box, Picture, PictureLine, sorted_boxes, sorted_lines
 from tests.helpers.graphs import factory
 from tests.helpers.pictures import hostile
 
@@ -119,7 +119,7 @@ def pipeline(boxes: int, lines: int, prefix: str = "/element") -> Picture:
     """A picture of some boxes, each joined to those that come next, in steps that grow."""
     made = [Box(("", kind, f"{prefix}_{i:04}"), (f"{prefix}_{i:04}",), kind) for i, kind in _kinds(boxes)]
     ends = ((made[i], made[i + step]) for step in range(1, boxes) for i in range(boxes - step))
-    drawn_lines = tuple(Line(a.key, b.key, "data") for a, b in islice(ends, lines))
+    drawn_lines = tuple(PictureLine(a.key, b.key, "data") for a, b in islice(ends, lines))
     return Picture(ROS, "pipeline", sorted_boxes(made), sorted_lines(drawn_lines))
 
 
@@ -149,7 +149,7 @@ def test_without_a_direction_it_is_the_one_that_can_be_drawn_larger_on_a_page() 
     boxes = tuple(
         Box(("", kind, f"/element_{i:02}"), (f"/element_{i:02}",), "reviewed") for i, kind in enumerate(chain)
     )
-    lines = tuple(Line(a.key, b.key, "data") for a, b in pairwise(boxes))
+    lines = tuple(PictureLine(a.key, b.key, "data") for a, b in pairwise(boxes))
     long = Picture("privacy", "long", sorted_boxes(boxes), sorted_lines(lines))
     wide = views.privacy_view(hostile([f"/t{i}" for i in range(30)]))
     for picture, direction, other in ((long, "TB", "LR"), (wide, "LR", "TB")):

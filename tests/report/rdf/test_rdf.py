@@ -27,7 +27,7 @@ from rosprivacy.ontology.iris import as_published
 from rosprivacy.ontology.vocabulary import Vocabulary
 from rosprivacy.report.rdf.facts import legal_of
 from rosprivacy.report.rdf.findings import rdf_graph
-from rosprivacy.report.rdf.individuals import Names
+from rosprivacy.report.rdf.individuals import IndividualNames
 from rosprivacy.report.rdf.serialise import as_turtle
 from rosprivacy.report.rdf.terms import (
     BASES,
@@ -62,7 +62,7 @@ VOCABULARY = Vocabulary.of(Category(n, f"urn:test:{n}", n, n, f"{n}.", up) for n
 REST: dict[str, Any] = {"rosprivacy": "1.2.3"}
 BASE = "urn:test:"
 DPV_KIND = Namespace("https://w3id.org/dpv#")
-NAMES = Names(BASE)
+NAMES = IndividualNames(BASE)
 
 
 def result_of(case: Path, **options: Any) -> Result:

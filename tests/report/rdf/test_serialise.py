@@ -33,7 +33,7 @@ from rosprivacy.clock import source_date
 from rosprivacy.documents import document_of
 from rosprivacy.ontology.vocabulary import Vocabulary
 from rosprivacy.report.rdf.findings import rdf_graph
-from rosprivacy.report.rdf.individuals import Names
+from rosprivacy.report.rdf.individuals import IndividualNames
 from rosprivacy.report.rdf.serialise import SERIALISERS
 from rosprivacy.report.rdf.terms import RP
 from tests.helpers.answers import accepting, answer_of
@@ -56,7 +56,7 @@ HOSTILE = [
     "\r", "\t", "\x00", "\x7f", "\x85", "\u2028", "\ufeff", TURNED, "ÄÖ 한국 🤖", "x" * 4000, "🤖" * 1000, "{", "}",
     "%3E", "%", "a b", "@en", "^^<urn:x>", "urn:x-rosprivacy:", "rp:Finding", "_:b0", "'''", "</script>", "a.", "-",
 ]  # fmt: skip
-NAMES = Names("urn:test:")
+NAMES = IndividualNames("urn:test:")
 FORMS = pytest.mark.parametrize("form", SERIALISERS)
 
 

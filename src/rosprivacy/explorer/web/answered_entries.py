@@ -18,7 +18,7 @@ from rosprivacy.report.catalogs.words import Words
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from rosprivacy.explorer.web.forms import Answer
+    from rosprivacy.explorer.web.forms import FormAnswer
 
 LANGUAGES = ("en", "de", "fr")  # in which an earlier review may have been
 WHOLE_NODE_ROLES = (
@@ -29,7 +29,7 @@ WHOLE_NODE_ROLES = (
 PER_KIND = ("source", "leak", "sanitizer", "conduit", "sensitive", "only", "never")
 
 
-def label_of(answer: Answer, now: Any) -> dict[str, Any]:
+def label_of(answer: FormAnswer, now: Any) -> dict[str, Any]:
     """Return what ``Session.label`` is given.
 
     Parameters
@@ -41,19 +41,19 @@ def label_of(answer: Answer, now: Any) -> dict[str, Any]:
     --------
     >>> from rosprivacy.analysis.model import Element
     >>> node = Element("node", "/recorder")
-    >>> label_of(forms.Answer(node, "leak", ("Voice",)), {"sanitizer": {"Video": "drop"}})
+    >>> label_of(forms.FormAnswer(node, "leak", ("Voice",)), {"sanitizer": {"Video": "drop"}})
     {'sanitizer': {'Video': 'drop'}, 'leak': ['Voice']}
-    >>> label_of(forms.Answer(node, "conduit"), {"leak": ["Voice"]})
+    >>> label_of(forms.FormAnswer(node, "conduit"), {"leak": ["Voice"]})
     {'conduit': True}
-    >>> label_of(forms.Answer(node, "conduit"), {"leak": ["Voice"], "derives": [{"from": "Video", "to": "Voice"}]})
+    >>> label_of(forms.FormAnswer(node, "conduit"), {"leak": ["Voice"], "derives": [{"from": "Video", "to": "Voice"}]})
     {'derives': [{'from': 'Video', 'to': 'Voice'}], 'conduit': True}
-    >>> label_of(forms.Answer(node, "conduit"), {"source": ["Voice"]})
+    >>> label_of(forms.FormAnswer(node, "conduit"), {"source": ["Voice"]})
     {'source': ['Voice'], 'conduit': True}
-    >>> label_of(forms.Answer(node, "conduit", ("Video",)), "conduit")
+    >>> label_of(forms.FormAnswer(node, "conduit", ("Video",)), "conduit")
     {'conduit': True}
-    >>> label_of(forms.Answer(node, "conduit", ("Video",)), {"leak": "none"})
+    >>> label_of(forms.FormAnswer(node, "conduit", ("Video",)), {"leak": "none"})
     {'leak': 'none', 'conduit': ['Video']}
-    >>> label_of(forms.Answer(Element("topic", "/scan"), "sensitive", ("Voice",)), {"only": ["Location"]})
+    >>> label_of(forms.FormAnswer(Element("topic", "/scan"), "sensitive", ("Voice",)), {"only": ["Location"]})
     {'only': ['Location', 'Voice']}
     """
     label = _unaffected(now, answer) if _of_all(answer) else _without(now, answer)
@@ -86,7 +86,7 @@ def limit_of(entry: Any) -> tuple[str, ...]:
     return tuple(_as_list(entry.get("only"))) if isinstance(entry, dict) else ()
 
 
-def _within(limit: tuple[str, ...], answer: Answer, label: dict[str, Any]) -> dict[str, Any]:
+def _within(limit: tuple[str, ...], answer: FormAnswer, label: dict[str, Any]) -> dict[str, Any]:
     """What is said of a channel with a limit: a kind that it carries comes into the limit, one that it does not leaves.
 
     A limit that nothing is left of says that no data is carried.
@@ -99,17 +99,17 @@ def _within(limit: tuple[str, ...], answer: Answer, label: dict[str, Any]) -> di
     return label | {"only": left, "never": [*_as_list(label.get("never")), *answer.kinds]}
 
 
-def _by_whom(answer: Answer) -> dict[str, str]:
+def _by_whom(answer: FormAnswer) -> dict[str, str]:
     words = {"note": answer.note if answer.role != forms.ABSENT else "", "by": answer.by}
     return {key: text for key, text in words.items() if text}
 
 
-def _of_all(answer: Answer) -> bool:
+def _of_all(answer: FormAnswer) -> bool:
     """Whether nothing that was said before of data that gets there stays."""
     return answer.role == forms.ABSENT or (not answer.kinds and answer.role != forms.SOURCE)
 
 
-def _unaffected(now: Any, answer: Answer) -> dict[str, Any]:
+def _unaffected(now: Any, answer: FormAnswer) -> dict[str, Any]:
     """What an entry says that the element brings in, or makes of data: an answer about every kind takes none back.
 
     Such an answer says what becomes of the data that get there, and nothing of what is made of them.
@@ -128,7 +128,7 @@ def made_by(entry: Any) -> tuple[str, ...]:
     return tuple(dict.fromkeys(str(each["to"]) for each in derivations if isinstance(each, dict) and "to" in each))
 
 
-def _without(now: Any, answer: Answer) -> dict[str, Any]:
+def _without(now: Any, answer: FormAnswer) -> dict[str, Any]:
     """What an entry says of data, without what it says of the kinds that an answer is about."""
     if isinstance(now, str):
         return {now: True} if now in WHOLE_NODE_ROLES and now in {answer.role, "conduit"} else {}
@@ -146,7 +146,7 @@ def _without(now: Any, answer: Answer) -> dict[str, Any]:
     return {key: value for key, value in left.items() if value}
 
 
-def _without_answer(value: Any, answer: Answer) -> Any:
+def _without_answer(value: Any, answer: FormAnswer) -> Any:
     """Kinds that are said, without those of an answer; that none is said stays, until one is."""
     if value is True or value == NO_KIND:
         return value

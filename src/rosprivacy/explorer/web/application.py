@@ -43,9 +43,9 @@ if TYPE_CHECKING:
 
     from rosprivacy.explorer.edits import Label
     from rosprivacy.explorer.session import Session
-    from rosprivacy.explorer.web.forms import Answer, Form
-    from rosprivacy.explorer.web.guard import Door
-    from rosprivacy.explorer.web.view import View
+    from rosprivacy.explorer.web.forms import EditForm, FormAnswer
+    from rosprivacy.explorer.web.guard import RequestDoor
+    from rosprivacy.explorer.web.view import PageView
     from rosprivacy.report.catalogs.words import Words
     from rosprivacy.settings import Settings
 
@@ -85,7 +85,7 @@ class Site:
     asks: ClassVar[bool] = False  # whether there is a database that can be asked
     reading: ClassVar[tuple[str, ...]] = READING
 
-    def __init__(self, session: Session, settings: Settings, words: Words, door: Door) -> None:
+    def __init__(self, session: Session, settings: Settings, words: Words, door: RequestDoor) -> None:
         self.session, self.door = session, door
         self._words = words
         self._lock = RLock()
@@ -99,7 +99,7 @@ class Site:
 
     def application(self) -> ASGIApp:
         """Return what a server runs."""
-        posts: dict[str, Callable[[Form], Outcome]] = {
+        posts: dict[str, Callable[[EditForm], Outcome]] = {
             "/label": self._label, "/undo": self._undo, "/redo": self._redo, "/save": self._save, "/merge": self._merge,
             "/resume": self._resume, "/forget": self._forget, "/try": self._try, "/drop": self._drop,
             "/decide": self._decide,
@@ -134,7 +134,7 @@ class Site:
     async def _get(self, request: Request) -> Response:
         return await run_in_threadpool(self._page, request.url.query)
 
-    def _post(self, work: Callable[[Form], Outcome]) -> Callable[[Request], object]:
+    def _post(self, work: Callable[[EditForm], Outcome]) -> Callable[[Request], object]:
         async def handle(request: Request) -> Response:
             body = await request.body()
             return await run_in_threadpool(self._changed, work, body, request.url.query)
@@ -197,7 +197,7 @@ class Site:
             kept=kept_trials(self._trials, view, words),
         )
 
-    def _looked_at(self, query: str) -> tuple[Standing, View, Message | None]:
+    def _looked_at(self, query: str) -> tuple[Standing, PageView, Message | None]:
         """How it stands, or would stand under a trial; the view; why a trial cannot be looked at any more."""
         trial, problem = trial_in(query, self._trials.names), None
         standing = self.standing
@@ -225,11 +225,11 @@ class Site:
             return ""
         return self._words("explorer.inputs", files=self._words.row(self._words.first(changed, MOST_NAMED)))
 
-    def _changed(self, work: Callable[[Form], Outcome], body: bytes, query: str) -> Response:
+    def _changed(self, work: Callable[[EditForm], Outcome], body: bytes, query: str) -> Response:
         """Do what a form says; a page that is loaded again does it no second time."""
         with self._lock:
             try:
-                form = forms.Form(body)
+                form = forms.EditForm(body)
                 stale = form.number("version") != self.session.version
                 outcome = Outcome(409, Message(PROBLEM, self._words("explorer.stale"))) if stale else work(form)
             except (forms.FormError, RosPrivacyError) as error:
@@ -252,7 +252,7 @@ class Site:
 
     # --- what a form does ---------------------------------------------------------------------------------------
 
-    def _label(self, form: Form) -> Outcome:
+    def _label(self, form: EditForm) -> Outcome:
         standing = self.standing
         answer = forms.answer_in(form, standing.elements, standing.vocabulary.categories)
         alone = form.choice("whose", ROBOT_OR_MODEL) == ROBOT
@@ -263,7 +263,7 @@ class Site:
         self._by = answer.by or self._by
         return Outcome(200, self._answered(answer, now, self._words(f"explorer.answer.{answer.role}")))
 
-    def _answered(self, answer: Answer, before: Any, role: str) -> Message:
+    def _answered(self, answer: FormAnswer, before: Any, role: str) -> Message:
         """Tell what was answered, and what was said that it takes away: a limit, or derivations."""
         text = self._words("explorer.changed", what=f"{shown(answer.element.full_name)} – {role}")
         limit = limit_of(before) if answer.role == forms.SENSITIVE and not answer.kinds else ()
@@ -276,13 +276,13 @@ class Site:
         known = filter(None, map(vocabulary.find, kinds))
         return self._words.row(title_of(kind.name, vocabulary, self._words) for kind in known)
 
-    def _undo(self, _: Form) -> Outcome:
+    def _undo(self, _: EditForm) -> Outcome:
         return Outcome(200, Message(DONE, self._words("explorer.undone")) if self.session.undo() else None)
 
-    def _redo(self, _: Form) -> Outcome:
+    def _redo(self, _: EditForm) -> Outcome:
         return Outcome(200, Message(DONE, self._words("explorer.redone")) if self.session.redo() else None)
 
-    def _save(self, _: Form) -> Outcome:
+    def _save(self, _: EditForm) -> Outcome:
         done = self.session.save()
         if isinstance(done, Conflict):
             text = self._words("explorer.conflict", file=shown(done.file))
@@ -292,24 +292,24 @@ class Site:
         )
         return Outcome(200, Message(DONE, text, detail=done.remarks))
 
-    def _merge(self, _: Form) -> Outcome:
+    def _merge(self, _: EditForm) -> Outcome:
         both = self.session.merge()
         if both:
             names = tuple(f"{edit.section}: {shown(edit.name)}" for edit in both)
             return Outcome(200, Message(PROBLEM, self._words("explorer.merged.both"), names))
         return Outcome(200, Message(DONE, self._words("explorer.merged")))
 
-    def _resume(self, _: Form) -> Outcome:
+    def _resume(self, _: EditForm) -> Outcome:
         left = self.session.history.unsaved_from_before
         refused = self.session.history.resume()
         text = self._words("explorer.resumed", n=len(left.edits) if left else 0)
         return Outcome(200, Message(PROBLEM if refused else DONE, text, detail=tuple(map(shown, refused))))
 
-    def _forget(self, _: Form) -> Outcome:
+    def _forget(self, _: EditForm) -> Outcome:
         self.session.history.forget()
         return Outcome(200, Message(DONE, self._words("explorer.forgotten")))
 
-    def _try(self, form: Form) -> Outcome:
+    def _try(self, form: EditForm) -> Outcome:
         """Try something; nothing that is kept anywhere changes."""
         both = form.value("what") == TOGETHER
         tried = self._trials.together(form) if both else tried_in(form, self.standing, self._words)
@@ -321,12 +321,12 @@ class Site:
         numbers = (self._words("explorer.trial.name", n=number) for number in count(1))
         return next(name for name in numbers if name not in self._trials.names)
 
-    def _drop(self, form: Form) -> Outcome:
+    def _drop(self, form: EditForm) -> Outcome:
         name = form.choice("name", self._trials.names)
         self._trials.drop(name)
         return Outcome(200, Message(DONE, self._words("explorer.trial.dropped", name=name)))
 
-    def _decide(self, form: Form) -> Outcome:
+    def _decide(self, form: EditForm) -> Outcome:
         """Write a decision about a finding into the file that the command named."""
         finding, choice, how = forms.decision_in(form, self.standing.findings)
         scope = scope_in(form, self.session, self.standing.findings[finding])

@@ -25,9 +25,9 @@ from rosprivacy.analysis.errors import DatabaseError, QueryError, RosPrivacyErro
 from rosprivacy.analysis.text import printable, shortened
 from rosprivacy.explorer.element_ids import element_id
 from rosprivacy.explorer.web.application import DONE, PROBLEM, READING, Site
-from rosprivacy.explorer.web.forms import Form, FormError
+from rosprivacy.explorer.web.forms import EditForm, FormError
 from rosprivacy.explorer.web.page import Message, template
-from rosprivacy.explorer.web.view import LONGEST, View
+from rosprivacy.explorer.web.view import LONGEST, PageView
 from rosprivacy.queries.graph_values import graph_values, nodes_in
 from rosprivacy.queries.library import Query, pack
 from rosprivacy.queries.run import as_cell
@@ -49,10 +49,10 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Finding
     from rosprivacy.analysis.model import Element
     from rosprivacy.explorer.session import Session
-    from rosprivacy.explorer.web.guard import Door
+    from rosprivacy.explorer.web.guard import RequestDoor
     from rosprivacy.explorer.web.standing import Standing
     from rosprivacy.queries.graph_values import GraphValue
-    from rosprivacy.queries.run import Rows
+    from rosprivacy.queries.run import QueryRows
     from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.pictures.page_pictures import Shown
     from rosprivacy.report.pictures.phrases import Phrases
@@ -75,7 +75,7 @@ LETTERS = 500_000  # of a table
 BOXES = 150  # of a picture, as of a whole system
 
 
-class Asked(NamedTuple):
+class AskedQuery(NamedTuple):
     """A question.
 
     Attributes
@@ -104,7 +104,7 @@ class Asked(NamedTuple):
         """Return the values of its parameters; what was left empty has its default."""
         return self.query.values({name: text for name, text in self.fields.items() if text}) if self.query else {}
 
-    def to_edit(self) -> Asked:
+    def to_edit(self) -> AskedQuery:
         """Return the same as Cypher in the text area, with the values that were typed and the defaults in it."""
         if not self.query:
             return self
@@ -113,10 +113,10 @@ class Asked(NamedTuple):
         missing = {name: "" for name in needed if name not in typed}
         values = self.query.values({**missing, **typed})
         known = {name: value for name, value in values.items() if name not in missing}
-        return Asked(text=written_out(self.query, known), at=self.at)
+        return AskedQuery(text=written_out(self.query, known), at=self.at)
 
 
-def asked_in(form: Form) -> tuple[Asked, str]:
+def asked_in(form: EditForm) -> tuple[AskedQuery, str]:
     """Return what a form asks, and whether it is to be asked or to be edited."""
     do = form.choice("do", (ASK, EDIT)) if form.value("do") else ASK
     name, at = form.value("ask"), form.value("at")
@@ -124,13 +124,13 @@ def asked_in(form: Form) -> tuple[Asked, str]:
         if name not in pack():
             raise FormError("There is no such question; choose one of the list.")
         query = pack()[name]
-        return Asked(query, {field.name: form.value(FIELD + field.name) for field in query.parameters}, at=at), do
+        return AskedQuery(query, {field.name: form.value(FIELD + field.name) for field in query.parameters}, at=at), do
     text = form.value("text").replace("\r\n", "\n")
     if len(text) > LONGEST_TEXT:
         raise FormError(f"The text has at most {LONGEST_TEXT:,} letters; use rosprivacy query --file for a longer one.")
     if not text.strip():
         raise FormError("There is nothing to ask: choose a question, or write one.")
-    return Asked(text=text, at=at), do
+    return AskedQuery(text=text, at=at), do
 
 
 def prefilled(query: Query, element: Element | None, finding: Finding | None) -> dict[str, str]:
@@ -160,7 +160,7 @@ class Column(NamedTuple):
     meaning: str
 
 
-class Table(NamedTuple):
+class QueryTable(NamedTuple):
     """Rows to be shown.
 
     Attributes
@@ -174,7 +174,7 @@ class Table(NamedTuple):
     is_cut: bool
 
 
-def table_of(rows: Rows, query: Query | None, words: Words) -> Table:
+def table_of(rows: QueryRows, query: Query | None, words: Words) -> QueryTable:
     """Return a table of at most ``ROWS`` rows and ``LETTERS`` letters."""
     meanings = {column.name: column.meaning for column in query.columns} if query else {}
     columns = tuple(Column(printable(name), meanings.get(name, "")) for name in rows.columns)
@@ -190,7 +190,7 @@ def table_of(rows: Rows, query: Query | None, words: Words) -> Table:
             told.append(cells)
     except RecursionError:
         raise QueryError("the rows hold lists in lists that are too deep to be read; ask for less") from None
-    return Table(columns, tuple(told), rows.truncated or len(told) < len(rows.rows))
+    return QueryTable(columns, tuple(told), rows.truncated or len(told) < len(rows.rows))
 
 
 def _cut(text: str, words: Words) -> str:
@@ -200,7 +200,7 @@ def _cut(text: str, words: Words) -> str:
     )
 
 
-def picture_of(rows: Rows, title: str, say: Phrases) -> Picture | None:
+def picture_of(rows: QueryRows, title: str, say: Phrases) -> Picture | None:
     """Return a picture of the nodes, relationships and paths of the first rows; None if there are none, or too many.
 
     Notes
@@ -227,7 +227,7 @@ def picture_of(rows: Rows, title: str, say: Phrases) -> Picture | None:
 # --- the pages --------------------------------------------------------------------------------------------------
 
 
-class Answer(NamedTuple):
+class QueryAnswer(NamedTuple):
     """What a question gave.
 
     Attributes
@@ -238,7 +238,7 @@ class Answer(NamedTuple):
         That robots were loaded by another version, in English; empty as a rule.
     """
 
-    table: Table
+    table: QueryTable
     picture: Shown | None
     warning: str
 
@@ -258,7 +258,7 @@ class StoredSite(Site):
     reading = (*READING, CYPHER)
 
     def __init__(
-        self, session: Session, settings: Settings, words: Words, door: Door,
+        self, session: Session, settings: Settings, words: Words, door: RequestDoor,
         opened: Callable[[], AbstractContextManager[Driver]], seconds: float = SECONDS,
     ) -> None:  # fmt: skip
         super().__init__(session, settings, words, door)
@@ -282,14 +282,14 @@ class StoredSite(Site):
         element, finding = standing.elements.get(said.get("at", "")), standing.findings.get(said.get("finding", ""))
         chosen = pack().get(said.get("ask", ""))
         at = said["at"] if element else element_id(finding.leak.identity) if finding else ""
-        return self._page_of(Asked(chosen, prefilled(chosen, element, finding) if chosen else {}, at=at), standing)
+        return self._page_of(AskedQuery(chosen, prefilled(chosen, element, finding) if chosen else {}, at=at), standing)
 
     def _ask(self, body: bytes) -> Response:
         """Ask what a form asks; what cannot be answered stays in its fields."""
-        entered, standing = Asked(), self._now_standing()
+        entered, standing = AskedQuery(), self._now_standing()
         try:
-            form = Form(body)
-            entered = Asked(text=form.value("text"), at=form.value("at"))  # kept, whatever is wrong with the rest
+            form = EditForm(body)
+            entered = AskedQuery(text=form.value("text"), at=form.value("at"))  # kept, whatever is wrong with the rest
             entered, do = asked_in(form)
             if do == EDIT:
                 return self._page_of(entered.to_edit(), standing)
@@ -308,7 +308,7 @@ class StoredSite(Site):
         warning = Message(DONE, self._words("cypher.warning"), detail=(answer.warning,)) if answer.warning else None
         return self._page_of(entered, standing, warning, answer)
 
-    def _answer(self, entered: Asked, standing: Standing) -> Answer:
+    def _answer(self, entered: AskedQuery, standing: Standing) -> QueryAnswer:
         with self._opened() as driver:
             rows, warning = rows_of(
                 driver, entered.cypher, entered.values(), limit=ROWS, timeout=self._seconds, query=entered.query,
@@ -317,7 +317,7 @@ class StoredSite(Site):
         table = table_of(rows, entered.query, self._words)
         title = entered.query.description if entered.query else shortened(" ".join(entered.text.split()), LONGEST_TITLE)
         picture = picture_of(rows, title, self._phrases)
-        return Answer(table, self._pictures.drawn(picture, _links(standing), ROOM) if picture else None, warning)
+        return QueryAnswer(table, self._pictures.drawn(picture, _links(standing), ROOM) if picture else None, warning)
 
     def _now_standing(self) -> Standing:
         with self._lock:
@@ -326,14 +326,14 @@ class StoredSite(Site):
             return standing
 
     def _page_of(
-        self, entered: Asked, standing: Standing, message: Message | None = None, answer: Answer | None = None,
-        status: int = 200,
+        self, entered: AskedQuery, standing: Standing, message: Message | None = None,
+        answer: QueryAnswer | None = None, status: int = 200,
     ) -> Response:  # fmt: skip
         at = entered.at if entered.at in standing.elements else ""
         text = template("cypher").render(
             t=in_html(self._words), asked=entered, query=entered.query, message=message, answer=answer,
             svg=Markup(answer.picture.svg) if answer and answer.picture else "",  # noqa: S704 - names in it are escaped
-            pack=pack().values(), at=at, back=View().to(at).address, seconds=self._seconds, most=ROWS,
+            pack=pack().values(), at=at, back=PageView().to(at).address, seconds=self._seconds, most=ROWS,
             longest=LONGEST_TEXT, field=FIELD, offered=_offered(standing) if entered.query else {},
         )  # fmt: skip
         return HTMLResponse(text, status)
@@ -347,7 +347,7 @@ def _links(standing: Standing) -> Links:
         return element_id(("", *key[1:]) if alone else key)
 
     def address(key: tuple[str, str, str]) -> str:
-        return View().to(name(key)).address if name(key) in standing.elements else ""
+        return PageView().to(name(key)).address if name(key) in standing.elements else ""
 
     return Links(name, address)
 

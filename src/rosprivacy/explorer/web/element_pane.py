@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Element, Grant
     from rosprivacy.analysis.suggesting.evidence import Proposal
     from rosprivacy.explorer.web.standing import Standing
-    from rosprivacy.explorer.web.view import View
+    from rosprivacy.explorer.web.view import PageView
     from rosprivacy.report.catalogs.words import Words
 
 REASONS = 2  # of a suggestion
@@ -35,7 +35,7 @@ KEYS = {
 }  # fmt: skip
 
 
-def element_pane(standing: Standing, element: Element, view: View, words: Words) -> Pane:
+def element_pane(standing: Standing, element: Element, view: PageView, words: Words) -> Pane:
     """Return what the page shows of an element."""
     at = element_id(element.identity)
     open_kinds = standing.open_kinds.get(at, ())
@@ -145,7 +145,7 @@ def _findings(standing: Standing, words: Words) -> Iterable[tuple[str, str]]:
 # --- how data gets there ----------------------------------------------------------------------------------------
 
 
-def _ways(standing: Standing, element: Element, kinds: Iterable[str], view: View, words: Words) -> Iterable[Pane]:
+def _ways(standing: Standing, element: Element, kinds: Iterable[str], view: PageView, words: Words) -> Iterable[Pane]:
     """One shortest path for each kind; the same path of several kinds once."""
     seen = set()
     for kind in kinds:
@@ -157,7 +157,7 @@ def _ways(standing: Standing, element: Element, kinds: Iterable[str], view: View
             yield Pane(title=title, hops=tuple(_hops(path, standing, view, words)))
 
 
-def _hops(path: Witness, standing: Standing, view: View, words: Words) -> Iterable[Pane]:
+def _hops(path: Witness, standing: Standing, view: PageView, words: Words) -> Iterable[Pane]:
     """The elements of a path, each with the step that leads on from it, and the policy lines that allow it."""
     before = ""
     for number, element in enumerate(path.elements):

@@ -27,9 +27,9 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.mitigation.proposals import ProposedStep
     from rosprivacy.explorer.deciding import Scope
     from rosprivacy.explorer.session import Session
-    from rosprivacy.explorer.web.forms import Form
+    from rosprivacy.explorer.web.forms import EditForm
     from rosprivacy.explorer.web.standing import Standing
-    from rosprivacy.explorer.web.view import View
+    from rosprivacy.explorer.web.view import PageView
     from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.page.finding_entries import Entry
 
@@ -38,7 +38,7 @@ OFFERED = 40  # choices on a page
 ALONE = ":one"  # behind the id of a finding: of its robot only
 
 
-def finding_pane(standing: Standing, finding: Finding, view: View, words: Words) -> Pane:
+def finding_pane(standing: Standing, finding: Finding, view: PageView, words: Words) -> Pane:
     """Return what the page shows of a finding; within a trial, and of a database, nothing can be tried or decided."""
     document, session = standing.document, standing.session
     row = next(row for row in document["findings"] if row["id"] == finding.id)
@@ -73,7 +73,7 @@ def _law(row: Mapping[str, Any], index: Index) -> Iterable[str]:
             yield words.pair(provision, words.of_value(f"law.{law['verdict']}", law["verdict"]))
 
 
-def _hops(finding: Finding, entry: Entry, standing: Standing, view: View) -> Iterable[Pane]:
+def _hops(finding: Finding, entry: Entry, standing: Standing, view: PageView) -> Iterable[Pane]:
     """The elements of the path, as the report tells them, and what can be tried behind each."""
     session, known = standing.session, lines_of(standing)
     after = [*finding.witness[1:], None]
@@ -139,7 +139,7 @@ def _choices(session: Session, finding: Finding, words: Words) -> Pane:
     return Pane(offered=offered, more=len(values) - len(offered))
 
 
-def scope_in(form: Form, session: Session, finding: Finding) -> Scope:
+def scope_in(form: EditForm, session: Session, finding: Finding) -> Scope:
     """Return the robots that a form names; where there are some, it has to name them."""
     values = _values(session, finding)
     return values[form.choice("whose", values)] if values else session.scopes(finding)[0]

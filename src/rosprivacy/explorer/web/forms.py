@@ -44,7 +44,7 @@ class FormError(Exception):
     """What is wrong with a form: a sentence for a person, and of what it speaks."""
 
 
-class Answer(NamedTuple):
+class FormAnswer(NamedTuple):
     """What a person says of one element.
 
     Attributes
@@ -75,7 +75,7 @@ def roles_of(element: Element) -> tuple[str, ...]:
     return OF_NODES if element.is_node else OF_CHANNELS if element.is_channel else OF_OTHERS
 
 
-class Form:
+class EditForm:
     """The fields of a form."""
 
     def __init__(self, body: bytes) -> None:
@@ -125,7 +125,7 @@ class Form:
         return value
 
 
-def answer_in(form: Form, elements: Mapping[str, Element], kinds: Collection[str]) -> Answer:
+def answer_in(form: EditForm, elements: Mapping[str, Element], kinds: Collection[str]) -> FormAnswer:
     """Return what a form says of an element.
 
     Parameters
@@ -137,7 +137,7 @@ def answer_in(form: Form, elements: Mapping[str, Element], kinds: Collection[str
     """
     element = element_in(form, elements)
     role = form.choice("role", roles_of(element))
-    answer = Answer(element, role, note=form.words("note"), by=form.words("by"))
+    answer = FormAnswer(element, role, note=form.words("note"), by=form.words("by"))
     if role == NOTHING:
         return answer
     if role == ABSENT:
@@ -149,7 +149,7 @@ def answer_in(form: Form, elements: Mapping[str, Element], kinds: Collection[str
     return with_details(answer, form, kinds, about)
 
 
-def element_in(form: Form, elements: Mapping[str, Element]) -> Element:
+def element_in(form: EditForm, elements: Mapping[str, Element]) -> Element:
     """Return the element that a form names."""
     at = form.value("element")
     if at not in elements:
@@ -157,7 +157,7 @@ def element_in(form: Form, elements: Mapping[str, Element]) -> Element:
     return elements[at]
 
 
-def with_details(answer: Answer, form: Form, kinds: Collection[str], about: tuple[str, ...]) -> Answer:
+def with_details(answer: FormAnswer, form: EditForm, kinds: Collection[str], about: tuple[str, ...]) -> FormAnswer:
     """Return an answer with what its role asks for: the kind that comes in, the method, the kind that is made."""
     if answer.role == SOURCE:
         return answer._replace(kinds=(form.choice("brings", kinds),))
@@ -167,7 +167,7 @@ def with_details(answer: Answer, form: Form, kinds: Collection[str], about: tupl
     return answer._replace(to=form.choice("makes", kinds)) if answer.role == DERIVES else answer
 
 
-def _about(form: Form, kinds: Collection[str], *, may_be_every: bool) -> tuple[str, ...]:
+def _about(form: EditForm, kinds: Collection[str], *, may_be_every: bool) -> tuple[str, ...]:
     """The kinds of data that an answer is about; empty for every kind."""
     about = form.several("about")
     if EVERY in about and may_be_every:
@@ -180,14 +180,14 @@ def _about(form: Form, kinds: Collection[str], *, may_be_every: bool) -> tuple[s
     return about
 
 
-def decision_in(form: Form, findings: Collection[str]) -> tuple[str, str, How]:
+def decision_in(form: EditForm, findings: Collection[str]) -> tuple[str, str, How]:
     """Return about which of the findings a form decides, what, and its words.
 
     Where it is written is no matter of the form: that is the file which the command named.
 
     Examples
     --------
-    >>> form = Form(b"finding=00112233445566ff&choice=accept&reason=why&owner=A.+Lee&legal_basis=6(1)(f),+9(2)(h)")
+    >>> form = EditForm(b"finding=00112233445566ff&choice=accept&reason=why&owner=A.+Lee&legal_basis=6(1)(f),+9(2)(h)")
     >>> decision_in(form, ["00112233445566ff"])[2]["legal_basis"]
     ('6(1)(f)', '9(2)(h)')
     """

@@ -1,9 +1,9 @@
 """Who may ask the page's server, and what: the browser that the link was opened in, from the page itself.
 
-In: an application (ASGI) and a ``Door``. Out: an application that refuses everybody else before it is asked. It is
-plain ASGI, so that nothing is buffered. Starlette's ``TrustedHostMiddleware`` was weighed: it leaves the port out, and
-so would let in what other servers of this machine hand out; its session needs a further package and keeps the session
-in the cookie, where we need one secret only.
+In: an application (ASGI) and a ``RequestDoor``. Out: an application that refuses everybody else before it is asked. It
+is plain ASGI, so that nothing is buffered. Starlette's ``TrustedHostMiddleware`` was weighed: it leaves the port out,
+and so would let in what other servers of this machine hand out; its session needs a further package and keeps the
+session in the cookie, where we need one secret only.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ class Refusal(NamedTuple):
 
 
 @dataclass
-class Door:
+class RequestDoor:
     """The secrets of one run. The link opens once; what it leaves in the browser is another secret than its own.
 
     Attributes
@@ -113,7 +113,7 @@ class Guard:
         Paths of forms that change nothing that is kept: they are answered where nothing may be changed, too.
     """
 
-    def __init__(self, app: ASGIApp, door: Door, reading: Collection[str] = ()) -> None:
+    def __init__(self, app: ASGIApp, door: RequestDoor, reading: Collection[str] = ()) -> None:
         self.app, self.door, self._reading = app, door, reading
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -150,7 +150,7 @@ class Guard:
         return response
 
 
-def refused(method: str, headers: Headers, door: Door, *, reads: bool = False) -> Refusal | None:
+def refused(method: str, headers: Headers, door: RequestDoor, *, reads: bool = False) -> Refusal | None:
     """Return why a request is refused whoever asks; None if nothing speaks against it.
 
     Parameters
@@ -160,9 +160,9 @@ def refused(method: str, headers: Headers, door: Door, *, reads: bool = False) -
 
     Examples
     --------
-    >>> refused("GET", Headers({"host": "rebound.example:8700"}), Door(8700)).status
+    >>> refused("GET", Headers({"host": "rebound.example:8700"}), RequestDoor(8700)).status
     421
-    >>> refused("GET", Headers({"host": "127.0.0.1:8700"}), Door(8700))
+    >>> refused("GET", Headers({"host": "127.0.0.1:8700"}), RequestDoor(8700))
     """
     hosts = headers.getlist("host")
     if len(hosts) != 1 or hosts[0] not in door.hosts:

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from rosprivacy.explorer.effects import Difference
     from rosprivacy.explorer.scenarios import Scenario
     from rosprivacy.explorer.session import Session
-    from rosprivacy.explorer.web.forms import Form
-    from rosprivacy.explorer.web.view import View
+    from rosprivacy.explorer.web.forms import EditForm
+    from rosprivacy.explorer.web.view import PageView
     from rosprivacy.labelling.suggesting_on_demand import Suggester
     from rosprivacy.report.catalogs.words import Words
 
@@ -60,7 +60,7 @@ class Trials:
         self._session.scenario(name, tried.trial)
         self._says[name] = tried.says
 
-    def together(self, form: Form) -> Tried:
+    def together(self, form: EditForm) -> Tried:
         """Return what two trials that a form names try, as one, and what a person is told of it."""
         names = form.choice("first", self.names), form.choice("second", self.names)
         first, second = (self._session.scenarios[name].what_if for name in names)
@@ -95,7 +95,7 @@ class Trials:
         return self._standing
 
 
-def trial_pane(now: Standing, trials: Trials, view: View, words: Words) -> Pane:
+def trial_pane(now: Standing, trials: Trials, view: PageView, words: Words) -> Pane:
     """Return what the trial of a view does; errors as of ``Trials.scenario``."""
     name = view.trial
     then, scenario = trials.standing(name), trials.scenario(name)
@@ -125,7 +125,7 @@ def trial_pane(now: Standing, trials: Trials, view: View, words: Words) -> Pane:
     )
 
 
-def kept_trials(trials: Trials, view: View, words: Words) -> tuple[Pane, ...]:
+def kept_trials(trials: Trials, view: PageView, words: Words) -> tuple[Pane, ...]:
     """Return the list of trials."""
     rows = []
     for name in trials.names:
@@ -135,11 +135,11 @@ def kept_trials(trials: Trials, view: View, words: Words) -> tuple[Pane, ...]:
     return tuple(rows)
 
 
-def _within(view: View) -> View:
+def _within(view: PageView) -> PageView:
     return view.to("")._replace(find="")
 
 
-def _findings(difference: Difference, group: str, standing: Standing, view: View, words: Words) -> Iterable[Pane]:
+def _findings(difference: Difference, group: str, standing: Standing, view: PageView, words: Words) -> Iterable[Pane]:
     """Findings that a trial opens, closes or makes plain; of a fleet, on which robots it does."""
     index = Index(standing.document, words)
     ids = {OPENED: difference.opened, CLOSED: difference.closed, PLAINER: difference.plainer}[group]

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Element, Weight
     from rosprivacy.analysis.suggesting.evidence import Proposal
     from rosprivacy.explorer.web.standing import Standing
-    from rosprivacy.explorer.web.view import View
+    from rosprivacy.explorer.web.view import PageView
     from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.pictures.page_pictures import Pictures, Shown
 
@@ -102,7 +102,7 @@ def render_page(page: Pane, words: Words, picture: Shown, side: Pane, *, read_on
         What else the template names: ``message``; ``left`` and ``remarks`` of the session; ``inputs``, that files are
         not what was read; ``by``, who gave the last answer; ``asks``, whether there is a database that can be asked.
     """
-    view: View = page.view
+    view: PageView = page.view
     after = view.to("")._replace(find="").address  # after an answer, the next question is looked at
     kept = [("hide", kind) for kind in view.hidden]
     kept += [("draw", ALL)] if view.whole else []
@@ -126,7 +126,7 @@ def draw_picture(pictures: Pictures, standing: Standing, page: Pane) -> Shown:
     return pictures.of(standing.analysis, at, kinds, links, ROOM, everything=view.whole, why=standing.why, way=way)
 
 
-def page_of(standing: Standing, view: View, words: Words) -> Pane:
+def page_of(standing: Standing, view: PageView, words: Words) -> Pane:
     """Return what a window shows: the head, the list, the element in hand."""
     groups = _groups(standing, view, words)
     at = view.at or ("" if view.trial else _first(groups))
@@ -155,7 +155,7 @@ def verdict_of(standing: Standing) -> str:
     return verdict_meaning(standing.result.verdict_facts())
 
 
-def _switches(standing: Standing, view: View, words: Words) -> tuple[Pane, ...]:
+def _switches(standing: Standing, view: PageView, words: Words) -> tuple[Pane, ...]:
     """The kinds of data that can be switched off in the list and the picture."""
     return tuple(
         Pane(
@@ -178,7 +178,7 @@ def _first(groups: Sequence[Pane]) -> str:
     return min(rows, key=lambda row: row[0], default=(False, ""))[1]
 
 
-def _groups(standing: Standing, view: View, words: Words) -> tuple[Pane, ...]:
+def _groups(standing: Standing, view: PageView, words: Words) -> tuple[Pane, ...]:
     groups = [_group(FOUND, _matches(standing, view, words))] if view.find else []
     groups.append(_suggested(standing, view, words))
     groups += [_questions(key, standing, view, words) for key in GROUPS]
@@ -191,7 +191,7 @@ def _group(key: str, rows: Sequence[Pane], remaining: int = 0, *, sure: bool = F
     return Pane(key=key, rows=rows, left=remaining, sure=sure)
 
 
-def _questions(key: str, standing: Standing, view: View, words: Words) -> Pane:
+def _questions(key: str, standing: Standing, view: PageView, words: Words) -> Pane:
     hidden = set(view.hidden)
     asked = [each for each in standing.questions if each.group == key and not hidden.issuperset(each.kinds)]
     rows = []
@@ -202,7 +202,7 @@ def _questions(key: str, standing: Standing, view: View, words: Words) -> Pane:
     return _group(key, rows, len(asked[FIRST_ROWS:]))
 
 
-def _suggested(standing: Standing, view: View, words: Words) -> Pane:
+def _suggested(standing: Standing, view: PageView, words: Words) -> Pane:
     """Sources that no label names: they are not followed at all. Leaks too, until data is there to be asked about.
 
     Then only those that a glob calls conduits: nobody is asked about them. A row says of its element what is surest.
@@ -225,7 +225,7 @@ def _gets_data(offer: Proposal, standing: Standing) -> bool:
     return any(standing.vocabulary.hierarchy.overlap(offer.label.kind, kind) is not None for kind in carried)
 
 
-def _exits(standing: Standing, view: View, words: Words) -> tuple[Pane, ...]:
+def _exits(standing: Standing, view: PageView, words: Words) -> tuple[Pane, ...]:
     """Where data gets to that it should not: each place once, with the kinds of data, what weighs most first."""
 
     def weight(finding: Finding) -> tuple[bool, Weight, int]:
@@ -252,7 +252,7 @@ def _exits(standing: Standing, view: View, words: Words) -> tuple[Pane, ...]:
     return tuple(rows.values())
 
 
-def _matches(standing: Standing, view: View, words: Words) -> tuple[Pane, ...]:
+def _matches(standing: Standing, view: PageView, words: Words) -> tuple[Pane, ...]:
     wanted = view.find.casefold()
     fitting = [
         element
@@ -263,7 +263,7 @@ def _matches(standing: Standing, view: View, words: Words) -> tuple[Pane, ...]:
     return tuple(_row(element, "", standing, view, words) for element in fitting[:MOST_FOUND])
 
 
-def _row(element: Element, text: str, standing: Standing, view: View, words: Words) -> Pane:
+def _row(element: Element, text: str, standing: Standing, view: PageView, words: Words) -> Pane:
     """An element to look at, with the findings there."""
     name = element_id(element.identity)
     kind = words.of_value(f"kind.{element.kind}", element.kind)

@@ -19,7 +19,7 @@ from rosprivacy.explorer.web.answered_entries import brings_nothing, left_of, no
 from rosprivacy.explorer.web.element_pane import element_pane
 from rosprivacy.explorer.web.page import verdict_of
 from rosprivacy.explorer.web.panes import Pane, in_words, stands_for, titles_of
-from rosprivacy.explorer.web.view import View
+from rosprivacy.explorer.web.view import PageView
 from rosprivacy.report.page.doubts import in_doubt
 from rosprivacy.report.page.finding_entries import finding_entries
 from rosprivacy.report.page.index import Index
@@ -91,7 +91,7 @@ def progress(standing: Standing, questions: Sequence[Asked]) -> Pane:
 
 def question_pane(standing: Standing, element: Element, words: Words) -> Pane:
     """Return what a person is asked about an element."""
-    pane = element_pane(standing, element, View(), words)
+    pane = element_pane(standing, element, PageView(), words)
     entries = standing.entries_of(element)
     reached = bool(standing.carried.get(pane.id))
     return Pane(
@@ -160,7 +160,7 @@ def offered(element: Element, *, reached: bool) -> tuple[str, ...]:
     return (*(role for role in forms.roles_of(element) if role != forms.NOTHING), SKIP)
 
 
-def answer_in_review(form: forms.Form, standing: Standing, words: Words) -> forms.Answer:
+def answer_in_review(form: forms.EditForm, standing: Standing, words: Words) -> forms.FormAnswer:
     """Return what a form says of an element; its role may be ``SKIP`` or ``NONE``, too."""
 
     def need(field: str, *, is_there: object) -> None:
@@ -172,7 +172,7 @@ def answer_in_review(form: forms.Form, standing: Standing, words: Words) -> form
     element, reached = standing.elements[at], bool(standing.carried.get(at))
     need("role", is_there=form.value("role"))
     role = form.choice("role", offered(element, reached=reached))
-    answer = forms.Answer(element, role, note=form.words("note"), by=form.words("by"))
+    answer = forms.FormAnswer(element, role, note=form.words("note"), by=form.words("by"))
     need("by", is_there=answer.by)
     need("note", is_there=answer.note or role not in REASONED)
     detail = {forms.SANITIZER: "method", forms.DERIVES: "makes"}.get(role)

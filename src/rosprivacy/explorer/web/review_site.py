@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from starlette.responses import Response
 
     from rosprivacy.explorer.edits import Label
-    from rosprivacy.explorer.web.forms import Answer, Form
+    from rosprivacy.explorer.web.forms import EditForm, FormAnswer
 
 FIRST, SUMMARY = "/", "/?step=summary"
 STEPS = ("summary", "source")  # that are asked for by name
@@ -46,7 +46,7 @@ class ReviewSite(Site):
     """A review of one session; see ``Site``."""
 
     _next = FIRST
-    _entered: Form | None = None  # what was said last, while it cannot be taken
+    _entered: EditForm | None = None  # what was said last, while it cannot be taken
 
     def _page(self, query: str, outcome: Outcome | None = None) -> Response:
         with self._lock:
@@ -86,7 +86,7 @@ class ReviewSite(Site):
         address, self._next = self._next, FIRST
         return address
 
-    def _label(self, form: Form) -> Outcome:
+    def _label(self, form: EditForm) -> Outcome:
         self._entered = form
         answer = answer_in_review(form, self.standing, self._words)
         alone = form.choice("whose", ROBOT_OR_MODEL) == ROBOT
@@ -95,7 +95,7 @@ class ReviewSite(Site):
         self._entered, self._by = None, answer.by
         return Outcome(200, self._answered(answer, now, self._words(f"review.answer.{answer.role}")))
 
-    def _label_text(self, answer: Answer, now: Any) -> dict[str, Any]:
+    def _label_text(self, answer: FormAnswer, now: Any) -> dict[str, Any]:
         """What the label file then says; ``now`` is what it says now."""
         if answer.role == SKIP:
             return leaving(now, answer.by, answer.note, self._words)
@@ -106,7 +106,7 @@ class ReviewSite(Site):
             label["note"] = note_before(now)
         return label
 
-    def _undo(self, form: Form) -> Outcome:
+    def _undo(self, form: EditForm) -> Outcome:
         """Take the last answer back, and ask its question again."""
         last = self.session.edits[-1:]
         outcome = super()._undo(form)
@@ -115,7 +115,7 @@ class ReviewSite(Site):
             self._next = f"/?at={at}" if at else FIRST
         return outcome
 
-    def _save(self, form: Form) -> Outcome:
+    def _save(self, form: EditForm) -> Outcome:
         self._next = SUMMARY
         try:
             return super()._save(form)

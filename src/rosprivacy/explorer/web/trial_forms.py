@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.model import Element, Flow, Place
     from rosprivacy.explorer.session import Session
-    from rosprivacy.explorer.web.forms import Form
+    from rosprivacy.explorer.web.forms import EditForm
     from rosprivacy.explorer.web.standing import Standing
     from rosprivacy.report.catalogs.words import Words
 
@@ -154,7 +154,7 @@ class Tried(NamedTuple):
     says: tuple[str, ...]
 
 
-def tried_in(form: Form, standing: Standing, words: Words) -> Tried:
+def tried_in(form: EditForm, standing: Standing, words: Words) -> Tried:
     """Return what a form tries."""
     tried = _KINDS[form.choice("what", _KINDS)](form, standing, words)
     if standing.session.can_mitigate:
@@ -164,14 +164,14 @@ def tried_in(form: Form, standing: Standing, words: Words) -> Tried:
     return tried._replace(says=(*tried.says, robots_in_words(standing.session, tried.trial.robots, words)))
 
 
-def _robots(form: Form, standing: Standing, *elements: Element) -> tuple[str, ...]:
+def _robots(form: EditForm, standing: Standing, *elements: Element) -> tuple[str, ...]:
     """Of a fleet, on which robots it is tried: those of the model of the first element on a robot, or that one."""
     alone = form.choice("whose", ROBOT_OR_MODEL) == ROBOT
     robots = (standing.session.robots_like(element.robot, only_this_robot=alone) for element in elements)
     return next(filter(None, robots), ())
 
 
-def _filter(form: Form, standing: Standing, words: Words) -> Tried:
+def _filter(form: EditForm, standing: Standing, words: Words) -> Tried:
     """One of a policy: it has a channel of its own, and what wildcards take past it gets past it."""
     ends = _ends_of(standing, form.value("flow"))
     if not ends:
@@ -183,7 +183,7 @@ def _filter(form: Form, standing: Standing, words: Words) -> Tried:
     return Tried(trial, (words("closing.filter", source=source, target=target, data=data),))
 
 
-def _cut(form: Form, standing: Standing, words: Words) -> Tried:
+def _cut(form: EditForm, standing: Standing, words: Words) -> Tried:
     lines = lines_of(standing)
     place = lines[form.choice("line", lines)]
     element = standing.elements.get(form.value("element"))
@@ -192,7 +192,7 @@ def _cut(form: Form, standing: Standing, words: Words) -> Tried:
     return Tried(trial, (words("explorer.try.says.cut", line=shown(str(place))),))
 
 
-def _storage(form: Form, standing: Standing, words: Words) -> Tried:
+def _storage(form: EditForm, standing: Standing, words: Words) -> Tried:
     element = element_in(form, standing.elements)
     called = words("explorer.try.storage.name")
     facts = {"kind": "storage", **_facts(form)}
@@ -204,7 +204,7 @@ def _storage(form: Form, standing: Standing, words: Words) -> Tried:
     return Tried(trial, tuple(says))
 
 
-def _facts(form: Form) -> dict[str, str]:
+def _facts(form: EditForm) -> dict[str, str]:
     """What is stated of the storage; what is not said is not known."""
     days, country = form.value("days"), form.value("country").upper()
     if days and not (days.isascii() and days.isdigit() and len(days) <= LONGEST_DAYS and int(days)):
@@ -221,7 +221,7 @@ def _end(element: Element) -> str | Mapping[str, str]:
     return {element.kind: written} if element.is_node or element.is_channel else written
 
 
-def _doubt(form: Form, standing: Standing, words: Words) -> Tried:
+def _doubt(form: EditForm, standing: Standing, words: Words) -> Tried:
     element = element_in(form, standing.elements)
     if not _cleans(standing, form.value("element")):
         raise FormError("It is not said to clean anything.")
@@ -231,7 +231,7 @@ def _doubt(form: Form, standing: Standing, words: Words) -> Tried:
     return Tried(trial, (words("explorer.try.says.doubt", element=shown(element.full_name), data=data),))
 
 
-def _proposal(form: Form, standing: Standing, words: Words) -> Tried:
+def _proposal(form: EditForm, standing: Standing, words: Words) -> Tried:
     """A proposal of ``mitigate``, whole or one change of it."""
     mitigation = standing.mitigation if standing.session.can_mitigate else None
     proposals = mitigation.proposals if mitigation else ()
@@ -258,7 +258,7 @@ def _change(step: Mapping[str, Any], index: Index) -> str:
     return f"{change.text} ({', '.join(change.lines)})" if change.lines else change.text
 
 
-def _kinds(form: Form, standing: Standing, words: Words) -> tuple[tuple[str, ...], str]:
+def _kinds(form: EditForm, standing: Standing, words: Words) -> tuple[tuple[str, ...], str]:
     """Kinds of data that it is about, none for every kind; and what they are called."""
     kind = form.choice("data", [EVERY, *standing.vocabulary.categories])
     chosen = "" if kind == EVERY else kind
@@ -271,6 +271,6 @@ def _all(standing: Standing) -> tuple[str, ...]:
     return tuple(sorted(kind for kind in vocabulary.categories if not vocabulary.hierarchy.broader(kind)))
 
 
-_KINDS: dict[str, Callable[[Form, Standing, Words], Tried]] = {
+_KINDS: dict[str, Callable[[EditForm, Standing, Words], Tried]] = {
     "filter": _filter, "cut": _cut, "storage": _storage, "doubt": _doubt, "proposal": _proposal,
 }  # fmt: skip

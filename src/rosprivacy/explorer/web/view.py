@@ -1,6 +1,6 @@
 """What of a session a window looks at, as its address says it: which element, which kinds of data, what is looked for.
 
-In: a query string, of anybody. Out: a ``View``; what is not known is left out. Nothing of it changes anything.
+In: a query string, of anybody. Out: a ``PageView``; what is not known is left out. Nothing of it changes anything.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ ALL = "all"  # in the place of what is drawn
 FOUND_BOUND = 200  # letters of what is looked for
 
 
-class View(NamedTuple):
+class PageView(NamedTuple):
     """What is looked at.
 
     Attributes
@@ -49,7 +49,7 @@ class View(NamedTuple):
     def address(self) -> str:
         """The page with this view.
 
-        >>> View("e1", ("Video", "Voice")).address
+        >>> PageView("e1", ("Video", "Voice")).address
         '/?at=e1&hide=Video&hide=Voice'
         """
         pairs = [("at", self.at), *(("hide", kind) for kind in self.hidden), ("find", self.find)]
@@ -58,18 +58,18 @@ class View(NamedTuple):
         query = urlencode([(key, value) for key, value in pairs if value])
         return f"/?{query}" if query else "/"
 
-    def to(self, element: str) -> View:
+    def to(self, element: str) -> PageView:
         """Return the view with an element in hand.
 
-        >>> View(finding="0123456789abcdef", find="cam").to("e1").address
+        >>> PageView(finding="0123456789abcdef", find="cam").to("e1").address
         '/?at=e1&find=cam'
         """
         return self._replace(at=element, finding="", closes=False)
 
-    def switched(self, kind: str) -> View:
+    def switched(self, kind: str) -> PageView:
         """Return the view with a kind of data switched off, or on again.
 
-        >>> View(hidden=("Video",)).switched("Video")
+        >>> PageView(hidden=("Video",)).switched("Video")
         View(at='', hidden=(), find='', whole=False, finding='', closes=False, trial='')
         """
         if kind in self.hidden:
@@ -88,7 +88,7 @@ def trial_in(query: str, trials: Collection[str]) -> str:
 
 def view_of(
     query: str, elements: Collection[str], kinds: Collection[str], findings: Collection[str] = (), trial: str = ""
-) -> View:
+) -> PageView:
     """Return the view that a query string asks for.
 
     Parameters
@@ -105,7 +105,7 @@ def view_of(
     find = next((value for key, value in said if key == "find"), "")
     finding = next((value for key, value in said if key == "finding" and value in findings), "")
     closes = bool(finding) and ("closes", "1") in said
-    return View(at, tuple(hidden), find[:FOUND_BOUND], ("draw", ALL) in said, finding, closes, trial)
+    return PageView(at, tuple(hidden), find[:FOUND_BOUND], ("draw", ALL) in said, finding, closes, trial)
 
 
 def _answer_text(query: str) -> list[tuple[str, str]]:
