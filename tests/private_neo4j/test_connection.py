@@ -252,7 +252,21 @@ def test_the_environment_names_a_server(nowhere: Path, monkeypatch: pytest.Monke
     assert connection.connection(None) == Connection("neo4j+s://db.example", "neo4j", "secret")
     monkeypatch.setenv("NEO4J_USERNAME", "reader")
     assert connection.connection("bolt://[::1]:7687") == Connection("bolt://[::1]:7687", "reader", "secret")
+    monkeypatch.setenv("NEO4J_DATABASE", "fleet")
+    assert connection.connection("bolt://h") == Connection("bolt://h", "reader", "secret", database="fleet")
     assert not nowhere.exists()
+
+
+@pytest.mark.database
+def test_every_session_is_of_the_database_that_is_named(neo4j_server: Connection) -> None:
+    with connection.open_driver(replace(neo4j_server, database="neo4j")) as driver, driver.session() as session:
+        assert session.run("CALL db.info() YIELD name").single(strict=True)["name"] == "neo4j"
+    with (
+        pytest.raises(DatabaseError) as error,
+        connection.open_driver(replace(neo4j_server, database="nosuch")),
+    ):
+        pytest.fail("there is none")
+    assert one_line(error).endswith("it has no database nosuch; check NEO4J_DATABASE")
 
 
 TELLING = "bolt://neo4j:secret@localhost"

@@ -8,6 +8,7 @@ import sys
 import time
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
 
@@ -44,12 +45,15 @@ class Connection:
         The password is not shown in tracebacks.
     origin
         Where a person looks if the server does not let us in.
+    database
+        Of those that the server has; None for the one that is the user's own there.
     """
 
     uri: str
     username: str
     password: str = field(repr=False)
     origin: str = "NEO4J_USERNAME and NEO4J_PASSWORD"
+    database: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,7 +136,7 @@ def connection(uri: str | None) -> Connection:
     """Return the Neo4j to use: the one named, the one in ``NEO4J_URI``, or the private one, started if need be.
 
     User name and password of a named one stand in ``NEO4J_USERNAME`` and ``NEO4J_PASSWORD``: other users of the
-    machine can read a command line.
+    machine can read a command line. ``NEO4J_DATABASE`` names one of its databases.
 
     Parameters
     ----------
@@ -151,7 +155,8 @@ def connection(uri: str | None) -> Connection:
     password = os.environ.get("NEO4J_PASSWORD")
     if not password:
         raise DatabaseError(f"{shown(uri)}: NEO4J_PASSWORD is not set; put the password into this environment variable")
-    return Connection(uri, os.environ.get("NEO4J_USERNAME") or USER, password)
+    username, database = os.environ.get("NEO4J_USERNAME") or USER, os.environ.get("NEO4J_DATABASE")
+    return Connection(uri, username, password, database=database or None)
 
 
 @contextmanager
@@ -177,6 +182,10 @@ def open_driver(to: Connection) -> Iterator[neo4j.Driver]:
             telemetry_disabled=True,
         ) as driver:
             driver.verify_connectivity()
+            if to.database:  # a driver has no setting for it, and every session that is opened here is of one database
+                driver.session = partial(driver.session, database=to.database)  # type: ignore[method-assign]
+                with driver.session() as session:
+                    session.run("RETURN 1").consume()
             verified = True
             yield driver
     except AuthError as error:
@@ -189,7 +198,11 @@ def open_driver(to: Connection) -> Iterator[neo4j.Driver]:
     except (DriverError, Neo4jError) as error:
         if verified:
             raise
-        if "AuthenticationRateLimit" in str(getattr(error, "code", "")):
+        code = str(getattr(error, "code", ""))
+        if "DatabaseNotFound" in code:
+            problem = f"it has no database {shown(to.database or '')}; check NEO4J_DATABASE"
+            raise DatabaseError(f"{place}: {problem}") from error
+        if "AuthenticationRateLimit" in code:
             problem = "user name or password was not accepted several times, so the server lets nobody in for a while"
             raise DatabaseError(f"{place}: {problem}; check {to.origin}, then try again") from error
         raise DatabaseError(f"{place}: {_first_line(error)}; check the address and the server") from error
