@@ -1,6 +1,7 @@
 """docs/first-questions.md: each right question gives what memory says, and each naive form something else.
 
-One database for the page: the fleet, the care home and the factory of the examples, a kiosk, and a lab in both views.
+One database for the page: the fleet, the care home and the factory of the examples, a kiosk, a lab in both views, a
+cart with a file that nobody read, and a crane without labels.
 What memory says is counted from the analysis: a robot of the graph of a fleet stands for all that are like it.
 """
 
@@ -13,21 +14,24 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import pytest
 
+import rosprivacy
 from rosprivacy.analysis.errors import InputError
 from rosprivacy.analysis.fleet.likeness import NO_ROBOTS
-from rosprivacy.analysis.model import DISCLOSURE, STORAGE_LIMITATION, THIRD_COUNTRY
+from rosprivacy.analysis.model import DISCLOSURE, STORAGE_LIMITATION, THIRD_COUNTRY, Rank
 from rosprivacy.both_views import both_views
-from rosprivacy.ingest.database.fleet_rows import robot_rows
 from rosprivacy.ingest.database.loading import Run, load
 from rosprivacy.private_neo4j import connection
-from rosprivacy.reading.robot_system import beyond_of
+from rosprivacy.reading.robot_system import robot_of
+from rosprivacy.robot_doubts import doubt_lines
 from rosprivacy.settings import Settings
+from tests.helpers.fleet_files import policy, write
 from tests.helpers.fleet_rows import VOCABULARY, rows_and_answer
-from tests.helpers.graphs import analysed, care_home, factory, rows_of
+from tests.helpers.graphs import analysed, care_home, factory
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
+    from pathlib import Path
 
     from neo4j import Driver
 
@@ -43,6 +47,7 @@ SYSTEMS = "tests/cases/queries/systems"
 MONDAY, TUESDAY, WEDNESDAY, THURSDAY = (Run(f"2026-11-{day}T08:00:00Z", "1.0", str(day)) for day in range(23, 27))
 SITES = {"east": ("factory",), "north": ("carrier_01", "guide_01", "lab"), "south": ("carrier_lent", "kiosk")}
 SAME_NUMBER = "the same number of rows"
+NO_GROUND = "no source is known, or no leak"  # as the page has it
 Rows = Counter[tuple[Any, ...]]
 
 
@@ -117,26 +122,26 @@ class LoadedSystem:
 class Memory:
     """What the analyses say together, question by question."""
 
-    def __init__(self, fleet: Result) -> None:
+    def __init__(self, fleet: Result, cart: Result) -> None:
         kiosk = analysed(f"{SYSTEMS}/kiosk.policy.xml", f"{SYSTEMS}/kiosk.labels.yaml")
         with chdir(ROOT):
+            crane = rosprivacy.analyze(["examples/factory/before.policy.xml"])
             self.lab = both_views(
                 (f"{SYSTEMS}/shared_enclave.policy.xml",), (f"{SYSTEMS}/shared_enclave.labels.yaml",), Settings()
             )
         self.kiosk = LoadedSystem("kiosk", kiosk)
-        robots = {"care-home": care_home(), "kiosk": kiosk, "factory": factory(1), "lab": self.lab}
-        self.systems = [LoadedSystem("", fleet), *(LoadedSystem(name, result) for name, result in robots.items())]
+        self.robots = {
+            "care-home": care_home(), "kiosk": kiosk, "factory": factory(1), "lab": self.lab, "cart": cart,
+            "crane": crane,
+        }  # fmt: skip
+        self.systems = [LoadedSystem("", fleet), *(LoadedSystem(name, result) for name, result in self.robots.items())]
         self.all = [s for system in self.systems for s in system.findings()]
         self.standing = [s for s in self.all if not s.finding.dismissed]
         self.names = [name for system in self.systems for name in system.robot_names]
 
     def rows(self) -> list[RobotRows]:
         """Those of the robots that have a policy each, as they are on Monday."""
-        assert self.lab.enforced is not None
-        lab = robot_rows("lab", self.lab.analysis, self.lab.bound, VOCABULARY, beyond=beyond_of(self.lab))
-        return [
-            rows_of("care-home", care_home()), rows_of("kiosk", self.kiosk.result), rows_of("factory", factory(2)), lab
-        ]  # fmt: skip
+        return [robot_of(name, result) for name, result in (self.robots | {"factory": factory(2)}).items()]
 
     def of_kind(self, kind: str = DISCLOSURE, category: str = "") -> list[Standing]:
         return [s for s in self.standing if s.finding.kind == kind and category in ("", s.finding.category)]
@@ -175,8 +180,19 @@ class Memory:
         """Of a robot, from what ends at it and what is open on it."""
         if any(robot in (s.robot, s.leak_robot) for s in self.standing):
             return "leak"
-        is_open = any(place[0] == robot for place in self.open_places(frontier=False))
-        return "undetermined" if is_open else "no-leak-found"
+        return "undetermined" if any(robot == name for name, _ in self.reasons()) else "no-leak-found"
+
+    def reasons(self) -> set[tuple[str, str]]:
+        """(robot, what keeps its verdict from being that no leak was found)."""
+        unread = {
+            (name, line)
+            for name, result in self.robots.items()
+            for line in doubt_lines(doubt for doubt in result.doubts if doubt.rank is Rank.BREAKS)
+        }
+        is_open = {(robot, f"open: {kind} {name}") for robot, kind, name in self.open_places(frontier=False)}
+        reasons = unread | is_open
+        bare = {name for name, result in self.robots.items() if result.analysis.lacking} - dict(reasons).keys()
+        return reasons | {(name, NO_GROUND) for name in bare}
 
     def article9(self) -> set[tuple[Any, ...]]:
         law = {name: [one.name for one in c.law] for name, c in VOCABULARY.categories.items()}
@@ -261,7 +277,7 @@ CHECKS: dict[str, Callable[[Memory], Any]] = {
         for s in m.all
         if (s.finding.kind, s.finding.category) == (DISCLOSURE, "Video")
     },
-    "From which source is the data of which face templates are made that get out?": lambda m: {
+    "Which cameras are behind the face templates that get out?": lambda m: {
         (s.robot, s.finding.source.name) for s in m.of_kind(category="FaceTemplate")
     },
     "Where does video get out?": lambda m: {(s.leak_robot, s.finding.leak.name) for s in m.of_kind(category="Video")},
@@ -290,9 +306,7 @@ CHECKS: dict[str, Callable[[Memory], Any]] = {
         (name,) for name in m.names if m.verdict(name) == "no-leak-found"
     ],
     "On which robots is the verdict undetermined, and why?": lambda m: [
-        (robot, f"open: {kind} {name}")
-        for robot, kind, name in m.open_places(frontier=False)
-        if m.verdict(robot) == "undetermined"
+        reason for reason in m.reasons() if m.verdict(reason[0]) == "undetermined"
     ],
     "Which elements should a person review first?": lambda m: m.open_places(frontier=True),
     "What is a finding on a single robot only?": Memory.on_a_single_robot,
@@ -306,12 +320,13 @@ CHECKS: dict[str, Callable[[Memory], Any]] = {
 
 
 @pytest.fixture(scope="module")
-def memory(neo4j_server: Connection) -> Memory:
+def memory(neo4j_server: Connection, tmp_path_factory: pytest.TempPathFactory) -> Memory:
     """What memory says, once the database of the page is there."""
     assert neo4j_server
+    cart = cart_of(tmp_path_factory.mktemp("cart"))
     with chdir(ROOT):
         fleet, result = rows_and_answer("examples/fleet/fleet.yaml")
-        memory = Memory(result)
+        memory = Memory(result, cart)
         with connection.open_driver(connection.connection(None)) as driver:
             driver.execute_query("MATCH (n) DETACH DELETE n")
             load(driver, [*fleet, *memory.rows()], VOCABULARY, run_of=MONDAY)
@@ -320,8 +335,8 @@ def memory(neo4j_server: Connection) -> Memory:
                 "MATCH (r:Robot {name: pair[1]}) CREATE (r)-[:STANDS_AT]->(s)",
                 pairs=[[site, robot] for site, robots in SITES.items() for robot in robots],
             )
-            load(driver, [rows_of("factory", factory(1))], VOCABULARY, run_of=TUESDAY)
-            load(driver, [rows_of("factory", factory(1))], VOCABULARY, run_of=WEDNESDAY)
+            load(driver, [robot_of("factory", factory(1))], VOCABULARY, run_of=TUESDAY)
+            load(driver, [robot_of("factory", factory(1))], VOCABULARY, run_of=WEDNESDAY)
             with pytest.raises(InputError):
                 load(driver, cut_off(), VOCABULARY, run_of=THURSDAY)
     return memory
@@ -334,9 +349,22 @@ def page_driver(memory: Memory) -> Iterator[Driver]:
         yield driver
 
 
+def cart_of(folder: Path) -> Result:
+    """A robot with a file that nobody read, and a channel that nobody known reads."""
+    with chdir(folder):
+        write("cart/robot.policy.xml", policy("/camera>/image,/shout", "/screen</image", "/uplink</warmth"))
+        write("cart/part.xml", policy("/camera>/more").partition("<enclaves>")[2].partition("</enclaves>")[0])
+        write(
+            "cart.yaml",
+            "labels: 1\nnodes: {/camera: {source: [Video]}, /screen: conduit, /uplink: {leak: [Video]}}\n"
+            "channels: {/image: sensitive, /shout: sensitive}\n",
+        )
+        return rosprivacy.analyze(["cart"], ["cart.yaml"])
+
+
 def cut_off() -> Iterator[RobotRows]:
     """Robots of a file that cannot be read to its end."""
-    yield rows_of("factory", factory(1))
+    yield robot_of("factory", factory(1))
     raise InputError("fleet.yaml", 1, "is gone", "")
 
 
