@@ -21,9 +21,9 @@ from rosprivacy.analysis.model import DISCLOSURE, STORAGE_LIMITATION, THIRD_COUN
 from rosprivacy.both_views import both_views
 from rosprivacy.ingest.database.loading import Run, load
 from rosprivacy.private_neo4j import connection
-from rosprivacy.reading.robot_system import robot_of
 from rosprivacy.robot_doubts import doubt_lines
 from rosprivacy.settings import Settings
+from rosprivacy.systems.robot_system import robot_of
 from tests.helpers.fleet_files import policy, write
 from tests.helpers.fleet_rows import VOCABULARY, rows_and_answer
 from tests.helpers.graphs import analysed, care_home, factory
