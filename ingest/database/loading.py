@@ -152,6 +152,7 @@ def load(
                 session.execute_write(_write_robots, changed, labels, run_of)
             written += len(changed)
             unchanged += len(batch) - len(changed)
+            session.execute_write(_note, run_of, "running", written, unchanged)
             progress(sum(rows.size for rows in batch))
         session.execute_write(_note, run_of, "whole", written, unchanged)
     return Loaded(written, unchanged, replaced)
@@ -348,9 +349,12 @@ def _write_robots(
     """Replace some robots, sorted by name, so that two loads do not wait for each other in a ring."""
     names = [rows.robot for rows in robots]
     run(transaction, cypher.LOCK_ROBOTS, names=names)
-    known = [record["name"] for record in transaction.run(cypher.READ_ROBOTS, names=names) if record["known"]]
-    if known and load is not None:
-        _note_changes(transaction, robots, known, load)
+    there = [record for record in transaction.run(cypher.READ_ROBOTS, names=names) if record["known"]]
+    known = [record["name"] for record in there]
+    # Of one that no load wrote, others may have made elements: it is there, and nothing of it has changed.
+    written_before = [record["name"] for record in there if record["version"]]
+    if written_before and load is not None:
+        _note_changes(transaction, robots, written_before, load)
     if known:
         new = {row["id"] for rows in robots for row in (*rows.elements, *rows.intakes)}
         _remove(transaction, known, new)

@@ -84,6 +84,14 @@ class TestHistory:
         assert ask(driver, "MATCH (f:Finding {robot: 'r'}) RETURN f.id") == []
         assert ask(driver, "MATCH (:Change)-[r]-(n) WHERE NOT n:Load RETURN type(r)") == []
 
+    def test_a_robot_of_which_others_made_elements_has_not_changed(self, driver: Driver) -> None:
+        rows = rows_of("r", factory(2))
+        others = replace(rows_of("s", factory(1)), foreign=rows.elements[:3])
+        load(driver, [others], VOCABULARY, run_of=MONDAY)
+        load(driver, [rows], VOCABULARY, run_of=TUESDAY)
+        assert ask(driver, "MATCH (f:Finding {robot: 'r'}) RETURN count(f)") != [0]
+        assert ask(driver, CHANGES) == []
+
     def test_a_finding_that_another_leak_hides_now_is_changed(self, driver: Driver) -> None:
         rows = rows_of("r", factory(2))
         load(driver, [rows], VOCABULARY, run_of=MONDAY)
@@ -103,7 +111,7 @@ class TestHistory:
 
         with pytest.raises(InputError):
             load(driver, rows(), VOCABULARY, run_of=MONDAY)
-        assert ask(driver, "MATCH (l:Load) RETURN [l.state, l.written]") == [["running", 0]]
+        assert ask(driver, "MATCH (l:Load) RETURN [l.state, l.written]") == [["running", 1]]
         load(driver, [rows_of("r", factory(2))], VOCABULARY, run_of=TUESDAY)
         assert ask(driver, "MATCH (l:Load) WHERE l.state = 'whole' RETURN l.at") == [TUESDAY.at]
 
