@@ -39,7 +39,11 @@ def started(*options: str, **environment: str) -> Iterator[tuple[subprocess.Pope
             yield process, lines
         finally:
             process.send_signal(signal.SIGINT)
-            process.communicate(timeout=SECONDS)
+            try:
+                process.communicate(timeout=SECONDS)
+            except subprocess.TimeoutExpired:
+                process.kill()  # or the end of ``with`` would wait for ever
+                raise
 
 
 def entered(line: str) -> tuple[http.client.HTTPConnection, dict[str, str]]:
