@@ -115,11 +115,11 @@ def candidates(
     >>> from rosprivacy.analysis.findings.findings import analyse
     >>> from rosprivacy.analysis.kernel.states import Net
     >>> from rosprivacy.analysis.mitigation.change_sites import ChangeSites
-    >>> from rosprivacy.analysis.mitigation.cut_network import Group, cut_network
+    >>> from rosprivacy.analysis.mitigation.cut_network import CutGroup, cut_network
     >>> from rosprivacy.analysis.mitigation.limits import Limits
     >>> analysis = analyse(*factory())
     >>> net = Net.of(analysis.spread)
-    >>> network = cut_network(net, [Group((CAMERA,))], [net.spread.categories.index("FaceTemplate")])
+    >>> network = cut_network(net, [CutGroup((CAMERA,))], [net.spread.categories.index("FaceTemplate")])
     >>> changes = candidates(ChangeSites(analysis, Limits(), {ARCHIVE}, {}), network.arcs, lambda flows: ())
     >>> [(change.kind, change.cost, [NAMES[v] for v in (*change.channels, *change.readers)]) for change in changes[:3]]
     [('review', 1, ['/video']), ('filter', 30, ['/face_id', '/filter']), ('filter', 10, ['/archive'])]

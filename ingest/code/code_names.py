@@ -175,10 +175,11 @@ def code_comments(codes: Sequence[Code], namespace: str = ROOT) -> dict[PlacedNa
 
     Examples
     --------
-    >>> from rosprivacy.ingest.code.source_code import Code, Comment, Lines, CallSite
-    >>> call = CallSite("topic", "/faces", Lines(3, 3), Lines(3, 3), "", "publish")
-    >>> said = (Comment(1, "of guests", True), Comment(2, "with names", True), Comment(9, "other", True))
-    >>> code_comments([Code("a.py", "python", said, (), (call,))])
+    >>> from rosprivacy.ingest.code.source_code import CallSite, Code, SourceComment, SourceLines
+    >>> call = CallSite("topic", "/faces", SourceLines(3, 3), SourceLines(3, 3), "", "publish")
+    >>> lines = ((1, "of guests"), (2, "with names"), (9, "other"))
+    >>> comments = tuple(SourceComment(line, text, True) for line, text in lines)
+    >>> code_comments([Code("a.py", "python", comments, (), (call,))])
     {('topic', '/faces'): ('of guests', 'with names')}
     """
     names = CodeNames(codes, namespace)

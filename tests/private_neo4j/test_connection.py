@@ -257,18 +257,6 @@ def test_the_environment_names_a_server(nowhere: Path, monkeypatch: pytest.Monke
     assert not nowhere.exists()
 
 
-@pytest.mark.database
-def test_every_session_is_of_the_database_that_is_named(neo4j_server: Connection) -> None:
-    with connection.open_driver(replace(neo4j_server, database="neo4j")) as driver, driver.session() as session:
-        assert session.run("CALL db.info() YIELD name").single(strict=True)["name"] == "neo4j"
-    with (
-        pytest.raises(DatabaseError) as error,
-        connection.open_driver(replace(neo4j_server, database="nosuch")),
-    ):
-        pytest.fail("there is none")
-    assert one_line(error).endswith("it has no database nosuch; check NEO4J_DATABASE")
-
-
 TELLING = "bolt://neo4j:secret@localhost"
 HOSTS = ["localhost", "localhost:7687", "http://localhost:7474", "\n"]
 

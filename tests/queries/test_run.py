@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import threading
 import time
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import pytest
 
-from rosprivacy.analysis.errors import QueryError
+from rosprivacy.analysis.errors import DatabaseError, QueryError
 from rosprivacy.private_neo4j import connection
 from rosprivacy.queries import run as running
 from rosprivacy.queries.graph_values import Relationship, plain, value_of
@@ -155,3 +156,15 @@ def test_a_relationship_alone_has_its_ends(driver: Driver) -> None:
         assert several == [{"r": one}]
     finally:
         driver.execute_query("MATCH (n:ShownEnd) DETACH DELETE n")
+
+
+@pytest.mark.database
+def test_every_session_is_of_the_database_that_is_named(neo4j_server: Connection) -> None:
+    with connection.open_driver(replace(neo4j_server, database="neo4j")) as driver, driver.session() as session:
+        assert session.run("CALL db.info() YIELD name").single(strict=True)["name"] == "neo4j"
+    with (
+        pytest.raises(DatabaseError) as error,
+        connection.open_driver(replace(neo4j_server, database="nosuch")),
+    ):
+        pytest.fail("there is none")
+    assert str(error.value).endswith(": it has no database nosuch; check NEO4J_DATABASE")

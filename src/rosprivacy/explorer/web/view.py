@@ -70,7 +70,7 @@ class PageView(NamedTuple):
         """Return the view with a kind of data switched off, or on again.
 
         >>> PageView(hidden=("Video",)).switched("Video")
-        View(at='', hidden=(), find='', whole=False, finding='', closes=False, trial='')
+        PageView(at='', hidden=(), find='', whole=False, finding='', closes=False, trial='')
         """
         if kind in self.hidden:
             return self._replace(hidden=tuple(one for one in self.hidden if one != kind))
