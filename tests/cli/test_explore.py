@@ -144,6 +144,7 @@ def test_who_came_by_ssh_is_told_the_way() -> None:
         port = re.search(r":(\d+)/enter", lines[0])
         assert port
         assert f"ssh -N -L {port[1]}:127.0.0.1:{port[1]} anna@192.0.2.9" in lines[2]
+        entered(lines[0])[0].close()  # it serves: Ctrl+C before that can be lost
 
 
 @pytest.mark.slow
