@@ -15,7 +15,7 @@ from rosprivacy.analysis.kernel.search import START, Search, path_to, search
 from rosprivacy.analysis.kernel.states import Net
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
     from collections.abc import Set as AbstractSet
 
     from rosprivacy.analysis.kernel.spread import Spread
@@ -73,14 +73,14 @@ def origins(spread: Spread, shared: AbstractSet[str] | None = None) -> tuple[Ori
         return ()
     net, elements = Net.of(spread), spread.graph.elements
     sources = sorted(vertex for vertex in spread.facts if spread.begins(vertex))
+    stops = {category: _stop(spread, category) for category in sorted(spread.made_categories)}
     if shared is None:
-        return tuple(origin for source in sources for origin in _of(net, source))
-    stops = [_stop(spread, category) for category in sorted(spread.made_categories)]
-    units = Units(net, shared, [(spread.all_bits, {}), *((spread.all_bits, stop) for stop in stops)])
+        return tuple(origin for source in sources for origin in _of(net, source, stops))
+    units = Units(net, shared, [(spread.all_bits, stop) for stop in ({}, *stops.values())])
     return tuple(
         origin
         for source in sources
-        for origin in _of(units.near(source, ()), source)
+        for origin in _of(units.near(source, ()), source, stops)
         if elements[origin.maker].robot in {elements[source].robot, *shared}
     )
 
@@ -105,17 +105,18 @@ def _stop(spread: Spread, category: int) -> dict[int, int]:
     return {vertex: bits & both for vertex, bits in spread.leaks.items()}
 
 
-def _of(net: Net, source: int) -> Iterator[Origin]:
+def _of(net: Net, source: int, stops: Mapping[int, Mapping[int, int]]) -> Iterator[Origin]:
+    """The origins of one source; ``stops`` are the leaks of each category that is made."""
     spread = net.spread
     whole = search(net, [source], spread.all_bits, {})
-    for number in sorted(spread.made_categories):
+    for number, stop in stops.items():
         category = spread.categories[number]
         both = spread.forms_of(category)
         if not _can_make(spread, whole, both):
             continue
         # Where the category also arrives ready-made through a leak, only the search past no leak shows that it is made.
         makers = _makers(whole, both)
-        free = search(net, [source], spread.all_bits, _stop(spread, number))
+        free = search(net, [source], spread.all_bits, stop)
         not_past = _makers(free, both)
         for maker in sorted(makers.keys() | not_past.keys()):
             past = maker not in not_past

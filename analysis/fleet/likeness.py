@@ -8,7 +8,7 @@ from rosprivacy.analysis.findings.findings import finding_id
 from rosprivacy.analysis.model import Element
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from rosprivacy.analysis.answer import Finding
 
@@ -48,6 +48,10 @@ class Likeness(NamedTuple):
         """Return the element as it would be on any robot."""
         e = element
         return Element(e.kind, e.name, "", e.leg, e.side, e.without) if self.is_robot(e.robot) else e
+
+    def shared(self, elements: Iterable[Element]) -> frozenset[str]:
+        """Return the names under which elements are filed that no robot has."""
+        return frozenset({element.robot for element in elements if not self.is_robot(element.robot)})
 
     def count(self, finding: Finding) -> int:
         """Return for how many findings of the fleet one of the graph stands; 0 if another does."""

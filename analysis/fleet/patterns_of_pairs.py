@@ -41,6 +41,7 @@ class _Table:
     """Elements of a graph as numbers: their robot, and what they are alike to."""
 
     def __init__(self, elements: Sequence[Element], likeness: Likeness) -> None:
+        self._likeness = likeness
         self.names = sorted({element.robot for element in elements})
         number = {name: i for i, name in enumerate(self.names)}
         self.robot = np.array([number[element.robot] for element in elements], np.int64)
@@ -56,15 +57,11 @@ class _Table:
     def across(self, source: int, leak: int) -> bool:
         """Return whether a pair goes from robot to robot."""
         a, b = self.robot[source], self.robot[leak]
-        return bool(self.is_robot[a] and self.is_robot[b] and a != b)
+        return bool(self.is_robot[a] and self.is_robot[b] and a != b)  # as ``Likeness.apart``
 
     def count(self, source: int, leak: int) -> int:
-        """Return for how many findings of the fleet a pair stands, as ``Likeness.count``."""
-        a, b = self.robot[source], self.robot[leak]
-        if self.is_second[a] or (self.is_second[b] and self.first[b] != a):
-            return 0
-        to = self.weight[a] - 1 if self.is_second[b] else 1 if a == b else self.weight[b]
-        return int(self.weight[a] * to)
+        """Return for how many findings of the fleet a pair stands."""
+        return self._likeness.between(self.names[self.robot[source]], self.names[self.robot[leak]])
 
 
 @dataclass(slots=True)
@@ -309,11 +306,12 @@ class Closed:
         for block in blocks(self._under, kinds, mask):
             for some, plain_also in _with_plain(block):
                 left[block.kind, block.category, plain_also].append(_numbers(some)[some.forms != NO_PAIR])
+        numbers = {key: np.concatenate(some) for key, some in left.items()}
         gone: dict[tuple[str, int, bool], _Patterns] = {}
         for block in blocks(spread, kinds, mask):
             for some, plain_also in _with_plain(block):
                 key = block.kind, block.category, plain_also
-                there = np.isin(_numbers(some), np.concatenate(left[key])) if left[key] else False
+                there = np.isin(_numbers(some), numbers[key]) if key in numbers else False
                 forms = np.where(there, np.uint8(NO_PAIR), some.forms)
                 gone.setdefault(key, _Patterns(table)).add(replace(some, forms=forms))
         for (kind, category, plain_also), patterns in gone.items():

@@ -12,6 +12,7 @@ from rosprivacy.ingest.database.schema import (
     ACROSS,
     ADDED_FINDING,
     BAG,
+    CAME_WITH,
     CARRIES,
     CATEGORY,
     CHANGE,
@@ -147,7 +148,7 @@ WRITE_ROBOTS = (
     f"UNWIND $rows AS row MATCH {_node('r', ROBOT, 'row.robot')} SET r += row.properties, r.`version` = r.`version` + 1"
 )
 # What happened: no question about what is there follows these.
-MERGE_LOAD = f"MERGE {_node('l', LOAD, '$id')} SET l += $properties"
+MERGE_LOADS, MERGE_CHANGES, LINK_CHANGES = merge_nodes(LOAD), merge_nodes(CHANGE), create_relationships(CAME_WITH)
 WROTE_ROBOTS = (
     f"MATCH {_node('l', LOAD, '$id')} UNWIND $names AS name MATCH {_node('r', ROBOT, 'name')} "
     "CREATE (l)-[:`WROTE` {`version`: r.`version`}]->(r)"
@@ -155,10 +156,6 @@ WROTE_ROBOTS = (
 READ_PATTERNS = (
     f"MATCH (f:{quoted(FINDING.label)}) WHERE f.`robot` IN $names "
     "RETURN f.`robot` AS robot, f.`pattern` AS pattern, properties(f) AS properties"
-)
-CREATE_CHANGES = (
-    f"MATCH {_node('l', LOAD, '$load')} UNWIND $rows AS row CREATE {_node('c', CHANGE, 'row.id')} "
-    "SET c += row.properties CREATE (c)-[:`CAME_WITH`]->(l)"
 )
 READ_ELEMENTS = (
     "MATCH (r:`Robot`)<-[:`OF_ROBOT` {`robot`: r.`name`}]-(n:`Element`) WHERE r.`name` IN $names RETURN n.`id` AS id"

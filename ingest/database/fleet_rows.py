@@ -127,7 +127,7 @@ class FleetRows:
         self._labels = category_labels(vocabulary)
         self._names = Names(analysis.spread, vocabulary, self._labels)
         many = self._likeness.robots > 1 and most_across and pairs_at_most(analysis.spread) > most_across
-        shared = {one.robot for one in self._graph.elements if not self._likeness.is_robot(one.robot)} if many else None
+        shared = self._likeness.shared(self._graph.elements) if many else None
         self.derived_nearby = shared is not None
         self._origins = origins(analysis.spread, shared)
         across = [one for one in analysis.findings if self._likeness.across(one) and self._likeness.count(one)]

@@ -312,7 +312,7 @@ def _note(transaction: ManagedTransaction, load: Run | None, state: str, written
     """Write how far a run is."""
     if load is not None:
         facts = {"at": load.at, "version": load.version, "state": state, "written": written, "unchanged": unchanged}
-        run(transaction, cypher.MERGE_LOAD, id=load.id, properties=facts)
+        run(transaction, cypher.MERGE_LOADS, rows=[{"id": load.id, "properties": facts}])
 
 
 def _note_changes(transaction: ManagedTransaction, robots: list[RobotRows], stored: list[str], load: Run) -> None:
@@ -322,7 +322,7 @@ def _note_changes(transaction: ManagedTransaction, robots: list[RobotRows], stor
     )
     there = set(stored)
     now = _patterns((r.robot, row["properties"]) for r in robots if r.robot in there for row in r.findings)
-    rows = []
+    rows: list[Row] = []
     for robot, pattern in sorted(before.keys() | now.keys()):
         old, new = before.get((robot, pattern)), now.get((robot, pattern))
         finding = new or old or {}
@@ -330,7 +330,8 @@ def _note_changes(transaction: ManagedTransaction, robots: list[RobotRows], stor
         if what != "changed" or any(finding[name] != (old or {})[name] for name in CHANGED):
             facts = {"at": load.at, "robot": robot, "what": what, **{name: finding.get(name) for name in REMEMBERED}}
             rows.append({"id": f"{load.id} {robot} {pattern}", "properties": facts})
-    write(transaction, cypher.CREATE_CHANGES, rows, load=load.id)
+    write(transaction, cypher.MERGE_CHANGES, rows)
+    write(transaction, cypher.LINK_CHANGES, [_link(row["id"], load.id) for row in rows])
 
 
 def _patterns(findings: Iterable[tuple[str, Row]]) -> dict[tuple[str, str], Row]:

@@ -65,7 +65,7 @@ def answer(system: System, question: Question, *, count_paths: bool = True, befo
         uncounted=system.likeness.apart if system.is_fleet and question.every_finding else None,
         accepts=accepts(question.decisions, system.likeness),
         choose=groups,
-        shared=_shared(system) if question.most_across is not None else None,
+        shared=system.likeness.shared(system.graph.elements) if question.most_across is not None else None,
         today=question.today,
         bounds=question.settings.bounds,
     )
@@ -106,11 +106,6 @@ def _under_types(system: System, options: Options, under: Analysis) -> Analysis:
         verdict=Verdict.of(leak=leak, is_open=bool(without.open), grounded=not under.lacking),
         closed=ClosedByTypes(*closed(under.spread, mask), gone),
     )
-
-
-def _shared(system: System) -> frozenset[str]:
-    """The names under which a fleet files what no robot has."""
-    return frozenset({e.robot for e in system.graph.elements if not system.likeness.is_robot(e.robot)})
 
 
 def _closed_by_limits(system: System, under: Analysis, without: Analysis) -> tuple[Finding, ...]:
