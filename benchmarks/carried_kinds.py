@@ -15,15 +15,15 @@ from graph_database import ASKED, private_server, served, timed
 from measure import Measured, NotMeasured, Row
 from neo4j_fleet import ROBOTS, VOCABULARY, fleet
 
-from rosprivacy.ingest.database import cypher
-from rosprivacy.ingest.database.ids import carries
-from rosprivacy.ingest.database.loading import load
+from rosprivacy.ingest.neo4j_graph import cypher
+from rosprivacy.ingest.neo4j_graph.ids import carries
+from rosprivacy.ingest.neo4j_graph.loading import load
 from rosprivacy.private_neo4j import connection
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from rosprivacy.ingest.database.rows import RobotRows
+    from rosprivacy.ingest.neo4j_graph.rows import RobotRows
 
 BY_TYPE = cypher.CREATE_CARRIES
 BY_LIST = BY_TYPE.replace(

@@ -19,7 +19,7 @@ from measure import Row, calls_per_robot, per_robot, side_by_side
 from turtlebot import chosen_categories
 
 from rosprivacy.answering import answer
-from rosprivacy.ingest.database.fleet_rows import MOST_ACROSS
+from rosprivacy.ingest.neo4j_graph.fleet_rows import MOST_ACROSS
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.systems.fleet_system import fleet_system, rows_of_fleet
 

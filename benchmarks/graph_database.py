@@ -19,9 +19,9 @@ import neo4j
 from measure import Measured, NotMeasured, Row, compared
 from neo4j_fleet import NAMES, ROBOTS, VOCABULARY, fleet
 
-from rosprivacy.ingest.database.cypher import CREATE_CARRIES, create_relationships
-from rosprivacy.ingest.database.loading import BATCH, load
-from rosprivacy.ingest.database.schema import ACROSS, DERIVES_FROM, FLOWS_TO, IN_ENCLAVE, ROLES
+from rosprivacy.ingest.neo4j_graph.cypher import CREATE_CARRIES, create_relationships
+from rosprivacy.ingest.neo4j_graph.loading import BATCH, load
+from rosprivacy.ingest.neo4j_graph.schema import ACROSS, DERIVES_FROM, FLOWS_TO, IN_ENCLAVE, ROLES
 from rosprivacy.private_neo4j import connection
 from rosprivacy.queries.library import pack
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from neo4j import Driver
 
-    from rosprivacy.ingest.database.rows import RobotRows
+    from rosprivacy.ingest.neo4j_graph.rows import RobotRows
 
 ASKED = NAMES[::8]  # kinds of data whose leak paths are asked for
 PATIENCE = 300.0  # seconds for the naive query

@@ -19,14 +19,14 @@ from rosprivacy.analysis.model import (
     Profile,
     Statement,
 )
-from rosprivacy.ingest.database.fleet_rows import robot_rows
+from rosprivacy.ingest.neo4j_graph.fleet_rows import robot_rows
 from rosprivacy.ontology.vocabulary import Vocabulary
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rosprivacy.analysis.answer import Analysis
-    from rosprivacy.ingest.database.rows import RobotRows
+    from rosprivacy.ingest.neo4j_graph.rows import RobotRows
 
 ROBOTS, MODELS, NODES, TOPICS, FLOWS, KINDS = 1000, 10, 30, 50, 180, 24
 DERIVED = 8  # one in so many kinds is made into another somewhere

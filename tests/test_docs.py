@@ -26,10 +26,10 @@ from rosprivacy.cli.app import program
 from rosprivacy.cli.exit_code import CODES
 from rosprivacy.cli.inputs import WRITTEN
 from rosprivacy.cli.options import QUESTION_PANEL, READ
-from rosprivacy.ingest.database.schema import NODES, RELATIONSHIPS, Property
 from rosprivacy.ingest.labels.keywords import CHANNEL, KEYWORDS, NODE, rows
 from rosprivacy.ingest.labels.label_file import read_labels
 from rosprivacy.ingest.lint import RULES
+from rosprivacy.ingest.neo4j_graph.schema import NODES, RELATIONSHIPS, Property
 from rosprivacy.ontology.vocabulary import TOP, load
 from rosprivacy.queries.library import pack
 from rosprivacy.report.catalogs.words import IN_ENGLISH

@@ -1,7 +1,7 @@
 """What an earlier version wrote is read today: decisions, saved analyses, saved graphs (DESIGN.md, Contracts).
 
 The files are in ``cases/earlier/``, whose README says how they were made; they lack the keys that came later. What a
-database of that version is answered with is in ``ingest/database/test_other_schemas.py``.
+database of that version is answered with is in ``ingest/neo4j_graph/test_other_schemas.py``.
 """
 
 from __future__ import annotations

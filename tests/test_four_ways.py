@@ -14,7 +14,7 @@ import pytest
 from hypothesis import HealthCheck, Phase, assume, given, settings
 
 import rosprivacy
-from rosprivacy.ingest.database.loading import load
+from rosprivacy.ingest.neo4j_graph.loading import load
 from rosprivacy.ingest.policies.saved_graph import as_dict
 from rosprivacy.private_neo4j import connection
 from rosprivacy.report.json_text import as_text

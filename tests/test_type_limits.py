@@ -10,7 +10,7 @@ import pytest
 
 import rosprivacy
 from rosprivacy.formats import FORMATS
-from rosprivacy.ingest.database.loading import load as load_rows
+from rosprivacy.ingest.neo4j_graph.loading import load as load_rows
 from rosprivacy.ingest.types import TABLE
 from rosprivacy.ingest.types.type_table import excluded, read_table
 from rosprivacy.ontology.iris import STORED

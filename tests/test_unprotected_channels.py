@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 import rosprivacy
-from rosprivacy.ingest.database.loading import load
+from rosprivacy.ingest.neo4j_graph.loading import load
 from rosprivacy.private_neo4j import connection
 from rosprivacy.report.compare.changes import changes
 from rosprivacy.settings import Settings

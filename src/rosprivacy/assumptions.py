@@ -9,8 +9,8 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.model import MAY_REVEAL, Diagnostic, Place, Severity
-from rosprivacy.ingest.database.robot_facts import FILES, diagnostics_of, diagnostics_text, loaded_with
 from rosprivacy.ingest.labels.countries import countries
+from rosprivacy.ingest.neo4j_graph.robot_facts import FILES, diagnostics_of, diagnostics_text, loaded_with
 from rosprivacy.question import may_be
 from rosprivacy.version import __version__
 

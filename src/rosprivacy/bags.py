@@ -34,9 +34,9 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.model import Statement, Suggestion
     from rosprivacy.analysis.model.recording import Bag, BagTopic
-    from rosprivacy.ingest.database.bag_rows import BagRows
     from rosprivacy.ingest.labels.entries import Entry
     from rosprivacy.ingest.labels.label_file import Labels
+    from rosprivacy.ingest.neo4j_graph.bag_rows import BagRows
     from rosprivacy.ingest.types.type_table import TypeTable
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.report.schemas.bags import BagsDocument
@@ -68,7 +68,7 @@ class BagsAnswer:
 
     def rows(self, robot: str) -> list[BagRows]:
         """Return what is written into a database; ``robot`` is the one that was recorded, empty for none."""
-        from rosprivacy.ingest.database.bag_rows import bag_rows  # noqa: PLC0415 - light start
+        from rosprivacy.ingest.neo4j_graph.bag_rows import bag_rows  # noqa: PLC0415 - light start
 
         return [bag_rows(bag, robot, self.assumptions) for bag in self.bags]
 

@@ -274,7 +274,7 @@ def test_what_is_no_bag_is_one_line(cli: Cli, tmp_path: Path, named: str) -> Non
     assert refused(cli("bag", named, cwd=tmp_path))
 
 
-@pytest.mark.slow  # every day: tests/test_four_ways.py, tests/ingest/database/test_bag_loading.py
+@pytest.mark.slow  # every day: tests/test_four_ways.py, tests/ingest/neo4j_graph/test_bag_loading.py
 @pytest.mark.database
 def test_a_storage_that_is_a_bag_comes_back_from_the_database(
     cli: Cli, tmp_path: Path, neo4j_server: Connection, monkeypatch: pytest.MonkeyPatch

@@ -13,8 +13,8 @@ import pytest
 from lxml import etree
 
 from rosprivacy.analysis.errors import DatabaseError
-from rosprivacy.ingest.database.ids import schema_names
-from rosprivacy.ingest.database.loading import load
+from rosprivacy.ingest.neo4j_graph.ids import schema_names
+from rosprivacy.ingest.neo4j_graph.loading import load
 from rosprivacy.private_neo4j import connection
 from rosprivacy.queries.library import pack
 from rosprivacy.report.pictures import looks

@@ -13,7 +13,7 @@ import rosprivacy
 from rosprivacy.analysis.suggesting.label_questions import GOES_ON, GOES_THROUGH, LISTED, PASSES, LabelQuestion
 from rosprivacy.labelling.asking import with_answer
 from rosprivacy.labelling.conversation import EACH_KIND, FEWEST, OPEN, QUIT, SKIP, allowed
-from rosprivacy.report.suggesting.question_lines import keys_line, question_lines
+from rosprivacy.report.suggested_labels.question_lines import keys_line, question_lines
 from rosprivacy.settings import Settings
 from tests.helpers.asked_by_keys import Pressing, by_keys, conversation_in, pressing, robot_of, text_of
 from tests.helpers.command import cli

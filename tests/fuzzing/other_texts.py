@@ -9,8 +9,8 @@ from io import BytesIO
 from typing import TYPE_CHECKING, Any
 
 import rosprivacy
-from rosprivacy.ingest.database.fleet_rows import robot_rows
-from rosprivacy.ingest.database.rows import rows_of
+from rosprivacy.ingest.neo4j_graph.fleet_rows import robot_rows
+from rosprivacy.ingest.neo4j_graph.rows import rows_of
 from rosprivacy.parts.parquet import FORMAT, PARTS
 from rosprivacy.queries.library import pack
 from tests.fuzzing.words import DURATIONS, ODD_TEXT, with_fault

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.suggesting.packages import USES, WHERE
-from rosprivacy.ingest.packages.package_file import METHODS
+from rosprivacy.ingest.known_packages.package_file import METHODS
 from tests.fuzzing.label_texts import written
 from tests.fuzzing.words import KINDS
 

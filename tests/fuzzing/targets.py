@@ -26,18 +26,18 @@ from rosprivacy.ingest.deployed.governance import open_topics, read_governance
 from rosprivacy.ingest.deployed.permissions import policy_of, read_permissions
 from rosprivacy.ingest.deployed.zenoh_grants import read_zenoh
 from rosprivacy.ingest.fleet.fleet_file import read_fleet
+from rosprivacy.ingest.known_packages.package_file import read_package
 from rosprivacy.ingest.labels.label_file import parse_labels, read_labels
 from rosprivacy.ingest.language_model import answers_in, read_exchanges
 from rosprivacy.ingest.mitigation.limits_file import read_limits
-from rosprivacy.ingest.packages.package_file import read_package
 from rosprivacy.ingest.policies import common_names, names
 from rosprivacy.ingest.policies.policy_xml import read_policy
 from rosprivacy.ingest.policies.saved_graph import read_saved
 from rosprivacy.ingest.running.bag_folders import read_bags
 from rosprivacy.ingest.running.node_info import TextFiles
-from rosprivacy.ingest.suggesting.accepting import accept
-from rosprivacy.ingest.suggesting.comments import taken_apart
-from rosprivacy.ingest.suggesting.rule_files import read_library_rules, read_name_rules
+from rosprivacy.ingest.suggestion_rules.accepting import accept
+from rosprivacy.ingest.suggestion_rules.comments import taken_apart
+from rosprivacy.ingest.suggestion_rules.rule_files import read_library_rules, read_name_rules
 from rosprivacy.labelling.annotating import annotated, differences
 from rosprivacy.labelling.model_interview import AskedModel, judged
 from rosprivacy.mitigation import run_mitigation

@@ -12,7 +12,7 @@ from starlette.testclient import TestClient
 from rosprivacy.explorer.session import Session
 from rosprivacy.explorer.web.cypher_site import StoredSite
 from rosprivacy.explorer.web.guard import RequestDoor
-from rosprivacy.ingest.database.loading import load
+from rosprivacy.ingest.neo4j_graph.loading import load
 from rosprivacy.private_neo4j import connection
 from rosprivacy.report.catalogs.words import Words
 from rosprivacy.settings import Settings

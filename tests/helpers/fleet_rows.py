@@ -11,7 +11,7 @@ from rosprivacy.settings import Settings
 from rosprivacy.systems.fleet_system import fleet_system, rows_of_fleet
 
 if TYPE_CHECKING:
-    from rosprivacy.ingest.database.fleet_rows import FleetRows
+    from rosprivacy.ingest.neo4j_graph.fleet_rows import FleetRows
     from rosprivacy.result import Result
 
 VOCABULARY = load_vocabulary()

@@ -8,7 +8,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import rosprivacy
-from rosprivacy.ingest.database.fleet_rows import robot_rows
+from rosprivacy.ingest.neo4j_graph.fleet_rows import robot_rows
 from rosprivacy.settings import Settings
 from rosprivacy.systems.fleet_system import answer_fleet
 from tests.helpers.paths import ROOT
@@ -16,7 +16,7 @@ from tests.helpers.paths import ROOT
 if TYPE_CHECKING:
     from neo4j import Driver
 
-    from rosprivacy.ingest.database.rows import RobotRows
+    from rosprivacy.ingest.neo4j_graph.rows import RobotRows
     from rosprivacy.result import Result
 
 FACTORY, CARE = "examples/factory", "examples/care-home"

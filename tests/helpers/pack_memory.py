@@ -15,7 +15,7 @@ from rosprivacy.analysis.fleet.likeness import pattern_id
 from rosprivacy.analysis.model import BACKUPS_NOT_STATED, DISCLOSURE, NO_READER
 from rosprivacy.analysis.non_ros import BY_KIND
 from rosprivacy.answering import answer
-from rosprivacy.ingest.database.carrying import moving, passed_and_made
+from rosprivacy.ingest.neo4j_graph.carrying import moving, passed_and_made
 from rosprivacy.question import question_of
 from rosprivacy.settings import Settings
 from tests.helpers.brute import Brute

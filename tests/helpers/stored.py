@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from rosprivacy.ingest.database.schema import CARRIES, FLOWS_TO, KIND_LABELS
+from rosprivacy.ingest.neo4j_graph.schema import CARRIES, FLOWS_TO, KIND_LABELS
 from rosprivacy.queries.graph_values import Node, Relationship
 from rosprivacy.report.stored import StoredNames
 

@@ -16,8 +16,8 @@ from rosprivacy.analysis.suggesting.evidence import SOURCE as SOURCES
 from rosprivacy.analysis.suggesting.library_rules import PYTHON, NodeUse
 from rosprivacy.analysis.suggesting.name_rules import NameRules
 from rosprivacy.analysis.suggesting.weighing import proposals, unsaid
-from rosprivacy.ingest.packages.package_folders import read_packages
-from rosprivacy.ingest.suggesting.rule_files import read_library_rules, read_name_rules
+from rosprivacy.ingest.known_packages.package_folders import read_packages
+from rosprivacy.ingest.suggestion_rules.rule_files import read_library_rules, read_name_rules
 from rosprivacy.ingest.types import TABLE
 from rosprivacy.ingest.types.type_table import read_table
 from rosprivacy.labelling.knowledge import Known, evidence

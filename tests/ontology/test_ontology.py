@@ -12,7 +12,7 @@ import pytest
 from rdflib import OWL, RDF, RDFS, SH, SKOS, Graph, Literal, Namespace, URIRef
 
 from rosprivacy.analysis.model import CLEANS, KINDS
-from rosprivacy.ingest.database import schema
+from rosprivacy.ingest.neo4j_graph import schema
 from tests.helpers.ontologies import FOLDER, RP, SHIPPED, categories, ontology, provisions, shapes
 
 if TYPE_CHECKING:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from rosprivacy.analysis.model import Confidence
-from rosprivacy.ingest.packages.package_file import read_package
-from rosprivacy.ingest.packages.package_folders import catalogue
+from rosprivacy.ingest.known_packages.package_file import read_package
+from rosprivacy.ingest.known_packages.package_folders import catalogue
 from rosprivacy.ingest.types import TABLE
 from rosprivacy.ingest.types.type_table import read_table
 from rosprivacy.ontology.vocabulary import FOLDER, load

@@ -16,7 +16,7 @@ import pytest
 
 import rosprivacy
 from rosprivacy.analysis.errors import InputErrors
-from rosprivacy.ingest.database.rows import rows_of
+from rosprivacy.ingest.neo4j_graph.rows import rows_of
 from rosprivacy.parts.parquet import ANSWER, FORMAT, PARTS, ROBOTS, read
 from rosprivacy.parts.unit_rows import own_properties, parts_of
 from tests.helpers.command import Cli, refused
@@ -28,7 +28,7 @@ from tests.helpers.fleet_rows import rows as rows_in_memory
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from rosprivacy.ingest.database.rows import RobotRows
+    from rosprivacy.ingest.neo4j_graph.rows import RobotRows
 
 __all__ = ["folder"]  # a fixture
 parquet = pytest.importorskip("pyarrow.parquet", reason="without the [spark] extra")

@@ -46,7 +46,7 @@ if TYPE_CHECKING:
 
     from pyspark.sql import SparkSession
 
-    from rosprivacy.ingest.database.rows import RobotRows
+    from rosprivacy.ingest.neo4j_graph.rows import RobotRows
     from rosprivacy.private_neo4j.connection import Connection
     from tests.helpers.command import Cli
 

@@ -9,7 +9,7 @@ import pytest
 import rosprivacy
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.model import ARTICLE_9
-from rosprivacy.ingest.database.loading import load
+from rosprivacy.ingest.neo4j_graph.loading import load
 from rosprivacy.queries.library import find
 from rosprivacy.queries.run import run
 from tests.helpers.graphs import care_home, rows_of

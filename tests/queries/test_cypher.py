@@ -19,9 +19,9 @@ from hypothesis import strategies as st
 import rosprivacy
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.model import DISCLOSURE
-from rosprivacy.ingest.database.fleet_rows import robot_rows
-from rosprivacy.ingest.database.ids import carries
-from rosprivacy.ingest.database.loading import load
+from rosprivacy.ingest.neo4j_graph.fleet_rows import robot_rows
+from rosprivacy.ingest.neo4j_graph.ids import carries
+from rosprivacy.ingest.neo4j_graph.loading import load
 from rosprivacy.ingest.policies.policy_xml import NotAPolicyError, read_policy
 from rosprivacy.ontology.vocabulary import load as load_vocabulary
 from rosprivacy.queries.library import find
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from neo4j import Driver
 
     from rosprivacy.analysis.answer import Analysis
-    from rosprivacy.ingest.database.rows import RobotRows
+    from rosprivacy.ingest.neo4j_graph.rows import RobotRows
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 pytestmark = pytest.mark.database

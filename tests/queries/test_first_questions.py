@@ -19,7 +19,7 @@ from rosprivacy.analysis.errors import InputError
 from rosprivacy.analysis.fleet.likeness import NO_ROBOTS
 from rosprivacy.analysis.model import DISCLOSURE, STORAGE_LIMITATION, THIRD_COUNTRY, Rank
 from rosprivacy.both_views import both_views
-from rosprivacy.ingest.database.loading import Run, load
+from rosprivacy.ingest.neo4j_graph.loading import Run, load
 from rosprivacy.private_neo4j import connection
 from rosprivacy.robot_doubts import doubt_lines
 from rosprivacy.settings import Settings
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Finding
     from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.analysis.model import Element
-    from rosprivacy.ingest.database.rows import RobotRows
+    from rosprivacy.ingest.neo4j_graph.rows import RobotRows
     from rosprivacy.private_neo4j.connection import Connection
     from rosprivacy.result import Result
 

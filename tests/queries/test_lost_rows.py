@@ -12,7 +12,7 @@ import pytest
 
 import rosprivacy
 from rosprivacy.analysis.errors import InputErrors, QueryError
-from rosprivacy.ingest.database.loading import load
+from rosprivacy.ingest.neo4j_graph.loading import load
 from rosprivacy.queries.library import find
 from rosprivacy.settings import Settings
 from rosprivacy.systems.robot_system import robot_of

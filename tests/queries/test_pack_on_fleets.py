@@ -13,7 +13,7 @@ import pytest
 
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.answering import answer
-from rosprivacy.ingest.database.loading import load
+from rosprivacy.ingest.neo4j_graph.loading import load
 from rosprivacy.queries.library import find, pack
 from rosprivacy.systems.fleet_system import fleet_system, rows_of_fleet
 from tests.helpers.pack_memory import QUESTION, VOCABULARY, Fleet, Memory, place_of
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from neo4j import Driver, Record
 
-    from rosprivacy.ingest.database.rows import RobotRows
+    from rosprivacy.ingest.neo4j_graph.rows import RobotRows
 
 
 class Check(NamedTuple):

@@ -18,12 +18,12 @@ from rosprivacy.analysis.findings.findings import analyse
 from rosprivacy.analysis.model import Category, Confidence, Element, Flow, FlowGraph, Legal, Place, Suggestion
 from rosprivacy.analysis.model.recording import Bag, BagTopic, JudgedBag, TopicKinds
 from rosprivacy.both_views import both_views
-from rosprivacy.ingest.database.bag_rows import bag_rows, load_bags
-from rosprivacy.ingest.database.fleet_rows import robot_rows
-from rosprivacy.ingest.database.loading import Run, load
-from rosprivacy.ingest.database.schema import CARRIES, FLOWS_TO, KIND_LABELS
 from rosprivacy.ingest.labels.binding import bind
 from rosprivacy.ingest.labels.label_file import STANDARD, read_labels
+from rosprivacy.ingest.neo4j_graph.bag_rows import bag_rows, load_bags
+from rosprivacy.ingest.neo4j_graph.fleet_rows import robot_rows
+from rosprivacy.ingest.neo4j_graph.loading import Run, load
+from rosprivacy.ingest.neo4j_graph.schema import CARRIES, FLOWS_TO, KIND_LABELS
 from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.ontology.vocabulary import Vocabulary
 from rosprivacy.private_neo4j import connection
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
     from neo4j import Driver
 
-    from rosprivacy.ingest.database.rows import RobotRows
+    from rosprivacy.ingest.neo4j_graph.rows import RobotRows
     from rosprivacy.private_neo4j.connection import Connection
 
 FOLDER = ROOT / "tests" / "cases" / "queries"

@@ -267,7 +267,7 @@ def fleet(tmp_path_factory: pytest.TempPathFactory) -> Result:
 
 @pytest.fixture(scope="module")
 def stored(neo4j_server: Connection, tmp_path_factory: pytest.TempPathFactory) -> Result:
-    from rosprivacy.ingest.database.loading import load
+    from rosprivacy.ingest.neo4j_graph.loading import load
     from rosprivacy.systems.robot_system import robot_of
     from rosprivacy.systems.stored_system import answer_stored
 

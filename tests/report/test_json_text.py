@@ -88,7 +88,7 @@ def test_json_and_csv_for_users_are_written_in_one_place_each() -> None:
         "report/rdf/serialise.py",  # a literal of Turtle, made printable with its file
         "report/rdf/findings.py",  # a text in linked data
         "report/rdf/redacted.py",  # a value, looked up in what is replaced
-        "ingest/database/bag_rows.py",  # a property in the database
+        "ingest/neo4j_graph/bag_rows.py",  # a property in the database
         "queries/run.py",  # a cell of a table
         "queries/saved.py",  # our own questions
     }

@@ -93,7 +93,7 @@ def _load(answer: BagsAnswer, robot: str, server: str | None) -> None:
     from rosprivacy.analysis.errors import shown
     from rosprivacy.analysis.text import counted
     from rosprivacy.cli.driver import driver_of
-    from rosprivacy.ingest.database.bag_rows import load_bags
+    from rosprivacy.ingest.neo4j_graph.bag_rows import load_bags
 
     rows = answer.rows(robot)
     with driver_of(server) as driver:

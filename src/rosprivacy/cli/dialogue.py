@@ -19,7 +19,7 @@ from rosprivacy.labelling.asking import asked_now, closing, contradiction, typed
 from rosprivacy.labelling.conversation import AND, BEGINS, Conversation, allowed, keys_of, lines_of, takes_away
 from rosprivacy.labelling.suggested_lines import brings, limits_on_the_way, who_says
 from rosprivacy.report.editing import editing
-from rosprivacy.report.suggesting.question_lines import help_lines, keys_line, question_lines
+from rosprivacy.report.suggested_labels.question_lines import help_lines, keys_line, question_lines
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable

@@ -25,8 +25,8 @@ from rosprivacy.report.verdict import verdict_sentence
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
-    from rosprivacy.ingest.database.loading import Loaded, Run
-    from rosprivacy.ingest.database.rows import RobotRows
+    from rosprivacy.ingest.neo4j_graph.loading import Loaded, Run
+    from rosprivacy.ingest.neo4j_graph.rows import RobotRows
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.result import Result
     from rosprivacy.settings import Settings
@@ -54,7 +54,7 @@ def load(
     ] = None,
 ) -> None:
     """Analyse policies and write the robot into Neo4j, or all robots of a fleet, in place of what was there before."""
-    from rosprivacy.ingest.database import loading as database
+    from rosprivacy.ingest.neo4j_graph import loading as database
 
     inputs, both = inputs.viewed(view), view is ViewOrBoth.both
     settings = inputs.settings
@@ -133,7 +133,7 @@ def _tell_replaced(loaded: Loaded) -> None:
 
 def _load_fleet(file: str, settings: Settings, neo4j: str | None, *, both_views: bool) -> None:
     from rosprivacy.answering import answer
-    from rosprivacy.ingest.database.fleet_rows import MOST_ACROSS
+    from rosprivacy.ingest.neo4j_graph.fleet_rows import MOST_ACROSS
     from rosprivacy.question import question_of
     from rosprivacy.systems.fleet_system import fleet_system, rows_of_fleet
 
@@ -176,7 +176,7 @@ def _load_many(
     rows: Iterable[RobotRows], vocabulary: Vocabulary, neo4j: str | None, origin: str, robots: int, sentence: str
 ) -> None:
     """Write many robots, and say what was written of what, with the verdict in a sentence."""
-    from rosprivacy.ingest.database.loading import load
+    from rosprivacy.ingest.neo4j_graph.loading import load
 
     with driver_of(neo4j) as driver, _bar(None) as advance:
         done = load(driver, rows, vocabulary, advance, _run())
@@ -188,7 +188,7 @@ def _load_many(
 def _run() -> Run:
     """What the database remembers of this run, which begins when the environment says, or now."""
     from rosprivacy.clock import source_date
-    from rosprivacy.ingest.database.loading import Run
+    from rosprivacy.ingest.neo4j_graph.loading import Run
     from rosprivacy.version import __version__
 
     return Run.begun(__version__, source_date(os.environ))

@@ -14,7 +14,7 @@ from rosprivacy.analysis.text import counted, printable
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from rosprivacy.ingest.database.schema import Property
+    from rosprivacy.ingest.neo4j_graph.schema import Property
     from rosprivacy.queries.run import QueryRows
 
 WIDEST_TABLE = 400  # in a file or a pipe
@@ -154,7 +154,7 @@ def _field(column: str, cell: str, names: int, width: int) -> str:
 
 def listing() -> str:
     """Return all labels, relationship types and properties, each with its meaning, as the program loads by them."""
-    from rosprivacy.ingest.database.schema import NODES, RELATIONSHIPS
+    from rosprivacy.ingest.neo4j_graph.schema import NODES, RELATIONSHIPS
 
     lines = [CATEGORIES]
     for node in NODES:

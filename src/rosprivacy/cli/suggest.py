@@ -142,7 +142,7 @@ def suggest(
 
 def _answer(suggested: Suggested, format_: TextOrJson) -> str:
     from rosprivacy.report.json_text import as_text
-    from rosprivacy.report.suggesting.suggestion_lines import suggestion_lines
+    from rosprivacy.report.suggested_labels.suggestion_lines import suggestion_lines
 
     document = suggested.document()
     return (

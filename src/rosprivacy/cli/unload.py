@@ -29,7 +29,7 @@ def unload(
     neo4j: Server = None,
 ) -> None:
     """Remove a robot, a fleet or bags from Neo4j; what people added stays, but for what hangs on their elements."""
-    from rosprivacy.ingest.database.loading import unload
+    from rosprivacy.ingest.neo4j_graph.loading import unload
 
     if [bool(robot), bool(fleet), bool(bag)].count(True) != 1:
         raise typer.BadParameter("name robots with --robot, a fleet file with --fleet, or a bag with --bag")
@@ -46,7 +46,7 @@ def unload(
 
 
 def _unload_bags(path: str, neo4j: str | None) -> None:
-    from rosprivacy.ingest.database.bag_rows import unload_bags
+    from rosprivacy.ingest.neo4j_graph.bag_rows import unload_bags
 
     with driver_of(neo4j) as driver:
         gone = unload_bags(driver, path)

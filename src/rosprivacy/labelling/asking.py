@@ -18,8 +18,8 @@ from rosprivacy.analysis.suggesting.evidence import WrittenLabel
 from rosprivacy.analysis.suggesting.label_questions import LISTED, NOTHING, TYPED_AS, questions
 from rosprivacy.analysis.written_names import did_you_mean, literal, nearest
 from rosprivacy.ingest.labels.label_file import parse_labels
-from rosprivacy.ingest.suggesting.accepting import NewLabel, with_labels
-from rosprivacy.ingest.suggesting.comments import refusal, with_refusals
+from rosprivacy.ingest.suggestion_rules.accepting import NewLabel, with_labels
+from rosprivacy.ingest.suggestion_rules.comments import refusal, with_refusals
 from rosprivacy.labelling.conversation import NO, by_likeness
 from rosprivacy.labelling.label_lines import Written
 from rosprivacy.labelling.suggested_lines import check_room, text_of

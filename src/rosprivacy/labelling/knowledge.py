@@ -15,8 +15,8 @@ from rosprivacy.analysis.suggesting.evidence import SOURCE
 from rosprivacy.analysis.suggesting.nodes import node_evidence
 from rosprivacy.analysis.suggesting.open_elements import of_channels, of_open
 from rosprivacy.analysis.suggesting.packages import by_package_types, nodes_of_packages, package_evidence
-from rosprivacy.ingest.packages.package_folders import read_packages, rests_on
-from rosprivacy.ingest.suggesting.rule_files import read_library_rules, read_name_rules
+from rosprivacy.ingest.known_packages.package_folders import read_packages, rests_on
+from rosprivacy.ingest.suggestion_rules.rule_files import read_library_rules, read_name_rules
 from rosprivacy.ingest.types import TABLE
 from rosprivacy.ingest.types.type_table import read_table
 

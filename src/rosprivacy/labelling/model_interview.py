@@ -34,7 +34,7 @@ from rosprivacy.analysis.suggesting.evidence import (
 )
 from rosprivacy.analysis.text import counted
 from rosprivacy.ingest.language_model import Exchange, answers_in
-from rosprivacy.ingest.suggesting.rule_files import read_name_rules
+from rosprivacy.ingest.suggestion_rules.rule_files import read_name_rules
 from rosprivacy.ingest.types import TABLE
 from rosprivacy.ingest.types.type_table import read_table
 

@@ -24,8 +24,8 @@ from rosprivacy.ingest.labels.label_file import parse_labels
 from rosprivacy.ingest.labels.label_writer import NEW, facts_of
 from rosprivacy.ingest.reading import yaml_values
 from rosprivacy.ingest.reading.bounded_file import read_utf8
-from rosprivacy.ingest.suggesting.accepting import LIMITING, NewLabel, accept, overlap
-from rosprivacy.ingest.suggesting.comments import comment_of, taken_apart, with_comments
+from rosprivacy.ingest.suggestion_rules.accepting import LIMITING, NewLabel, accept, overlap
+from rosprivacy.ingest.suggestion_rules.comments import comment_of, taken_apart, with_comments
 from rosprivacy.labelling.label_lines import Written, own_file
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.systems.robot_system import answer_robot, read_label_files

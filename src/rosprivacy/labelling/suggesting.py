@@ -21,11 +21,11 @@ from rosprivacy.analysis.suggesting.label_questions import narrowed, reached_kin
 from rosprivacy.analysis.suggesting.outdated_reasons import outdated_reasons
 from rosprivacy.analysis.suggesting.weighing import SURENESS, closes_finding, proposals, unsaid
 from rosprivacy.analysis.text import counted
+from rosprivacy.ingest.known_packages.package_folders import replacements
 from rosprivacy.ingest.labels.label_file import OURS
-from rosprivacy.ingest.packages.package_folders import replacements
 from rosprivacy.ingest.reading.bounded_file import read_utf8
 from rosprivacy.ingest.reading.yaml_values import MAX_BYTES
-from rosprivacy.ingest.suggesting.comments import refusal_key, refusals_in
+from rosprivacy.ingest.suggestion_rules.comments import refusal_key, refusals_in
 from rosprivacy.labelling.knowledge import NO_FILES, Basis, CodeSaid, code_said, evidence, what_is_known
 from rosprivacy.ontology.vocabulary import TOP
 from rosprivacy.systems.robot_system import answer_robot
@@ -87,7 +87,7 @@ class Suggested:
 
     def document(self) -> SuggestionsDocument:
         """Return the JSON document ``rosprivacy.suggestions/1``."""
-        from rosprivacy.report.suggesting.suggestion_document import suggestions_document  # noqa: PLC0415 - light start
+        from rosprivacy.report.suggested_labels.suggestion_document import suggestions_document  # noqa: PLC0415 - light start
 
         return suggestions_document(
             self.proposals,

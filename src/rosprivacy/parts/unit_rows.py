@@ -16,9 +16,9 @@ from rosprivacy.analysis.findings.findings import Options, analyse
 from rosprivacy.analysis.fleet.source_leak_pairs import pairs
 from rosprivacy.analysis.whatif.answered_by_globs import answered_by_globs
 from rosprivacy.assumptions import assumptions_of, files_read, remembered, types_read
-from rosprivacy.ingest.database.fleet_rows import FleetRows
-from rosprivacy.ingest.database.rows import rows_of
 from rosprivacy.ingest.fleet.dds_domains import is_domain, pseudo_robot
+from rosprivacy.ingest.neo4j_graph.fleet_rows import FleetRows
+from rosprivacy.ingest.neo4j_graph.rows import rows_of
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.parts.shown_robots import Choice, place_groups
 from rosprivacy.parts.units import unit_of
@@ -33,11 +33,11 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.fleet.source_leak_pairs import Pairs
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Diagnostic, Doubt, Element, NonRosFacts
-    from rosprivacy.ingest.database.rows import RobotRows, Row
     from rosprivacy.ingest.fleet.alike_robots import Alike
     from rosprivacy.ingest.fleet.dds_domains import Member
     from rosprivacy.ingest.fleet.fleet_file import Fleet
     from rosprivacy.ingest.fleet.fleet_graph import Placed
+    from rosprivacy.ingest.neo4j_graph.rows import RobotRows, Row
     from rosprivacy.parts.units import Unit
     from rosprivacy.parts.workers import Read
     from rosprivacy.settings import Settings

@@ -8,8 +8,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 
-from rosprivacy.ingest.database.ids import carries
-from rosprivacy.ingest.database.schema import CARRIED, ELEMENT, FLOWS_TO, KIND_LABELS, NODES, RELATIONSHIPS
+from rosprivacy.ingest.neo4j_graph.ids import carries
+from rosprivacy.ingest.neo4j_graph.schema import CARRIED, ELEMENT, FLOWS_TO, KIND_LABELS, NODES, RELATIONSHIPS
 from rosprivacy.queries.library import pack
 from rosprivacy.queries.saved import zipped
 from rosprivacy.report.pictures.grass import OUTLINED, grass

@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.answering import answer
 from rosprivacy.assumptions import assumptions_of, files_read, remembered, types_read
-from rosprivacy.ingest.database.fleet_rows import FleetRows
 from rosprivacy.ingest.fleet.alike_robots import Alike, alike
 from rosprivacy.ingest.fleet.fleet_file import Fleet, read_fleet
 from rosprivacy.ingest.fleet.fleet_graph import Placed, place
 from rosprivacy.ingest.fleet.joins import joins_nothing, let_out
 from rosprivacy.ingest.labels.pins import PIN_OF_NOTHING
+from rosprivacy.ingest.neo4j_graph.fleet_rows import FleetRows
 from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, PolicyChange
 from rosprivacy.question import question_of
 from rosprivacy.robot_doubts import breaking, doubt_lines, doubts_by_robot

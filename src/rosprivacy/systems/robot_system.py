@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
     from rosprivacy.analysis.model import Bound, Diagnostic, FlowGraph, Policy
-    from rosprivacy.ingest.database.rows import Beyond, RobotRows
+    from rosprivacy.ingest.neo4j_graph.rows import Beyond, RobotRows
     from rosprivacy.ingest.policies.saved_graph import Saved
     from rosprivacy.ingest.types.channel_types import Written
     from rosprivacy.ingest.types.types_file import TypesFile
@@ -196,7 +196,7 @@ def lenient_system(
 
 def robot_of(name: str, result: Result) -> RobotRows:
     """Return the rows of a robot for the database; what the answer rests on goes with it."""
-    from rosprivacy.ingest.database.fleet_rows import robot_rows  # noqa: PLC0415
+    from rosprivacy.ingest.neo4j_graph.fleet_rows import robot_rows  # noqa: PLC0415
     from rosprivacy.robot_doubts import doubt_lines  # noqa: PLC0415
 
     more = remembered(result.assumptions, result.diagnostics, doubt_lines(result.doubts))
@@ -208,7 +208,7 @@ def beyond_of(result: Result) -> Beyond | None:
     if result.enforced is None:
         return None
     from rosprivacy.analysis.findings.beyond import granted  # noqa: PLC0415
-    from rosprivacy.ingest.database.rows import Beyond  # noqa: PLC0415
+    from rosprivacy.ingest.neo4j_graph.rows import Beyond  # noqa: PLC0415
 
     return Beyond(result.enforced.added, granted(result.analysis.graph))
 

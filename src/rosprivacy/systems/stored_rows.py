@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rosprivacy.ingest.database.ids import LABELS_OF_CATEGORIES, schema_names
-from rosprivacy.ingest.database.robot_facts import HINT, ROBOTS, of_other_schemas
-from rosprivacy.ingest.database.schema import CARRIES, FLOWS_TO, KIND_LABELS
+from rosprivacy.ingest.neo4j_graph.ids import LABELS_OF_CATEGORIES, schema_names
+from rosprivacy.ingest.neo4j_graph.robot_facts import HINT, ROBOTS, of_other_schemas
+from rosprivacy.ingest.neo4j_graph.schema import CARRIES, FLOWS_TO, KIND_LABELS
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.queries.run import check_names, run
 from rosprivacy.report.stored import StoredNames

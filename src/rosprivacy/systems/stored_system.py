@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.answering import answer
 from rosprivacy.assumptions import put_together
-from rosprivacy.ingest.database.fleet_rows import MOST_ACROSS
-from rosprivacy.ingest.database.read_back import Stored, read_stored
-from rosprivacy.ingest.database.robot_facts import diagnostics_of
-from rosprivacy.ingest.database.write_back import write_back
+from rosprivacy.ingest.neo4j_graph.fleet_rows import MOST_ACROSS
+from rosprivacy.ingest.neo4j_graph.read_back import Stored, read_stored
+from rosprivacy.ingest.neo4j_graph.robot_facts import diagnostics_of
+from rosprivacy.ingest.neo4j_graph.write_back import write_back
 from rosprivacy.question import question_of
 from rosprivacy.robot_doubts import breaking, doubt_lines, doubts_by_robot
 from rosprivacy.system import System

@@ -10,7 +10,7 @@ import pytest
 import rosprivacy
 from rosprivacy.analysis.model import Confidence
 from rosprivacy.analysis.suggesting.packages import nodes_of_packages, package_evidence
-from rosprivacy.ingest.packages.package_folders import catalogue
+from rosprivacy.ingest.known_packages.package_folders import catalogue
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.question import question_of
 from rosprivacy.settings import Settings

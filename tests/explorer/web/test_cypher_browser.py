@@ -14,7 +14,7 @@ from rosprivacy.explorer.session import Session
 from rosprivacy.explorer.web.cypher_site import StoredSite
 from rosprivacy.explorer.web.guard import RequestDoor
 from rosprivacy.explorer.web.serving import bound_socket, server
-from rosprivacy.ingest.database.loading import load
+from rosprivacy.ingest.neo4j_graph.loading import load
 from rosprivacy.private_neo4j import connection
 from rosprivacy.report.catalogs.words import Words
 from rosprivacy.settings import Settings

@@ -10,7 +10,7 @@ from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.explorer.session import Session
 from rosprivacy.explorer.web.application import Site
 from rosprivacy.explorer.web.guard import RequestDoor
-from rosprivacy.ingest.database.loading import load
+from rosprivacy.ingest.neo4j_graph.loading import load
 from rosprivacy.private_neo4j import connection
 from rosprivacy.report.catalogs.words import Words
 from rosprivacy.settings import Settings

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 import rosprivacy
-from rosprivacy.ingest.database.loading import load
 from rosprivacy.ingest.fleet.alike_robots import alike
+from rosprivacy.ingest.neo4j_graph.loading import load
 from rosprivacy.private_neo4j import connection
 from rosprivacy.settings import Settings
 from rosprivacy.systems.stored_system import answer_stored

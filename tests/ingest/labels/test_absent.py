@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 import rosprivacy
-from rosprivacy.ingest.database.loading import load as load_robots
+from rosprivacy.ingest.neo4j_graph.loading import load as load_robots
 from rosprivacy.mitigation import run_mitigation
 from rosprivacy.private_neo4j import connection
 from rosprivacy.settings import Settings

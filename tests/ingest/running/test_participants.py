@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 import rosprivacy
-from rosprivacy.ingest.database.loading import load
+from rosprivacy.ingest.neo4j_graph.loading import load
 from rosprivacy.ingest.running.observed_files import policy_xml, prepared, types_yaml
 from rosprivacy.private_neo4j import connection
 from rosprivacy.settings import Settings

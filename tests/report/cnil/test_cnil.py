@@ -22,7 +22,7 @@ from rosprivacy.analysis.findings.findings import analyse
 from rosprivacy.analysis.model import Bound, Category, Element, Flow, FlowGraph, NonRosFacts, Place, Statement
 from rosprivacy.analysis.non_ros import EVERY
 from rosprivacy.documents import document_of
-from rosprivacy.ingest.database.loading import load as load_robots
+from rosprivacy.ingest.neo4j_graph.loading import load as load_robots
 from rosprivacy.ontology.vocabulary import Vocabulary, load
 from rosprivacy.private_neo4j import connection
 from rosprivacy.report.catalogs.words import plain

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 
-from rosprivacy.ingest.database.ids import schema_names
-from rosprivacy.ingest.database.schema import KIND_LABELS, NODES, RELATIONSHIPS
+from rosprivacy.ingest.neo4j_graph.ids import schema_names
+from rosprivacy.ingest.neo4j_graph.schema import KIND_LABELS, NODES, RELATIONSHIPS
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.private_neo4j.browser_files import STYLE, browser_files
 from rosprivacy.report.pictures.looks import KIND_LOOKS, ROLE_LOOKS

@@ -15,7 +15,7 @@ from rdflib import SH, Graph, Literal
 
 import rosprivacy
 from rosprivacy.formats import written
-from rosprivacy.ingest.database.loading import load
+from rosprivacy.ingest.neo4j_graph.loading import load
 from rosprivacy.private_neo4j import connection
 from rosprivacy.queries.library import find
 from rosprivacy.queries.run import run

@@ -13,7 +13,7 @@ from rosprivacy.analysis.suggesting.evidence import written
 from rosprivacy.explorer.element_ids import element_id
 from rosprivacy.explorer.web import forms
 from rosprivacy.explorer.web.panes import ROBOT, Pane, robot_or_model, stands_for, title_of
-from rosprivacy.ingest.suggesting.accepting import LIMITING, could_close
+from rosprivacy.ingest.suggestion_rules.accepting import LIMITING, could_close
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
