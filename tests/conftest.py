@@ -17,6 +17,7 @@ from hypothesis import settings
 from rosprivacy.private_neo4j import connection as database
 from tests.helpers import java
 from tests.helpers.command import cli
+from tests.helpers.daily import sampled
 from tests.helpers.fastdds import fastdds, other, peer
 from tests.helpers.paths import ROOT
 from tests.helpers.plain import STOP_AT_THE_END, plain_server
@@ -91,10 +92,17 @@ def pytest_itemcollected(item: pytest.Item) -> None:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leave out slow tests, if they are not asked for; else they come first: no worker waits for one at the end."""
+    """Leave out slow tests, if they are not asked for; else they come first: no worker waits for one at the end.
+
+    Of the whole suite without these, of a test with many rows a third is run: CI and who names a file run all.
+    """
     left_out = {mark for mark in ("slow", "thorough") if not config.getoption(f"--{mark}")}
-    config.hook.pytest_deselected(items=[item for item in items if not left_out.isdisjoint(item.keywords)])
-    items[:] = [item for item in items if left_out.isdisjoint(item.keywords)]
+    chosen = [item for item in items if left_out.isdisjoint(item.keywords)]
+    if "slow" in left_out and config.args_source is pytest.Config.ArgsSource.TESTPATHS:
+        chosen = list(sampled(chosen))
+    taken = set(chosen)
+    config.hook.pytest_deselected(items=[item for item in items if item not in taken])
+    items[:] = chosen
     items.sort(key=lambda item: "slow" not in item.keywords or "xdist_group" in item.keywords)
 
 

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator, Sequence
 
 
+MANY = 3  # rows of a test, of which all are for every day
 IN_CI = 3  # of the rows that are not for every day, every so many-th
 
 
@@ -29,3 +31,13 @@ def one_in(number: int, rows: Iterable[Any], *, in_ci: int = IN_CI) -> list[Any]
         chosen.append(pytest.param(*values, marks=mark))
         others += 1
     return chosen
+
+
+def sampled(items: Sequence[pytest.Item]) -> Iterator[pytest.Item]:
+    """Give, in order, of a test with many rows the first and every third after it."""
+    tests = [item.nodeid.partition("[")[0] for item in items]
+    rows, seen = Counter(tests), Counter[str]()
+    for item, test in zip(items, tests, strict=True):
+        if rows[test] <= MANY or seen[test] % 3 == 0:
+            yield item
+        seen[test] += 1
