@@ -85,6 +85,10 @@ class InputError(RosPrivacyError):
         where = shown(file) or repr(file)
         super().__init__(f"{where}:{line}: {problem}; {hint}" if line else f"{where}: {problem}; {hint}")
 
+    def __reduce__(self) -> tuple[type[InputError], tuple[str, int, str, str]]:
+        """Return what it is made of again, where it comes from another process."""
+        return type(self), (self.file, self.line, self.problem, self.hint)
+
 
 class PolicyError(InputError):
     """A policy that cannot be read, or that sros2 would refuse."""
@@ -137,6 +141,10 @@ class InputErrors(RosPrivacyError):  # noqa: N818 - it is several
         distinct = {str(error): error for error in errors}.values()
         self.errors = tuple(sorted(distinct, key=lambda e: (e.file, e.line, str(e))))
         super().__init__("\n".join(str(error) for error in self.errors))
+
+    def __reduce__(self) -> tuple[type[InputErrors], tuple[tuple[InputError, ...]]]:
+        """Return what it is made of again, where it comes from another process."""
+        return type(self), (self.errors,)
 
 
 @contextmanager

@@ -44,6 +44,7 @@ BENCHMARKS = (
     "fleet_kernel",
     "fleet_robots",
     "fleet_wiring",
+    "fleet_questions",
     "fleet_spark",
     "pictures",
     "explorer",

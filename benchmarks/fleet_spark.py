@@ -1,4 +1,4 @@
-"""Robots that all differ: on Spark, on the cores of this machine, against in memory. From files to report."""
+"""Robots that all differ: in parts, by processes and by Spark here, against in memory. From files to report."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING
 from fleet_robots import small_robots
 from measure import NotMeasured, Row, compared, side_by_side, wall
 
-from rosprivacy.parts.fleet_on_spark import run_on_spark
+from rosprivacy.parts.fleet_in_parts import run_in_processes, run_on_spark
 from rosprivacy.parts.session import session
 from rosprivacy.settings import Settings
 from rosprivacy.systems.fleet_system import answer_fleet
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from measure import Measured
 
@@ -38,10 +38,14 @@ def rows(*, quick: bool) -> Iterator[Row]:
         note = f"{spark.sparkContext.defaultParallelism} cores, the start of Spark not counted"
         for robots in (100, 500, 2_000):
             file = different_robots(Path(folder) / f"different{robots}", robots)
-            yield Row(f"{robots:,} robots that differ: Spark on this machine", "in memory", partial(_both, file, note))
+            here, there = partial(run_in_processes, file, Settings()), partial(run_on_spark, file, Settings())
+            yield Row(f"{robots:,} robots that differ: in parts", "in memory", partial(_both, file, here, "wall"))
+            yield Row(
+                f"{robots:,} robots that differ: Spark on this machine", "in memory", partial(_both, file, there, note)
+            )
 
 
-def _both(file: str, note: str) -> Measured:
+def _both(file: str, in_parts: Callable[[], Result], note: str) -> Measured:
     """Time both.
 
     Raises
@@ -52,11 +56,11 @@ def _both(file: str, note: str) -> Measured:
     answers: dict[str, Result] = {}
     seconds = side_by_side(
         1,
-        lambda: answers.update(spark=run_on_spark(file, Settings())),
+        lambda: answers.update(parts=in_parts()),
         lambda: answers.update(memory=answer_fleet(file, Settings())),
-        clock=wall,  # Java's time is not ours
+        clock=wall,  # the time of other processes is not ours
     )
-    ours, other = (answers[engine] for engine in ("spark", "memory"))
+    ours, other = (answers[engine] for engine in ("parts", "memory"))
     assert _said(ours) == _said(other), "both engines answer alike"
     return compared(seconds, note)
 

@@ -111,6 +111,8 @@ OF_ITS_OWN = {  # modules that touch files in another way, and why none of these
     "report/pictures/graphviz_worker.py": "a process that draws, with pipes only",
     "src/rosprivacy/cli/diff.py": "looks how a file begins; what then reads it notes it",
     "src/rosprivacy/cli/output.py": "the null device, when standard output is gone",
+    "src/rosprivacy/parts/kept_parts.py": "parts that were read, for --resume; files of users are only hashed",
+    "src/rosprivacy/parts/processes.py": "values of a run in a folder of its own, gone at its end",
     "src/rosprivacy/parts/session.py": "settings of Spark in a folder of its own, gone at its end",
     "src/rosprivacy/private_neo4j/connection.py": "the private Neo4j",
     "src/rosprivacy/private_neo4j/jars.py": "the private Neo4j",

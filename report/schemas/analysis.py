@@ -205,7 +205,7 @@ class Assumptions(TypedDict):
         NotRequired[DatabaseEntry],
         "With --from-database: what was there, and changes that people made there, took the place of files.",
     ]
-    engine: Annotated[NotRequired[str], Keywords(const="spark"), "With --engine spark: analysed in parts."]
+    engine: Annotated[NotRequired[str], Keywords(enum=["parts", "spark"]), "With --engine: analysed in parts."]
     sanitizers_without_method: list[NoMethod]
     ontologies: Annotated[list[FileEntry], "Users' own, beside the shipped one."]
     law_as_of: Annotated[str, "Date of the newest law that the ontology knows."]

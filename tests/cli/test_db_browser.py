@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import json
 import re
 import zipfile
 from contextlib import suppress
@@ -11,7 +12,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from rosprivacy.private_neo4j import connection
-from rosprivacy.private_neo4j.browser_files import QUERIES, STYLE
+from rosprivacy.private_neo4j.browser_files import DASHBOARD, QUERIES, STYLE
+from rosprivacy.queries.dashboard import dashboard
 from rosprivacy.queries.library import pack
 from rosprivacy.queries.run import run as ask
 from rosprivacy.queries.saved import saved
@@ -77,7 +79,7 @@ def test_it_writes_the_files_and_says_where_everything_is(
     assert f"Password:  in {status.password_file}" in done.stdout
     assert f"Files:     {files}\n" in done.stdout
     assert loaded.password not in done.stdout
-    assert sorted(file.name for file in files.iterdir()) == sorted([STYLE, QUERIES])
+    assert sorted(file.name for file in files.iterdir()) == sorted([STYLE, QUERIES, DASHBOARD])
     with zipfile.ZipFile(io.BytesIO((files / QUERIES).read_bytes())) as archive:
         assert archive.namelist() == [f"rosprivacy/{name}.cypher" for name in pack()]
 
@@ -102,6 +104,21 @@ def test_every_saved_query_runs_as_it_is_and_gives_what_the_pack_gives(loaded: C
             assert re.findall(r"^// first: :param (\w+) ", text, re.MULTILINE) == open_ones
             given = dict.fromkeys(open_ones, "/camera")
             assert ask(driver, text, given).rows == ask(driver, query.text, query.values(given)).rows, query.name
+
+
+@pytest.mark.database
+def test_every_table_of_the_dashboard_runs_and_is_the_answer_of_the_pack(loaded: Connection) -> None:
+    """On a page no table lies on another, and each page says that this is no verdict of law."""
+    whole = json.loads(dashboard(pack()))
+    with connection.open_driver(loaded) as driver:
+        for shown in whole["pages"]:
+            about, *tables = shown["reports"]
+            assert (about["type"], "no legal verdict" in about["query"]) == ("text", True)
+            ends = [table["y"] + table["height"] for table in shown["reports"]]
+            assert [table["y"] for table in tables] == ends[:-1]
+            for table in tables:
+                query = pack()[table["id"]]
+                assert ask(driver, table["query"]).rows == ask(driver, query.text, query.values({})).rows, table["id"]
 
 
 @pytest.mark.thorough  # Neo4j's own page, which changes with its version only

@@ -18,7 +18,7 @@ from rosprivacy.ingest.fleet.alike_robots import alike
 from rosprivacy.ingest.fleet.fleet_file import read_fleet
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.parts.distributed import Task, analyse_in_parts
-from rosprivacy.parts.fleet_on_spark import file_reader, result
+from rosprivacy.parts.fleet_in_parts import SPARK, file_reader, result
 from rosprivacy.parts.shown_robots import shown
 from rosprivacy.parts.workers import filled
 from rosprivacy.question import Question
@@ -202,11 +202,11 @@ def doubts_of_fewer(got: dict[str, Any], expected: dict[str, Any]) -> None:
     assert len({sentence.partition(";")[0] for sentence in sentences}) == 1, sentences
 
 
-def documents(file: str, run: Callable[[str], Result]) -> None:
+def documents(file: str, run: Callable[[str], Result], engine: str = SPARK) -> None:
     """The same document, but that its rows for robots are those of fewer; ``run`` asks for what ``ASKED`` does."""
     expected, got = answer_fleet(file, ASKED).document(), run(file).document()
-    assert got["assumptions"].pop("engine") == "spark"
-    (in_parts,) = (row for row in got["diagnostics"] if row["file"] == "--engine spark")
+    assert got["assumptions"].pop("engine") == engine
+    (in_parts,) = (row for row in got["diagnostics"] if row["file"] == f"--engine {engine}")
     assert "open elements in the whole fleet: ways and distances are" in in_parts["message"]
     got["diagnostics"].remove(in_parts)
     purposes_of_fewer(got.pop("processed_for", []), expected.pop("processed_for", []))
@@ -251,7 +251,7 @@ def scattered(units: Sequence[Unit], size: int = 1) -> Listed:
     return Listed(tuple(tuple(units[i : i + size]) for i in range(0, len(units), size)))
 
 
-def in_list(file: str, size: int = 1) -> Result:
+def in_list(file: str, size: int = 1, engine: str = SPARK) -> Result:
     vocabulary = load()
     fleet = read_fleet(file, vocabulary)
     asked = Task(
@@ -262,4 +262,4 @@ def in_list(file: str, size: int = 1) -> Result:
         vocabulary.hierarchy,
     )
     found = analyse_in_parts(asked, partial(scattered, size=size))
-    return result(asked, found, shown(asked, found, "witness", 100), Question(ASKED, vocabulary, None, None, ""))
+    return result(asked, found, Question(ASKED, vocabulary, None, None, ""), engine)

@@ -14,6 +14,7 @@ from hypothesis import given
 
 from rosprivacy.analysis.answer import Verdict
 from rosprivacy.analysis.errors import InputErrors
+from rosprivacy.parts import distributed
 from rosprivacy.settings import Settings
 from rosprivacy.systems.fleet_system import answer_fleet
 from tests.helpers.fleet_files import policy, write
@@ -34,6 +35,13 @@ def test_in_parts_it_is_the_same(case: Case) -> None:
 def test_several_units_are_one_part(case: Case) -> None:
     same(case, partial(scattered, size=2))
     same(case, partial(scattered, size=100))
+
+
+@given(fleets())
+def test_however_few_robots_are_shown_all_are_counted(case: Case) -> None:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(distributed, "MOST_SHOWN", 1)
+        same(case, scattered)
 
 
 @pytest.mark.parametrize("size", [1, 3])

@@ -24,7 +24,7 @@ from rosprivacy.analysis.files_read import one_run
 from rosprivacy.analysis.model import IN_PARTS
 from rosprivacy.ingest.fleet.joins import OF_FLEET
 from rosprivacy.parts import session as spark
-from rosprivacy.parts.fleet_on_spark import run_on_spark
+from rosprivacy.parts.fleet_in_parts import run_on_spark
 from rosprivacy.parts.parquet import check_new, read
 from rosprivacy.parts.session import HOST
 from rosprivacy.private_neo4j import connection
@@ -127,7 +127,7 @@ def test_types_limit_nothing_and_the_answer_says_so(fleet_file: str) -> None:
     write("l.yaml", "labels: 1\nnodes: {/cam: {source: [Video]}, /uplink: {leak: [Video]}}\n")
     write("p.xml", policy("/cam>/a", "/uplink</a"))
     write("t.yaml", "types: 1\ntopics: {/a: [{type: std_msgs/msg/Bool, writers: [/cam]}]}\n")
-    said = "message types limit nothing on Spark: in memory there can be fewer findings"
+    said = "message types limit nothing in parts: in memory there can be fewer findings"
     got = run_on_spark(fleet_file, Settings()).document()
     of_engine = [row for row in got["diagnostics"] if row["file"] == "--engine spark"]
     assert [row["message"] for row in of_engine if row.get("code") != IN_PARTS] == [said]
@@ -145,7 +145,7 @@ def test_types_limit_nothing_and_the_answer_says_so(fleet_file: str) -> None:
 
 @pytest.mark.usefixtures("session")
 def test_decisions_are_refused(fleet_file: str) -> None:
-    with pytest.raises(InputError, match=r"^--decisions: on Spark no decisions are taken into account"):
+    with pytest.raises(InputError, match=r"^--decisions: --engine spark takes no decisions into account"):
         run_on_spark(fleet_file, Settings(decisions="d.yaml"))
 
 
@@ -220,7 +220,7 @@ def results(session: SparkSession, tmp_path_factory: pytest.TempPathFactory) -> 
 
 OWN = ("elements", "intakes", "enclaves", "memberships", "flows", "carried", "roles")
 ALIKE = ("verdict", "model", "shared", "view")  # properties of a robot
-NOT_SHOWN = "rides analysed-in-parts: of robots that are not shown no doubts are told"
+NOT_SHOWN = "rides analysed-in-parts: of robots that are not shown neither doubts nor open elements are told"
 
 
 def test_results_are_the_rows_of_every_robot(results: str, monkeypatch: pytest.MonkeyPatch) -> None:

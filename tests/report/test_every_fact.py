@@ -285,7 +285,7 @@ def stored(neo4j_server: Connection, tmp_path_factory: pytest.TempPathFactory) -
 @pytest.fixture(scope="module")
 def on_spark() -> Result:
     pytest.importorskip("pyspark", reason="without the [spark] extra")
-    from rosprivacy.parts.fleet_on_spark import run_on_spark
+    from rosprivacy.parts.fleet_in_parts import run_on_spark
 
     with chdir(ROOT), pytest.MonkeyPatch.context() as patch:
         # Spark's Java lives as long as the process, with the environment of its start: workers find the tests, too.

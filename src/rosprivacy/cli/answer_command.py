@@ -108,10 +108,19 @@ class Computed(NamedTuple):
     engine: Annotated[
         Engine,
         typer.Option(
-            help=r"Of a fleet: in memory here, or in parts on Apache Spark (the \[spark] extra).",
+            help=r"Of a fleet: in memory; in parts, by processes here; or so on Apache Spark (the \[spark] extra).",
             rich_help_panel=COMPUTED,
         ),
     ] = Engine.memory
+    resume: Annotated[
+        str | None,
+        typer.Option(
+            metavar="DIR",
+            show_default=False,
+            help="With --engine parts: keep there what was read, and go on with what a run that was killed has read.",
+            rich_help_panel=COMPUTED,
+        ),
+    ] = None
     master: Annotated[
         str | None,
         typer.Option(
@@ -270,9 +279,9 @@ def answer(
     settings = question.settings(inputs.settings)
     _check(inputs, computed, save_graph=bool(save_graph), per_policy=per_policy)
     style, known = written.style(form), FORMATS[form]
-    if both and (per_policy or computed.engine is Engine.spark or not known.both_views):
+    if both and (per_policy or computed.engine is not Engine.memory or not known.both_views):
         able = ", ".join(name for name, each in FORMATS.items() if each.both_views)
-        raise typer.BadParameter(f"--view both writes {able}, and takes neither --per-policy nor --engine spark")
+        raise typer.BadParameter(f"--view both writes {able}, and takes neither --per-policy nor a fleet in parts")
     if known.page:
         not_for_a_terminal(known.page, written.output)
     if per_policy:
@@ -281,10 +290,8 @@ def answer(
         from rosprivacy.report.atomic import check_outputs
 
         check_outputs([Path(computed.results), written.output])
-    if inputs.fleet and computed.engine is Engine.spark:
-        from rosprivacy.parts.fleet_on_spark import run_on_spark
-
-        result = run_on_spark(inputs.fleet, settings, computed.master, computed.results)
+    if inputs.fleet and computed.engine is not Engine.memory:
+        result = _in_parts(inputs.fleet, settings, computed)
     else:
         result = inputs.result(settings, both_views=both)
     graphs = {save_graph: _saved_graph(result)} if save_graph else {}
@@ -295,6 +302,14 @@ def answer(
     raise typer.Exit(exit_code(result, fail_on))
 
 
+def _in_parts(fleet: str, settings: Settings, computed: Computed) -> Result:
+    from rosprivacy.parts.fleet_in_parts import run_in_processes, run_on_spark
+
+    if computed.engine is Engine.spark:
+        return run_on_spark(fleet, settings, computed.master, computed.results)
+    return run_in_processes(fleet, settings, computed.resume)
+
+
 def _check(inputs: Inputs, computed: Computed, *, save_graph: bool, per_policy: bool) -> None:
     """Refuse options that make no sense beside others."""
     saved = ["--save-graph"] if save_graph else []
@@ -303,12 +318,15 @@ def _check(inputs: Inputs, computed: Computed, *, save_graph: bool, per_policy: 
         refuse("--from-database", "what is in the database", both)
     if inputs.fleet:
         refuse("--fleet", "what the fleet file names", both)
-    if computed.engine is Engine.spark:
-        refuse("--engine spark", "a fleet that nobody has decided about", inputs.given_options("decisions"))
+    engine = f"--engine {computed.engine.value}"
+    if computed.engine is not Engine.memory:
+        refuse(engine, "a fleet that nobody has decided about", inputs.given_options("decisions"))
         if not inputs.fleet:
-            raise typer.BadParameter("--engine spark is for fleets: give --fleet too")
-    elif computed.master or computed.results:
+            raise typer.BadParameter(f"{engine} is for fleets: give --fleet too")
+    if computed.engine is not Engine.spark and (computed.master or computed.results):
         raise typer.BadParameter("--master and --results are for --engine spark")
+    if computed.engine is not Engine.parts and computed.resume:
+        raise typer.BadParameter("--resume is for --engine parts")
     if per_policy:
         refuse("--per-policy", "policies by themselves", [*inputs.given_options("add"), *saved])
 

@@ -77,7 +77,7 @@ def browser(
 ) -> None:
     """Open the Neo4j Browser on the private Neo4j, with the program's colours and its questions as files to drop."""
     from rosprivacy.private_neo4j import connection
-    from rosprivacy.private_neo4j.browser_files import QUERIES, STYLE, address
+    from rosprivacy.private_neo4j.browser_files import DASHBOARD, QUERIES, STYLE, address
     from rosprivacy.private_neo4j.state import keep_private
 
     made = _browser_files(connection.start())
@@ -95,6 +95,7 @@ def browser(
         "Once in the page, drag these two files onto it:",
         f"    {STYLE}: the colours of the program's pictures",
         f"    {QUERIES}: the program's questions, in the side bar under the star",
+        f"{DASHBOARD} there is a dashboard for NeoDash",
     ]
     _print("\n".join(lines))
     if open_page:

@@ -39,6 +39,7 @@ class Engine(StrEnum):
     """What carries data through a fleet."""
 
     memory = "memory"
+    parts = "parts"
     spark = "spark"
 
 

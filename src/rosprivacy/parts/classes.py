@@ -85,7 +85,7 @@ class Classes:
             given = {run: self.leaving[run] for run in running}
             before = {run: arrived[run] for run in running}
             ask = partial(workers.classes_carried, leaving=given, before=before, counts=self.counts)
-            answers = kernels.map(ask).collect()
+            answers = list(kernels.map(ask).collect())
             for run in sorted(running):
                 new = np.bitwise_or.reduce([answer[run][0] for answer in answers])
                 self._brought[run] |= first_of(answer[run][1] for answer in answers)

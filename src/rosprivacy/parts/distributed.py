@@ -1,6 +1,6 @@
 """A fleet in parts: what each part says is put together here, and what leaves the border is handed out again.
 
-In: a fleet, and a cluster that does the same with each of its parts. Out: the answer of ``fleet_on_spark.py``. Only
+In: a fleet, and a cluster that does the same with each of its parts. Out: the answer of ``fleet_in_parts.py``. Only
 what is at the border travels between parts: sets of categories first; then, for each category, sets of classes of
 sources, from which pairs are counted. Ways are looked for in the end, among the robots that are shown.
 """
@@ -9,8 +9,7 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from dataclasses import dataclass, replace
-from functools import partial, reduce
-from operator import or_
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -54,6 +53,9 @@ if TYPE_CHECKING:
 
     Bits = NDArray[np.uint64]
     Indices = NDArray[np.int64]
+
+
+MOST_SHOWN = 200  # robots, for what is open on them: all are counted, and of a large fleet nobody reads all
 
 
 @dataclass(frozen=True, slots=True)
@@ -210,7 +212,8 @@ class _Run:
 
     def _check(self, report: Report, core: Some, built: Parts[workers.Built]) -> None:
         """Raise what is wrong with the input."""
-        workers.raised(report.problems)
+        if report.problems:
+            raise InputErrors(report.problems)
         problems: list[InputError] = []
         for number, flow in enumerate(self._fleet.flows):
             for side, end in enumerate(flow.ends):
@@ -221,7 +224,7 @@ class _Run:
         for place in report.restated if crossing_lines(self._fleet) else ():
             what = "a flow within a robot, of which a label file says more"
             problems.append(
-                FleetError(place.file, place.line, what, "for --engine spark, say all of it in one of both")
+                FleetError(place.file, place.line, what, "for a fleet in parts, say all of it in one of both")
             )
         if problems:
             raise InputErrors(problems)
@@ -237,11 +240,12 @@ class _Run:
     def _steps(self, ours: Spread, ready: Parts[workers.Ready]) -> set[tuple[int, int]]:
         """What data is made into other data anywhere."""
         found = {step for some in ours.derives.values() for step in some}
-        problems: list[workers.Problem] = []
+        problems: list[InputError] = []
         for wrong, some in ready.map(workers.steps).collect():
             problems += wrong
             found |= some
-        workers.raised(problems)
+        if problems:
+            raise InputErrors(problems)
         return found
 
     def _carry(self, middle: Core, kernels: Parts[workers.Kernel], ours: Spread) -> Bits:
@@ -250,7 +254,7 @@ class _Run:
         while True:
             arrives, leaves = middle.carried(arrived)
             leaving = leaves[middle.border]
-            answers = kernels.map(partial(workers.carried, leaving=leaving, before=arrived)).collect()
+            answers = list(kernels.map(partial(workers.carried, leaving=leaving, before=arrived)).collect())
             before = arrived.copy()
             for bits, _ in answers:
                 arrived |= bits
@@ -260,44 +264,52 @@ class _Run:
                 return leaving
 
     def _put_together(
-        self, answers: Sequence[workers.PartAnswer], classes: Classes, report: Report, at: Border, piece: Piece,
+        self, answers: Iterable[workers.PartAnswer], classes: Classes, report: Report, at: Border, piece: Piece,
         ours: Spread, categories: Sequence[str], mask: int, leaving: Bits, ready: Parts[workers.Ready],
     ) -> Found:  # fmt: skip
-        sources = [*classes.own_sources(), *(source for answer in answers for source in answer.sources)]
-        crossed = Crossed(self._likeness)
-        crossed.within(pair for answer in answers for pair in answer.within)
-        crossed.between(sources, [*classes.own_ends(), *(end for answer in answers for end in answer.ends)])
+        sources, ends = classes.own_sources(), classes.own_ends()
+        crossed, opened = Crossed(self._likeness), _Opened(self._likeness)
+        closed: list[ClosedByShipped] = []
+        reasons, counts = grounds(ours, mask), Counts()
+        for answer in answers:  # one at a time: together they can be more than memory holds
+            crossed.within(answer.within)
+            opened.add(answer)
+            sources += answer.sources
+            ends += answer.ends
+            closed += answer.closed
+            reasons |= answer.grounds
+            counts += answer.counts
+        crossed.between(sources, ends)
         groups, shares = crossed.tallies.groups(), crossed.tallies.shares
-        open_at, count, kinds = _opened(answers, self._likeness)
         mine = {v: e for v, e in enumerate(piece.graph.elements) if e.robot in (HUB, GATE)}
         core_open = workers.open_elements(replace(piece, border=tuple(mine)), ours, mask)
         unit = unit_of(split(self._task.groups)[1])
         needed = self._units | classes.bringers(groups, sources)
-        needed |= {unit[robot] for robot in kinds if robot in unit}
+        needed |= {unit[robot] for robot in opened.robots if robot in unit}
         onward = {
             element
             for flow, (from_core, _) in zip(self._fleet.flows, at.ends, strict=True)
             for element in (from_core if COLON in flow.target else ())
         }
         beyond = [v for v, element in enumerate(piece.graph.elements) if element in onward or element.robot == HUB]
-        closed = [*workers.doubtful(ours, mask, beyond), *(row for answer in answers for row in answer.closed)]
+        closed += workers.doubtful(ours, mask, beyond)
         shown = _one_of_each(closed, self._likeness)
         needed |= {unit[row.channel.robot] for row in shown if row.channel.robot in unit}
-        ends = (element.robot for group in groups for element in (group.pair.source, group.pair.leak))
-        needed |= {unit[robot] for robot in ends if robot in unit}
-        lacking = reduce(or_, (answer.grounds for answer in answers), grounds(ours, mask)).lacking
+        at_ends = (element.robot for group in groups for element in (group.pair.source, group.pair.leak))
+        needed |= {unit[robot] for robot in at_ends if robot in unit}
+        lacking = reasons.lacking
         verdict = Verdict.of(
             leak=any(group.count.all > group.count.dismissed for group in groups),
-            is_open=bool(count or core_open),
+            is_open=bool(opened.count or core_open),
             grounded=not lacking and not unread(report.diagnostics),
         )
-        counts = sum((answer.counts for answer in answers), counted(piece.graph, ours, self._likeness, (), mine))
+        counts += counted(piece.graph, ours, self._likeness, (), mine)
         return Found(
             emitted=tuple(categories),
             verdict=verdict,
             lacking=lacking,
             groups=groups,
-            deviants=different(shares, open_at, self._likeness),
+            deviants=different(shares, opened.at, self._likeness),
             units=frozenset(needed),
             examples=frozenset(needed | crossed.examples | classes.all_bringers()),
             leaking=frozenset(r for r, some in shares.items() if not all(share.dismissed for share in some)),
@@ -308,7 +320,7 @@ class _Run:
             parts=ready,
             core=(piece, ours),
             border=at,
-            open=count + len(core_open),
+            open=opened.count + len(core_open),
             closed=shown,
             broken=frozenset(e.robot for row in closed if row.rank is Rank.BREAKS for e in row.at),
         )
@@ -325,21 +337,37 @@ def _one_of_each(closed: Iterable[ClosedByShipped], likeness: Likeness) -> tuple
     return tuple(first.values())
 
 
-def _opened(
-    answers: Iterable[workers.PartAnswer], likeness: Likeness
-) -> tuple[dict[str, frozenset[Element]], int, set[str]]:
-    """What is open on each robot; on how many elements of the fleet; and a robot for each kind of open element."""
-    open_at: dict[str, frozenset[Element]] = {}
-    count = 0
-    first: dict[tuple[Element, tuple[str, ...]], str] = {}
-    for answer in answers:
+class _Opened:
+    """What is open in the parts, put together one after the other.
+
+    Attributes
+    ----------
+    count
+        How many elements of the fleet.
+    at
+        Robot -> its open elements, without it; of robots that others of their model are compared with.
+    robots
+        Those that are shown for it: in order, each that has a kind of open element which none before has.
+    """
+
+    def __init__(self, likeness: Likeness) -> None:
+        self.count = 0
+        self.at: dict[str, frozenset[Element]] = {}
+        self.robots: set[str] = set()
+        self._likeness = likeness
+        self._of_model = Counter(likeness.models.values())
+        self._kinds: set[tuple[Element, tuple[str, ...]]] = set()
+
+    def add(self, answer: workers.PartAnswer) -> None:
         sets = [frozenset(element for element, _ in some) for some in answer.sets]
         for robot, number in answer.open.items():
-            open_at[robot] = sets[number]
-            count += likeness.weight(robot) * len(sets[number])
-            for kind in answer.sets[number] if likeness.weight(robot) else ():
-                first[kind] = min(robot, first.get(kind, robot))
-    return open_at, count, set(first.values())
+            weight = self._likeness.weight(robot)
+            self.count += weight * len(sets[number])
+            if self._of_model[self._likeness.models.get(robot, "")] > 1:
+                self.at[robot] = sets[number]
+            if weight and len(self.robots) < MOST_SHOWN and not answer.sets[number] <= self._kinds:
+                self._kinds |= answer.sets[number]
+                self.robots.add(robot)
 
 
 def _flows_between(report: Report) -> int:

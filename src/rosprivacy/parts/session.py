@@ -23,6 +23,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import ClusterError, InputError, shown
+from rosprivacy.parts.processes import SAFE_PATH, environment
 from rosprivacy.report.installing import command_for
 
 if TYPE_CHECKING:
@@ -34,7 +35,6 @@ if TYPE_CHECKING:
 LOCAL = "local[*]"
 HOST = "127.0.0.1"
 MASTERS = re.compile(r"local(\[(\*|[0-9]+)(,[0-9]+)?\])?|spark://.+|yarn|k8s://.+")
-SAFE_PATH = {"PYTHONSAFEPATH": "1"}  # as ``python -P``: the current folder is not searched for modules
 PER_CORE = 4  # parts: some take longer than others
 MISSING = "--engine spark needs pyspark;"
 NO_JAVA = "--engine spark needs Java 17 or later; install one, or get one with"
@@ -206,16 +206,8 @@ def _environment(master: str, folder: Path) -> Iterator[None]:
         changed["PYSPARK_PYTHON"] = sys.executable
     if os.name == "posix":
         changed["JAVA_HOME"] = str(_java_home(folder))
-    before = {key: os.environ.get(key) for key in changed}
-    os.environ.update(changed)
-    try:
+    with environment(changed):
         yield
-    finally:
-        for key, value in before.items():
-            if value is None:
-                del os.environ[key]
-            else:
-                os.environ[key] = value
 
 
 def _spark_home() -> Path:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 import numpy as np
 
-from rosprivacy.analysis.errors import InputError, InputErrors
+from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.findings.closures import closed_by_shipped
 from rosprivacy.analysis.findings.concerns import concerns
 from rosprivacy.analysis.findings.open_questions import Grounds, grounds, open_bits
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rosprivacy.analysis.answer import ClosedByShipped
+    from rosprivacy.analysis.errors import InputError
     from rosprivacy.analysis.findings.concerns import Concern
     from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.analysis.hierarchy import Hierarchy
@@ -49,20 +50,6 @@ if TYPE_CHECKING:
 
     Bits = NDArray[np.uint64]
     Read = Callable[[Robot], Member]  # a robot -> the same with its graph
-
-Problem = tuple[type[InputError], str, int, str, str]  # an error in a form that can be sent
-
-
-def problems_of(errors: InputErrors) -> tuple[Problem, ...]:
-    """Return problems in a form that can be sent."""
-    return tuple((type(e), e.file, e.line, e.problem, e.hint) for e in errors.errors)
-
-
-def raised(problems: Iterable[Problem]) -> None:
-    """Raise problems again, if there are any."""
-    errors = [kind(file, line, problem, hint) for kind, file, line, problem, hint in problems]
-    if errors:
-        raise InputErrors(errors)
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +84,7 @@ class Report:
         Robots at which data is let out or kept, if it gets there.
     """
 
-    problems: tuple[Problem, ...] = ()
+    problems: tuple[InputError, ...] = ()
     emitted: frozenset[str] = frozenset()
     sources: frozenset[tuple[str, str]] = frozenset()
     labels: frozenset[tuple[str, str, bool]] = frozenset()
@@ -136,7 +123,7 @@ def built(units: Sequence[Unit], fleet: Fleet, view: str, reader: Callable[[], R
             robots = [replace(member, robot=robot) for group, member in members for robot in group.placed]
             placed.append(place_some(fleet, robots, view, own=False))
         except InputErrors as error:
-            reports.append(Report(problems=problems_of(error)))
+            reports.append(Report(problems=error.errors))
             continue
         naming = _naming(fleet, unit.name, placed[-1], alike)
         reports.append(replace(report_of(placed[-1], [member for _, member in members]), naming=naming))
@@ -203,19 +190,19 @@ def report(part: Built) -> Report:
     return part.report
 
 
-T = TypeVar("T")
+T_co = TypeVar("T_co", covariant=True)
 S = TypeVar("S")
 Run = tuple[int, bool]  # number of the category; whether nothing passes its leaks
 
 
-class Parts(Protocol[T]):
+class Parts(Protocol[T_co]):
     """A value for each part, wherever it is."""
 
     def map(self, function: Callable[[Any], S], *, keep: bool = False) -> Parts[S]:
         """Do the same with each; ``keep`` what comes of it for more than one use."""
 
-    def collect(self) -> list[T]:
-        """Bring all values here, in order."""
+    def collect(self) -> Iterable[T_co]:
+        """Bring all values here, in order; once."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -235,7 +222,7 @@ class Ready:
     spread: Spread | None
     cut: PartNetwork | None
     likeness: Likeness
-    problems: tuple[Problem, ...] = ()
+    problems: tuple[InputError, ...] = ()
 
 
 def ready(
@@ -247,11 +234,11 @@ def ready(
     try:
         spread = meaning(piece.graph, piece.bound, hierarchy, categories)
     except InputErrors as error:
-        return Ready(part.names, piece, None, None, part.likeness, problems_of(error))
+        return Ready(part.names, piece, None, None, part.likeness, error.errors)
     return Ready(part.names, piece, spread, PartNetwork.of(spread, piece.border, piece.unit), part.likeness)
 
 
-def steps(part: Ready) -> tuple[tuple[Problem, ...], frozenset[tuple[int, int]]]:
+def steps(part: Ready) -> tuple[tuple[InputError, ...], frozenset[tuple[int, int]]]:
     """Return what data is made into other data in a part: bits of the spread."""
     derives = part.spread.derives.values() if part.spread else ()
     return part.problems, frozenset(step for some in derives for step in some)
@@ -430,12 +417,14 @@ def doubtful(
 def _open(
     part: Ready, spread: Spread, mask: int
 ) -> tuple[dict[str, int], tuple[frozenset[tuple[Element, tuple[str, ...]]], ...]]:
-    """What is open on each robot, where many have the same."""
+    """What is open on each robot, where many have the same: unit by unit, however many are in the part."""
+    unit = {element.robot: number for element, number in zip(part.piece.graph.elements, part.piece.unit, strict=True)}
     by_robot: dict[str, set[tuple[Element, tuple[str, ...]]]] = {}
     for element, names in open_elements(part.piece, spread, mask).items():
         by_robot.setdefault(element.robot, set()).add((part.likeness.alike(element), names))
     numbers: dict[frozenset[tuple[Element, tuple[str, ...]]], int] = {}
-    on_robots = {robot: numbers.setdefault(frozenset(some), len(numbers)) for robot, some in sorted(by_robot.items())}
+    in_order = sorted(by_robot, key=lambda robot: (unit[robot], robot))
+    on_robots = {robot: numbers.setdefault(frozenset(by_robot[robot]), len(numbers)) for robot in in_order}
     return on_robots, tuple(numbers)
 
 

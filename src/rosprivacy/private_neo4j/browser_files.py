@@ -1,4 +1,4 @@
-"""What the Neo4j Browser is given: a style sheet with the colours of our pictures, and our questions as saved queries.
+"""What the Neo4j Browser is given: a style sheet with our colours, our questions as saved queries and as a dashboard.
 
 In: which categories there are. Out: files by name. The labels and types come from the schema that the program loads by.
 """
@@ -10,6 +10,7 @@ from urllib.parse import quote
 
 from rosprivacy.ingest.neo4j_graph.ids import carries
 from rosprivacy.ingest.neo4j_graph.schema import CARRIED, ELEMENT, FLOWS_TO, KIND_LABELS, NODES, RELATIONSHIPS
+from rosprivacy.queries.dashboard import dashboard
 from rosprivacy.queries.library import pack
 from rosprivacy.queries.saved import zipped
 from rosprivacy.report.pictures.grass import OUTLINED, grass
@@ -19,13 +20,13 @@ from rosprivacy.report.stored import CALLED_BY
 if TYPE_CHECKING:
     from collections.abc import Collection
 
-STYLE, QUERIES = "rosprivacy.grass", "rosprivacy-queries.zip"
+STYLE, QUERIES, DASHBOARD = "rosprivacy.grass", "rosprivacy-queries.zip", "rosprivacy-neodash.json"
 CATEGORIES = "MATCH (c:DataCategory) RETURN c.label AS label, NOT EXISTS { (c)-[:BROADER]->() } AS top"
 FIRST = "MATCH path = ()-[r]->() WHERE type(r) STARTS WITH 'CARRIES_' RETURN path LIMIT 300"
 
 
 def browser_files(labels: Collection[str], tops: Collection[str]) -> dict[str, str | bytes]:
-    """Return the files that are dropped on the Browser's page.
+    """Return the files that are dropped on the Browser's page, and the dashboard that NeoDash loads.
 
     Parameters
     ----------
@@ -46,7 +47,7 @@ def browser_files(labels: Collection[str], tops: Collection[str]) -> dict[str, s
             if node is not ELEMENT
         },
     )
-    return {STYLE: style, QUERIES: zipped(pack().values())}
+    return {STYLE: style, QUERIES: zipped(pack().values()), DASHBOARD: dashboard(pack())}
 
 
 def address(page: str, bolt: str, user: str) -> str:

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 __all__ = ["Connection", "Status", "connection", "open_driver", "start", "state_folder", "status", "stop"]
 
 USER = "neo4j"
+UNTRUSTED = "name the file of its authority in SSL_CERT_FILE; an address with +ssc trusts any, for a trial"
 SCHEMES = ("neo4j", "neo4j+s", "neo4j+ssc", "bolt", "bolt+s", "bolt+ssc")
 START_LIMIT = 120.0  # seconds
 CONNECT_LIMIT = 15.0
@@ -191,10 +192,12 @@ def open_driver(to: Connection) -> Iterator[neo4j.Driver]:
     except AuthError as error:
         raise DatabaseError(f"{place}: user name or password is not accepted; check {to.origin}") from error
     except (ServiceUnavailable, SessionExpired) as error:
-        problem = "the server is lost" if verified else "no Neo4j answers there"
-        raise DatabaseError(
-            f"{place}: {problem}: {_first_line(error)}; start it, or check address and network"
-        ) from error
+        if (distrust := _distrust(error)) and not verified:
+            problem, hint = f"its certificate is not trusted: {distrust}", UNTRUSTED
+        else:
+            problem = f"{'the server is lost' if verified else 'no Neo4j answers there'}: {_first_line(error)}"
+            hint = "start it, or check address and network"
+        raise DatabaseError(f"{place}: {problem}; {hint}") from error
     except (DriverError, Neo4jError) as error:
         if verified:
             raise
@@ -221,6 +224,17 @@ def _check(uri: str) -> None:
     if parts.scheme not in SCHEMES or not parts.hostname or port == 0:
         hint = f"write one like bolt://localhost:7687 ({', '.join(SCHEMES)})"
         raise DatabaseError(f"{shown(uri)}: is not the address of a Neo4j; {hint}")
+
+
+def _distrust(error: BaseException | None) -> str:
+    """What is wrong with a certificate, if that is behind an error of the driver."""
+    import ssl  # noqa: PLC0415 - light start
+
+    while error is not None:
+        if isinstance(error, ssl.SSLCertVerificationError):
+            return error.verify_message
+        error = error.__cause__ or error.__context__
+    return ""
 
 
 def _first_line(error: Exception) -> str:

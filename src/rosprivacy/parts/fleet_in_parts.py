@@ -1,4 +1,4 @@
-"""The way of a fleet through Apache Spark: fleet file -> units on partitions -> the answer of ``fleet_on_spark.py``.
+"""The way of a fleet through its parts: fleet file -> units, handed out to processes or to Apache Spark -> the answer.
 
 In: a fleet file. Out: a ``Result`` like that of ``answer_fleet``, in whose graph are the robots that are shown.
 """
@@ -26,7 +26,9 @@ from rosprivacy.ingest.labels.countries import countries
 from rosprivacy.ingest.labels.label_file import read_labels
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.parts.distributed import Task, analyse_in_parts
+from rosprivacy.parts.kept_parts import kept_parts
 from rosprivacy.parts.parquet import check_new, write
+from rosprivacy.parts.processes import processes
 from rosprivacy.parts.session import scatter, session
 from rosprivacy.parts.shown_robots import shown
 from rosprivacy.parts.unit_rows import Plan
@@ -41,12 +43,14 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.fleet.dds_domains import Member
     from rosprivacy.ingest.fleet.fleet_file import Fleet, Robot
     from rosprivacy.parts.distributed import Found
-    from rosprivacy.parts.shown_robots import ShownRobots
     from rosprivacy.parts.units import Unit
     from rosprivacy.parts.workers import Read
     from rosprivacy.question import Question
     from rosprivacy.result import Result
     from rosprivacy.settings import Settings
+
+
+SPARK, PROCESSES = "spark", "parts"  # as ``--engine`` names them
 
 
 def run_on_spark(file: str, settings: Settings, master: str | None = None, results: str | None = None) -> Result:
@@ -66,31 +70,56 @@ def run_on_spark(file: str, settings: Settings, master: str | None = None, resul
     ClusterError
         If there is no Spark, or something fails there.
     """
-    if settings.decisions:
-        raise InputError(
-            "--decisions", 0, "on Spark no decisions are taken into account", "leave them out, or analyse in memory"
-        )
-    plain = replace(settings, progress=unchanged, today=settings.today or judged_on(os.environ))
-    question = question_of(plain)
-    vocabulary = question.vocabulary
-    fleet = read_fleet(file, vocabulary, include_root=settings.include_root, bounds=settings.bounds)
-    question = in_contexts(question, contexts_of(fleet, question))
-    task = Task(
-        fleet, alike(fleet), settings.view, partial(file_reader, plain, str(Path.cwd()), fleet.root),
-        vocabulary.hierarchy, question.categories_asked, question.today,
-    )  # fmt: skip
+    task, question = task_of(file, settings, SPARK)
     if results:
         check_new(results)
         _check_whole(task)
     with session(master) as spark:
         whole = analyse_in_parts(task, partial(scatter, spark))
-        _note_what_workers_read(whole)
-        sample = shown(task, whole, settings.paths, settings.max_paths)
-        answer = result(task, whole, sample, question)
+        answer = result(task, whole, question, SPARK)
         if results:
-            plan, units = plan_of(task, whole, answer, plain)
+            plan, units = plan_of(task, whole, answer, question.settings)
             write(spark, results, units, plan, answer.document())
         return answer
+
+
+def run_in_processes(file: str, settings: Settings, resume: str | None = None) -> Result:
+    """Read a fleet and analyse it part by part on the processors of this machine.
+
+    Parameters
+    ----------
+    resume
+        Folder in which parts are kept that were read, for a run that goes on where this one is killed.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of the input, one line each.
+    ClusterError
+        If a process ends before its part is done.
+    """
+    task, question = task_of(file, settings, PROCESSES)
+    resumed = kept_parts(resume, question.settings) if resume else None
+    with processes(settings.progress, resumed) as scatter_here:
+        return result(task, analyse_in_parts(task, scatter_here), question, PROCESSES)
+
+
+def task_of(file: str, settings: Settings, engine: str) -> tuple[Task, Question]:
+    """Read a fleet file, and return what is analysed and what is asked."""
+    if settings.decisions:
+        raise InputError(
+            "--decisions", 0, f"--engine {engine} takes no decisions into account",
+            "leave them out, or analyse in memory",
+        )  # fmt: skip
+    plain = replace(settings, progress=unchanged, today=settings.today or judged_on(os.environ))
+    question = question_of(plain)
+    fleet = read_fleet(file, question.vocabulary, include_root=settings.include_root, bounds=settings.bounds)
+    question = in_contexts(question, contexts_of(fleet, question))
+    task = Task(
+        fleet, alike(fleet), settings.view, partial(file_reader, plain, str(Path.cwd()), fleet.root),
+        question.vocabulary.hierarchy, question.categories_asked, question.today,
+    )  # fmt: skip
+    return task, question
 
 
 def contexts_of(fleet: Fleet, question: Question) -> frozenset[str]:
@@ -149,13 +178,15 @@ def _check_whole(task: Task) -> None:
         raise InputErrors(problems)
 
 
-def result(task: Task, whole: Found, sample: ShownRobots, question: Question) -> Result:
-    """Put together what a report says."""
+def result(task: Task, whole: Found, question: Question, engine: str) -> Result:
+    """Look for the ways of what is shown, and put together what a report says."""
+    _note_what_workers_read(whole)
+    sample = shown(task, whole, question.settings.paths, question.settings.max_paths)
     rests_on = {
         **({"countries_as_of": countries().as_of} if whole.report.countries else {}),
         **named_files(sorted(whole.report.sources), sorted(whole.report.labels), question.settings),
         "fleet": [{"file": name, "sha256": digest} for name, digest in task.fleet.sources],
-        "engine": "spark",
+        "engine": engine,
         **types_read(sorted(whole.report.types, key=lambda file: file.file)),
         **({"type_limits": None} if whole.report.typed else {}),
     }
@@ -165,12 +196,12 @@ def result(task: Task, whole: Found, sample: ShownRobots, question: Question) ->
         "unknown ends, what is denied, sanitized, derived, taken away, stated of purposes and bases, or not stated, "
         "and what the answer hangs on"
     )
-    engine = Place("--engine spark", 0)
+    place = Place(f"--engine {engine}", 0)
     said = whole.report.diagnostics
     if whole.report.typed and question.type_limits:
-        unlimited = "message types limit nothing on Spark: in memory there can be fewer findings"
-        said += (Diagnostic(engine, Severity.NOTICE, unlimited),)
-    said += (Diagnostic(engine, Severity.WARNING, bounds, IN_PARTS),)
+        unlimited = "message types limit nothing in parts: in memory there can be fewer findings"
+        said += (Diagnostic(place, Severity.NOTICE, unlimited),)
+    said += (Diagnostic(place, Severity.WARNING, bounds, IN_PARTS),)
     policies = {policy.file: policy for member in sample.members.values() for policy in member.policies}
     labels = {file.file: file for member in sample.members.values() for file in member.files}
     system = System(
