@@ -26,6 +26,7 @@ from rosprivacy.report.cnil.inventory import kinds_of
 from rosprivacy.report.cnil.markup import Html, escaped, joined, paragraph
 from rosprivacy.report.cnil.told import NAMES, Told
 from rosprivacy.report.document.analysis import verdict_facts
+from rosprivacy.report.document.contents import required
 from rosprivacy.report.element_counts import count_elements
 from rosprivacy.report.verdict import verdict_sentence
 
@@ -58,9 +59,8 @@ def cnil_pia(document: Document, created: str, language: str = "en") -> dict[str
     kinds = kinds_of(document)
     told = Told(Words(language), vocabulary.categories)
     accepted = _accepted(document, told.words)
-    known = Known(
-        analysis, kinds, document.outside, accepted, document.ways, vocabulary.hierarchy, told, document.processed
-    )
+    ways, processed = required(document.ways), required(document.processing).by_kind
+    known = Known(analysis, kinds, document.outside, accepted, ways, vocabulary.hierarchy, told, processed)
     measures = list(_measures(known))
     sentence = verdict_sentence(verdict_facts(analysis, document.doubts, assumptions), told.words)
     note = _note(analysis, assumptions, _fleet(view, told) if view else "", sentence, told)

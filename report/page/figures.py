@@ -9,16 +9,17 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.report.catalogs.words import plain
+from rosprivacy.report.document.contents import required
 from rosprivacy.report.page.inline import Inline, Wishes, picture_of_all, pictures_of
 from rosprivacy.report.page.redacted_pictures import renamed
 from rosprivacy.report.pictures.added_flows import marking
-from rosprivacy.report.pictures.graphviz import available
+from rosprivacy.report.pictures.graphviz import Graphviz, available
 from rosprivacy.report.pictures.looks import BEYOND, CLEANED, INK, LINE_LOOKS, ROLE_LOOKS, SHORTEST, WAY, Look
 from rosprivacy.report.pictures.overview import drawable
 from rosprivacy.report.pictures.phrases import Phrases
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.report.catalogs.words import Words
@@ -80,20 +81,29 @@ def figures(
     wishes = Wishes(say=say, labels=labels)
     if aliases is not None:
         wishes = replace(wishes, change=lambda picture: renamed(picture, aliases))
-    found = {}
-    for entry, made in zip(
-        entries, pictures_of(analysis, (findings[entry.id] for entry in entries), wishes), strict=True
-    ):
-        room -= len(made.svg.encode()) if made else 0
+    with Graphviz() as graphviz:  # one process for all of them
+        pictures = pictures_of(
+            graphviz, required(document.paths_to_leaks), (findings[entry.id] for entry in entries), wishes
+        )
+        found, room = _fitting([entry.id for entry in entries], pictures, room)
+        picture, rows = _overview(graphviz, analysis, report, wishes)
+        beyond = _beyond(graphviz, document, report, wishes, room)
+    return Figures(found, overview=picture, drawn=rows, beyond=beyond)
+
+
+def _fitting(ids: Iterable[str], pictures: Iterable[Inline | None], room: int) -> tuple[dict[str, Inline], int]:
+    """The pictures of findings, in their order, for which there is room, and how much is left; less than 0 for none."""
+    found: dict[str, Inline] = {}
+    for finding, picture in zip(ids, pictures, strict=True):
+        room -= len(picture.svg.encode()) if picture else 0
         if room < 0:
             break
-        if made:
-            found[entry.id] = made
-    picture, rows = _overview(analysis, report, wishes)
-    return Figures(found, overview=picture, drawn=rows, beyond=_beyond(document, report, wishes, room))
+        if picture:
+            found[finding] = picture
+    return found, room
 
 
-def _beyond(document: Document, report: Outline, wishes: Wishes, room: int) -> dict[str, Inline]:
+def _beyond(graphviz: Graphviz, document: Document, report: Outline, wishes: Wishes, room: int) -> dict[str, Inline]:
     """What only the enforced view has, with the steps marked that no profile allows, while there is room."""
     if not document.enforced or not report.beyond or room < 0:
         return {}
@@ -101,17 +111,11 @@ def _beyond(document: Document, report: Outline, wishes: Wishes, room: int) -> d
     labels = {entry.id: report.words("entry.picture", way=entry.brief) for entry in report.beyond}
     marked = replace(wishes, change=lambda picture: renamed_as(mark(picture)), labels=labels)
     added = [one.finding for one in document.enforced.added]
-    found = {}
-    for finding, made in zip(added, pictures_of(document.enforced.analysis, added, marked), strict=True):
-        room -= len(made.svg.encode()) if made else 0
-        if room < 0:
-            break
-        if made:
-            found[finding.id] = made
-    return found
+    pictures = pictures_of(graphviz, required(document.enforced.paths_to_leaks), added, marked)
+    return _fitting([finding.id for finding in added], pictures, room)[0]
 
 
-def _overview(analysis: Analysis, report: Outline, wishes: Wishes) -> tuple[Inline | None, int]:
+def _overview(graphviz: Graphviz, analysis: Analysis, report: Outline, wishes: Wishes) -> tuple[Inline | None, int]:
     """One picture of the first things to decide, and how many they are."""
     findings = {finding.id: finding for finding in analysis.findings}
     rows = [[findings[entry.id] for entry in row.entries if entry.id in findings] for row in report.opening.rows]
@@ -121,7 +125,7 @@ def _overview(analysis: Analysis, report: Outline, wishes: Wishes) -> tuple[Inli
     if not shown:
         return None, 0
     label = plain(report.words("opening.picture"))
-    return picture_of_all(analysis, shown, replace(wishes, labels={shown[0].id: label})), count
+    return picture_of_all(graphviz, analysis, shown, replace(wishes, labels={shown[0].id: label})), count
 
 
 def page_legend(words: Words, *, beyond: bool = False) -> list[tuple[Look, bool, str]]:

@@ -15,7 +15,7 @@ from markupsafe import Markup
 from rosprivacy.analysis.errors import DrawingError
 from rosprivacy.analysis.text import shortened
 from rosprivacy.report.pictures.dot import FONT, SIZE, dot
-from rosprivacy.report.pictures.graphviz import Graphviz, Job, TooLongError
+from rosprivacy.report.pictures.graphviz import Job, TooLongError
 from rosprivacy.report.pictures.layout import ORDERED, way_of
 from rosprivacy.report.pictures.looks import INK, PALE
 from rosprivacy.report.pictures.narrow import folded
@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.answer import Analysis, Finding
+    from rosprivacy.analysis.findings.flows_to_leaks import PathsToLeaks
+    from rosprivacy.report.pictures.graphviz import Graphviz
     from rosprivacy.report.pictures.phrases import Phrases
     from rosprivacy.report.pictures.picture import Picture
 
@@ -77,13 +79,8 @@ class Inline:
     all_paths: bool
 
 
-def picture_of(analysis: Analysis, finding: Finding, wishes: Wishes | None = None) -> Inline | None:
-    """Return the picture of a finding, see ``pictures_of``."""
-    return next(pictures_of(analysis, [finding], wishes))
-
-
 def pictures_of(
-    analysis: Analysis, findings: Iterable[Finding], wishes: Wishes | None = None
+    graphviz: Graphviz, paths: PathsToLeaks, findings: Iterable[Finding], wishes: Wishes | None = None
 ) -> Iterator[Inline | None]:
     """Return a picture of each finding, as an ``<svg>`` element for one HTML page; None where none could be drawn.
 
@@ -93,32 +90,32 @@ def pictures_of(
     Raises
     ------
     DrawingError
-        If Graphviz is not installed, or does not end.
+        If Graphviz does not end.
 
     Notes
     -----
-    All are drawn by one process, one after the other: linear in the findings.
+    One after the other: linear in the findings.
     """
     wishes = wishes or Wishes()
-    views = FindingViews(analysis, wishes.say)
-    with Graphviz() as graphviz:
-        for finding in findings:
-            whole = folded(views.of(finding, PER_BOX * wishes.bound))
-            picture = bounded(whole, wishes.bound)
-            yield _drawn(graphviz, picture, wishes, finding, all_paths=_is_whole(picture, whole))
+    views = FindingViews(paths, wishes.say)
+    for finding in findings:
+        whole = folded(views.of(finding, PER_BOX * wishes.bound))
+        picture = bounded(whole, wishes.bound)
+        yield _drawn(graphviz, picture, wishes, finding, all_paths=_is_whole(picture, whole))
 
 
-def picture_of_all(analysis: Analysis, findings: Sequence[Finding], wishes: Wishes) -> Inline | None:
+def picture_of_all(
+    graphviz: Graphviz, analysis: Analysis, findings: Sequence[Finding], wishes: Wishes
+) -> Inline | None:
     """Return the shortest paths of findings in one picture; None where it could not be drawn.
 
     Raises
     ------
     DrawingError
-        If Graphviz is not installed, or does not end.
+        If Graphviz does not end.
     """
     picture = folded(overview(analysis, findings, wishes.say))
-    with Graphviz() as graphviz:
-        return _drawn(graphviz, picture, wishes, findings[0], all_paths=True)
+    return _drawn(graphviz, picture, wishes, findings[0], all_paths=True)
 
 
 def _is_whole(picture: Picture, complete: Picture) -> bool:

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.findings.beyond import Added
+    from rosprivacy.analysis.findings.flows_to_leaks import PathsToLeaks
     from rosprivacy.report.pictures.phrases import Phrases
     from rosprivacy.report.pictures.picture import Box, Key, Picture, PictureLine
 
@@ -43,7 +44,7 @@ def _is_beyond(line: PictureLine, declared: Collection[tuple[Key, Key, str]]) ->
 
 def with_added(
     declared: Analysis,
-    enforced: Analysis,
+    enforced: PathsToLeaks,
     added: Collection[Added],
     say: Phrases,
     draw: Callable[[Collection[Key]], Picture],
@@ -55,7 +56,7 @@ def with_added(
     Parameters
     ----------
     declared, enforced
-        The system under both views.
+        The system under both views, the enforced one with its paths to leaks.
     added
         What the enforced view adds.
     draw

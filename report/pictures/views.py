@@ -14,10 +14,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.answer import Verdict
-from rosprivacy.analysis.findings.flows_to_leaks import FlowsToLeaks, flows_to_leaks
-from rosprivacy.analysis.kernel.states import Net
 from rosprivacy.analysis.many_flows import one_by_one
-from rosprivacy.analysis.model import DISCLOSURE, GOES_NOWHERE, NO_LEAK_NAMED
+from rosprivacy.analysis.model import GOES_NOWHERE, NO_LEAK_NAMED
 from rosprivacy.analysis.text import shortened
 from rosprivacy.report.catalogs.words import IN_ENGLISH, Words, plain
 from rosprivacy.report.element_counts import count_elements
@@ -30,9 +28,10 @@ from rosprivacy.report.pictures.privacy import Reached
 from rosprivacy.report.pictures.wording import listed
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Iterator
+    from collections.abc import Collection, Iterable
 
     from rosprivacy.analysis.answer import Analysis, Finding
+    from rosprivacy.analysis.findings.flows_to_leaks import PathsToLeaks
     from rosprivacy.analysis.model import FlowGraph, Grant
     from rosprivacy.report.pictures.picture import Key
 
@@ -121,7 +120,7 @@ def _left_out(hidden: Collection[Key], undrawn: int, words: Words, *, robots: in
 
 
 def privacy_view(
-    analysis: Analysis, robots_not_shown: Collection[str] = (), say: Phrases | None = None, drawn: Collection[Key] = ()
+    paths: PathsToLeaks, robots_not_shown: Collection[str] = (), say: Phrases | None = None, drawn: Collection[Key] = ()
 ) -> Picture:
     """Return what some category reaches, with the paths to leaks marked.
 
@@ -138,18 +137,14 @@ def privacy_view(
     -----
     Besides what the analysis took: per category with a finding O(flows), see ``flows_to_leaks``.
     """
-    say = say or Phrases()
+    say, analysis = say or Phrases(), paths.analysis
     words, reached = say.words, Reached(analysis, say=say)
     if not reached.sources():
         return Picture(PRIVACY, plain(words("picture.nothing")), (), (), words=words)
     boxes = {box.key: box for box in reached.boxes()}
-    net = Net.of(analysis.spread)
     open_findings = [finding for finding in analysis.findings if not finding.dismissed]
-    lengths: dict[int, int] = {}
-    for found in _ways_to_all(analysis, net, open_findings):
-        for flow, length in found.items():
-            lengths[flow] = min(length, lengths.get(flow, length))
-    lines = data_lines(reached, boxes, range(len(one_by_one(analysis.graph.flows))), lengths, pairs(open_findings))
+    flows = range(len(one_by_one(analysis.graph.flows)))
+    lines = data_lines(reached, boxes, flows, paths.shortest, pairs(open_findings))
     what = listed(map(say.title, analysis.emitted), limit=6, words=words)
     unreviewed = count_elements(q.element for q in analysis.open if q.element.robot not in robots_not_shown).elements
     findings, elements = words.count(len(open_findings), "terminal.finding"), words.count(unreviewed, "element")
@@ -168,20 +163,6 @@ def _verdict(analysis: Analysis, words: Words) -> str:
     return words(f"picture.lacking.{analysis.lacking}" if lacks else f"picture.verdict.{analysis.verdict}")
 
 
-def _ways_to_all(analysis: Analysis, net: Net, findings: Iterable[Finding]) -> Iterator[dict[int, int]]:
-    """The paths to the leaks of each category, and to where data are kept too long or leave the EEA (rule S10)."""
-    number = {element: vertex for vertex, element in enumerate(analysis.graph.elements)}
-    ends: dict[str, dict[int, int]] = {}
-    for finding in findings:
-        if finding.kind != DISCLOSURE:
-            both = analysis.spread.forms_of(finding.category)
-            ends.setdefault(finding.category, {})[number[finding.leak]] = both
-    for category in sorted({finding.category for finding in findings if finding.kind == DISCLOSURE}):
-        yield flows_to_leaks(net, category).flows
-    for category, where in sorted(ends.items()):
-        yield flows_to_leaks(net, category, leaks=where, past_leaks=True, ends=where).flows
-
-
 class FindingViews:
     """Pictures of findings; what they share is made once.
 
@@ -195,10 +176,8 @@ class FindingViews:
     O(flows) to begin with, and per finding what ``flows_to_leaks`` takes.
     """
 
-    def __init__(self, analysis: Analysis, say: Phrases | None = None) -> None:
-        self._analysis, self._say = analysis, say or Phrases()
-        self._net = Net.of(analysis.spread)
-        self._number = {element: vertex for vertex, element in enumerate(analysis.graph.elements)}
+    def __init__(self, paths: PathsToLeaks, say: Phrases | None = None) -> None:
+        self._paths, self._analysis, self._say = paths, paths.analysis, say or Phrases()
         self._reached: dict[str, Reached] = {}
 
     def of(self, finding: Finding, about: int | None = None) -> Picture:
@@ -215,14 +194,7 @@ class FindingViews:
         if category not in self._reached:
             self._reached[category] = Reached(self._analysis, {category}, self._say)
         reached = self._reached[category]
-        source, leak = self._number[finding.source], self._number[finding.leak]
-        found = FlowsToLeaks({})
-        if finding.steps:
-            ends = None if finding.kind == DISCLOSURE else {leak: self._analysis.spread.forms_of(category)}
-            past = finding.dismissed or ends is not None
-            found = flows_to_leaks(
-                self._net, category, sources=[source], leaks=[leak], past_leaks=past, ends=ends, about=about
-            )
+        found = self._paths.of(finding, about)
         lengths = found.flows
         keys = {element.identity for element in finding.witness}
         for index in lengths:
@@ -263,9 +235,11 @@ def is_cut(note: str, words: Words) -> bool:
     return note.startswith(plain(words.places("picture.longer")).partition("{")[0])
 
 
-def finding_view(analysis: Analysis, finding: Finding, about: int | None = None, say: Phrases | None = None) -> Picture:
+def finding_view(
+    paths: PathsToLeaks, finding: Finding, about: int | None = None, say: Phrases | None = None
+) -> Picture:
     """Return the paths of one finding, see ``FindingViews``."""
-    return FindingViews(analysis, say).of(finding, about)
+    return FindingViews(paths, say).of(finding, about)
 
 
 def bounded(picture: Picture, limit: int) -> Picture:

@@ -16,6 +16,7 @@ from rdflib.namespace import PROV
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.report.document.analysis import json_document
+from rosprivacy.report.document.contents import required
 from rosprivacy.report.element_counts import count_elements
 from rosprivacy.report.rdf.concepts import texts
 from rosprivacy.report.rdf.facts import changes, kinds_along, label_of, legal_of
@@ -129,7 +130,7 @@ class _Findings:
         analysis = document.analysis
         unstated = frozenset((element.shown_as, category) for element, category in analysis.unstated)
         unreviewed = frozenset((q.element.shown_as, category) for q in analysis.open for category in q.categories)
-        processed = {(row.element, row.category): row for row in document.processed}
+        processed = {(row.element, row.category): row for row in required(document.processing).by_kind}
         processes = Processes(document, names, things, unstated, processed)
         return cls(document, names, things, unreviewed, processes)
 

@@ -19,6 +19,7 @@ from rosprivacy.analysis.policy_lines import in_a_file
 from rosprivacy.analysis.text import counted, utf8
 from rosprivacy.report.catalogs.words import IN_ENGLISH
 from rosprivacy.report.document.analysis import verdict_facts
+from rosprivacy.report.document.contents import required
 from rosprivacy.report.element_counts import ElementCount, count_elements
 from rosprivacy.report.places import to_review
 from rosprivacy.report.robots import note, on_robots
@@ -71,6 +72,7 @@ def _log(document: Document, root: Path) -> dict[str, Any]:
     files, diagnostics = Files(root), document.diagnostics
     law = {name: strongest_first(categories[name].law) for name in analysis.emitted}
     contexts, pointed = document.contexts, document.vocabulary.pointed
+    positions = required(document.positions)
     said: list[Legal | Pointer] = [legal for several in law.values() for legal in several]
     for finding in analysis.findings:
         said += (*contexts.revealed(finding), *pointed.of_finding(finding.kind))
@@ -86,13 +88,13 @@ def _log(document: Document, root: Path) -> dict[str, Any]:
     rules = {rule.id: rule for rule in told}
     made = Results(
         analysis,
-        document.lines.places,
+        positions.places,
         files,
         categories,
         law,
         taxa={legal.iri: number for number, legal in enumerate(taxa)},
         rules={name: number for number, name in enumerate(rules)},
-        between=document.lines.flows,
+        between=positions.flows,
         accepted=document.accepted,
         contexts=contexts,
         pointed=pointed,

@@ -14,6 +14,7 @@ from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.legal import turned_special
 from rosprivacy.analysis.model import CONCERNS, MAY_REVEAL, NO_LEAK_NAMED, Place, Rank
 from rosprivacy.analysis.policy_lines import in_a_file
+from rosprivacy.report.document.contents import required
 from rosprivacy.report.made_of import making
 from rosprivacy.report.places import NOWHERE, of_step, to_review
 from rosprivacy.report.sarif.artifacts import uri_of
@@ -307,7 +308,7 @@ def added_results(enforced: EnforcedFacts, rule: int, files: Files) -> Iterator[
     rule
         Number of ``BEYOND_PROFILE`` among the rules of the log.
     """
-    places, between = enforced.lines
+    places, between = required(enforced.positions)
     for one in enforced.added:
         finding = one.finding
         lines = [place for number in one.beyond for place in of_step(finding.steps[number])]

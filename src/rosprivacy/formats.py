@@ -16,7 +16,16 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, overload
 from rosprivacy.analysis.errors import InputError, shown
 from rosprivacy.clock import source_date, today
 from rosprivacy.report.catalogs import LANGUAGES
-from rosprivacy.report.document.contents import LEDGER, PROPOSALS, RELIANCE
+from rosprivacy.report.document.contents import (
+    IN_JSON,
+    LEDGER,
+    PATHS,
+    POSITIONS,
+    PROCESSING,
+    PROPOSALS,
+    RELIANCE,
+    WAYS,
+)
 from rosprivacy.terminal_width import terminal_width
 
 if TYPE_CHECKING:
@@ -86,7 +95,7 @@ class Format(NamedTuple):
     page
         What it is called where it is refused at a terminal; empty of what people read there.
     asks
-        Fields of the document that it needs and that take longer than the answer itself.
+        Fields of the document that it tells and not every output does.
     """
 
     name: str
@@ -95,7 +104,7 @@ class Format(NamedTuple):
     styles: tuple[str, ...] = ()
     both_views: bool = False
     page: str = ""
-    asks: tuple[str, ...] = (LEDGER, RELIANCE)
+    asks: tuple[str, ...] = (*IN_JSON, RELIANCE)
 
 
 @overload
@@ -285,18 +294,18 @@ def _rendered_parts(
 
 _REPORT = ("language", "title", "since", "redact", "assessment")
 _LINKED = ("base", "redact")
-_PAGE = (LEDGER, RELIANCE, PROPOSALS)
+_PAGE = (*IN_JSON, RELIANCE, PROPOSALS)
 FORMATS = {
     known.name: known
     for known in (
-        Format("text", ".txt", _text, ("language", "verbose", "quiet"), both_views=True),
-        Format("json", ".json", _short_json, both_views=True, asks=(LEDGER,)),
+        Format("text", ".txt", _text, ("language", "verbose", "quiet"), both_views=True, asks=(LEDGER, RELIANCE)),
+        Format("json", ".json", _short_json, both_views=True, asks=IN_JSON),
         Format("json1", ".json", _json, both_views=True),
-        Format("sarif", ".sarif", _sarif, both_views=True, asks=()),
-        Format("cnil-pia", ".json", _cnil_pia, ("language",), asks=()),
+        Format("sarif", ".sarif", _sarif, both_views=True, asks=(POSITIONS,)),
+        Format("cnil-pia", ".json", _cnil_pia, ("language",), asks=(WAYS, PROCESSING)),
         Format("turtle", ".ttl", _linked_data("turtle"), _LINKED),
         Format("json-ld", ".jsonld", _linked_data("json-ld"), _LINKED),
-        Format("html", ".html", _html, _REPORT, both_views=True, page="a page", asks=_PAGE),
+        Format("html", ".html", _html, _REPORT, both_views=True, page="a page", asks=(*_PAGE, PATHS)),
         Format("markdown", ".md", _markdown, _REPORT, both_views=True, asks=_PAGE),
         Format("docx", ".docx", _docx, _REPORT, both_views=True, page="a Word document", asks=_PAGE),
         Format("article30", ".csv", _article30, ("language", "redact")),

@@ -11,7 +11,7 @@ from rosprivacy.answer import Answer
 from rosprivacy.documents import document_of
 from rosprivacy.formats import Style, TextFormat, written
 from rosprivacy.report.document.analysis import json_document
-from rosprivacy.report.document.contents import LEDGER, RELIANCE
+from rosprivacy.report.document.contents import IN_JSON, RELIANCE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -93,7 +93,7 @@ class Result(Answer):
 
     def document(self) -> dict[str, Any]:
         """Return the whole JSON document, ``rosprivacy.analysis/1``; ``to("json")`` is the short one, ``/2``."""
-        return {**json_document(document_of(self, (LEDGER, RELIANCE)))}
+        return {**json_document(document_of(self, (*IN_JSON, RELIANCE)))}
 
     @overload
     def to(self, format: Literal["docx"], **how: Unpack[Shown]) -> bytes: ...

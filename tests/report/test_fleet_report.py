@@ -14,6 +14,7 @@ import rdflib
 from rosprivacy.analysis.fleet.likeness import Likeness
 from rosprivacy.documents import document_of
 from rosprivacy.formats import written
+from rosprivacy.report.document.contents import PATHS
 from rosprivacy.report.page.figures import figures
 from rosprivacy.report.page.html import html
 from rosprivacy.report.page.markdown import markdown
@@ -121,7 +122,7 @@ def test_deviants_stand_by_themselves_with_links_to_the_ways(language: str) -> N
     assert [(row.shown, len(row.robots)) for row in fleet.alike] == [
         ("carrier_01", 23), ("carrier_lent", 1), ("cleaner_1", 4), ("guide_01", 12),
     ]  # fmt: skip
-    page = html(told(language), figures(document_of(found()), told(language)))
+    page = html(told(language), figures(document_of(found(), (PATHS,)), told(language)))
     text = markdown(told(language))
     for shown in (page, text):
         assert "carrier_lent" in shown.replace("\\", "")
