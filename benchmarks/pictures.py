@@ -18,10 +18,9 @@ from measure import Measured, Row, run, timed
 
 import rosprivacy
 from rosprivacy.analysis.findings.flows_to_leaks import PathsToLeaks
-from rosprivacy.report.page.inline import pictures_of
+from rosprivacy.report.page.figures import pictures_of
 from rosprivacy.report.pictures.dot import dot
-from rosprivacy.report.pictures.graphviz import Graphviz
-from rosprivacy.report.pictures.layout import drawn
+from rosprivacy.report.pictures.graphviz import Graphviz, drawn
 from rosprivacy.report.pictures.narrow import folded
 from rosprivacy.report.pictures.views import PER_BOX, FindingViews, bounded, ros_view
 

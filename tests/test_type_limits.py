@@ -19,7 +19,7 @@ from rosprivacy.ontology.vocabulary import load
 from rosprivacy.private_neo4j import connection
 from rosprivacy.report.pictures import views
 from rosprivacy.report.pictures.dot import dot
-from rosprivacy.report.text.why_not import lines as why_not_lines
+from rosprivacy.report.text.taken_away import lines as why_not_lines
 from rosprivacy.settings import Settings
 from rosprivacy.systems.robot_system import robot_of
 from rosprivacy.systems.stored_system import answer_stored

@@ -12,11 +12,10 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.model import KINDS, MAY_REVEAL, NO_BASIS, NonRosFacts
 from rosprivacy.analysis.non_ros import ADEQUATE, INSIDE, retention_of
 from rosprivacy.report.catalogs.words import plain, reason_text
-from rosprivacy.report.cnil.lawfulness import purposes_of
-from rosprivacy.report.cnil.markup import Html, bullets, escaped, harmless, joined, paragraph, prose, strong
-from rosprivacy.report.cnil.told import NAMES
-from rosprivacy.report.element_counts import count_elements
-from rosprivacy.report.made_of import making
+from rosprivacy.report.cnil.inventory import purposes_of
+from rosprivacy.report.cnil.told import NAMES, Html, bullets, escaped, harmless, joined, paragraph, prose, strong
+from rosprivacy.report.finding_facts import making
+from rosprivacy.report.naming import count_elements
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping

@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING, Any, cast
 from rosprivacy.analysis.findings.review_order import Behind
 from rosprivacy.analysis.written_names import literal
 from rosprivacy.report.catalogs.words import IN_ENGLISH
+from rosprivacy.report.document.additions import enforced_document, fleet_document, with_decisions
 from rosprivacy.report.document.contents import required
-from rosprivacy.report.document.decisions import enforced_document, with_decisions
-from rosprivacy.report.document.fleet import fleet_document
 from rosprivacy.report.document.ledger import counts_of, glob_entries, ledger_rows, reliance_rows
 from rosprivacy.report.document.records import (
     doubt_entry,

@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.text import fit, printable
 from rosprivacy.ontology.iris import as_published
 from rosprivacy.report.catalogs.words import spaced
-from rosprivacy.report.element_counts import count_rows
-from rosprivacy.report.naming import text
+from rosprivacy.report.naming import count_rows, text
 from rosprivacy.report.page.index import kind_anchor
 from rosprivacy.report.page.look_at import LookAt, context_of, of_kind
 

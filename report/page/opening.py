@@ -13,11 +13,10 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.legal_bases import CHAPTER_V
 from rosprivacy.analysis.model import THIRD_COUNTRY
 from rosprivacy.analysis.text import fit, printable
-from rosprivacy.report.element_counts import count_rows
-from rosprivacy.report.made_of import data_made
-from rosprivacy.report.naming import key, name
-from rosprivacy.report.page.entries_of_robots import grouped
-from rosprivacy.report.page.non_ros import country
+from rosprivacy.report.finding_facts import data_made
+from rosprivacy.report.naming import count_rows, key, name
+from rosprivacy.report.page.elements import country
+from rosprivacy.report.page.index import grouped
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence

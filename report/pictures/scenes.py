@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.text import shortened
 from rosprivacy.report.catalogs.words import plain
-from rosprivacy.report.pictures.flow_lines import FlowLines, add_cleaned, ends_of_flow, flow_lines
 from rosprivacy.report.pictures.joined import Joined, choose
 from rosprivacy.report.pictures.looks import (
     ALLOWED,
@@ -28,11 +27,10 @@ from rosprivacy.report.pictures.looks import (
     UNTOUCHED,
 )
 from rosprivacy.report.pictures.narrow import folded
-from rosprivacy.report.pictures.phrases import Phrases
+from rosprivacy.report.pictures.phrases import Phrases, listed
 from rosprivacy.report.pictures.picture import GROUP, PRIVACY, Box, Picture, PictureLine, sorted_boxes, sorted_lines
-from rosprivacy.report.pictures.privacy import Reached
+from rosprivacy.report.pictures.privacy import FlowLines, Reached, add_cleaned, ends_of_flow, flow_lines
 from rosprivacy.report.pictures.views import in_words, pairs
-from rosprivacy.report.pictures.wording import listed
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping

@@ -1,6 +1,8 @@
 """Analysis -> the two views as pictures: the ROS graph, and where personal data can go.
 
-In: an ``Analysis``. Out: a ``Picture``, with nothing of it left out in silence.
+In: an ``Analysis``, with its paths to leaks. Out: a ``Picture``, with nothing of it left out in silence: of a whole
+view, of one finding, of the shortest paths of several. What the enforced view adds is drawn dashed, along the paths of
+findings that it adds, not all that the middleware lets through (rule S6).
 
 Source: the paper, section II-B, for what the views hold and for their colours. Two things differ. A sanitizer is gone
 from the privacy view only where it ends all that comes to it: one that pseudonymises passes data on (rule S8). And all
@@ -14,23 +16,32 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.answer import Verdict
+from rosprivacy.analysis.findings.beyond import granted
 from rosprivacy.analysis.many_flows import one_by_one
 from rosprivacy.analysis.model import GOES_NOWHERE, NO_LEAK_NAMED
 from rosprivacy.analysis.text import shortened
 from rosprivacy.report.catalogs.words import IN_ENGLISH, Words, plain
-from rosprivacy.report.element_counts import count_elements
-from rosprivacy.report.made_of import making
-from rosprivacy.report.pictures.flow_lines import FlowLines, data_lines, ends_of_flow
-from rosprivacy.report.pictures.looks import ALLOWED, DENIED, MATCHES, SHORTEST
-from rosprivacy.report.pictures.phrases import Phrases
-from rosprivacy.report.pictures.picture import PRIVACY, ROS, Box, Picture, PictureLine, order, sorted_boxes
-from rosprivacy.report.pictures.privacy import Reached
-from rosprivacy.report.pictures.wording import listed
+from rosprivacy.report.finding_facts import making
+from rosprivacy.report.naming import count_elements
+from rosprivacy.report.pictures.looks import ALLOWED, BEYOND, DENIED, MATCHES, ONWARD, SHORTEST
+from rosprivacy.report.pictures.phrases import Phrases, listed
+from rosprivacy.report.pictures.picture import (
+    PRIVACY,
+    ROS,
+    Box,
+    Picture,
+    PictureLine,
+    order,
+    sorted_boxes,
+    sorted_lines,
+)
+from rosprivacy.report.pictures.privacy import FlowLines, Reached, data_lines, ends_of_flow
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable
+    from collections.abc import Callable, Collection, Iterable, Sequence
 
     from rosprivacy.analysis.answer import Analysis, Finding
+    from rosprivacy.analysis.findings.beyond import Added
     from rosprivacy.analysis.findings.flows_to_leaks import PathsToLeaks
     from rosprivacy.analysis.model import FlowGraph, Grant
     from rosprivacy.report.pictures.picture import Key
@@ -291,3 +302,93 @@ def in_words(finding: Finding, say: Phrases | None = None) -> str:
 def _data(finding: Finding, say: Phrases) -> str:
     title = say.title(finding.category)
     return say.words("terminal.hidden", kind=title) if finding.pseudonymised else title
+
+
+def overview(analysis: Analysis, findings: Sequence[Finding], say: Phrases | None = None) -> Picture:
+    """Return the shortest paths of findings.
+
+    Complexity: O(flows + elements).
+    """
+    reached = Reached(analysis, {finding.category for finding in findings}, say)
+    steps = {(step.source, step.target) for finding in findings for step in finding.steps}
+    elements = analysis.graph.elements
+    flows = [
+        number
+        for number, flow in enumerate(analysis.graph.flows)
+        if (elements[flow.source], elements[flow.target]) in steps
+    ]
+    boxes = {box.key: box for box in reached.boxes(core(findings))}
+    lines = data_lines(reached, boxes, flows, dict.fromkeys(flows, 1), pairs(findings))
+    words = tuple(in_words(finding) for finding in findings)
+    return Picture(PRIVACY, "", sorted_boxes(boxes.values()), lines.drawn_lines(), (), words, core(findings))
+
+
+def drawable(findings: Sequence[Finding], limit: int) -> int:
+    """Return how many findings, from the first on, have no more elements together than asked for; one at least."""
+    count = min(len(findings), 1)
+    while count < len(findings) and len(core(findings[: count + 1])) <= limit:
+        count += 1
+    return count
+
+
+BOUND = 16  # boxes of the paths of one finding, unless the shortest is longer
+
+
+def marking(analysis: Analysis) -> Callable[[Picture], Picture]:
+    """Return what marks the steps of a picture that no profile allows, by the flows of the declared view."""
+    declared = frozenset(key[:3] for key in granted(analysis.graph))  # a box is of both sides of a wildcard
+
+    def marked(picture: Picture) -> Picture:
+        lines = (replace(line, look=BEYOND) if _is_beyond(line, declared) else line for line in picture.lines)
+        return replace(picture, lines=sorted_lines(lines))
+
+    return marked
+
+
+def _is_beyond(line: PictureLine, declared: Collection[tuple[Key, Key, str]]) -> bool:
+    return bool(line.places) and all((line.source, line.target, role) not in declared for role in line.roles)
+
+
+def with_added(
+    declared: Analysis,
+    enforced: PathsToLeaks,
+    added: Collection[Added],
+    say: Phrases,
+    draw: Callable[[Collection[Key]], Picture],
+) -> Picture:
+    """Return a picture of the declared view with the paths of what the enforced view adds.
+
+    In the ROS view these are the steps that no profile allows; in the privacy view also where data goes on then.
+
+    Parameters
+    ----------
+    declared, enforced
+        The system under both views, the enforced one with its paths to leaks.
+    added
+        What the enforced view adds.
+    draw
+        Draws the declared view; it gets what will be drawn beside it.
+    """
+    marked, views = marking(declared), FindingViews(enforced, say)
+    more = [marked(views.of(one.finding, PER_BOX * BOUND)) for one in added]
+    more_boxes: dict[Key, Box] = {box.key: box for each in more for box in each.boxes}
+    picture = draw(more_boxes)
+    boxes = {**(more_boxes if picture.view == PRIVACY else {}), **{box.key: box for box in picture.boxes}}
+    there = {(line.source, line.target) for line in picture.lines}
+    new = {line.sort_key()[:2]: line for each in more for line in _new(each.lines, there, picture.view)}
+    lines = sorted_lines([*picture.lines, *(line for line in new.values() if {line.source, line.target} <= set(boxes))])
+    note = plain(picture.words.count(len(added), "picture.added"))
+    core = picture.core | (frozenset(key for one in added for key in _witness(one)) & set(boxes))
+    return replace(picture, boxes=sorted_boxes(boxes.values()), lines=lines, core=core).noted(note)
+
+
+def _new(lines: Iterable[PictureLine], present: Collection[tuple[Key, Key]], view: str) -> Iterable[PictureLine]:
+    for line in lines:
+        if line.look == BEYOND:
+            yield line
+        elif view == PRIVACY and (line.source, line.target) not in present:
+            yield replace(line, look=ONWARD)
+
+
+def _witness(added: Added) -> Iterable[Key]:
+    return (element.identity for element in added.finding.witness)

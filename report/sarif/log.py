@@ -20,10 +20,10 @@ from rosprivacy.analysis.text import counted, utf8
 from rosprivacy.report.catalogs.words import IN_ENGLISH
 from rosprivacy.report.document.analysis import verdict_facts
 from rosprivacy.report.document.contents import required
-from rosprivacy.report.element_counts import ElementCount, count_elements
+from rosprivacy.report.naming import ElementCount, count_elements
 from rosprivacy.report.places import to_review
 from rosprivacy.report.robots import note, on_robots
-from rosprivacy.report.sarif.flows import further_paths, prose, text
+from rosprivacy.report.sarif.locations import further_paths, prose, text
 from rosprivacy.report.sarif.results import FINDING, LAW, ROOT, Files, Results, added_results
 from rosprivacy.report.sarif.rules import (
     BEYOND_PROFILE,

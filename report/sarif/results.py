@@ -15,10 +15,9 @@ from rosprivacy.analysis.legal import turned_special
 from rosprivacy.analysis.model import CONCERNS, MAY_REVEAL, NO_LEAK_NAMED, Place, Rank
 from rosprivacy.analysis.policy_lines import in_a_file
 from rosprivacy.report.document.contents import required
-from rosprivacy.report.made_of import making
+from rosprivacy.report.finding_facts import making
 from rosprivacy.report.places import NOWHERE, of_step, to_review
-from rosprivacy.report.sarif.artifacts import uri_of
-from rosprivacy.report.sarif.flows import element_name, flows_of, logical, prose, text
+from rosprivacy.report.sarif.locations import element_name, flows_of, logical, prose, text, uri_of
 from rosprivacy.report.sarif.rules import (
     BEYOND_PROFILE,
     NO_LEAK,

@@ -193,7 +193,7 @@ def _linked_data(form: str) -> Callable[[Document, Style], str]:
 
 def _sarif(document: Document, _: Style) -> Iterator[str]:
     from rosprivacy.report import json_text
-    from rosprivacy.report.sarif.artifacts import repository_root
+    from rosprivacy.report.sarif.locations import repository_root
     from rosprivacy.report.sarif.log import sarif
 
     named = [entry["file"] for kind in ("policies", "labels") for entry in document.assumptions.get(kind) or ()]
@@ -239,13 +239,13 @@ def _html(document: Document, style: Style) -> str:
 
 
 def _works_council(document: Document, style: Style) -> str:
-    from rosprivacy.report.page.works_council import works_council
+    from rosprivacy.report.page.html import works_council
 
     return works_council(_outline(document, style)[0])
 
 
 def _outline(document: Document, style: Style) -> tuple[Outline, Aliases | None]:
-    from rosprivacy.report.page.assessment_file import read_answers
+    from rosprivacy.report.page.assessment import read_answers
     from rosprivacy.report.page.outline import outline
 
     answers = read_answers(style.assessment) if style.assessment else None
@@ -282,7 +282,7 @@ def _rendered_parts(
     earlier = read_earlier(style.since) if style.since else None
     if not style.redact:
         return told, earlier, proposals, None
-    from rosprivacy.report.page.redacted_pictures import aliases_of
+    from rosprivacy.report.page.figures import aliases_of
     from rosprivacy.report.redact import redacted
 
     beside = [earlier.document] if earlier else []

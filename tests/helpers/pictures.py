@@ -9,10 +9,10 @@ from rosprivacy.analysis.findings.findings import analyse
 from rosprivacy.analysis.findings.flows_to_leaks import PathsToLeaks
 from rosprivacy.analysis.hierarchy import Hierarchy
 from rosprivacy.analysis.model import Bound, Category, Element, Flow, FlowGraph, Grant, Place, Profile, Statement
-from rosprivacy.report.page.inline import Inline, Wishes, pictures_of
+from rosprivacy.report.page.figures import Inline, Wishes, pictures_of
 from rosprivacy.report.pictures import narrow, views
-from rosprivacy.report.pictures.fleet_view import represented
 from rosprivacy.report.pictures.graphviz import Graphviz
+from rosprivacy.report.pictures.narrow import represented
 from tests.helpers.graphs import care_home, factory, hospital
 
 if TYPE_CHECKING:

@@ -20,7 +20,7 @@ from rosprivacy.report.page.html import html
 from rosprivacy.report.page.markdown import markdown
 from rosprivacy.report.page.outline import Outline, outline
 from rosprivacy.report.pictures.dot import dot
-from rosprivacy.report.pictures.fleet_view import label, represented
+from rosprivacy.report.pictures.narrow import label, represented
 from rosprivacy.report.pictures.picture import PRIVACY, Box, Picture, PictureLine
 from rosprivacy.report.redact import redacted
 from rosprivacy.report.robots import note
@@ -99,7 +99,7 @@ def test_names_count_the_robots_of_the_fleet_not_those_that_are_shown() -> None:
     origins = {kind.name: [name for name, _ in kind.origins] for kind in report.kinds}
     assert origins["Location"] == ["/navigator (40 robots)"]
     assert origins["Video"] == ["/camera_driver (24 robots)", "/camera (12 robots)"]
-    items = {(item.name, item.data): item.robots for item in report.items if item.kind == "node"}
+    items = {(item.name, item.data): item.robots for item in report.inventory.items if item.kind == "node"}
     assert items["/uplink", "location"] == 40
     assert items["/camera_driver", "video of persons"] == 24
     (scale,) = (criterion.shows for criterion in report.criteria if criterion.name == "Large scale")

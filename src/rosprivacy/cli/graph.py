@@ -182,7 +182,7 @@ def graph(
     result, own = _drawn_of(inputs.viewed(view), both_views=view is ViewOrBoth.both)
     picture = _view(result, show, part, lang, carried_only=bool(inputs.categories), standard=draw_standard_channels)
     if result.fleet and not finding:
-        from rosprivacy.report.pictures.fleet_view import label, represented
+        from rosprivacy.report.pictures.narrow import label, represented
 
         picture = represented(picture, result.fleet.likeness)
         own = {label(name, result.fleet.likeness, picture.words): profiles for name, profiles in own.items()}
@@ -263,7 +263,7 @@ def _view(
 
 def _with_added(result: Result, say: Phrases, draw: Callable[[Collection[Key]], Picture]) -> Picture:
     from rosprivacy.analysis.findings.flows_to_leaks import PathsToLeaks
-    from rosprivacy.report.pictures.added_flows import with_added
+    from rosprivacy.report.pictures.views import with_added
 
     if not result.enforced or not result.enforced.added:
         return draw(())
@@ -274,7 +274,7 @@ def _finding(result: Result, id_prefix: str, about: int | None, say: Phrases) ->
     """One that only the enforced view has is drawn of that view, with what no profile allows marked."""
     from rosprivacy.analysis.findings.flows_to_leaks import PathsToLeaks
     from rosprivacy.report.pictures import narrow, views
-    from rosprivacy.report.pictures.added_flows import marking
+    from rosprivacy.report.pictures.views import marking
 
     added = [one.finding for one in result.enforced.added] if result.enforced else []
     if result.enforced and any(finding.id.startswith(id_prefix) for finding in added):
@@ -301,7 +301,7 @@ def _narrowed(picture: Picture, part: GraphPart) -> Picture:
 
 def _legible(picture: Picture) -> Picture:
     """The picture, smaller where it is too large to be read; what is left out is said."""
-    from rosprivacy.report.pictures.legible import legible
+    from rosprivacy.report.pictures.narrow import legible
 
     picture, left = legible(picture)
     for said in left:
@@ -314,7 +314,7 @@ def _write(
 ) -> None:
     direction = "TB" if layout_direction is Direction.down else "LR"
     if form in (PictureFormat.svg, PictureFormat.png):
-        from rosprivacy.report.pictures.layout import drawn
+        from rosprivacy.report.pictures.graphviz import drawn
 
         done = drawn(picture, form.value, direction=direction if layout_direction else "", seconds=seconds)
         for said in done.remarks:
@@ -322,7 +322,7 @@ def _write(
         emit(done.data, output)
         return
     if form is PictureFormat.graphml:
-        from rosprivacy.report.pictures.graphml import graphml
+        from rosprivacy.report.pictures.exports import graphml
 
         emit(graphml(picture).encode(), output)
         return
@@ -331,7 +331,7 @@ def _write(
 
         emit(dot(picture, direction=direction).encode(), output)
         return
-    from rosprivacy.report.pictures.mermaid import mermaid, too_large
+    from rosprivacy.report.pictures.exports import mermaid, too_large
 
     text = mermaid(picture, direction=direction)
     if too_large(picture, text):

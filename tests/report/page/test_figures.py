@@ -14,14 +14,22 @@ from rosprivacy.analysis.findings.flows_to_leaks import PathsToLeaks
 from rosprivacy.documents import document_of
 from rosprivacy.report.catalogs.words import Words
 from rosprivacy.report.document.contents import PATHS
-from rosprivacy.report.finding_order import in_order
+from rosprivacy.report.finding_facts import in_order
 from rosprivacy.report.page import figures as module
-from rosprivacy.report.page import inline
-from rosprivacy.report.page.figures import Figures, figures, page_legend
+from rosprivacy.report.page.figures import (
+    DRAWS,
+    SAYS,
+    Figures,
+    Inline,
+    Wishes,
+    aliases_of,
+    figures,
+    page_legend,
+    page_svg,
+    renamed,
+)
 from rosprivacy.report.page.html import html
-from rosprivacy.report.page.inline import DRAWS, SAYS, Wishes, page_svg
 from rosprivacy.report.page.outline import outline
-from rosprivacy.report.page.redacted_pictures import aliases_of, renamed
 from rosprivacy.report.pictures import dot as dot_module
 from rosprivacy.report.pictures import graphviz
 from rosprivacy.report.pictures.looks import ROLE_LOOKS
@@ -54,7 +62,7 @@ def texts(root: etree._Element) -> str:
     return "\n".join(str(text.text).replace("\xa0", " ") for text in root.iter(f"{SVG}text"))
 
 
-def made(analysis: Analysis, **wishes: Any) -> list[inline.Inline]:
+def made(analysis: Analysis, **wishes: Any) -> list[Inline]:
     found = of_findings(analysis, Wishes(**wishes))
     assert None not in found
     return [one for one in found if one]
@@ -73,7 +81,7 @@ def test_pictures_for_a_page_have_its_colours_and_name_both_ends() -> None:
 def test_a_way_that_is_wide_is_drawn_downwards() -> None:
     found = care_home().analysis
     for one in made(found):
-        assert float(str(etree.fromstring(one.svg).get("width")).removesuffix("pt")) <= inline.WIDEST
+        assert float(str(etree.fromstring(one.svg).get("width")).removesuffix("pt")) <= module.WIDEST
 
 
 def test_a_picture_for_a_page_is_bounded_whatever_the_names_and_says_so() -> None:
@@ -92,7 +100,7 @@ def test_what_is_not_whole_says_so_and_how_to_get_the_rest() -> None:
     result = factory(2)
     told = outline(result.document(), "en")
     one = made(result.analysis)[0]
-    page = html(told, Figures({told.entries[0].id: inline.Inline(one.svg, all_paths=False)}))
+    page = html(told, Figures({told.entries[0].id: Inline(one.svg, all_paths=False)}))
     assert "Only the shorter paths are drawn" in page
     assert f"rosprivacy graph … --finding {told.entries[0].id}" in page
     assert "Only the shorter paths" not in html(told, Figures({told.entries[0].id: one}))
@@ -100,7 +108,7 @@ def test_what_is_not_whole_says_so_and_how_to_get_the_rest() -> None:
 
 def test_the_time_that_a_picture_takes_decides_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     """Rule S14: what takes too long is an error, no smaller picture and no missing one."""
-    monkeypatch.setattr(inline, "SECONDS", 1e-9)
+    monkeypatch.setattr(module, "SECONDS", 1e-9)
     with pytest.raises(
         DrawingError, match=r"^graph: a picture takes more than 1e-09 seconds; try again .*--format markdown$"
     ):
@@ -165,7 +173,7 @@ def test_what_graphviz_cannot_draw_is_left_out_alone(monkeypatch: pytest.MonkeyP
         broken = any(second in box.names for box in picture.boxes)
         return "no graph" if broken else real(picture, **options)
 
-    monkeypatch.setattr(inline, "dot", dot)
+    monkeypatch.setattr(module, "dot", dot)
     drawn = figures(document_of(result, (PATHS,)), told)
     missing = [entry.id for entry in told.entries if entry.id not in drawn.of]
     assert missing

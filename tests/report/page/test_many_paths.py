@@ -9,7 +9,7 @@ from lxml import html as lxml_html
 
 import rosprivacy
 from rosprivacy.report.catalogs.words import Words, plain
-from rosprivacy.report.page.assessment_file import Answers
+from rosprivacy.report.page.assessment import Answers
 from rosprivacy.report.page.finding_entries import BOUND, share
 from rosprivacy.report.page.html import html
 from tests.helpers.daily import one_in

@@ -15,10 +15,9 @@ import pytest
 from rosprivacy.documents import document_of
 from rosprivacy.report.compare.earlier import Earlier
 from rosprivacy.report.document.contents import PATHS
-from rosprivacy.report.page.assessment_file import read_answers
-from rosprivacy.report.page.figures import Figures, figures
+from rosprivacy.report.page.assessment import read_answers
+from rosprivacy.report.page.figures import Figures, Wishes, figures
 from rosprivacy.report.page.html import html
-from rosprivacy.report.page.inline import Wishes
 from rosprivacy.report.page.outline import outline
 from tests.helpers import browser as chrome
 from tests.helpers import pictures

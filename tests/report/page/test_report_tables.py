@@ -76,7 +76,7 @@ def test_findings_that_differ_only_in_the_robot_are_one_with_its_robots_listed()
     for text in texts(document):
         assert all(robot in text for robot in robots)
         assert "/uplink (20 robots)" in text
-    assert {item.robots for item in report.items} == {20}
+    assert {item.robots for item in report.inventory.items} == {20}
 
 
 def test_a_way_from_robot_to_robot_is_another_pattern_than_one_inside_a_robot() -> None:

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import pytest
 from lxml import html as lxml_html
 
-from rosprivacy.report.page.assessment_file import Answers
-from rosprivacy.report.page.works_council import works_council
+from rosprivacy.report.page.assessment import Answers
+from rosprivacy.report.page.html import works_council
 from tests.helpers.graphs import hospital
 from tests.helpers.pages import LANGUAGES, told
 from tests.helpers.reports import HOSTILE, care, hostile, with_outside

@@ -16,8 +16,7 @@ from rosprivacy.analysis.errors import DrawingError
 from rosprivacy.analysis.findings.flows_to_leaks import PathsToLeaks
 from rosprivacy.report.pictures import graphviz as module
 from rosprivacy.report.pictures import views
-from rosprivacy.report.pictures.graphviz import Graphviz, Job, TooLongError
-from rosprivacy.report.pictures.layout import WAYS, Way, crossings, drawn, way_of
+from rosprivacy.report.pictures.graphviz import WAYS, Graphviz, Job, TooLongError, Way, crossings, drawn, way_of
 from rosprivacy.report.pictures.picture import ROS, Box, Picture, PictureLine, sorted_boxes, sorted_lines
 from tests.helpers.graphs import factory
 from tests.helpers.pictures import hostile

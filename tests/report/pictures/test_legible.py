@@ -13,8 +13,8 @@ from hypothesis import given
 from rosprivacy.analysis.findings.flows_to_leaks import PathsToLeaks
 from rosprivacy.report.pictures import views
 from rosprivacy.report.pictures.dot import dot
-from rosprivacy.report.pictures.legible import legible
 from rosprivacy.report.pictures.looks import SHAPES
+from rosprivacy.report.pictures.narrow import legible
 from rosprivacy.report.pictures.picture import LEGIBLE, PRIVACY, ROS
 from tests.helpers.graphs import care_home, factory
 from tests.helpers.paths import ROOT

@@ -12,11 +12,10 @@ from rosprivacy.analysis.findings.flows_to_leaks import PathsToLeaks
 from rosprivacy.report.catalogs.words import Words
 from rosprivacy.report.pictures import narrow, views
 from rosprivacy.report.pictures.dot import dot, hover, line_hover
-from rosprivacy.report.pictures.fleet_view import represented
-from rosprivacy.report.pictures.legible import legible
-from rosprivacy.report.pictures.mermaid import mermaid
+from rosprivacy.report.pictures.exports import mermaid
+from rosprivacy.report.pictures.graphviz import alt_text
+from rosprivacy.report.pictures.narrow import legible, represented
 from rosprivacy.report.pictures.phrases import Phrases
-from rosprivacy.report.pictures.svg import alt_text
 from tests.helpers.languages import OTHERS, SYSTEMS, english_in
 from tests.helpers.paths import ROOT
 

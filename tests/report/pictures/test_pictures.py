@@ -22,10 +22,9 @@ from rosprivacy.analysis.findings.flows_to_leaks import PathsToLeaks
 from rosprivacy.analysis.text import printable, shortened
 from rosprivacy.report.pictures import looks, narrow, views
 from rosprivacy.report.pictures.dot import dot, label_lines
-from rosprivacy.report.pictures.graphml import graphml
-from rosprivacy.report.pictures.layout import drawn
-from rosprivacy.report.pictures.mermaid import label, mermaid, too_large
-from rosprivacy.report.pictures.wording import broken, quoted
+from rosprivacy.report.pictures.exports import graphml, label, mermaid, too_large
+from rosprivacy.report.pictures.graphviz import drawn
+from rosprivacy.report.pictures.phrases import broken, quoted
 from tests.helpers.daily import one_in
 from tests.helpers.graphs import care_home, factory
 from tests.helpers.paths import ROOT

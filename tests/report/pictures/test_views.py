@@ -17,8 +17,8 @@ from rosprivacy.analysis.model import Element, Flow, FlowGraph, Grant, Place
 from rosprivacy.report.catalogs.words import IN_ENGLISH
 from rosprivacy.report.pictures import narrow, views
 from rosprivacy.report.pictures.dot import dot
-from rosprivacy.report.pictures.mermaid import mermaid
-from rosprivacy.report.pictures.overview import overview
+from rosprivacy.report.pictures.exports import mermaid
+from rosprivacy.report.pictures.views import overview
 from tests.helpers.graphs import care_home, factory
 from tests.helpers.paths import TESTS
 from tests.helpers.pictures import hostile, names_of, pictures, ros

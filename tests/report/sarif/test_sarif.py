@@ -23,7 +23,7 @@ from rosprivacy.analysis.model import Category, Place
 from rosprivacy.documents import document_of
 from rosprivacy.ontology.vocabulary import Vocabulary
 from rosprivacy.report.document.contents import POSITIONS
-from rosprivacy.report.sarif import flows
+from rosprivacy.report.sarif import locations
 from rosprivacy.report.sarif import log as sarif_module
 from rosprivacy.report.sarif.log import sarif
 from tests.helpers.answers import accepting, answer_of, as_json
@@ -256,7 +256,7 @@ def test_further_ways_are_further_code_flows_up_to_a_bound(tmp_path: Path) -> No
     run = checked(log_of(result, at=tmp_path))
     (found, *_) = [r for r in run["results"] if r["ruleId"] == "disclosure"]
     ways = [[physical(step) for step in way(found, number)] for number in range(len(found["codeFlows"]))]
-    assert len(ways) == flows.MAX_FLOWS == 10
+    assert len(ways) == locations.MAX_FLOWS == 10
     assert len({tuple(places) for places in ways}) == 10  # each at its own lines
     names = [way(found, number)[1]["logicalLocations"][0]["name"] for number in range(10)]
     assert names[0] == result.analysis.findings[0].witness[1].name

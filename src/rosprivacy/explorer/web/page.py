@@ -21,7 +21,7 @@ from rosprivacy.explorer.web.element_pane import element_pane, is_likely_source
 from rosprivacy.explorer.web.forms import METHODS
 from rosprivacy.explorer.web.panes import Pane, stands_for, title_of
 from rosprivacy.explorer.web.view import ALL
-from rosprivacy.report.finding_order import place_of
+from rosprivacy.report.finding_facts import place_of
 from rosprivacy.report.page.html import in_html
 from rosprivacy.report.page.spaced_templates import CompiledTemplates
 from rosprivacy.report.pictures.live_svg import Links
