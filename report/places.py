@@ -24,7 +24,7 @@ NOWHERE = Place("the database", 0)  # what people added there by hand stands in 
 
 
 @dataclass(frozen=True, slots=True)
-class Places:
+class PlaceIndex:
     """Looks places up.
 
     Attributes

@@ -21,7 +21,7 @@ from rosprivacy.analysis.modes import View
 from rosprivacy.report.catalogs.words import Words, plain
 from rosprivacy.report.cnil import answers as cnil_answers
 from rosprivacy.report.cnil import inventory
-from rosprivacy.report.cnil.answers import Known
+from rosprivacy.report.cnil.answers import AnswerFacts
 from rosprivacy.report.cnil.inventory import kinds_of
 from rosprivacy.report.cnil.told import NAMES, Html, Told, escaped, joined, paragraph
 from rosprivacy.report.document.analysis import verdict_facts
@@ -59,7 +59,7 @@ def cnil_pia(document: Document, created: str, language: str = "en") -> dict[str
     told = Told(Words(language), vocabulary.categories)
     accepted = _accepted(document, told.words)
     ways, processed = required(document.ways), required(document.processing).by_kind
-    known = Known(analysis, kinds, document.outside, accepted, ways, vocabulary.hierarchy, told, processed)
+    known = AnswerFacts(analysis, kinds, document.outside, accepted, ways, vocabulary.hierarchy, told, processed)
     measures = list(_measures(known))
     sentence = verdict_sentence(verdict_facts(analysis, document.doubts, assumptions), told.words)
     note = _note(analysis, assumptions, _fleet(view, told) if view else "", sentence, told)
@@ -170,7 +170,7 @@ def _pia(assumptions: Mapping[str, Any], created: str, words: Told) -> dict[str,
     }
 
 
-def _measures(facts: Known) -> Iterator[tuple[str, Html]]:
+def _measures(facts: AnswerFacts) -> Iterator[tuple[str, Html]]:
     """(title, content) of what the graph shows to protect data; titles are at most 120 characters."""
     graph, told = facts.analysis.graph, facts.words
     if graph.profiles:

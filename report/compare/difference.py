@@ -19,7 +19,7 @@ from rosprivacy.report.compare.matching import compare
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
-    from rosprivacy.report.compare.matching import Changes, ElementChange
+    from rosprivacy.report.compare.matching import ElementChange, StateChanges
     from rosprivacy.report.compare.snapshot import Snapshot
 
 FORMAT = "rosprivacy.diff/1"
@@ -61,7 +61,7 @@ def difference(before: Snapshot, after: Snapshot) -> dict[str, Any]:
     return found
 
 
-def _section(changes: Changes, names: tuple[str, ...]) -> dict[str, Any]:
+def _section(changes: StateChanges, names: tuple[str, ...]) -> dict[str, Any]:
     def row(change: ElementChange) -> dict[str, Any]:
         key = {name: part for name, part in zip(names, change.key, strict=True) if part}
         return {**key, "before": change.before, "after": change.after}

@@ -41,7 +41,7 @@ class ElementChange:
 
 
 @dataclass(frozen=True, slots=True)
-class Changes:
+class StateChanges:
     """What differs, each sorted by key."""
 
     new: tuple[ElementChange, ...]
@@ -99,7 +99,7 @@ def paired(before: Collection[Key], after: Collection[Key]) -> MatchedPairs:
     return MatchedPairs(tuple(sorted(pairs, key=lambda pair: pair[1])), tuple(gone), tuple(new))
 
 
-def compare(before: Mapping[Key, Record], after: Mapping[Key, Record]) -> Changes:
+def compare(before: Mapping[Key, Record], after: Mapping[Key, Record]) -> StateChanges:
     """Return what differs between two states; linear in their size, but for sorting."""
     pairs = paired(before.keys(), after.keys())
     changed = [
@@ -107,7 +107,7 @@ def compare(before: Mapping[Key, Record], after: Mapping[Key, Record]) -> Change
         for ours, theirs in pairs.common
         if comparable(before[ours]) != comparable(after[theirs])
     ]
-    return Changes(
+    return StateChanges(
         tuple(ElementChange(key, None, after[key]) for key in pairs.new),
         tuple(ElementChange(key, before[key], None) for key in pairs.removed),
         tuple(changed),

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.whatif.ledger import GlobUse, TakenAway
     from rosprivacy.analysis.whatif.reliance import Reliance
     from rosprivacy.ontology.vocabulary import Vocabulary
-    from rosprivacy.report.places import Places
+    from rosprivacy.report.places import PlaceIndex
 
     Shown = tuple[str, str, str, str]  # an element as readers see it: the two sides of a wildcard are one
 
@@ -70,7 +70,7 @@ class Positions(NamedTuple):
         (element, element) -> the flow behind that step of a further path.
     """
 
-    places: Places
+    places: PlaceIndex
     flows: Mapping[tuple[Shown, Shown], Flow]
 
 

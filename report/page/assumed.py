@@ -43,6 +43,44 @@ class Remark:
     text: str
 
 
+@dataclass(frozen=True, slots=True)
+class Grounds:
+    """What the result rests on.
+
+    Attributes
+    ----------
+    assumptions, files, remarks
+        In sentences; what was read, and what was said of it.
+    closed
+        What closed a path.
+    hanging
+        What hangs on single statements; None where nobody asked.
+    typed, only_by_types
+        Channels of known types, and the paths that only these close: (data, ends).
+    """
+
+    assumptions: tuple[str, ...]
+    files: tuple[File, ...]
+    remarks: tuple[Remark, ...]
+    closed: tuple[ClosedSection, ...]
+    hanging: tuple[Hanging, ...] | None
+    typed: tuple[Typed, ...]
+    only_by_types: tuple[tuple[str, str], ...]
+
+
+def grounds(index: Index) -> Grounds:
+    """Return what a document says that its result rests on."""
+    return Grounds(
+        assumptions=tuple(assumed(index)),
+        files=files(index),
+        remarks=remarks(index),
+        closed=closed(index),
+        hanging=hanging(index),
+        typed=typed(index),
+        only_by_types=only_by_types(index),
+    )
+
+
 def assumed(index: Index) -> Iterator[str]:
     """Return the assumptions."""
     words, said = index.words, index.document["assumptions"]

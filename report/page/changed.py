@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.compare.changes import Changes
     from rosprivacy.report.compare.earlier import Earlier
-    from rosprivacy.report.page.finding_entries import Entry
+    from rosprivacy.report.page.finding_entries import PathEntry
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,19 +41,19 @@ class Changed:
     intro: str
     sentences: tuple[str, ...]
     scope: tuple[str, ...]
-    new: tuple[Entry, ...]
-    changed: tuple[tuple[Entry, str], ...]
+    new: tuple[PathEntry, ...]
+    changed: tuple[tuple[PathEntry, str], ...]
     removed: tuple[tuple[str, str, str], ...]
     opened: tuple[str, ...]
     closed: tuple[str, ...]
 
 
-def changed(differ: Changes, earlier: Earlier, entries: tuple[Entry, ...], index: Index) -> Changed:
+def changed(differ: Changes, earlier: Earlier, entries: tuple[PathEntry, ...], index: Index) -> Changed:
     """Return what changed since an earlier document."""
     words = index.words
     of_finding = {finding: entry for entry in entries for finding in (entry.id, *entry.alike)}
     old = Index(earlier.document, words)
-    by_entry: dict[Entry, list[str]] = {}
+    by_entry: dict[PathEntry, list[str]] = {}
     for finding, what in differ.changed.items():
         by_entry.setdefault(of_finding[finding], []).extend(what)
     return Changed(

@@ -18,7 +18,7 @@ from rosprivacy.report.page.finding_entries import LINES, SHOWN_AT_MOST, hops_of
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from rosprivacy.report.page.finding_entries import Entry, Hop
+    from rosprivacy.report.page.finding_entries import Hop, PathEntry
     from rosprivacy.report.page.index import Index
 
 NAMED_AT_MOST = 6  # elements that get less
@@ -55,10 +55,10 @@ class ClosingEntry:
     changes: tuple[Proposed, ...] = ()
     remainder: str = ""
     instead: tuple[str, ...] = ()
-    stays: tuple[Entry, ...] = ()
+    stays: tuple[PathEntry, ...] = ()
 
 
-def closing(index: Index, entries: Iterable[Entry], proposals: Mapping[str, Any] | str) -> ClosingEntry | None:
+def closing(index: Index, entries: Iterable[PathEntry], proposals: Mapping[str, Any] | str) -> ClosingEntry | None:
     """Return what closes the paths of a report; None if there is none to close.
 
     Parameters

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from rosprivacy.report.naming import Key
-    from rosprivacy.report.page.finding_entries import Entry
+    from rosprivacy.report.page.finding_entries import PathEntry
     from rosprivacy.report.page.index import Index
 
 PASSES = ("conduit", "sanitizer")  # what is said of data that may never get there
@@ -68,6 +68,10 @@ class Inventory:
         How many elements and flows.
     denied
         How many flows a DENY takes back; empty if none.
+    outside
+        What lies outside ROS.
+    cleanings, makings
+        Who cleans data, and who makes one kind of another.
     """
 
     size: str
@@ -75,9 +79,12 @@ class Inventory:
     items: tuple[ElementItem, ...]
     rest: tuple[tuple[str, tuple[str, ...]], ...]
     enclaves: tuple[Enclave, ...]
+    outside: tuple[Outside, ...]
+    cleanings: tuple[CleaningEntry, ...]
+    makings: tuple[MakingEntry, ...]
 
 
-def inventory(index: Index) -> Inventory:
+def inventory(index: Index, entries: Iterable[PathEntry]) -> Inventory:
     """Return the elements of a document."""
     words, document = index.words, index.document
     elements, flows = words.count(document["elements"], "element"), words.count(document["flows"], "flow")
@@ -88,6 +95,9 @@ def inventory(index: Index) -> Inventory:
         items=items(index),
         rest=unreached_names(index),
         enclaves=enclaves(index),
+        outside=outside(index),
+        cleanings=cleanings(index, entries),
+        makings=makings(index),
     )
 
 
@@ -300,7 +310,7 @@ class MakingEntry:
     recognises: bool = False
 
 
-def cleanings(index: Index, entries: Iterable[Entry]) -> tuple[CleaningEntry, ...]:
+def cleanings(index: Index, entries: Iterable[PathEntry]) -> tuple[CleaningEntry, ...]:
     """Return what sanitizers do."""
     past = _Past(index, entries)
 
@@ -314,7 +324,7 @@ def cleanings(index: Index, entries: Iterable[Entry]) -> tuple[CleaningEntry, ..
 class _Past:
     """Paths to assess on which a kind of data arrives as it is, and the elements that each leads through."""
 
-    def __init__(self, index: Index, entries: Iterable[Entry]) -> None:
+    def __init__(self, index: Index, entries: Iterable[PathEntry]) -> None:
         self._paths: dict[str, Counter[tuple[str, int]]] = defaultdict(Counter)
         self._through: dict[tuple[str, Key], list[tuple[str, tuple[str, int]]]] = defaultdict(list)
         for entry in entries:

@@ -1,6 +1,6 @@
 """Findings -> the entries of a report: one path to assess each, hop by hop, with policy lines and what is to be asked.
 
-In: an ``Index``. Out: ``FindingEntry``, in the order of the document; those that differ only in the robot are one (rule
+In: an ``Index``. Out: ``PathEntry``, in the order of the document; those that differ only in the robot are one (rule
 S10). What people decided about a finding stands with it, and decisions that match none; what the law asks for and
 nobody wrote down is named (``analysis/legal_bases.py``).
 """
@@ -140,7 +140,7 @@ class Hop:
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class PathEntry:
     """A path to assess: a finding, or findings that differ only in the robot.
 
     Attributes
@@ -201,7 +201,7 @@ class Entry:
         return " → ".join(hop.name for hop in self.hops)
 
 
-def finding_entries(index: Index, marks: Mapping[str, str] | None = None) -> tuple[Entry, ...]:
+def finding_entries(index: Index, marks: Mapping[str, str] | None = None) -> tuple[PathEntry, ...]:
     """Return the entries.
 
     Parameters
@@ -237,12 +237,12 @@ def _entry(
     marks: Mapping[str, str],
     *,
     detailed: bool,
-) -> Entry:
+) -> PathEntry:
     finding = group[0]
     decision = decided[finding["id"]]
     stands = state(finding)
     robots = _robots(group, index)
-    return Entry(
+    return PathEntry(
         id=finding["id"],
         anchor=anchor(finding["id"]) if detailed else kind_anchor(finding["category"]),
         detailed=detailed,

@@ -104,7 +104,7 @@ def works_council(report: Outline) -> str:
     cleaned. Complexity: O(their size).
     """
     environment, css, _ = environment_of(report.words.language)
-    there = {place.data for group in report.rights for place in group.places}
+    there = {place.data for group in report.persons.rights for place in group.places}
     kinds = [kind for kind in report.kinds if any(kind.title in data for data in there)]
     measures = [field.line for field in report.assessment.general if field.key == f"sign.{DECIDED}" and field.line]
     page = environment.get_template("works_council.html.j2").render(

@@ -19,14 +19,14 @@ from rosprivacy.report.page.look_at import LookAt, context_of, of_kind
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from rosprivacy.report.page.finding_entries import Entry
+    from rosprivacy.report.page.finding_entries import PathEntry
     from rosprivacy.report.page.index import Index
 
 NARROWER = "⊇ "  # how the ontology writes, in other languages than English: if the data are of one of these kinds
 
 
 @dataclass(frozen=True, slots=True)
-class Provision:
+class ProvisionText:
     """One provision to look at: that data of the kind can be what it speaks of.
 
     Attributes
@@ -77,12 +77,12 @@ class KindEntry:
     gdpr: str
     article9: str
     reason: str
-    law: tuple[Provision, ...]
+    law: tuple[ProvisionText, ...]
     origins: tuple[tuple[str, str], ...]
-    entries: tuple[Entry, ...]
+    entries: tuple[PathEntry, ...]
     places: tuple[str, ...]
     open: int
-    in_context: tuple[tuple[str, Provision], ...]
+    in_context: tuple[tuple[str, ProvisionText], ...]
     look_at: tuple[LookAt, ...]
 
     @property
@@ -91,7 +91,7 @@ class KindEntry:
         return kind_anchor(self.name)
 
     @property
-    def detailed(self) -> tuple[Entry, ...]:
+    def detailed(self) -> tuple[PathEntry, ...]:
         """The entries that are told one by one."""
         return tuple(entry for entry in self.entries if entry.detailed)
 
@@ -106,9 +106,9 @@ class KindEntry:
         return sum(entry.state in ("open", "decided") for entry in self.entries)
 
 
-def kinds(index: Index, entries: Iterable[Entry]) -> tuple[KindEntry, ...]:
+def kinds(index: Index, entries: Iterable[PathEntry]) -> tuple[KindEntry, ...]:
     """Return the kinds of data."""
-    by_category: dict[str, list[Entry]] = {}
+    by_category: dict[str, list[PathEntry]] = {}
     for entry in entries:
         by_category.setdefault(entry.category, []).append(entry)
     made = [
@@ -118,7 +118,7 @@ def kinds(index: Index, entries: Iterable[Entry]) -> tuple[KindEntry, ...]:
     return tuple(sorted(made, key=lambda kind: kind.entries[0].number if kind.entries else len(index.findings) + 1))
 
 
-def _kind(category: Mapping[str, Any], index: Index, entries: tuple[Entry, ...]) -> KindEntry:
+def _kind(category: Mapping[str, Any], index: Index, entries: tuple[PathEntry, ...]) -> KindEntry:
     language, of = index.words.language, category["name"]
     reached = [finding["leak"] for finding in index.findings if finding["category"] == of and not finding["dismissed"]]
     return KindEntry(
@@ -146,14 +146,14 @@ def _kind(category: Mapping[str, Any], index: Index, entries: tuple[Entry, ...])
     )
 
 
-def provision(legal: Mapping[str, Any], of: str, index: Index) -> Provision:
+def provision(legal: Mapping[str, Any], of: str, index: Index) -> ProvisionText:
     """Return a provision in words."""
     language = index.words.language
     condition = text(legal, "condition", language)
     if condition.startswith(NARROWER):
         condition = index.words("law.narrower", kinds=condition.removeprefix(NARROWER))
     sources = legal["translations"].get(language, {}).get("sources") if legal["sources"] else ""
-    return Provision(
+    return ProvisionText(
         name=text(legal, "provision", language),
         verdict=legal["verdict"],
         condition=condition,

@@ -21,7 +21,7 @@ from rosprivacy.report.page.index import grouped
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-    from rosprivacy.report.page.finding_entries import Entry
+    from rosprivacy.report.page.finding_entries import PathEntry
     from rosprivacy.report.page.index import Index
 
 BOUND = 12  # rows; the others are told by their number
@@ -60,7 +60,7 @@ class ToDecide:
     kinds: tuple[str, ...]
     spread: tuple[str, ...]
     facts: tuple[tuple[str, str], ...]
-    entries: tuple[Entry, ...]
+    entries: tuple[PathEntry, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,14 +114,14 @@ def opening(
     return OpeningSection(headline, (*said, *_unreviewed(index), *doubts), tuple(rows[:BOUND]), len(rows), more)
 
 
-def flows(index: Index, entries: Iterable[Entry]) -> list[ToDecide]:
+def flows(index: Index, entries: Iterable[PathEntry]) -> list[ToDecide]:
     """Return the flows that are decided by themselves, what waits for somebody first, what is accepted last."""
     decided = [entry for entry in entries if entry.state != "dismissed"]
     rows = [_row(group, index) for group in grouped(decided, _flow)]
     return sorted(rows, key=lambda row: (row.entries[0].state not in TO_DECIDE, not row.waits))
 
 
-def _flow(entry: Entry) -> Any:
+def _flow(entry: PathEntry) -> Any:
     same = (entry.category, entry.source, entry.leak, entry.robots, entry.pseudonymised)
     return same, entry.mark, entry.state in TO_DECIDE
 
@@ -159,7 +159,7 @@ def _names_shown(names: Sequence[str], index: Index) -> str:
     return index.words.row(index.words.first(names, SHOWN_AT_MOST))
 
 
-def _row(group: Sequence[Entry], index: Index) -> ToDecide:
+def _row(group: Sequence[PathEntry], index: Index) -> ToDecide:
     findings = [index.by_id[entry.id] for entry in group]
     first, entry = findings[0], group[0]
     many = len(entry.robots) > 1

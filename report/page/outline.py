@@ -17,20 +17,19 @@ from rosprivacy.report.compare.changes import changes
 from rosprivacy.report.document.ledger import by_globs
 from rosprivacy.report.finding_facts import REVEALS, strength
 from rosprivacy.report.naming import count_rows
-from rosprivacy.report.page import assumed, elements, persons
 from rosprivacy.report.page.assessment import Answers, Assessment, AssessmentCriterion, assessment, criteria
-from rosprivacy.report.page.assumed import Hanging, Typed, hanging, only_by_types, typed
+from rosprivacy.report.page.assumed import Grounds, grounds
 from rosprivacy.report.page.changed import Changed, changed
 from rosprivacy.report.page.closing import BeyondEntry, ClosingEntry, beyond_entries, beyond_said, closing
-from rosprivacy.report.page.elements import Outside, outside
-from rosprivacy.report.page.finding_entries import DecisionText, Entry, finding_entries, orphans
+from rosprivacy.report.page.elements import Inventory, inventory
+from rosprivacy.report.page.finding_entries import DecisionText, PathEntry, finding_entries, orphans
 from rosprivacy.report.page.fleet_section import FleetSection, fleet_told
 from rosprivacy.report.page.index import Index, state
 from rosprivacy.report.page.kinds import KindEntry, kinds
 from rosprivacy.report.page.look_at import FurtherLaw, further_law
 from rosprivacy.report.page.opening import OpeningSection, flows, opening
-from rosprivacy.report.page.persons import PurposeRow, processed, signed
-from rosprivacy.report.page.review import Group, Sort, doubts, in_doubt, review
+from rosprivacy.report.page.persons import Concerned, concerned, signed
+from rosprivacy.report.page.review import QuestionGroup, Sort, doubts, in_doubt, review
 from rosprivacy.report.verdict import verdict_meaning, verdict_sentence
 
 if TYPE_CHECKING:
@@ -90,34 +89,21 @@ class Outline:
     means: tuple[str, ...]
     numbers: tuple[tuple[int, str], ...]
     glossary: tuple[tuple[str, str], ...]
-    assumptions: tuple[str, ...]
-    files: tuple[assumed.File, ...]
-    remarks: tuple[assumed.Remark, ...]
-    closed: tuple[assumed.ClosedSection, ...]
+    grounds: Grounds
     fleet: FleetSection | None
     changes: Changed | None
-    subjects: persons.PageTable
-    silent: tuple[str, ...]
-    recipients: persons.PageTable
-    processed: tuple[PurposeRow, ...]
+    persons: Concerned
     kinds: tuple[KindEntry, ...]
-    entries: tuple[Entry, ...]
+    entries: tuple[PathEntry, ...]
     beyond: tuple[BeyondEntry, ...]
     beyond_said: tuple[str, ...]
     orphans: tuple[DecisionText, ...]
-    hanging: tuple[Hanging, ...] | None
     further: FurtherLaw
-    outside: tuple[Outside, ...]
-    cleanings: tuple[elements.CleaningEntry, ...]
-    makings: tuple[elements.MakingEntry, ...]
-    typed: tuple[Typed, ...]
-    only_by_types: tuple[tuple[str, str], ...]
-    questions: tuple[Group, ...]
+    questions: tuple[QuestionGroup, ...]
     doubts: tuple[Sort, ...]
     criteria: tuple[AssessmentCriterion, ...]
-    rights: tuple[persons.Persons, ...]
     assessment: Assessment
-    inventory: elements.Inventory
+    inventory: Inventory
 
     def number(self, section: str) -> int:
         """Return the number of a section."""
@@ -161,10 +147,8 @@ def outline(
     verdict = verdict_meaning(document)
     decided = flows(index, entries)
     begins = opening(index, decided, words(f"verdict.{verdict}"), _told_of(verdict, index), tuple(in_doubt(index)))
-    links = persons.TableLinks(entries)
-    subjects, silent = persons.subjects(index, links)
     closes = closing(index, entries, proposals)
-    sections = _sections(index, closes=bool(closes), changes=bool(differ))
+    sections = _sections(index, begins.headline, closes=bool(closes), changes=bool(differ))
     return Outline(
         words=words,
         title=fit(title) if title else _title(index),
@@ -172,50 +156,35 @@ def outline(
         version=document["assumptions"]["rosprivacy"],
         law=_law(document["assumptions"], words),
         redacted=redacted,
-        sections=tuple(
-            (anchor, begins.headline if anchor == DECIDE else words(f"heading.{anchor}")) for anchor in sections
-        ),
+        sections=sections,
         code=document["verdict"],
         verdict=verdict,
         sentence=verdict_sentence(document, words),
         opening=begins,
         closing=closes,
-        means=tuple(_means(index, sections, sum(not entry.detailed for entry in entries))),
+        means=tuple(_means(index, [anchor for anchor, _ in sections], sum(not entry.detailed for entry in entries))),
         numbers=tuple(_numbers(index)),
         glossary=_glossary(index),
-        assumptions=tuple(assumed.assumed(index)),
-        files=assumed.files(index),
-        remarks=assumed.remarks(index),
-        closed=assumed.closed(index),
+        grounds=grounds(index),
         fleet=fleet_told(index, entries),
         changes=changed(differ, earlier, entries, index) if differ and earlier else None,
-        subjects=subjects,
-        silent=silent,
-        recipients=persons.recipients(index, links),
-        processed=processed(index),
+        persons=concerned(index, entries),
         kinds=kinds(index, entries),
         entries=entries,
         beyond=beyond_entries(index),
         beyond_said=beyond_said(index),
         orphans=orphans(index),
-        hanging=hanging(index),
         further=further_law(index),
-        outside=outside(index),
-        cleanings=elements.cleanings(index, entries),
-        makings=elements.makings(index),
-        typed=typed(index),
-        only_by_types=only_by_types(index),
         questions=review(index),
         doubts=doubts(index),
         criteria=criteria(index),
-        rights=persons.rights(index),
         assessment=assessment(words, decided, answers or Answers(), signed(index)),
-        inventory=elements.inventory(index),
+        inventory=inventory(index, entries),
     )
 
 
-def _sections(index: Index, *, closes: bool, changes: bool) -> list[str]:
-    """The sections that there are, in order."""
+def _sections(index: Index, headline: str, *, closes: bool, changes: bool) -> tuple[tuple[str, str], ...]:
+    """The sections that there are, in order: (anchor, heading)."""
     document = index.document
     there = {
         "closing": closes,
@@ -225,7 +194,8 @@ def _sections(index: Index, *, closes: bool, changes: bool) -> list[str]:
         "beyond": "enforced" in document,
         "doubts": bool(document.get("doubts")),
     }
-    return [name for name in SECTIONS if there.get(name, True)]
+    anchors = (anchor for anchor in SECTIONS if there.get(anchor, True))
+    return tuple((one, headline if one == DECIDE else index.words(f"heading.{one}")) for one in anchors)
 
 
 def _glossary(index: Index) -> tuple[tuple[str, str], ...]:

@@ -22,10 +22,41 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.report.naming import Key
+    from rosprivacy.report.page.finding_entries import PathEntry
     from rosprivacy.report.page.index import Index
 
 COLUMNS = 6  # of one part, so that it fits a page upright
 OUTSIDE = ("storage", "external-system", "display", "participant", "person", "device")
+
+
+@dataclass(frozen=True, slots=True)
+class Concerned:
+    """Whom the data are about and who gets them.
+
+    Attributes
+    ----------
+    subjects, silent
+        Whose data, by kind; sources of which nobody says whose.
+    recipients
+        Who can get data, by kind.
+    processed
+        What for, on which basis and by whom.
+    rights
+        Of each group of persons, where data about them can lie.
+    """
+
+    subjects: PageTable
+    silent: tuple[str, ...]
+    recipients: PageTable
+    processed: tuple[PurposeRow, ...]
+    rights: tuple[Persons, ...]
+
+
+def concerned(index: Index, entries: Sequence[PathEntry]) -> Concerned:
+    """Return the persons of a document."""
+    links = TableLinks(entries)
+    table, silent = subjects(index, links)
+    return Concerned(table, silent, recipients(index, links), processed(index), rights(index))
 
 
 @dataclass(frozen=True, slots=True)

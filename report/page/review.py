@@ -55,7 +55,7 @@ class FoldedReview:
 
 
 @dataclass(frozen=True, slots=True)
-class Group:
+class QuestionGroup:
     """Questions of one urgency; ``key`` is that of its heading."""
 
     key: str
@@ -64,10 +64,10 @@ class Group:
     folded: tuple[FoldedReview, ...] = ()
 
 
-def review(index: Index) -> tuple[Group, ...]:
+def review(index: Index) -> tuple[QuestionGroup, ...]:
     """Return the groups that are not empty."""
     return tuple(
-        Group(
+        QuestionGroup(
             f"question.{group.key}",
             _number(group.questions, index),
             tuple(_questions(group.now, index)),

@@ -254,7 +254,7 @@ class Drawing(Closing):
             return self._layouts[what]
 
 
-class Shown(NamedTuple):
+class PagePicture(NamedTuple):
     """What a page shows of a picture.
 
     Attributes
@@ -319,7 +319,7 @@ class Pictures(Closing):
         everything: bool = False,
         why: WhyCarried | None = None,
         way: Witness | None = None,
-    ) -> Shown:
+    ) -> PagePicture:
         """Return a picture; the same for the same analysis, element and kinds, to the byte.
 
         Parameters
@@ -345,9 +345,11 @@ class Pictures(Closing):
                 self._reached = Scenes(analysis, self._say, why)
             scene = (self._reached.whole_system if everything else self._reached.of)(focus, kinds, way=way)
         picture = scene.picture
-        return Shown(self._drawing.svg(scene, links, room), legend(scene), picture.title, picture.notes, picture.ways)
+        return PagePicture(
+            self._drawing.svg(scene, links, room), legend(scene), picture.title, picture.notes, picture.ways
+        )
 
-    def drawn(self, picture: Picture, links: Links | None = None, room: tuple[float, float] = ROOM) -> Shown:
+    def drawn(self, picture: Picture, links: Links | None = None, room: tuple[float, float] = ROOM) -> PagePicture:
         """Return a picture that was made elsewhere, such as what a query of the database gives.
 
         Parameters
@@ -356,7 +358,9 @@ class Pictures(Closing):
             As of ``of``.
         """
         scene = Scene(picture)
-        return Shown(self._drawing.svg(scene, links, room), legend(scene), picture.title, picture.notes, picture.ways)
+        return PagePicture(
+            self._drawing.svg(scene, links, room), legend(scene), picture.title, picture.notes, picture.ways
+        )
 
 
 class AlonePicture(NamedTuple):
@@ -365,7 +369,7 @@ class AlonePicture(NamedTuple):
     Attributes
     ----------
     svg, title, notes
-        As of ``Shown``.
+        As of ``PagePicture``.
     """
 
     svg: str

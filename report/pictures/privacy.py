@@ -68,7 +68,7 @@ def _open_kinds(questions: Iterable[OpenQuestion], shown: frozenset[str]) -> dic
     return found
 
 
-class Reached:
+class ReachedElements:
     """Where the data of an analysis is, for all of its categories or for what one finding is about.
 
     Parameters
@@ -352,7 +352,7 @@ def _place(place: Place) -> tuple[str, int]:
 
 
 def flow_lines(
-    reached: Reached,
+    reached: ReachedElements,
     boxes: Collection[Key],
     flows: Iterable[int],
     lengths: Mapping[int, int],
@@ -380,7 +380,7 @@ def flow_lines(
     return lines
 
 
-def add_cleaned(lines: FlowLines, reached: Reached, cleaned: Mapping[int, Collection[str]]) -> None:
+def add_cleaned(lines: FlowLines, reached: ReachedElements, cleaned: Mapping[int, Collection[str]]) -> None:
     """Add the flows along which data gets to where a label says that it is cleaned."""
     for index, kinds in cleaned.items():
         flow = reached.graph.flows[index]
@@ -388,7 +388,7 @@ def add_cleaned(lines: FlowLines, reached: Reached, cleaned: Mapping[int, Collec
 
 
 def data_lines(
-    reached: Reached,
+    reached: ReachedElements,
     boxes: Collection[Key],
     flows: Iterable[int],
     lengths: Mapping[int, int],

@@ -35,7 +35,7 @@ from rosprivacy.report.pictures.picture import (
     sorted_boxes,
     sorted_lines,
 )
-from rosprivacy.report.pictures.privacy import FlowLines, Reached, data_lines, ends_of_flow
+from rosprivacy.report.pictures.privacy import FlowLines, ReachedElements, data_lines, ends_of_flow
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Sequence
@@ -149,7 +149,7 @@ def privacy_view(
     Besides what the analysis took: per category with a finding O(flows), see ``flows_to_leaks``.
     """
     say, analysis = say or Phrases(), paths.analysis
-    words, reached = say.words, Reached(analysis, say=say)
+    words, reached = say.words, ReachedElements(analysis, say=say)
     if not reached.sources():
         return Picture(PRIVACY, plain(words("picture.nothing")), (), (), words=words)
     boxes = {box.key: box for box in reached.boxes()}
@@ -189,7 +189,7 @@ class FindingViews:
 
     def __init__(self, paths: PathsToLeaks, say: Phrases | None = None) -> None:
         self._paths, self._analysis, self._say = paths, paths.analysis, say or Phrases()
-        self._reached: dict[str, Reached] = {}
+        self._reached: dict[str, ReachedElements] = {}
 
     def of(self, finding: Finding, about: int | None = None) -> Picture:
         """Return the paths of one finding, from its source to its leak: the shortest, and the longer ones.
@@ -203,7 +203,7 @@ class FindingViews:
         """
         category, graph = finding.category, self._analysis.graph
         if category not in self._reached:
-            self._reached[category] = Reached(self._analysis, {category}, self._say)
+            self._reached[category] = ReachedElements(self._analysis, {category}, self._say)
         reached = self._reached[category]
         found = self._paths.of(finding, about)
         lengths = found.flows
@@ -309,7 +309,7 @@ def overview(analysis: Analysis, findings: Sequence[Finding], say: Phrases | Non
 
     Complexity: O(flows + elements).
     """
-    reached = Reached(analysis, {finding.category for finding in findings}, say)
+    reached = ReachedElements(analysis, {finding.category for finding in findings}, say)
     steps = {(step.source, step.target) for finding in findings for step in finding.steps}
     elements = analysis.graph.elements
     flows = [

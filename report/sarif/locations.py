@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import Finding
     from rosprivacy.analysis.model import Element, Place
-    from rosprivacy.report.places import Places
+    from rosprivacy.report.places import PlaceIndex
 
     Physical = Callable[[Place], dict[str, Any]]
     Pair = tuple[tuple[str, str, str, str], tuple[str, str, str, str]]
@@ -122,7 +122,7 @@ def further_paths(finding: Finding) -> int:
 
 
 def flows_of(
-    finding: Finding, between: Mapping[Pair, Flow], places: Places, physical: Physical
+    finding: Finding, between: Mapping[Pair, Flow], places: PlaceIndex, physical: Physical
 ) -> list[dict[str, Any]]:
     """Return the ``codeFlows`` of a finding: the witness, then further paths up to a bound, one ``threadFlow`` each."""
     paths: list[Sequence[Step]] = [finding.steps]
@@ -152,7 +152,7 @@ def _steps(path: Iterable[Element], between: Mapping[Pair, Flow]) -> list[Step]:
     return [Step(a, b, flow.role, "", pseudonymised=False, grants=flow.grants) for a, b, flow in found]
 
 
-def _start(finding: Finding, places: Places) -> Place:
+def _start(finding: Finding, places: PlaceIndex) -> Place:
     """Where a path begins: the label of the source, its profile, or the first line that lets the data go."""
     said = places.of_role(finding.source, "source", finding.steps[0].category if finding.steps else finding.category)
     lines = (place for step in finding.steps for place in of_step(step))

@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.fleet.patterns import FleetView, Pattern
     from rosprivacy.analysis.model import Diagnostic, Legal, Pointer
     from rosprivacy.report.document.contents import Document
+    from rosprivacy.report.sarif.rules import SarifRule
 
 SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 MAX_RESULTS = 25_000
@@ -108,16 +109,8 @@ def _log(document: Document, root: Path) -> dict[str, Any]:
         *_about(document, results, verdict_sentence(facts)),
         *_reading_notes((*diagnostics, *analysis.diagnostics), files),
     ]
-    driver = {
-        "name": "rosprivacy",
-        "version": str(assumptions.get("rosprivacy", "")),
-        "shortDescription": {"text": "Where personal data can go in a ROS 2 system, by its SROS 2 policies."},
-        "fullDescription": {"text": NO_VERDICT},
-        "rules": descriptors(rules.values()),
-        **({"supportedTaxonomies": [{"name": LAW, "index": 0}]} if taxa else {}),
-    }
     run = {
-        "tool": {"driver": driver},
+        "tool": {"driver": _driver(str(assumptions.get("rosprivacy", "")), rules.values(), taxonomy=bool(taxa))},
         "columnKind": "unicodeCodePoints",
         "originalUriBaseIds": {ROOT: {"description": {"text": "The root of the repository."}}},
         "invocations": [{"executionSuccessful": True, "toolExecutionNotifications": notices}],
@@ -134,6 +127,18 @@ def _log(document: Document, root: Path) -> dict[str, Any]:
         },
     }
     return {"$schema": SCHEMA, "version": "2.1.0", "runs": [run]}
+
+
+def _driver(version: str, rules: Iterable[SarifRule], *, taxonomy: bool) -> dict[str, Any]:
+    """The program, with the rules that results name."""
+    return {
+        "name": "rosprivacy",
+        "version": version,
+        "shortDescription": {"text": "Where personal data can go in a ROS 2 system, by its SROS 2 policies."},
+        "fullDescription": {"text": NO_VERDICT},
+        "rules": descriptors(rules),
+        **({"supportedTaxonomies": [{"name": LAW, "index": 0}]} if taxonomy else {}),
+    }
 
 
 def _within(results: Iterable[dict[str, Any]]) -> Iterator[dict[str, Any]]:

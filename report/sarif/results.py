@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Category, Doubt, Element, Flow, Legal, Pointer
     from rosprivacy.ontology.pointed import Pointed
     from rosprivacy.report.document.contents import EnforcedFacts
-    from rosprivacy.report.places import Places
+    from rosprivacy.report.places import PlaceIndex
 
 ROOT = "%SRCROOT%"
 LAW = "data-protection-law"
@@ -99,7 +99,7 @@ class Results:
     """
 
     analysis: Analysis
-    places: Places
+    places: PlaceIndex
     files: Files
     categories: Mapping[str, Category]
     law: Mapping[str, tuple[Legal, ...]]

@@ -26,7 +26,7 @@ from rosprivacy.report.document.contents import (
     Positions,
     StatedProcessing,
 )
-from rosprivacy.report.places import Places, roles_of, to_review
+from rosprivacy.report.places import PlaceIndex, roles_of, to_review
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
@@ -145,7 +145,7 @@ def _positions(analysis: Analysis, assumptions: Mapping[str, Any]) -> Positions:
     return Positions(_places(analysis, assumptions), _flows(analysis))
 
 
-def _places(analysis: Analysis, assumptions: Mapping[str, Any]) -> Places:
+def _places(analysis: Analysis, assumptions: Mapping[str, Any]) -> PlaceIndex:
     """In one pass over elements and, where channels are to be reviewed, over flows."""
     profiles: dict[str, Place] = {}
     for profile in analysis.graph.profiles:
@@ -153,7 +153,7 @@ def _places(analysis: Analysis, assumptions: Mapping[str, Any]) -> Places:
             profiles.setdefault(profile.node, profile.place)
     wanted = {question.element.shown_as for question in to_review(analysis) if question.element.is_channel}
     files = [entry["file"] for kind in ("labels", "policies") for entry in assumptions.get(kind) or ()]
-    return Places(_roles(analysis), first_lines(analysis.graph, wanted), profiles, tuple(files))
+    return PlaceIndex(_roles(analysis), first_lines(analysis.graph, wanted), profiles, tuple(files))
 
 
 def _roles(analysis: Analysis) -> dict[tuple[Shown, str, str], Place]:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from rosprivacy.outputs import Findings
 
 
-class Shown(TypedDict, total=False):
+class Presentation(TypedDict, total=False):
     """How an answer is shown to a person; see ``Result.to``."""
 
     verbose: bool
@@ -96,11 +96,11 @@ class Result(Answer):
         return {**json_document(document_of(self, (*IN_JSON, RELIANCE)))}
 
     @overload
-    def to(self, format: Literal["docx"], **how: Unpack[Shown]) -> bytes: ...
+    def to(self, format: Literal["docx"], **how: Unpack[Presentation]) -> bytes: ...
     @overload
-    def to(self, format: TextFormat, **how: Unpack[Shown]) -> str: ...
+    def to(self, format: TextFormat, **how: Unpack[Presentation]) -> str: ...
     @overload
-    def to(self, format: str, **how: Unpack[Shown]) -> str | bytes: ...
+    def to(self, format: str, **how: Unpack[Presentation]) -> str | bytes: ...
     def to(
         self,
         format: str,  # noqa: A002 - the option's name

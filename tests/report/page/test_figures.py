@@ -33,7 +33,7 @@ from rosprivacy.report.page.outline import outline
 from rosprivacy.report.pictures import dot as dot_module
 from rosprivacy.report.pictures import graphviz
 from rosprivacy.report.pictures.looks import ROLE_LOOKS
-from rosprivacy.report.pictures.privacy import Reached
+from rosprivacy.report.pictures.privacy import ReachedElements
 from rosprivacy.report.pictures.views import FindingViews, finding_view
 from rosprivacy.report.redact import redacted
 from tests.helpers.graphs import care_home, factory
@@ -236,9 +236,9 @@ def test_what_pictures_share_is_made_once_for_each_kind_of_data(monkeypatch: pyt
 
     def reached(analysis: Analysis, categories: set[str], say: Any) -> Any:
         asked.extend(categories)
-        return Reached(analysis, categories, say)
+        return ReachedElements(analysis, categories, say)
 
-    monkeypatch.setattr("rosprivacy.report.pictures.views.Reached", reached)
+    monkeypatch.setattr("rosprivacy.report.pictures.views.ReachedElements", reached)
     found = factory(2).analysis
     made(found)
     assert len(found.findings) > 1

@@ -101,7 +101,7 @@ def test_every_link_of_the_page_leads_somewhere(root: Any) -> None:
 
 
 def test_a_sanitizer_names_the_first_paths_past_it_and_counts_the_others(report: Outline) -> None:
-    (row,) = report.cleanings
+    (row,) = report.inventory.cleanings
     assert [number for _, number in row.past] == list(range(1, 101))
     assert row.remainder == f"and {VIDEO - 100:,} more"
 

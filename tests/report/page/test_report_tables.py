@@ -17,7 +17,7 @@ def cells(table: Any) -> dict[str, dict[str, str]]:
 
 def test_who_gets_which_kind() -> None:
     """All cells are in the golden set."""
-    who = cells(told(care()).recipients)
+    who = cells(told(care()).persons.recipients)
     assert who["/recorder"]["video of persons"] == "1 path to assess, pseudonymised"
     assert who["/recorder"]["voice"] == "no path found"
     assert who["/uplink"]["voice"] == "1 path to assess"
@@ -25,7 +25,7 @@ def test_who_gets_which_kind() -> None:
 
 def test_a_recipient_that_nothing_reaches_is_a_row_all_the_same() -> None:
     document = care() | {"findings": []}
-    assert set(cells(told(document).recipients)) == {"/recorder", "/uplink"}
+    assert set(cells(told(document).persons.recipients)) == {"/recorder", "/uplink"}
 
 
 def test_tables_are_cut_into_parts_that_fit_a_page() -> None:
@@ -34,7 +34,7 @@ def test_tables_are_cut_into_parts_that_fit_a_page() -> None:
     document["categories"][3]["name"] = "Video"
     document |= {"findings": [], "roles": [row for row in document["roles"] if row["category"] == "Video"]}
     document |= {"derivations": [], "sanitizers": [], "carries": [], "open": []}
-    parts = list(told(document).recipients.parts())
+    parts = list(told(document).persons.recipients.parts())
     assert [len(part.columns) for part in parts] == [6, 6, 2]
     assert all(len(row.cells) == len(part.columns) for part in parts for row in part.rows)
 
@@ -72,7 +72,7 @@ def test_findings_that_differ_only_in_the_robot_are_one_with_its_robots_listed()
     report = told(document)
     assert len(document["findings"]) == 60
     assert [len(entry.robots) for entry in report.entries] == [20, 20, 20]
-    assert [row.name for row in report.recipients.rows] == ["/recorder (20 robots)", "/uplink (20 robots)"]
+    assert [row.name for row in report.persons.recipients.rows] == ["/recorder (20 robots)", "/uplink (20 robots)"]
     for text in texts(document):
         assert all(robot in text for robot in robots)
         assert "/uplink (20 robots)" in text

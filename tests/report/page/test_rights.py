@@ -8,7 +8,7 @@ from tests.helpers.reports import care, with_outside
 
 
 def test_each_group_that_labels_name_has_its_places() -> None:
-    groups = {group.name: {place.name: place for place in group.places} for group in told(care()).rights}
+    groups = {group.name: {place.name: place for place in group.places} for group in told(care()).persons.rights}
     assert set(groups) == {"residents", "staff", "visitors", "persons not stated"}
     assert set(groups["residents"]) == {"/recorder", "/uplink"}
     assert groups["visitors"]["/uplink"].data == "face template"  # the microphone is not about visitors
@@ -17,7 +17,7 @@ def test_each_group_that_labels_name_has_its_places() -> None:
 
 
 def test_a_storage_stands_first_with_how_long_it_keeps_what() -> None:
-    residents, _, visitors, _ = told(with_outside(care())).rights
+    residents, _, visitors, _ = told(with_outside(care())).persons.rights
     assert residents.places[0].name == "archive"
     assert residents.places[0].retention.startswith("video of persons: 30 days")
     speech = next(place for place in residents.places if place.name == "speech service")
@@ -28,7 +28,7 @@ def test_a_storage_stands_first_with_how_long_it_keeps_what() -> None:
 def test_every_finding_of_a_group_is_at_one_of_its_places() -> None:
     for document in (care(), with_outside(care()), dict(hospital().document())):
         report = told(document)
-        told_places = {place.name for group in report.rights for place in group.places}
+        told_places = {place.name for group in report.persons.rights for place in group.places}
         for finding in document["findings"]:
             name = finding["leak"]["name"]
             assert any(name in place for place in told_places), name
