@@ -33,7 +33,7 @@ from rosprivacy.report.page.review import QuestionGroup, Sort, doubts, in_doubt,
 from rosprivacy.report.verdict import verdict_meaning, verdict_sentence
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.report.compare.earlier import Earlier
 
@@ -49,8 +49,8 @@ EXPLAINED = ("profile", "enclave", "label", "wildcard", "request")  # before the
 
 
 @dataclass(frozen=True, slots=True)
-class Outline:
-    """The whole report.
+class Cover:
+    """What stands above a report.
 
     Attributes
     ----------
@@ -58,37 +58,67 @@ class Outline:
         Of the system, as the user calls it, or the names of its policies.
     date
         Date; empty if none is to be told.
-    sections
-        (anchor, heading), in order.
+    law
+        As of when the law is told.
+    redacted
+        Whether names were replaced.
+    """
+
+    title: str
+    date: str
+    version: str
+    law: str
+    redacted: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Summary:
+    """The result on the whole.
+
+    Attributes
+    ----------
+    code
+        The verdict of the contract.
     verdict
-        Of the contract; or what it lacks, as ``verdict_meaning`` says.
+        The same; or what it lacks, as ``verdict_meaning`` says.
     sentence
         The verdict with its doubts, as all outputs say it.
-    opening
-        What it begins with: what is to be decided.
-    closing
-        What closes these paths; None where there are none.
+    means
+        What else is to be known of it.
     numbers
         (number, what it counts).
     glossary
         (word, what it means), of words that come before the section on the method.
     """
 
-    words: Words
-    title: str
-    date: str
-    version: str
-    law: str
-    redacted: bool
-    sections: tuple[tuple[str, str], ...]
     code: str
     verdict: str
     sentence: str
-    opening: OpeningSection
-    closing: ClosingEntry | None
     means: tuple[str, ...]
     numbers: tuple[tuple[int, str], ...]
     glossary: tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Outline:
+    """The whole report.
+
+    Attributes
+    ----------
+    sections
+        (anchor, heading), in order.
+    opening
+        What it begins with: what is to be decided.
+    closing
+        What closes these paths; None where there are none.
+    """
+
+    words: Words
+    cover: Cover
+    sections: tuple[tuple[str, str], ...]
+    summary: Summary
+    opening: OpeningSection
+    closing: ClosingEntry | None
     grounds: Grounds
     fleet: FleetSection | None
     changes: Changed | None
@@ -141,30 +171,19 @@ def outline(
     Complexity: O(size of the documents), but for the cells of the tables: recipients x categories.
     """
     index = Index(document, Words(language))
-    words = index.words
     differ = changes(earlier.document, document) if earlier else None
     entries = finding_entries(index, differ.marks() if differ else None)
-    verdict = verdict_meaning(document)
     decided = flows(index, entries)
-    begins = opening(index, decided, words(f"verdict.{verdict}"), _told_of(verdict, index), tuple(in_doubt(index)))
+    begins = opening(index, decided, *_verdict(index), tuple(in_doubt(index)))
     closes = closing(index, entries, proposals)
     sections = _sections(index, begins.headline, closes=bool(closes), changes=bool(differ))
     return Outline(
-        words=words,
-        title=fit(title) if title else _title(index),
-        date=words.date(date),
-        version=document["assumptions"]["rosprivacy"],
-        law=_law(document["assumptions"], words),
-        redacted=redacted,
+        words=index.words,
+        cover=_cover(index, title, date, redacted=redacted),
         sections=sections,
-        code=document["verdict"],
-        verdict=verdict,
-        sentence=verdict_sentence(document, words),
+        summary=_summary(index, entries, sections),
         opening=begins,
         closing=closes,
-        means=tuple(_means(index, [anchor for anchor, _ in sections], sum(not entry.detailed for entry in entries))),
-        numbers=tuple(_numbers(index)),
-        glossary=_glossary(index),
         grounds=grounds(index),
         fleet=fleet_told(index, entries),
         changes=changed(differ, earlier, entries, index) if differ and earlier else None,
@@ -178,7 +197,7 @@ def outline(
         questions=review(index),
         doubts=doubts(index),
         criteria=criteria(index),
-        assessment=assessment(words, decided, answers or Answers(), signed(index)),
+        assessment=assessment(index.words, decided, answers or Answers(), signed(index)),
         inventory=inventory(index, entries),
     )
 
@@ -198,10 +217,23 @@ def _sections(index: Index, headline: str, *, closes: bool, changes: bool) -> tu
     return tuple((one, headline if one == DECIDE else index.words(f"heading.{one}")) for one in anchors)
 
 
-def _glossary(index: Index) -> tuple[tuple[str, str], ...]:
-    words = index.words
-    explained = (index.document["view"], *EXPLAINED)
-    return tuple((words(f"glossary.{word}"), words(f"glossary.{word}.means")) for word in explained)
+def _cover(index: Index, title: str, date: str, *, redacted: bool) -> Cover:
+    assumptions, words = index.document["assumptions"], index.words
+    law = _law(assumptions, words)
+    return Cover(fit(title) if title else _title(index), words.date(date), assumptions["rosprivacy"], law, redacted)
+
+
+def _summary(index: Index, entries: Sequence[PathEntry], sections: Iterable[tuple[str, str]]) -> Summary:
+    document, words = index.document, index.words
+    explained = (document["view"], *EXPLAINED)
+    return Summary(
+        code=document["verdict"],
+        verdict=verdict_meaning(document),
+        sentence=verdict_sentence(document, words),
+        means=tuple(_means(index, [anchor for anchor, _ in sections], sum(not entry.detailed for entry in entries))),
+        numbers=tuple(_numbers(index)),
+        glossary=tuple((words(f"glossary.{word}"), words(f"glossary.{word}.means")) for word in explained),
+    )
 
 
 def _title(index: Index) -> str:
@@ -224,10 +256,11 @@ def _law(assumptions: Mapping[str, Any], words: Words) -> str:
     return "; ".join(said)
 
 
-def _told_of(verdict: str, index: Index) -> str:
-    """What a verdict means."""
-    words = index.words
-    return words(f"verdict.{verdict}.means", open=words.count(count_rows(index.document["open"]).elements, "element"))
+def _verdict(index: Index) -> tuple[str, str]:
+    """What the verdict is called, and what it means."""
+    words, verdict = index.words, verdict_meaning(index.document)
+    unreviewed = words.count(count_rows(index.document["open"]).elements, "element")
+    return words(f"verdict.{verdict}"), words(f"verdict.{verdict}.means", open=unreviewed)
 
 
 def _means(index: Index, sections: list[str], remaining: int) -> Iterator[str]:

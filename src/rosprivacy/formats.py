@@ -227,7 +227,7 @@ def _docx(document: Document, style: Style) -> bytes:
     from rosprivacy.report.page.markdown import markdown
 
     told = _outline(document, style)[0]
-    return word_document(markdown(told), told.title, style.language, today(os.environ))
+    return word_document(markdown(told), told.cover.title, style.language, today(os.environ))
 
 
 def _html(document: Document, style: Style) -> str:

@@ -104,7 +104,7 @@ def test_names_count_the_robots_of_the_fleet_not_those_that_are_shown() -> None:
     assert items["/camera_driver", "video of persons"] == 24
     (scale,) = (criterion.shows for criterion in report.criteria if criterion.name == "Large scale")
     assert scale.startswith("40 robots analysed")
-    assert (40, "robots in the fleet") in report.numbers
+    assert (40, "robots in the fleet") in report.summary.numbers
 
 
 @pytest.mark.parametrize("language", ["en", "de"])
