@@ -9,8 +9,7 @@ alike, by ``matching.py``.
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.text import printable
 from rosprivacy.report.compare.matching import Identity, comparable, paired
@@ -28,8 +27,7 @@ READ = ("fleet", "policies", "labels")
 COMPARED = ("pseudonymised", "dismissed", "accepted", "disjoint_paths", "article9")
 
 
-@dataclass(frozen=True, slots=True)
-class Changes:
+class Changes(NamedTuple):
     """The difference.
 
     Attributes

@@ -12,7 +12,7 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
@@ -23,8 +23,7 @@ Record = dict[str, Any]
 _MADE_UP = re.compile(r"(?=[a-f]*[0-9])[0-9a-f]{8,}|[0-9]{3,}")
 
 
-@dataclass(frozen=True, slots=True)
-class ElementChange:
+class ElementChange(NamedTuple):
     """Something that is there before or after, or both and not the same.
 
     Attributes
@@ -72,8 +71,7 @@ def _without_made_up(part: str) -> str:
     return part if kept == len(words) else "_".join([*words[:kept], "*"])
 
 
-@dataclass(frozen=True, slots=True)
-class MatchedPairs:
+class MatchedPairs(NamedTuple):
     """Which key of before is which one of after; each sorted, ``common`` by the key after."""
 
     common: tuple[tuple[Key, Key], ...]

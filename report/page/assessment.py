@@ -11,7 +11,7 @@ from __future__ import annotations
 import hashlib
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.analysis.json_shape import misfits, validator
@@ -85,8 +85,7 @@ PERSONAL = {"CommunicationContent", "CommunicationMetadata", "Household", "Locat
 SHOWN_AT_MOST = 6
 
 
-@dataclass(frozen=True, slots=True)
-class AssessmentCriterion:
+class AssessmentCriterion(NamedTuple):
     """One criterion: its name, and what the analysis shows of it, empty if only a person can say."""
 
     name: str
@@ -173,8 +172,7 @@ CRITERIA = 9
 NOTHING: Mapping[str, str] = MappingProxyType({})
 
 
-@dataclass(frozen=True, slots=True)
-class AssessmentField:
+class AssessmentField(NamedTuple):
     """A field: its key in the file, what it asks, what was answered, and what label files state beside it."""
 
     key: str
@@ -188,16 +186,14 @@ class AssessmentField:
         return "; ".join([*([self.stated] if self.stated else []), *self.text.splitlines()])
 
 
-@dataclass(frozen=True, slots=True)
-class Risk:
+class Risk(NamedTuple):
     """The risks of one flow to the persons (Article 35(7)(c))."""
 
     flow: ToDecide
     fields: tuple[AssessmentField, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Assessment:
+class Assessment(NamedTuple):
     """All fields.
 
     Attributes

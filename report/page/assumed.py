@@ -7,8 +7,7 @@ known from, and what they close (rule S15); a type that only a bag tells has no 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.model import MAY_REVEAL
 from rosprivacy.analysis.text import fit, printable
@@ -25,8 +24,7 @@ if TYPE_CHECKING:
 ALL = "all"
 
 
-@dataclass(frozen=True, slots=True)
-class File:
+class File(NamedTuple):
     """A file that was read: its role in words, its name, its hash."""
 
     role: str
@@ -34,8 +32,7 @@ class File:
     sha256: str
 
 
-@dataclass(frozen=True, slots=True)
-class Remark:
+class Remark(NamedTuple):
     """What was said of a file when it was read."""
 
     place: str
@@ -43,8 +40,7 @@ class Remark:
     text: str
 
 
-@dataclass(frozen=True, slots=True)
-class Grounds:
+class Grounds(NamedTuple):
     """What the result rests on.
 
     Attributes
@@ -245,8 +241,7 @@ def remarks(index: Index) -> tuple[Remark, ...]:
 FEW = 8  # elements that a row names, of each sort; the document has all
 
 
-@dataclass(frozen=True, slots=True)
-class Hanging:
+class Hanging(NamedTuple):
     """One statement.
 
     Attributes
@@ -325,8 +320,7 @@ def _names_shown(texts: Sequence[str], index: Index) -> tuple[str, ...]:
     return index.words.first(distinct, FEW)
 
 
-@dataclass(frozen=True, slots=True)
-class Typed:
+class Typed(NamedTuple):
     """A channel, or a leg of one, that data gets to.
 
     Attributes
@@ -393,8 +387,7 @@ def only_by_types(index: Index) -> tuple[tuple[str, str], ...]:
     )
 
 
-@dataclass(frozen=True, slots=True)
-class ClosedSection:
+class ClosedSection(NamedTuple):
     """One row: where data ends, which data, on whose word, and where it would get to."""
 
     where: str

@@ -5,8 +5,7 @@ In: what differs between two documents, and the entries of the report. Out: ``Ch
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.text import fit
 from rosprivacy.report.compare.changes import QUESTION_KEYS
@@ -22,8 +21,7 @@ if TYPE_CHECKING:
     from rosprivacy.report.page.finding_entries import PathEntry
 
 
-@dataclass(frozen=True, slots=True)
-class Changed:
+class Changed(NamedTuple):
     """What changed, in words.
 
     Attributes

@@ -7,8 +7,7 @@ only the enforced view has. Both are plain texts: a proposal is work for a perso
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.mitigation.limits import DENY, FILTER, REVIEW
 from rosprivacy.analysis.text import fit
@@ -25,8 +24,7 @@ NAMED_AT_MOST = 6  # elements that get less
 SHOWN = 20  # steps; the others are told by their number
 
 
-@dataclass(frozen=True, slots=True)
-class Proposed:
+class Proposed(NamedTuple):
     """One change: what to do, at which policy lines, and what else to know of it."""
 
     text: str
@@ -35,8 +33,7 @@ class Proposed:
     notes: tuple[str, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class ClosingEntry:
+class ClosingEntry(NamedTuple):
     """What closes paths.
 
     Attributes
@@ -149,8 +146,7 @@ BOUND = 200  # that are told one by one
 NAMED_OPEN = 12  # elements in the sentence of what is open
 
 
-@dataclass(frozen=True, slots=True)
-class BeyondEntry:
+class BeyondEntry(NamedTuple):
     """A finding that only the enforced view has.
 
     Attributes

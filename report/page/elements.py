@@ -8,9 +8,8 @@ it is left empty and not guessed.
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from dataclasses import dataclass
 from itertools import islice
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.legal import PROHIBITED
 from rosprivacy.analysis.model import SPECIAL
@@ -28,8 +27,7 @@ if TYPE_CHECKING:
 PASSES = ("conduit", "sanitizer")  # what is said of data that may never get there
 
 
-@dataclass(frozen=True, slots=True)
-class ElementItem:
+class ElementItem(NamedTuple):
     """An element that data gets to.
 
     Attributes
@@ -50,16 +48,14 @@ class ElementItem:
     reviewed: bool
 
 
-@dataclass(frozen=True, slots=True)
-class Enclave:
+class Enclave(NamedTuple):
     """An enclave of the policies, with the names of its nodes in a row."""
 
     name: str
     nodes: str
 
 
-@dataclass(frozen=True, slots=True)
-class Inventory:
+class Inventory(NamedTuple):
     """What there is: elements that data gets to, the others by kind, enclaves.
 
     Attributes
@@ -162,8 +158,7 @@ STORAGE = "storage"
 EVERY = "every"
 
 
-@dataclass(frozen=True, slots=True)
-class Outside:
+class Outside(NamedTuple):
     """One element outside ROS.
 
     Attributes
@@ -265,8 +260,7 @@ def _backups(value: Any, index: Index) -> str:
 SHOWN = 100  # entries of one row
 
 
-@dataclass(frozen=True, slots=True)
-class CleaningEntry:
+class CleaningEntry(NamedTuple):
     """What an element does to some kinds of data in one way.
 
     Attributes
@@ -296,8 +290,7 @@ class CleaningEntry:
     recognises: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class MakingEntry:
+class MakingEntry(NamedTuple):
     """That an element makes one kind of data of another; ``special`` if it can be a special category only then.
 
     ``recognises`` if persons are recognised or judged by what it makes.

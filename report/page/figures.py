@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from lxml import etree
 from markupsafe import Markup
@@ -190,8 +190,7 @@ class Wishes:
     change: Callable[[Picture], Picture] = _as_it_is
 
 
-@dataclass(frozen=True, slots=True)
-class Inline:
+class Inline(NamedTuple):
     """A picture for a page.
 
     Attributes

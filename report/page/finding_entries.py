@@ -8,8 +8,7 @@ nobody wrote down is named (``analysis/legal_bases.py``).
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.legal_bases import gaps
 from rosprivacy.analysis.text import fit, printable
@@ -30,8 +29,7 @@ DATES = ("date", "expires")
 ACCEPT, ORPHANED = "accept", "orphaned"
 
 
-@dataclass(frozen=True, slots=True)
-class DecisionText:
+class DecisionText(NamedTuple):
     """One decision, in words.
 
     Attributes
@@ -104,16 +102,14 @@ LINES = 4  # policy lines shown of one step
 SHOWN_AT_MOST = 3  # robots of one form that are named beside their number
 
 
-@dataclass(frozen=True, slots=True)
-class EntryLine:
+class EntryLine(NamedTuple):
     """A policy line, and whose it is."""
 
     place: str
     of: str
 
 
-@dataclass(frozen=True, slots=True)
-class Hop:
+class Hop(NamedTuple):
     """An element of a path, and the step that leaves it.
 
     Attributes
@@ -139,8 +135,7 @@ class Hop:
     data: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class PathEntry:
+class PathEntry(NamedTuple):
     """A path to assess: a finding, or findings that differ only in the robot.
 
     Attributes

@@ -5,8 +5,7 @@ In: an ``Index`` and the entries of the report. Out: ``FleetSection``, in plain 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.text import fit
 from rosprivacy.report.naming import name
@@ -18,8 +17,7 @@ if TYPE_CHECKING:
     from rosprivacy.report.page.index import Index
 
 
-@dataclass(frozen=True, slots=True)
-class AlikeRow:
+class AlikeRow(NamedTuple):
     """Robots that have the same policies and labels: the first one is shown."""
 
     model: str
@@ -27,8 +25,7 @@ class AlikeRow:
     robots: tuple[str, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class DeviantDifference:
+class DeviantDifference(NamedTuple):
     """One thing in which robots differ from most of their model.
 
     Attributes
@@ -49,8 +46,7 @@ class DeviantDifference:
     text: str
 
 
-@dataclass(frozen=True, slots=True)
-class DeviantRobot:
+class DeviantRobot(NamedTuple):
     """Robots that are not as most of their model."""
 
     robots: tuple[str, ...]
@@ -58,8 +54,7 @@ class DeviantRobot:
     differences: tuple[DeviantDifference, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class FleetSection:
+class FleetSection(NamedTuple):
     """What a report tells of the robots.
 
     Attributes

@@ -6,8 +6,7 @@ finding first, then the others, in the document's order.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.text import fit, printable
 from rosprivacy.ontology.iris import as_published
@@ -25,8 +24,7 @@ if TYPE_CHECKING:
 NARROWER = "⊇ "  # how the ontology writes, in other languages than English: if the data are of one of these kinds
 
 
-@dataclass(frozen=True, slots=True)
-class ProvisionText:
+class ProvisionText(NamedTuple):
     """One provision to look at: that data of the kind can be what it speaks of.
 
     Attributes
@@ -46,8 +44,7 @@ class ProvisionText:
     as_of: str
 
 
-@dataclass(frozen=True, slots=True)
-class KindEntry:
+class KindEntry(NamedTuple):
     """One kind of data.
 
     Attributes

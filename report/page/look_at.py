@@ -5,8 +5,7 @@ In: an ``Index``. Out: rows for the law box of a kind, for an entry, for the lis
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.model import MAY_REVEAL
 from rosprivacy.analysis.text import fit
@@ -22,8 +21,7 @@ WORKPLACE = "workplace"  # the context
 ABOUT_WORK = ("AI Act", "GDPR Art. 88", "GDPR Art. 22", "BDSG § 26", "BetrVG", "Labour code")
 
 
-@dataclass(frozen=True, slots=True)
-class LookAt:
+class LookAt(NamedTuple):
     """One provision to look at, with its dates."""
 
     name: str
@@ -32,8 +30,7 @@ class LookAt:
     dates: str
 
 
-@dataclass(frozen=True, slots=True)
-class FurtherLaw:
+class FurtherLaw(NamedTuple):
     """Provisions beside those that say something of a path.
 
     Attributes

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import islice
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.legal_bases import CHAPTER_V
 from rosprivacy.analysis.model import THIRD_COUNTRY
@@ -31,8 +31,7 @@ VALID = "valid"
 TO_DECIDE = ("open", "decided")  # states of entries
 
 
-@dataclass(frozen=True, slots=True)
-class ToDecide:
+class ToDecide(NamedTuple):
     """One flow to decide: a kind of data, from where, to whom.
 
     Attributes

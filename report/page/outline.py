@@ -7,8 +7,7 @@ texts. What the documents do not say, no report says.
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.model import SPECIAL
 from rosprivacy.analysis.text import fit
@@ -48,8 +47,7 @@ PARAGRAPHS = 10  # of the method note
 EXPLAINED = ("profile", "enclave", "label", "wildcard", "request")  # before they first come, beside the view
 
 
-@dataclass(frozen=True, slots=True)
-class Cover:
+class Cover(NamedTuple):
     """What stands above a report.
 
     Attributes
@@ -71,8 +69,7 @@ class Cover:
     redacted: bool
 
 
-@dataclass(frozen=True, slots=True)
-class Summary:
+class Summary(NamedTuple):
     """The result on the whole.
 
     Attributes
@@ -99,8 +96,7 @@ class Summary:
     glossary: tuple[tuple[str, str], ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Outline:
+class Outline(NamedTuple):
     """The whole report.
 
     Attributes

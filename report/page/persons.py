@@ -10,8 +10,8 @@ or that are made of these, can get there; how long it is kept is 'not known' whe
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.text import fit
 from rosprivacy.report.naming import key
@@ -29,8 +29,7 @@ COLUMNS = 6  # of one part, so that it fits a page upright
 OUTSIDE = ("storage", "external-system", "display", "participant", "person", "device")
 
 
-@dataclass(frozen=True, slots=True)
-class Concerned:
+class Concerned(NamedTuple):
     """Whom the data are about and who gets them.
 
     Attributes
@@ -59,8 +58,7 @@ def concerned(index: Index, entries: Sequence[PathEntry]) -> Concerned:
     return Concerned(table, silent, recipients(index, links), processed(index), rights(index))
 
 
-@dataclass(frozen=True, slots=True)
-class Cell:
+class Cell(NamedTuple):
     """What a table says at one place.
 
     Attributes
@@ -76,8 +74,7 @@ class Cell:
     strong: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class TableRow:
+class TableRow(NamedTuple):
     """One row."""
 
     name: str
@@ -85,8 +82,7 @@ class TableRow:
     cells: tuple[Cell, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class TablePart:
+class TablePart(NamedTuple):
     """Some columns of a table, with all of its rows."""
 
     number: int
@@ -215,8 +211,7 @@ def _about(
 PURPOSE, BASIS = "purpose", "legal_basis"  # as a document says that they are missing
 
 
-@dataclass(frozen=True, slots=True)
-class PurposeRow:
+class PurposeRow(NamedTuple):
     """A kind of data where it begins or ends."""
 
     data: str
@@ -295,8 +290,7 @@ def _with_pending(
     return "; ".join([*map(text_of, stated), *([index.words("record.open")] if lacking else [])])
 
 
-@dataclass(frozen=True, slots=True)
-class DataPlace:
+class DataPlace(NamedTuple):
     """Where data of a group can lie: a storage, an external recipient, or an element that lets data out."""
 
     name: str
@@ -306,8 +300,7 @@ class DataPlace:
     recipient: str
 
 
-@dataclass(frozen=True, slots=True)
-class Persons:
+class Persons(NamedTuple):
     """A group of persons, and the places; none where no path of their data was found to one."""
 
     name: str
@@ -339,7 +332,7 @@ def _places(group: str | None, members: set[Key], index: Index) -> Iterator[Data
         element = index.elements[place]
         alike.setdefault((element["name"], _place(element, kinds, index)), []).append(element)
     for (_, made), elements in alike.items():
-        yield replace(made, name=index.words.row(index.names(elements)))
+        yield made._replace(name=index.words.row(index.names(elements)))
 
 
 def _kinds(group: str | None, members: set[Key], index: Index) -> dict[Key, dict[str, bool]]:

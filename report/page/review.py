@@ -6,9 +6,8 @@ what to do, each doubt with a place.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import groupby
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.text import fit
 from rosprivacy.report.naming import count_rows, key
@@ -22,8 +21,7 @@ if TYPE_CHECKING:
     from rosprivacy.report.page.index import Index
 
 
-@dataclass(frozen=True, slots=True)
-class ReviewQuestion:
+class ReviewQuestion(NamedTuple):
     """An element that data gets to and that no label covers.
 
     Attributes
@@ -46,16 +44,14 @@ class ReviewQuestion:
     brings: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class FoldedReview:
+class FoldedReview(NamedTuple):
     """Questions that are one line: what they have in common, and their names."""
 
     text: str
     names: str
 
 
-@dataclass(frozen=True, slots=True)
-class QuestionGroup:
+class QuestionGroup(NamedTuple):
     """Questions of one urgency; ``key`` is that of its heading."""
 
     key: str
@@ -123,8 +119,7 @@ def _questions(rows: Sequence[Mapping[str, Any]], index: Index) -> list[ReviewQu
     ]
 
 
-@dataclass(frozen=True, slots=True)
-class Sort:
+class Sort(NamedTuple):
     """Doubts of one sort.
 
     Attributes

@@ -8,7 +8,6 @@ is a folder in ``report/`` and a row here.
 from __future__ import annotations
 
 import os
-from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, overload
@@ -288,7 +287,7 @@ def _rendered_parts(
     beside = [earlier.document] if earlier else []
     also = [proposals] if not isinstance(proposals, str) else []
     copies = redacted([told, *beside, *also])
-    earlier = replace(earlier, document=copies[1], file="file-0") if earlier else None
+    earlier = earlier._replace(document=copies[1], file="file-0") if earlier else None
     return copies[0], earlier, copies[-1] if also else proposals, aliases_of(told, copies[0])
 
 
