@@ -222,8 +222,8 @@ def _markdown(document: Document, style: Style) -> str:
 
 def _docx(document: Document, style: Style) -> bytes:
     """Without ``SOURCE_DATE_EPOCH`` the document says that it was made today (rule S14)."""
-    from rosprivacy.report.docx.document import word_document
     from rosprivacy.report.page.markdown import markdown
+    from rosprivacy.report.page.word_document import word_document
 
     told = _outline(document, style)[0]
     return word_document(markdown(told), told.cover.title, style.language, today(os.environ))
