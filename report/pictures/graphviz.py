@@ -21,6 +21,7 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.util import find_spec
 from math import inf
+from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
 from lxml import etree
@@ -37,7 +38,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.report.pictures.picture import Picture
 
-WORKER = "rosprivacy.report.pictures.graphviz_worker"
+WORKER = str(Path(__file__).with_name("graphviz_worker.py"))
 MISSING = (
     "graph: Graphviz is not installed, so there is no SVG and no PNG; take --format dot, graphml or mermaid, or "
     "install it with its headers (Debian: libgraphviz-dev) and then"
@@ -153,7 +154,7 @@ class Graphviz(Closing):
 
     def _running(self) -> subprocess.Popen[bytes]:
         if self._process is None:
-            command = [sys.executable, "-P", "-m", WORKER]  # -P: nothing is imported from the current folder
+            command = [sys.executable, "-P", WORKER]  # -P: nothing is imported from folders of ours or of the user
             self._process = subprocess.Popen(  # noqa: S603 - our own module
                 command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
             )
