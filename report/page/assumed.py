@@ -40,7 +40,7 @@ class Remark(NamedTuple):
     text: str
 
 
-class Grounds(NamedTuple):
+class ResultGrounds(NamedTuple):
     """What the result rests on.
 
     Attributes
@@ -64,9 +64,9 @@ class Grounds(NamedTuple):
     only_by_types: tuple[tuple[str, str], ...]
 
 
-def grounds(index: Index) -> Grounds:
+def grounds(index: Index) -> ResultGrounds:
     """Return what a document says that its result rests on."""
-    return Grounds(
+    return ResultGrounds(
         assumptions=tuple(assumed(index)),
         files=files(index),
         remarks=remarks(index),

@@ -17,7 +17,7 @@ from rosprivacy.report.document.ledger import by_globs
 from rosprivacy.report.finding_facts import REVEALS, strength
 from rosprivacy.report.naming import count_rows
 from rosprivacy.report.page.assessment import Answers, Assessment, AssessmentCriterion, assessment, criteria
-from rosprivacy.report.page.assumed import Grounds, grounds
+from rosprivacy.report.page.assumed import ResultGrounds, grounds
 from rosprivacy.report.page.changed import Changed, changed
 from rosprivacy.report.page.closing import BeyondEntry, ClosingEntry, beyond_entries, beyond_said, closing
 from rosprivacy.report.page.elements import Inventory, inventory
@@ -115,7 +115,7 @@ class Outline(NamedTuple):
     summary: Summary
     opening: OpeningSection
     closing: ClosingEntry | None
-    grounds: Grounds
+    grounds: ResultGrounds
     fleet: FleetSection | None
     changes: Changed | None
     persons: Concerned

@@ -76,7 +76,7 @@ class Style(NamedTuple):
     assessment: str | None = None
 
 
-class Format(NamedTuple):
+class OutputFormat(NamedTuple):
     """A format in which an answer is written.
 
     Attributes
@@ -297,17 +297,17 @@ _PAGE = (*IN_JSON, RELIANCE, PROPOSALS)
 FORMATS = {
     known.name: known
     for known in (
-        Format("text", ".txt", _text, ("language", "verbose", "quiet"), both_views=True, asks=(LEDGER, RELIANCE)),
-        Format("json", ".json", _short_json, both_views=True, asks=IN_JSON),
-        Format("json1", ".json", _json, both_views=True),
-        Format("sarif", ".sarif", _sarif, both_views=True, asks=(POSITIONS,)),
-        Format("cnil-pia", ".json", _cnil_pia, ("language",), asks=(WAYS, PROCESSING)),
-        Format("turtle", ".ttl", _linked_data("turtle"), _LINKED),
-        Format("json-ld", ".jsonld", _linked_data("json-ld"), _LINKED),
-        Format("html", ".html", _html, _REPORT, both_views=True, page="a page", asks=(*_PAGE, PATHS)),
-        Format("markdown", ".md", _markdown, _REPORT, both_views=True, asks=_PAGE),
-        Format("docx", ".docx", _docx, _REPORT, both_views=True, page="a Word document", asks=_PAGE),
-        Format("article30", ".csv", _article30, ("language", "redact")),
-        Format("works-council", ".html", _works_council, _REPORT, page="a page"),
+        OutputFormat("text", ".txt", _text, ("language", "verbose", "quiet"), both_views=True, asks=(LEDGER, RELIANCE)),
+        OutputFormat("json", ".json", _short_json, both_views=True, asks=IN_JSON),
+        OutputFormat("json1", ".json", _json, both_views=True),
+        OutputFormat("sarif", ".sarif", _sarif, both_views=True, asks=(POSITIONS,)),
+        OutputFormat("cnil-pia", ".json", _cnil_pia, ("language",), asks=(WAYS, PROCESSING)),
+        OutputFormat("turtle", ".ttl", _linked_data("turtle"), _LINKED),
+        OutputFormat("json-ld", ".jsonld", _linked_data("json-ld"), _LINKED),
+        OutputFormat("html", ".html", _html, _REPORT, both_views=True, page="a page", asks=(*_PAGE, PATHS)),
+        OutputFormat("markdown", ".md", _markdown, _REPORT, both_views=True, asks=_PAGE),
+        OutputFormat("docx", ".docx", _docx, _REPORT, both_views=True, page="a Word document", asks=_PAGE),
+        OutputFormat("article30", ".csv", _article30, ("language", "redact")),
+        OutputFormat("works-council", ".html", _works_council, _REPORT, page="a page"),
     )
 }
