@@ -17,9 +17,10 @@ from typing import TYPE_CHECKING
 from measure import Measured, Row, run, timed
 
 import rosprivacy
-from rosprivacy.report.page.inline import pictures_of
+from rosprivacy.analysis.findings.flows_to_leaks import PathsToLeaks
+from rosprivacy.report.page.figures import pictures_of
 from rosprivacy.report.pictures.dot import dot
-from rosprivacy.report.pictures.layout import drawn
+from rosprivacy.report.pictures.graphviz import Graphviz, drawn
 from rosprivacy.report.pictures.narrow import folded
 from rosprivacy.report.pictures.views import PER_BOX, FindingViews, bounded, ros_view
 
@@ -141,12 +142,14 @@ def _each(analysis: Analysis) -> Measured:
 
 def _for_a_report(analysis: Analysis) -> Measured:
     made: list[int] = []
-    took = _seconds(lambda: made.extend(len(one.svg) for one in pictures_of(analysis, analysis.findings) if one))
+    with Graphviz() as graphviz:
+        pictures = pictures_of(graphviz, PathsToLeaks(analysis), analysis.findings)
+        took = _seconds(lambda: made.extend(len(one.svg) for one in pictures if one))
     return _against(took / len(made), ONE, f"{max(made) / 1000:.0f} kB the largest; all one after the other")
 
 
 def _one(analysis: Analysis, finding: Finding) -> None:
-    drawn(bounded(folded(FindingViews(analysis).of(finding, PER_BOX * MOST)), MOST), "svg")
+    drawn(bounded(folded(FindingViews(PathsToLeaks(analysis)).of(finding, PER_BOX * MOST)), MOST), "svg")
 
 
 def _seconds(what: Callable[[], object]) -> float:

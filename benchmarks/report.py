@@ -19,6 +19,7 @@ from measure import REPOSITORY, Measured, NotMeasured, Row, shown, timed_or_coun
 
 import rosprivacy
 from rosprivacy.documents import document_of
+from rosprivacy.report.document.contents import PATHS
 from rosprivacy.report.page.figures import figures
 from rosprivacy.report.page.html import html
 from rosprivacy.report.page.outline import outline
@@ -72,7 +73,7 @@ def _profile(node: str, writes: list[str], reads: list[str]) -> str:
 def made(result: Result) -> str:
     """Make the page of an analysis, as ``rosprivacy report`` does, with all its pictures."""
     told = outline(result.document(), "en", date="2026-01-01")
-    return html(told, figures(document_of(result), told))
+    return html(told, figures(document_of(result, (PATHS,)), told))
 
 
 def rows(*, quick: bool) -> Iterator[Row]:

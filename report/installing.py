@@ -9,7 +9,6 @@ from __future__ import annotations
 import re
 import shlex
 import sys
-from importlib.metadata import PackageNotFoundError, requires
 from pathlib import PurePath
 
 PROGRAM = "rosprivacy"
@@ -18,6 +17,8 @@ _OF_EXTRA = re.compile(r"""extra\s*==\s*['"](?P<extra>[\w-]+)['"]""")
 
 def packages(extra: str) -> list[str]:
     """Return what an extra needs, as the installed program says, sorted."""
+    from importlib.metadata import PackageNotFoundError, requires  # noqa: PLC0415 - light start
+
     try:
         needed = requires(PROGRAM) or []
     except PackageNotFoundError:  # run from its sources

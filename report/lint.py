@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.text import counted
-from rosprivacy.report.sarif.flows import prose
+from rosprivacy.report.sarif.locations import prose
 from rosprivacy.report.sarif.log import LEVELS, SCHEMA
 from rosprivacy.report.sarif.results import ROOT, Files
 

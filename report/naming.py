@@ -1,18 +1,23 @@
-"""How reports for people call things: elements, lines, texts of the ontology; nothing unprintable, nothing endless.
+"""How reports for people call and count things: elements, lines, texts of the ontology; nothing endless.
 
-In: parts of the JSON document. Out: short plain texts, not yet escaped for any format.
+In: parts of the JSON document, rows, elements, names. Out: short plain texts, not yet escaped for any format; how many
+elements some rows are about, where a service or an action is one, whatever its legs. One place counts and calls, so
+that all outputs agree.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.text import fit, printable
+from rosprivacy.analysis.text import counted, fit, printable
 from rosprivacy.report.catalogs.words import spaced
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from rosprivacy.analysis.model import Element
+    from rosprivacy.report.catalogs.words import Words
 
     Key = tuple[str, str, str, str]
 
@@ -90,3 +95,82 @@ def text(of: Mapping[str, Any], field: str, language: str) -> str:
 
 def _full_name(element: Mapping[str, Any]) -> str:
     return f"{element['robot']}:{element['name']}" if element["robot"] else str(element["name"])
+
+
+class ElementCount(NamedTuple):
+    """How many elements, and how many where the legs of services and actions are counted by themselves."""
+
+    elements: int
+    legs: int
+
+    def __str__(self) -> str:
+        """Return both, in words.
+
+        >>> str(ElementCount(4, 6)), str(ElementCount(1, 1))
+        ('4 elements (6 counting the legs of services and actions)', '1 element')
+        """
+        return f"{counted(self.elements, 'element')}{self.remark}"
+
+    @property
+    def remark(self) -> str:
+        """What is said beside the number of elements; empty where no leg makes a difference."""
+        return f" ({self.legs:,} counting the legs of services and actions)" if self.legs != self.elements else ""
+
+
+def count_rows(rows: Iterable[Mapping[str, Any]]) -> ElementCount:
+    """Count the elements of rows of a document."""
+    keys = [without_leg(row["element"]) for row in rows]
+    return ElementCount(len(set(keys)), len(keys))
+
+
+def count_elements(elements: Iterable[Element]) -> ElementCount:
+    """Count elements of an analysis."""
+    keys = [element.identity for element in elements]
+    return ElementCount(len(set(keys)), len(keys))
+
+
+SHOWN_AT_MOST = 5  # names in a row
+
+
+def legs(count: ElementCount, words: Words) -> str:
+    """Return what is said beside a number of elements; empty where no leg makes a difference."""
+    return words("terminal.legs", n=count.legs) if count.legs != count.elements else ""
+
+
+def kind_in(element: Mapping[str, Any], words: Words) -> str:
+    """Return what an element is; in English in the program's own words."""
+    parts = [words.of_value(f"terminal.kind.of.{element['kind']}", element["kind"])]
+    parts += [words.of_value(f"terminal.leg.{element['leg']}", element["leg"])] if element.get("leg") else []
+    parts += [words("wildcard")] if element.get("pattern") else []
+    return " ".join(parts)
+
+
+def names_shown(names: Iterable[str], words: Words) -> str:
+    """Return some names, and how many more there are.
+
+    >>> from rosprivacy.report.catalogs.words import IN_ENGLISH
+    >>> names_shown(["a", "b", "c", "d", "e", "f"], IN_ENGLISH)
+    'a, b, c, d, e and 1 more'
+    """
+    everything = list(names)
+    more = words("terminal.more", n=len(everything) - SHOWN_AT_MOST) if len(everything) > SHOWN_AT_MOST else ""
+    return shown(", ".join(everything[:SHOWN_AT_MOST])) + more
+
+
+def joined_by_and(parts: Sequence[str], words: Words) -> str:
+    """Return parts joined by 'and'."""
+    return words("terminal.and").join(parts)
+
+
+def opening_text(opening: Mapping[str, Any], ends: str, words: Words) -> str:
+    """Return a finding that there would be if a statement were wrong.
+
+    Parameters
+    ----------
+    ends
+        Which data, from where to where.
+    """
+    more = [] if opening["kind"] == "disclosure" else [words(f"finding.{opening['kind']}")]
+    more += [words("reliance.dismissed")] if opening["dismissed"] else []
+    more += [] if opening["new"] else [words("reliance.worse")]
+    return f"{ends} ({words.row(more)})" if more else ends

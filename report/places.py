@@ -6,8 +6,7 @@ file: every finding has a place, whatever it rests on.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.model import Place
 from rosprivacy.analysis.policy_lines import in_a_file
@@ -23,8 +22,7 @@ if TYPE_CHECKING:
 NOWHERE = Place("the database", 0)  # what people added there by hand stands in no file
 
 
-@dataclass(frozen=True, slots=True)
-class Places:
+class PlaceIndex(NamedTuple):
     """Looks places up.
 
     Attributes

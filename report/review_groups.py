@@ -10,7 +10,7 @@ from collections import defaultdict
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.model import CHANNELS
-from rosprivacy.report.finding_order import weights
+from rosprivacy.report.finding_facts import weights
 from rosprivacy.report.naming import key
 
 if TYPE_CHECKING:

@@ -5,8 +5,7 @@ In: nodes of a query's rows, and the names of the graph's schema. Out: elements 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -16,8 +15,7 @@ if TYPE_CHECKING:
 CALLED_BY = ("name", "path", "category", "title", "id")  # of what is no element; the first that is there
 
 
-@dataclass(frozen=True, slots=True)
-class StoredNames:
+class StoredNames(NamedTuple):
     """Names of the schema that a reader has to know.
 
     Attributes

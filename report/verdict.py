@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import GOES_NOWHERE, MAY_REVEAL, NO_LEAK_NAMED, RESTRICTED, Rank
-from rosprivacy.report.called_alike import joined_by_and, names_shown
 from rosprivacy.report.catalogs.words import IN_ENGLISH, Words
-from rosprivacy.report.naming import shown_name
+from rosprivacy.report.naming import joined_by_and, names_shown, shown_name
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence

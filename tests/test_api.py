@@ -200,7 +200,7 @@ def test_a_result_is_shown_in_one_line_that_begins_with_the_verdict(care: rospri
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", sorted(FORMATS.keys() - {"docx"}))  # no text: tests/report/docx
+@pytest.mark.parametrize("name", sorted(FORMATS.keys() - {"docx"}))  # no text: tests/report/page/test_word_document.py
 def test_every_format_is_written_by_its_name(
     care: rosprivacy.Result, name: str, cli: Cli, monkeypatch: pytest.MonkeyPatch
 ) -> None:

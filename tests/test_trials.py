@@ -15,7 +15,7 @@ from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.findings.beyond import DenyLine
 from rosprivacy.analysis.modes import View
 from rosprivacy.answering import answer
-from rosprivacy.both_views import Trials, both_views
+from rosprivacy.both_views import ChangeTrials, both_views
 from rosprivacy.ingest.policies.changed_graph import changed_graph
 from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, PolicyChange, changed
 from rosprivacy.ingest.policies.flow_graph import build
@@ -106,7 +106,7 @@ def test_findings_stand_that_stand_in_the_whole_answer(system: tuple[Enclaves, s
             assume(False)
             raise
         before = [finding for finding in result.analysis.findings if finding.stands]
-        left = Trials(whole, result, read, question).still_open(change, before)
+        left = ChangeTrials(whole, result, read, question).still_open(change, before)
     wanted = {finding.id for finding in before}
     stands = [finding for finding in anew.analysis.findings if finding.stands and finding.id in wanted]
     assert sorted(map(_shown, left), key=str) == sorted(map(_shown, stands), key=str)

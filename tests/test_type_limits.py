@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 import rosprivacy
+from rosprivacy.analysis.findings.flows_to_leaks import PathsToLeaks
 from rosprivacy.formats import FORMATS
 from rosprivacy.ingest.neo4j_graph.loading import load as load_rows
 from rosprivacy.ingest.types import TABLE
@@ -18,7 +19,7 @@ from rosprivacy.ontology.vocabulary import load
 from rosprivacy.private_neo4j import connection
 from rosprivacy.report.pictures import views
 from rosprivacy.report.pictures.dot import dot
-from rosprivacy.report.text.why_not import lines as why_not_lines
+from rosprivacy.report.text.taken_away import lines as why_not_lines
 from rosprivacy.settings import Settings
 from rosprivacy.systems.robot_system import robot_of
 from rosprivacy.systems.stored_system import answer_stored
@@ -320,7 +321,7 @@ def test_every_format_tells_of_the_table_and_none_breaks() -> None:
 
 def test_pictures_have_types_where_one_points_at_a_channel() -> None:
     result = told("{types: [std_msgs/msg/String]}")
-    for picture in (views.ros_view(result.analysis), views.privacy_view(result.analysis)):
+    for picture in (views.ros_view(result.analysis), views.privacy_view(PathsToLeaks(result.analysis))):
         assert "std_msgs/msg/String" in dot(picture)
 
 

@@ -10,7 +10,7 @@ import pytest
 
 import rosprivacy
 from rosprivacy.ingest.types import TABLE
-from rosprivacy.report.element_counts import count_rows
+from rosprivacy.report.naming import count_rows
 from tests.helpers.fleet_files import policy
 from tests.helpers.observed import node_info
 from tests.helpers.paths import ROOT

@@ -26,19 +26,15 @@ SAME_PART = {
     "answer": {"analysis", ""},  # what was found, and all that it rests on
     "bags": {"", "report", "report/schemas"},  # the answer about bags, and its keys
     "categories": {"cli", "report/text"},  # the command, and what it prints
-    "decisions": {"analysis", "report/document"},  # what they mean, and how the document tells them
-    "doubts": {"analysis/findings", "report/page"},  # the list of doubts, and how it is told
     "findings": {"analysis/findings", "report/rdf"},  # findings, and findings as RDF
-    "fleet": {"cli", "report/document", "report/text"},  # what is told of a fleet
+    "fleet": {"cli", "report/text"},  # what is told of a fleet
     "lint": {"cli", "ingest", "report"},  # the command, the rules, and what it prints
-    "reliance": {"analysis/whatif", "report/page"},  # what the answer hangs on, and how it is told
     "records": {"report/schemas", "report/document"},  # the rows of a document: their keys, and how they are made
     "stated": {"report/schemas", "report/document"},  # what is stated: its keys, and how they are made
     "review": {"report/page", "report/text"},  # what nobody has reviewed, for each kind of reader
     "ledger": {"analysis/whatif", "report/document"},  # what was taken away, and how it is told
     "mitigation": {"", "report/schemas", "report/document", "report/text"},  # what is told of proposals
-    "non_ros": {"analysis", "report/page"},  # what is told of non-ROS elements
-    "why_not": {"analysis/whatif", "cli", "report/text"},  # the question, and its answer
+    "why_not": {"analysis/whatif", "cli"},  # the question, and its answer
     "session": {"explorer", "parts"},  # what lasts from its begin to its end: of a person, and of a cluster
 }
 

@@ -1,9 +1,9 @@
 """The paths to leaks: along which flows data can come from a source to a leak of a category (rule S10).
 
-In: a spread. Out: flows. A finding shows one shortest path; a picture has to show where the data can go at all. What is
-asked of a flow is whether it lies on a walk from a source to a leak, over states (vertex, bit) as in
-``further_paths.py``. Flows on detours that must come back to where they began are left out: no path without a circle
-uses them.
+In: a spread, or the analysis that has it. Out: flows. A finding shows one shortest path; a picture has to show where
+the data can go at all. What is asked of a flow is whether it lies on a walk from a source to a leak, over states
+(vertex, bit) as in ``further_paths.py``. Flows on detours that must come back to where they began are left out: no
+path without a circle uses them.
 
 Source: the paper, section II-B, which colours the edges of vulnerable paths. To say of a flow exactly whether a path
 without circles uses it is NP-hard on directed graphs; dominators say no only where that is certain.
@@ -13,15 +13,19 @@ from __future__ import annotations
 
 from collections import defaultdict, deque
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from functools import cached_property
+from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.kernel.bits import bits_of
-from rosprivacy.analysis.kernel.states import States, derived_bits
+from rosprivacy.analysis.kernel.dominators import immediate_dominators
+from rosprivacy.analysis.kernel.states import Net, States, derived_bits
+from rosprivacy.analysis.model import DISCLOSURE
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator, Mapping
+    from collections.abc import Callable, Collection, Iterator, Mapping
 
-    from rosprivacy.analysis.kernel.states import Net
+    from rosprivacy.analysis.answer import Analysis, Finding
+    from rosprivacy.analysis.model import Element
 
 State = tuple[int, int, int]  # what (below), vertex or flow, bit
 ARRIVED, STARTED, SENT = 0, 1, 2  # data arrives at a vertex; starts there; starts there along one flow only
@@ -44,6 +48,62 @@ class FlowsToLeaks:
 
     flows: dict[int, int]
     complete: bool = True
+
+
+@dataclass(frozen=True)
+class PathsToLeaks:
+    """The paths to leaks of an answer, as pictures show them; each is searched when it is asked for."""
+
+    analysis: Analysis
+
+    @cached_property
+    def _net(self) -> Net:
+        return Net.cached(self.analysis.spread)
+
+    @cached_property
+    def _vertices(self) -> dict[Element, int]:
+        return {element: vertex for vertex, element in enumerate(self.analysis.graph.elements)}
+
+    def of(self, finding: Finding, about: int | None = None) -> FlowsToLeaks:
+        """Return the flows on paths from the source of a finding to its leak; of a dismissed one through other leaks.
+
+        Parameters
+        ----------
+        about
+            As of ``flows_to_leaks``.
+        """
+        if not finding.steps:
+            return FlowsToLeaks({})
+        source, leak = self._vertices[finding.source], self._vertices[finding.leak]
+        ends = None if finding.kind == DISCLOSURE else {leak: self.analysis.spread.forms_of(finding.category)}
+        past = finding.dismissed or ends is not None
+        return flows_to_leaks(
+            self._net, finding.category, sources=[source], leaks=[leak], past_leaks=past, ends=ends, about=about
+        )
+
+    @cached_property
+    def shortest(self) -> dict[int, int]:
+        """Flow -> number of flows of the shortest path through it, to any leak of a category that has findings.
+
+        With the paths to where data are kept too long or leave the EEA (rule S10). Dismissed findings do not count.
+        """
+        findings = [finding for finding in self.analysis.findings if not finding.dismissed]
+        ends: dict[str, dict[int, int]] = defaultdict(dict)
+        for finding in findings:
+            if finding.kind != DISCLOSURE:
+                both = self.analysis.spread.forms_of(finding.category)
+                ends[finding.category][self._vertices[finding.leak]] = both
+        disclosed = sorted({finding.category for finding in findings if finding.kind == DISCLOSURE})
+        found = [flows_to_leaks(self._net, category) for category in disclosed]
+        found += [
+            flows_to_leaks(self._net, category, leaks=where, past_leaks=True, ends=where)
+            for category, where in sorted(ends.items())
+        ]
+        lengths: dict[int, int] = {}
+        for each in found:
+            for flow, length in each.flows.items():
+                lengths[flow] = min(length, lengths.get(flow, length))
+        return lengths
 
 
 def flows_to_leaks(
@@ -80,8 +140,8 @@ def flows_to_leaks(
 
     Notes
     -----
-    Rounds of O(flows), for a fixed number of categories, with networkx's immediate dominators on the part between; two
-    rounds as a rule, never more than there are flows.
+    Rounds of O(flows), for a fixed number of categories, with immediate dominators on the part between; two rounds as a
+    rule, never more than there are flows.
 
     Examples
     --------
@@ -207,13 +267,13 @@ def _distances(edges: list[Edge], start: State, *, forth: bool) -> dict[State, i
 
 def _without_detours(edges: list[Edge]) -> list[Edge]:
     """Drop the edges from u to v where all that comes to u came through v, or all that leaves v comes back to u."""
-    if not edges:
-        return []
-    import networkx as nx  # noqa: PLC0415 - heavy
-
-    graph = nx.DiGraph((before, after) for before, after, _ in edges)
-    dominates = _above(nx.immediate_dominators(graph, BEGIN), BEGIN)
-    all_come_back = _above(nx.immediate_dominators(graph.reverse(copy=False), END), END)
+    following: dict[State, list[State]] = defaultdict(list)
+    followed: dict[State, list[State]] = defaultdict(list)
+    for before, after, _ in edges:
+        following[before].append(after)
+        followed[after].append(before)
+    dominates = _above(immediate_dominators(following, BEGIN), BEGIN)
+    all_come_back = _above(immediate_dominators(followed, END), END)
     return [
         (before, after, flow)
         for before, after, flow in edges
@@ -221,12 +281,11 @@ def _without_detours(edges: list[Edge]) -> list[Edge]:
     ]
 
 
-def _above(parents: Mapping[State, State | None], root: State) -> Any:
+def _above(parents: Mapping[State, State], root: State) -> Callable[[State, State], bool]:
     """Return the test whether one state is another or above it in a tree."""
     children: dict[State, list[State]] = defaultdict(list)
     for state, parent in parents.items():
-        if state != root and parent is not None:
-            children[parent].append(state)
+        children[parent].append(state)
     entered: dict[State, int] = {}
     left: dict[State, int] = {}
     waiting = [(root, False)]

@@ -7,15 +7,16 @@ every path to it passes. The algorithm is that of Cooper, Harvey and Kennedy, 'A
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
 UNKNOWN = -1
+V = TypeVar("V", int, tuple[int, int, int])  # a vertex
 
 
-def immediate_dominators(following: Mapping[int, Iterable[int]], start: int) -> dict[int, int]:
+def immediate_dominators(following: Mapping[V, Iterable[V]], start: V) -> dict[V, V]:
     """Return the immediate dominator of each vertex that can be reached, but for the start itself.
 
     Notes
@@ -33,7 +34,7 @@ def immediate_dominators(following: Mapping[int, Iterable[int]], start: int) -> 
     for at, here in enumerate(order):
         for there in following.get(here, ()):
             entering[rank[there]].append(at)
-    root = len(order) - 1
+    root: int = len(order) - 1
     above = [*[UNKNOWN] * root, root]
     changed = True
     while changed:
@@ -55,9 +56,9 @@ def immediate_dominators(following: Mapping[int, Iterable[int]], start: int) -> 
     return {vertex: order[above[at]] for vertex, at in sorted(rank.items()) if at != root}
 
 
-def _finished(following: Mapping[int, Iterable[int]], start: int) -> list[int]:
+def _finished(following: Mapping[V, Iterable[V]], start: V) -> list[V]:
     """The vertices that can be reached, each after all that a depth-first search meets behind it: the start is last."""
-    finished: list[int] = []
+    finished: list[V] = []
     seen = {start}
     stack = [(start, iter(following.get(start, ())))]
     while stack:

@@ -111,7 +111,7 @@ class _Work:
         self.system = system
         self.analysis = analysis
         self.names = names
-        self.net = Net.of(analysis.spread)
+        self.net = Net.cached(analysis.spread)
         self.elements = analysis.graph.elements
         self.number = {name: i for i, name in enumerate(analysis.spread.categories)}
         self.categories = frozenset(self.number[name] for name in names)
@@ -245,7 +245,8 @@ class _Work:
         left = {finding.id for finding in open_findings(after) if finding.category in self.names}
         if not left <= stays or not {finding.id for finding in open_findings(after)} <= before:
             return plain
-        reviewed = self._analysed([step for step in steps if step.kind == REVIEW])
+        reviews = [step for step in steps if step.kind == REVIEW]
+        reviewed = self._analysed(reviews) if len(reviews) < len(steps) else after
         return replace(plain, steps=steps, proven=True, verdict=after.verdict, affected=affected(reviewed, after))
 
     def _step(self, change: Candidate, categories: frozenset[int]) -> ProposedStep:
@@ -273,6 +274,8 @@ class _Work:
     def _analysed(self, steps: Iterable[ProposedStep]) -> Analysis:
         """Analyse the system with some steps applied."""
         steps = list(steps)
+        if not steps and not self.protect:
+            return self.analysis
         grants = [grant for step in steps if step.kind == DENY for grant in step.grants]
         graph, bound = self.system.deny(grants) if grants else (self.system.graph, self.system.bound)
         changed_lines = {one.exposure for one in self.protect}

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.many_flows import one_by_one
@@ -39,43 +40,61 @@ def with_denied(policies: Iterable[Policy], grants: Collection[Grant]) -> tuple[
     )
 
 
-def denials(policies: Iterable[Policy], graph: FlowGraph, flows: Collection[int]) -> tuple[Denial, ...]:
-    """Return the grants that would cut or touch some flows if they were set to DENY, one of those that do the same.
+class Denials:
+    """The grants of policies that cut flows of their graph if they are set to DENY; what is found once is kept."""
 
-    Grants are taken one by one, for their enclave; a line that several profiles include also as a whole; and for a
-    flow that none of these cuts (its node stands in several enclaves, or an action is granted by its parts) a set.
+    def __init__(self, policies: Iterable[Policy], graph: FlowGraph) -> None:
+        self._policies, self._graph = policies, graph
+        self._touched: dict[frozenset[Part], frozenset[Part]] = {}
 
-    Notes
-    -----
-    O(lines · flows) within an enclave for lines with wildcards; the others are looked up by name.
-    """
-    rights = _Rights(graph)
-    wanted = sorted(flows)
-    concerned = {part for f in wanted for part in rights.parts[f]}
-    first = {grant for f in wanted for grant in graph.flows[f].grants}
-    lines = [grant for policy in policies for grant in policy.grants if grant.allow and grant.kind != DDS]
-    found: dict[frozenset[Part], Denial] = {}
-    ordered = sorted(dict.fromkeys(lines), key=lambda grant: grant not in first)
-    by_line: dict[tuple[Place, str, str], list[Grant]] = defaultdict(list)
-    for grant in ordered:
-        by_line[grant.place, grant.role, grant.name].append(grant)
-    for some in (*([grant] for grant in ordered), *by_line.values()):
-        parts = frozenset(part for grant in some for part in _denied(grant))
-        if parts not in found and not concerned.isdisjoint(rights.touched(parts)):
-            found[parts] = rights.denial(tuple(some), parts)
-    single = list(found.items())
-    for f in wanted:
-        if rights.parts[f] and not any(f in denial.flows for _, denial in single):
-            several = _together(rights.parts[f], single)
-            parts = frozenset(part for one, _ in several for part in one)
-            grants = tuple(grant for _, denial in several for grant in denial.grants)
-            found.setdefault(parts, rights.denial(grants, parts))
-    return tuple(found.values())
+    @cached_property
+    def _rights(self) -> _Rights:
+        return _Rights(self._graph)
 
+    @cached_property
+    def _parts(self) -> dict[Grant, frozenset[Part]]:
+        """What an enclave may no longer do when a line is set to DENY."""
+        lines = (grant for policy in self._policies for grant in policy.grants if grant.allow and grant.kind != DDS)
+        return {
+            grant: frozenset(_part(grant, end) for end in endpoints(grant.role, grant.kind, grant.name))
+            for grant in lines
+        }
 
-def _denied(grant: Grant) -> frozenset[Part]:
-    """What an enclave may no longer do when a line is set to DENY."""
-    return frozenset(_part(grant, end) for end in endpoints(grant.role, grant.kind, grant.name))
+    def of(self, flows: Collection[int]) -> tuple[Denial, ...]:
+        """Return the grants that would cut or touch some flows, one of those that do the same.
+
+        Grants are taken one by one, for their enclave; a line that several profiles include also as a whole; and for a
+        flow that none of these cuts (its node stands in several enclaves, or an action is granted by its parts) a set.
+
+        Notes
+        -----
+        O(lines · flows) within an enclave for lines with wildcards; the others are looked up by name.
+        """
+        rights, wanted = self._rights, sorted(flows)
+        concerned = {part for f in wanted for part in rights.parts[f]}
+        first = {grant for f in wanted for grant in self._graph.flows[f].grants}
+        found: dict[frozenset[Part], Denial] = {}
+        ordered = sorted(self._parts, key=lambda grant: grant not in first)
+        by_line: dict[tuple[Place, str, str], list[Grant]] = defaultdict(list)
+        for grant in ordered:
+            by_line[grant.place, grant.role, grant.name].append(grant)
+        for some in (*([grant] for grant in ordered), *by_line.values()):
+            parts = frozenset(part for grant in some for part in self._parts[grant])
+            if parts not in found and not concerned.isdisjoint(self._touched_by(parts)):
+                found[parts] = rights.denial(tuple(some), parts)
+        single = list(found.items())
+        for f in wanted:
+            if rights.parts[f] and not any(f in denial.flows for _, denial in single):
+                several = _together(rights.parts[f], single)
+                parts = frozenset(part for one, _ in several for part in one)
+                grants = tuple(grant for _, denial in several for grant in denial.grants)
+                found.setdefault(parts, rights.denial(grants, parts))
+        return tuple(found.values())
+
+    def _touched_by(self, denied: frozenset[Part]) -> frozenset[Part]:
+        if denied not in self._touched:
+            self._touched[denied] = frozenset(self._rights.touched(denied))
+        return self._touched[denied]
 
 
 def _part(grant: Grant, end: Endpoint) -> Part:

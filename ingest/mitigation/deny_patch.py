@@ -12,10 +12,10 @@ import tempfile
 from collections import Counter
 from dataclasses import dataclass, field
 from difflib import unified_diff
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
 from xml.parsers import expat
-from xml.sax.saxutils import escape
 
 from rosprivacy.analysis.errors import InputErrors, shown
 from rosprivacy.analysis.files_read import one_run
@@ -187,8 +187,8 @@ def _group(data: bytes, neighbour: _Span, grant: Grant) -> bytes:
     if margin.strip():
         margin = newline = b""
     step = b"  " if newline else b""
-    tag = GROUPS[grant.kind]
-    lines = (f'<{tag} {grant.role}="DENY">', f"<{grant.kind}>{escape(grant.name)}</{grant.kind}>", f"</{tag}>")
+    tag, name = GROUPS[grant.kind], escape(grant.name, quote=False)
+    lines = (f'<{tag} {grant.role}="DENY">', f"<{grant.kind}>{name}</{grant.kind}>", f"</{tag}>")
     inner = zip((b"", step, b""), (one.encode() for one in lines), strict=True)
     return b"".join(newline + margin + extra + one for extra, one in inner)
 

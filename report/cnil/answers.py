@@ -12,11 +12,10 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.model import KINDS, MAY_REVEAL, NO_BASIS, NonRosFacts
 from rosprivacy.analysis.non_ros import ADEQUATE, INSIDE, retention_of
 from rosprivacy.report.catalogs.words import plain, reason_text
-from rosprivacy.report.cnil.lawfulness import purposes_of
-from rosprivacy.report.cnil.markup import Html, bullets, escaped, harmless, joined, paragraph, prose, strong
-from rosprivacy.report.cnil.told import NAMES
-from rosprivacy.report.element_counts import count_elements
-from rosprivacy.report.made_of import making
+from rosprivacy.report.cnil.inventory import purposes_of
+from rosprivacy.report.cnil.told import NAMES, Html, bullets, escaped, harmless, joined, paragraph, prose, strong
+from rosprivacy.report.finding_facts import making
+from rosprivacy.report.naming import count_elements
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -38,7 +37,7 @@ STORED = "storage-limitation"  # the kind of findings whose end is a storage, to
 
 
 @dataclass(frozen=True, slots=True)
-class Known:
+class AnswerFacts:
     """What answers are made of.
 
     Attributes
@@ -108,17 +107,17 @@ class Known:
         return [finding for kind in self.kinds for finding in kind.findings]
 
 
-def data(facts: Known) -> Html:
+def data(facts: AnswerFacts) -> Html:
     """Return the answer to 121: the data, where they come from, who can get them, how long they are kept."""
     return joined(*(part for kind in facts.kinds for part in _data_of(kind, facts))) or nothing(facts)
 
 
-def nothing(facts: Known) -> Html:
+def nothing(facts: AnswerFacts) -> Html:
     """Return what is said where no data were followed."""
     return paragraph(facts.words("cnil.nothing"))
 
 
-def _data_of(kind: Kind, facts: Known) -> Iterator[Html]:
+def _data_of(kind: Kind, facts: AnswerFacts) -> Iterator[Html]:
     category, told = kind.category, facts.words
     name = joined(_title(kind, told), Html(" ("), escaped(category.name), Html(")"))
     yield paragraph(told.pair(strong(name), told.prose(category.text("definition", told.words.language))))
@@ -150,7 +149,7 @@ def _open_of(purposes: list[Html], *, unnamed: bool) -> str:
     return "cnil.persons.open" if unnamed else "cnil.purpose.open"
 
 
-def life_cycle(facts: Known) -> Html:
+def life_cycle(facts: AnswerFacts) -> Html:
     """Return the answer to 122: from source to recipient, with the shortest path of each finding."""
     told = facts.words
     parts = [part for kind in facts.kinds for part in _life_of(kind, told)]
@@ -186,7 +185,7 @@ def _title(kind: Kind, words: Told) -> Html:
     return escaped(kind.category.text("title", words.words.language))
 
 
-def supports(facts: Known) -> Html:
+def supports(facts: AnswerFacts) -> Html:
     """Return the answer to 123: what carries the data, by its kind."""
     told = facts.words
     carries: dict[str, dict[str, Carried]] = {}
@@ -204,7 +203,7 @@ def supports(facts: Known) -> Html:
     return joined(*parts) if carries else nothing(facts)
 
 
-def minimisation(facts: Known) -> Html:
+def minimisation(facts: AnswerFacts) -> Html:
     """Return the answer to 213: who gets which kind; whether each needs it is a person's question."""
     told, parts = facts.words, []
     for kind in facts.kinds:
@@ -220,7 +219,7 @@ def minimisation(facts: Known) -> Html:
     return joined(*parts) or nothing(facts)
 
 
-def retention(facts: Known) -> Html:
+def retention(facts: AnswerFacts) -> Html:
     """Return the answer to 215: how long each storage keeps what gets there."""
     told = facts.words
     stored = [carried for carried in facts.analysis.carried if carried.element.kind == "storage"]
@@ -239,7 +238,7 @@ def retention(facts: Known) -> Html:
     return joined(told.rows(rows, len(stored)), why) if rows else paragraph(told("cnil.no.storage"))
 
 
-def processors(facts: Known) -> Html:
+def processors(facts: AnswerFacts) -> Html:
     """Return the answer to 226: who processes on behalf of the controller, as people stated it; empty if nobody did."""
     reached = [carried.element for carried in facts.analysis.carried]
     named = [element for element in reached if facts.of(element).recipient == PROCESSOR]
@@ -248,7 +247,7 @@ def processors(facts: Known) -> Html:
     return told.rows(rows, len(named)) if rows else Html("")
 
 
-def _named_processor(element: Element, facts: Known) -> Html:
+def _named_processor(element: Element, facts: AnswerFacts) -> Html:
     told = facts.words
     who = facts.of(element).operator or told("cnil.processor.unnamed")
     country = facts.of(element).country
@@ -258,7 +257,7 @@ def _named_processor(element: Element, facts: Known) -> Html:
     return joined(told("cnil.processor", who=escaped(f"{who}{where}")), Html("; "), on)
 
 
-def transfers(facts: Known) -> Html:
+def transfers(facts: AnswerFacts) -> Html:
     """Return the answer to 227: where each recipient is, and on which basis data goes there."""
     told = facts.words
     leaks = [finding.leak for finding in facts.findings()]
@@ -274,7 +273,7 @@ def transfers(facts: Known) -> Html:
     return told.rows(rows, len(recipients)) if rows else paragraph(told("cnil.no.recipient"))
 
 
-def _basis(element: Element, about: Known) -> Html:
+def _basis(element: Element, about: AnswerFacts) -> Html:
     """On what data leaves the EEA there; that it does not leave it is no transfer of chapter V."""
     facts, told = about.analysis.outside.get(element), about.words
     if facts and facts.area == INSIDE:
@@ -288,7 +287,7 @@ def _basis(element: Element, about: Known) -> Html:
     return joined(Html("; "), _stated("cnil.basis", in_words, told))
 
 
-def threats(about: Known) -> list[str]:
+def threats(about: AnswerFacts) -> list[str]:
     """Return the answer to 322: the paths to assess, and what nobody has reviewed. Neither text nor HTML can harm."""
     findings, told = about.findings(), about.words
     said = [_threat(finding, about) for finding in findings[:THREATS]]
@@ -302,7 +301,7 @@ def threats(about: Known) -> list[str]:
     return said
 
 
-def _threat(finding: Finding, facts: Known) -> str:
+def _threat(finding: Finding, facts: AnswerFacts) -> str:
     told = facts.words
     data = told.data(finding.category, pseudonymised=finding.pseudonymised)
     ends = {"source": told.name(finding.source), "leak": told.name(finding.leak)}
@@ -368,7 +367,7 @@ def _recipients(kind: Kind, words: Told) -> Html:
     return joined(found, Html("; "), words("cnil.not.reviewed", elements=words.count(len(kind.open), "element")))
 
 
-def _way(finding: Finding, facts: Known) -> Html:
+def _way(finding: Finding, facts: AnswerFacts) -> Html:
     told = facts.words
     names = [escaped(told.name(element)) for element in finding.witness]
     left_out = len(names) - NAMES

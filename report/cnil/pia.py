@@ -20,13 +20,13 @@ from rosprivacy.analysis.model import Method
 from rosprivacy.analysis.modes import View
 from rosprivacy.report.catalogs.words import Words, plain
 from rosprivacy.report.cnil import answers as cnil_answers
-from rosprivacy.report.cnil import lawfulness
-from rosprivacy.report.cnil.answers import Known
+from rosprivacy.report.cnil import inventory
+from rosprivacy.report.cnil.answers import AnswerFacts
 from rosprivacy.report.cnil.inventory import kinds_of
-from rosprivacy.report.cnil.markup import Html, escaped, joined, paragraph
-from rosprivacy.report.cnil.told import NAMES, Told
+from rosprivacy.report.cnil.told import NAMES, Html, Told, escaped, joined, paragraph
 from rosprivacy.report.document.analysis import verdict_facts
-from rosprivacy.report.element_counts import count_elements
+from rosprivacy.report.document.contents import required
+from rosprivacy.report.naming import count_elements
 from rosprivacy.report.verdict import verdict_sentence
 
 if TYPE_CHECKING:
@@ -58,9 +58,8 @@ def cnil_pia(document: Document, created: str, language: str = "en") -> dict[str
     kinds = kinds_of(document)
     told = Told(Words(language), vocabulary.categories)
     accepted = _accepted(document, told.words)
-    known = Known(
-        analysis, kinds, document.outside, accepted, document.ways, vocabulary.hierarchy, told, document.processed
-    )
+    ways, processed = required(document.ways), required(document.processing).by_kind
+    known = AnswerFacts(analysis, kinds, document.outside, accepted, ways, vocabulary.hierarchy, told, processed)
     measures = list(_measures(known))
     sentence = verdict_sentence(verdict_facts(analysis, document.doubts, assumptions), told.words)
     note = _note(analysis, assumptions, _fleet(view, told) if view else "", sentence, told)
@@ -74,9 +73,9 @@ def cnil_pia(document: Document, created: str, language: str = "en") -> dict[str
     }
     lists = {322: cnil_answers.threats(known), 324: [title for title, _ in measures]}
     stated = {
-        112: lawfulness.responsible(known.processed, told),
-        211: lawfulness.purposes(known.processed, kinds, told),
-        212: lawfulness.bases(known.processed, kinds, told),
+        112: inventory.responsible(known.processed, told),
+        211: inventory.purposes(known.processed, kinds, told),
+        212: inventory.bases(known.processed, kinds, told),
         226: cnil_answers.processors(known),
     }
     texts |= {number: text for number, text in stated.items() if text}
@@ -171,7 +170,7 @@ def _pia(assumptions: Mapping[str, Any], created: str, words: Told) -> dict[str,
     }
 
 
-def _measures(facts: Known) -> Iterator[tuple[str, Html]]:
+def _measures(facts: AnswerFacts) -> Iterator[tuple[str, Html]]:
     """(title, content) of what the graph shows to protect data; titles are at most 120 characters."""
     graph, told = facts.analysis.graph, facts.words
     if graph.profiles:

@@ -1,23 +1,74 @@
 """What answers are told with: the words of a language as HTML, names of elements and kinds of data, lines and lists.
 
-In: words, elements, names of categories. Out: ``Html``, or plain text for the lists of the tool, which it shows in one
-view as text and in another as HTML.
+In: words, elements, names of categories; any text. Out: ``Html``, escaped first, put together after, which only the
+functions here make, so that a type checker finds what was not escaped; or plain text for the lists of the tool, which
+it shows in one view as text and in another as HTML. Names come from anybody's files.
 """
 
 from __future__ import annotations
 
+import html
 from dataclasses import dataclass
 from itertools import islice
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NewType
 
+from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.text import one_line
 from rosprivacy.report.catalogs.words import plain, spaced
-from rosprivacy.report.cnil.markup import Html, bullets, escaped, harmless, prose
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping
+    from collections.abc import Collection, Iterable, Mapping
 
     from rosprivacy.analysis.model import Category, Element
     from rosprivacy.report.catalogs.words import Words
+
+Html = NewType("Html", str)
+_LOOK_ALIKES = str.maketrans({"<": "‹", ">": "›", "&": "＆", '"': "”", "'": "’"})
+
+
+def escaped(text: str) -> Html:
+    r"""Return text as HTML: one line, nothing unprintable, nothing endless.
+
+    >>> escaped("<b>" + chr(10) + "'")
+    '&lt;b&gt;\\n&#x27;'
+    """
+    return Html(html.escape(shown(text)))
+
+
+def prose(text: str) -> Html:
+    """Return a longer text as HTML, in one line."""
+    return Html(html.escape(one_line(text)))
+
+
+def harmless(text: str) -> str:
+    """Return text that says the same whether it is taken as HTML or not: what HTML reads is made a look-alike.
+
+    >>> harmless("<b>")
+    '‹b›'
+    """
+    return shown(text).translate(_LOOK_ALIKES)
+
+
+def joined(*parts: Html) -> Html:
+    """Put pieces one after another."""
+    return Html("".join(parts))
+
+
+def strong(part: Html) -> Html:
+    """Return a piece that stands out."""
+    return Html(f"<strong>{part}</strong>")
+
+
+def paragraph(*parts: Html) -> Html:
+    """Return pieces as a paragraph."""
+    return Html(f"<p>{''.join(parts)}</p>")
+
+
+def bullets(parts: Iterable[Html]) -> Html:
+    """Return pieces as a list; nothing where there are none."""
+    items = "".join(f"<li>{part}</li>" for part in parts)
+    return Html(f"<ul>{items}</ul>" if items else "")
+
 
 NAMES = 30  # named in a row
 

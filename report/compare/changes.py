@@ -3,18 +3,16 @@
 In: the earlier document and the new one. Out: ``Changes``. A path that is gone because less was asked is no answer, so
 everything that was asked or assumed otherwise is named first. This is for a person who assessed the earlier report;
 ``difference.py`` is for CI, has grants and labels too, and says what is worse. What is the same in both is told apart
-alike, by ``identity.py`` and ``report/compare/matching.py``.
+alike, by ``matching.py``.
 """
 
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.text import printable
-from rosprivacy.report.compare.identity import Identity
-from rosprivacy.report.compare.matching import comparable, paired
+from rosprivacy.report.compare.matching import Identity, comparable, paired
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -29,8 +27,7 @@ READ = ("fleet", "policies", "labels")
 COMPARED = ("pseudonymised", "dismissed", "accepted", "disjoint_paths", "article9")
 
 
-@dataclass(frozen=True, slots=True)
-class Changes:
+class Changes(NamedTuple):
     """The difference.
 
     Attributes

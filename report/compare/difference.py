@@ -1,21 +1,25 @@
-"""Two snapshots -> what is new, gone and changed, as JSON ``rosprivacy.diff/1`` or as lines.
+"""Two snapshots -> what is new, gone and changed, as JSON ``rosprivacy.diff/1``, as lines or as Markdown.
 
-In: snapshots. Out: a document; whether anything in it is worse than before; text.
+In: snapshots; a document ``rosprivacy.usage/1`` of what is granted against what was seen in use. Out: a document;
+whether anything in it is worse than before; text, of a bounded length as a comment on a pull request. Names come from
+anybody's files, so they are made printable, in Markdown shown as code, and can neither link nor mention anybody.
 """
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import Rank
+from rosprivacy.analysis.text import blanked, counted
 from rosprivacy.report.compare.changes import scope
 from rosprivacy.report.compare.matching import compare
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
-    from rosprivacy.report.compare.matching import Changes, ElementChange
+    from rosprivacy.report.compare.matching import ElementChange, StateChanges
     from rosprivacy.report.compare.snapshot import Snapshot
 
 FORMAT = "rosprivacy.diff/1"
@@ -57,7 +61,7 @@ def difference(before: Snapshot, after: Snapshot) -> dict[str, Any]:
     return found
 
 
-def _section(changes: Changes, names: tuple[str, ...]) -> dict[str, Any]:
+def _section(changes: StateChanges, names: tuple[str, ...]) -> dict[str, Any]:
     def row(change: ElementChange) -> dict[str, Any]:
         key = {name: part for name, part in zip(names, change.key, strict=True) if part}
         return {**key, "before": change.before, "after": change.after}
@@ -195,3 +199,161 @@ def _text(value: Any) -> str:
     if isinstance(value, list):
         return " -> ".join(value) if value and str(value[0]).startswith("/") else ", ".join(map(str, value))
     return {True: "yes", False: "no", None: "nothing"}.get(value, str(value))
+
+
+SHOWN = 20  # of a list; a comment has a limit
+SENTENCE = 2_000  # characters of the verdict with its doubts
+LONGEST = 120  # characters of a name
+LISTS = (("New paths to assess", "new", "after"), ("Gone", "gone", "before"), ("Changed", "changed", "after"))
+COUNTED = ("doubts", "robots", "grants", "elements")
+KINDS = {
+    "storage-limitation": "kept too long: ", "third-country-transfer": "leaves the EEA: ",
+    "unprotected-channel": "can be read on the network: ",
+}  # fmt: skip
+FORMS = (("dismissed", "only through another recipient"), ("accepted", "accepted"), ("pseudonymised", "pseudonymised"))
+
+
+def difference_markdown(document: Mapping[str, Any]) -> str:
+    """Return the text."""
+    return "\n".join([*_lines(document), ""])
+
+
+def _lines(document: Mapping[str, Any]) -> Iterator[str]:
+    yield "### Where personal data can go"
+    yield ""
+    before, after = document["verdict"]["before"], document["verdict"]["after"]
+    yield f"Verdict: {code(after)}." if before == after else f"Verdict: {code(before)} before, {code(after)} now."
+    yield from (f"\n{when.capitalize()}: {code(document['sentence'][side], SENTENCE)}" for when, side in SIDES)
+    yield from (f"\n**{remark[:1].upper()}{remark[1:]}.**" for remark in remarks(document))
+    for row in document["asked_otherwise"]:
+        yield f"\nAsked otherwise: {code(row['what'])} was {code(row['before'])}, is {code(row['after'])}."
+    findings = document["findings"]
+    for heading, what, state in LISTS:
+        rows = findings[what] if what == "changed" else [row for row in findings[what] if not row[state]["dismissed"]]
+        yield from _listed(heading, rows, state)
+    if not any(findings.values()):
+        yield "\nNo path to assess is new, gone or changed."
+    yield from _name("Newly in doubt", [title("doubts", row) for row in (document["doubts"] or {}).get("new", ())])
+    yield from _name("Newly not reviewed", [title("elements", row) for row in _opened(document)])
+    yield ""
+    yield " ".join(_counted(document))
+    yield ""
+    yield "Labels are a person's word; this is no legal verdict."
+
+
+def _listed(title: str, rows: Sequence[Mapping[str, Any]], state: str) -> Iterator[str]:
+    if not rows:
+        return
+    yield f"\n**{title}: {len(rows)}**\n"
+    for row in rows[:SHOWN]:
+        kind = KINDS.get(row["kind"], "")
+        across = ", from one robot to another" if row.get("across") else ""
+        at = f", allowed at {code(row['allowed_at'])}" if row.get("allowed_at") else ""
+        what = f"{kind}{code(row['category'])}: {code(row['source'])} → {code(row['leak'])}"
+        yield f"- {what}{across}{_form(row, state)}{at}"
+    if len(rows) > SHOWN:
+        yield f"- and {len(rows) - SHOWN} more"
+
+
+def _name(title: str, names: Sequence[str]) -> Iterator[str]:
+    if names:
+        yield f"\n**{title}: {len(names)}**\n"
+        yield from (f"- {code(name)}" for name in names[:SHOWN])
+        if len(names) > SHOWN:
+            yield f"- and {len(names) - SHOWN} more"
+
+
+def _opened(document: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    """The elements that are open now and were not."""
+    rows = [*document["elements"]["new"], *document["elements"]["changed"]]
+    return [row for row in rows if row["after"].get("open") and not (row["before"] or {}).get("open")]
+
+
+def _form(row: Mapping[str, Any], state: str) -> str:
+    forms = [said for key, said in FORMS if row[state][key]]
+    robots = row[state].get("robots")
+    return "".join(f", {said}" for said in [*forms, *([f"on {len(robots)} robots"] if robots else [])])
+
+
+def _counted(document: Mapping[str, Any]) -> Iterator[str]:
+    """How much else differs."""
+    for section in COUNTED:
+        rows = document[section]
+        if rows is None:
+            yield f"{section.capitalize()} are not compared: {NOT_COMPARED[section]}."
+        elif any(rows.values()):
+            counts = ", ".join(f"{len(found)} {what}" for what, found in rows.items() if found)
+            yield f"{section.capitalize()}: {counts}."
+
+
+def code(text: str, limit: int = LONGEST) -> str:
+    """Return text as code that cannot end early: printable, short, with no backtick in it.
+
+    >>> code("a`b")
+    "`a'b`"
+    """
+    plain = blanked(text, "?").replace("`", "'")
+    plain = re.sub(r"\s+", " ", plain).strip() or "?"
+    return f"`{plain[:limit]}{'…' if len(plain) > limit else ''}`"
+
+
+WHY = {
+    "no-profile": "the policies do not know the node",
+    "not-granted": "no line grants it",
+    "denied": "seen although denied",
+}
+
+
+def usage_lines(document: Mapping[str, Any]) -> Iterator[str]:
+    """Return the document as lines for people."""
+    yield from _usage_lines(document, shown, lambda title: title, "  ")
+
+
+def usage_markdown(document: Mapping[str, Any]) -> str:
+    """Return the document as Markdown."""
+
+    def code(text: str) -> str:
+        return f"`` {blanked(shown(text)).replace('`', ' ')} ``"
+
+    return "".join(f"{line}\n" for line in _usage_lines(document, code, lambda title: f"\n**{title}**\n", "- "))
+
+
+def _usage_lines(
+    document: Mapping[str, Any], show: Callable[[str], str], head: Callable[[str], str], mark: str
+) -> Iterator[str]:
+    running, unused = document["not_granted"], document["unused"]
+    yield head(f"what runs and is not granted: {len(running):,}")
+    for row in running:
+        denied = "".join(f" by {show(_place(line))}" for line in row.get("denied_by", ())[:1])
+        yield f"{mark}{show(_grant_text(row))}: {WHY[row['why']]}{denied}; last seen {row['seen']['last']}"
+    yield head(f"what is granted to nodes that ran, and was never seen: {len(unused):,}")
+    for row in unused:
+        yield f"{mark}{show(_grant_text(row))}: {show(_place(row))}{_reason_not_in_patch(row, document)}"
+    never = document["never_seen"]
+    yield head(f"nodes with a profile that were never seen, of which nothing is proposed: {len(never):,}")
+    for row in never:
+        yield f"{mark}{show(row['node'])}: {counted(row['grants'], 'line')}"
+    yield head("assumed")
+    for said in (*document["observed"], *document["gaps"]):
+        yield f"{mark}{said}"
+    if document["patch"]:
+        yield f"{mark}a patch sets what was never seen to DENY: --patch FILE; a robot may need it another day"
+    elif document["why_no_patch"]:
+        yield f"{mark}no patch: {document['why_no_patch']}"
+
+
+def _reason_not_in_patch(row: Mapping[str, Any], document: Mapping[str, Any]) -> str:
+    """Why a line is not in the patch."""
+    if row.get("hidden"):
+        return "; a text without `ros2 node info --include-hidden` has no hidden names: it is not in the patch"
+    if row["in_patch"] or not document["patch"]:
+        return ""
+    return "; not in the patch: a DENY of it would meet other lines of its enclave"
+
+
+def _grant_text(row: Mapping[str, Any]) -> str:
+    return f"{row['node']} {row['role']} {row['name']}"
+
+
+def _place(row: Mapping[str, Any]) -> str:
+    return f"{row['file']}:{row['line']}"

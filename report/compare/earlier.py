@@ -7,11 +7,10 @@ from __future__ import annotations
 
 import hashlib
 import json
-from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.errors import InputError, reason, shown
 from rosprivacy.analysis.files_read import noted
@@ -31,8 +30,7 @@ SCHEMAS = {FORMAT: "analysis.schema.json", SHORT: "analysis-2.schema.json"}
 LARGEST = 512 * 2**20  # bytes
 
 
-@dataclass(frozen=True, slots=True)
-class Earlier:
+class Earlier(NamedTuple):
     """A document to compare with, and the file that it comes from."""
 
     document: Mapping[str, Any]

@@ -1,8 +1,10 @@
 """Two states of a system -> what is new, gone and changed, whatever the names that change at every start.
 
-In: facts by key, before and after. Out: ``Changes``. Nodes that a program makes for itself have names with a process
-id or an address in them (``transform_listener_impl_5591c2d0``, ``rviz2_31337``). What has no counterpart of the very
-same name is matched by a name without these.
+In: facts by key, before and after. Out: ``StateChanges``. Nodes that a program makes for itself have names with a
+process id or an address in them (``transform_listener_impl_5591c2d0``, ``rviz2_31337``). What has no counterpart of the
+very same name is matched by a name without these. The keys of elements and findings are the same for ``diff`` and for
+``report --since``; of a fleet, a robot that stands for others counts by its model, so that it does not matter which one
+is shown.
 """
 
 from __future__ import annotations
@@ -10,7 +12,7 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
@@ -21,8 +23,7 @@ Record = dict[str, Any]
 _MADE_UP = re.compile(r"(?=[a-f]*[0-9])[0-9a-f]{8,}|[0-9]{3,}")
 
 
-@dataclass(frozen=True, slots=True)
-class ElementChange:
+class ElementChange(NamedTuple):
     """Something that is there before or after, or both and not the same.
 
     Attributes
@@ -39,7 +40,7 @@ class ElementChange:
 
 
 @dataclass(frozen=True, slots=True)
-class Changes:
+class StateChanges:
     """What differs, each sorted by key."""
 
     new: tuple[ElementChange, ...]
@@ -70,8 +71,7 @@ def _without_made_up(part: str) -> str:
     return part if kept == len(words) else "_".join([*words[:kept], "*"])
 
 
-@dataclass(frozen=True, slots=True)
-class MatchedPairs:
+class MatchedPairs(NamedTuple):
     """Which key of before is which one of after; each sorted, ``common`` by the key after."""
 
     common: tuple[tuple[Key, Key], ...]
@@ -97,7 +97,7 @@ def paired(before: Collection[Key], after: Collection[Key]) -> MatchedPairs:
     return MatchedPairs(tuple(sorted(pairs, key=lambda pair: pair[1])), tuple(gone), tuple(new))
 
 
-def compare(before: Mapping[Key, Record], after: Mapping[Key, Record]) -> Changes:
+def compare(before: Mapping[Key, Record], after: Mapping[Key, Record]) -> StateChanges:
     """Return what differs between two states; linear in their size, but for sorting."""
     pairs = paired(before.keys(), after.keys())
     changed = [
@@ -105,7 +105,7 @@ def compare(before: Mapping[Key, Record], after: Mapping[Key, Record]) -> Change
         for ours, theirs in pairs.common
         if comparable(before[ours]) != comparable(after[theirs])
     ]
-    return Changes(
+    return StateChanges(
         tuple(ElementChange(key, None, after[key]) for key in pairs.new),
         tuple(ElementChange(key, before[key], None) for key in pairs.removed),
         tuple(changed),
@@ -123,3 +123,46 @@ def comparable(value: Any) -> Any:
     if isinstance(value, dict):
         return {key: comparable(inside) for key, inside in value.items()}
     return [comparable(inside) for inside in value] if isinstance(value, (list, tuple)) else value
+
+
+@dataclass(frozen=True, slots=True)
+class Identity:
+    """The keys of a document.
+
+    Attributes
+    ----------
+    models
+        A robot of a fleet that is shown -> its model; empty for a single robot.
+    patterns
+        Id of a finding -> its pattern in a fleet.
+    """
+
+    models: Mapping[str, str]
+    patterns: Mapping[str, Mapping[str, Any]]
+
+    @classmethod
+    def of(cls, document: Mapping[str, Any]) -> Self:
+        """Read a document."""
+        fleet = document.get("fleet")
+        if not fleet:
+            return cls({}, {})
+        models = {group["robot"]: group["model"] or group["robot"] for group in fleet["alike"]}
+        return cls(models, {pattern["finding"]: pattern for pattern in fleet["patterns"]})
+
+    def element(self, element: Mapping[str, Any]) -> Key:
+        """Return (robot or model, kind, name, leg)."""
+        robot = self.models.get(element["robot"], element["robot"])
+        return (robot, element["kind"], element["name"], element.get("leg", ""))
+
+    def finding(self, finding: Mapping[str, Any]) -> Key:
+        """Return (kind, category, source, leak, whether it goes across robots, whether beside a pseudonymised one)."""
+        pattern = self.patterns.get(finding["id"])
+        across = "across" if pattern and pattern["across"] else ""
+        ends = (self._end(finding["source"]), self._end(finding["leak"]))
+        beside = "beside" if finding.get("beside_pseudonymised") else ""
+        return (finding["kind"], finding["category"], *ends, across, beside)
+
+    def _end(self, element: Mapping[str, Any]) -> str:
+        """A source or leak by name; with its robot where that is none, such as what is shared."""
+        robot = "" if element["robot"] in self.models or not element["robot"] else f"{element['robot']}:"
+        return f"{robot}{element['kind']} {element['name']}"

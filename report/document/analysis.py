@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, cast
 from rosprivacy.analysis.findings.review_order import Behind
 from rosprivacy.analysis.written_names import literal
 from rosprivacy.report.catalogs.words import IN_ENGLISH
-from rosprivacy.report.document.decisions import enforced_document, with_decisions
-from rosprivacy.report.document.fleet import fleet_document
+from rosprivacy.report.document.additions import enforced_document, fleet_document, with_decisions
+from rosprivacy.report.document.contents import required
 from rosprivacy.report.document.ledger import counts_of, glob_entries, ledger_rows, reliance_rows
 from rosprivacy.report.document.records import (
     doubt_entry,
@@ -39,8 +39,10 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import Analysis, OpenQuestion
     from rosprivacy.analysis.findings.sanitizing import Making
+    from rosprivacy.analysis.findings.ways import Ways
     from rosprivacy.analysis.kernel.overruled import Overruled
     from rosprivacy.analysis.model import Diagnostic, Doubt, Element, Flow, FlowGraph
+    from rosprivacy.analysis.whatif.ledger import GlobUse, TakenAway
     from rosprivacy.report.document.contents import Document
     from rosprivacy.report.schemas.analysis import AnalysisDocument, Assumptions, ShortDocument
     from rosprivacy.report.schemas.records import (
@@ -91,9 +93,7 @@ def short_document(document: Document) -> ShortDocument:
 
 def _analysis(document: Document) -> AnalysisDocument:
     """The analysis as one JSON object, without what only some answers have."""
-    if document.ledger is None:
-        raise ValueError("nobody asked for the ledger, which the JSON document tells")
-    taken_away, globs = document.ledger
+    taken_away, globs = required(document.ledger)
     analysis, vocabulary, graph = document.analysis, document.vocabulary, document.analysis.graph
     categories, hierarchy = vocabulary.categories, vocabulary.hierarchy
     contexts = document.contexts.everywhere
@@ -105,11 +105,7 @@ def _analysis(document: Document) -> AnalysisDocument:
         "findings": [finding_entry(finding, document.contexts) for finding in analysis.findings],
         "open": _open(document),
         "unknown_ends": [
-            {
-                "element": element_dict(end.element),
-                "unknown": end.missing,
-                "categories": list(end.categories),
-            }
+            {"element": element_dict(end.element), "unknown": end.missing, "categories": list(end.categories)}
             for end in analysis.unknown_ends
         ],
         "doubts": [doubt_entry(doubt) for doubt in document.doubts],
@@ -132,7 +128,7 @@ def _analysis(document: Document) -> AnalysisDocument:
         "subjects": [
             {"element": element_dict(element), "subjects": list(groups)} for element, groups in document.subjects
         ],
-        "ways": _ways(document),
+        "ways": _ways(document.ways or ()),
         "surroundings": surroundings(document),
         "contexts": situations(vocabulary, contexts),
         "look_at": pointers(vocabulary, analysis.emitted, contexts),
@@ -146,29 +142,37 @@ def _analysis(document: Document) -> AnalysisDocument:
         "elements": len({element.identity for element in graph.elements}),
         "standard_channels": analysis.standard_channels,
         "diagnostics": [_diagnostic(d) for d in (*document.diagnostics, *analysis.diagnostics)],
-        "assumptions": {
-            **cast("Assumptions", document.assumptions),
-            "taken_away_by": counts_of(taken_away),
-            "taken_by_kind": taken_by_kind(analysis),
-            "backups_taken_as_none": [element_dict(element) for element in without_backups(analysis)],
-            "sanitizers_without_method": [
-                {"element": element_dict(element), "category": category, "taken_as": "pseudonymise"}
-                for element, category in analysis.unstated
-            ],
-            "standard_channels_reached": [_stopped(*row, analysis) for row in analysis.standard_reached],
-            "standard_channels_unchanged": [
-                element_dict(replace(element, leg="")) for element in analysis.standard_unchanged
-            ],
-            "overruled": [_overruled(one, by) for one, by in document.overruled],
-            "absent": [{"element": element_dict(element), "why": why} for element, why in document.absent],
-            "globs": glob_entries(globs),
-        },
+        "assumptions": _assumptions(document, taken_away, globs),
     }
+    if document.ways is None:
+        del entries["ways"]
     if document.hangs_on is None:  # so that nobody takes it for 'hangs on nothing'
         entries["not_asked"] = [{"key": "hangs_on", "option": HANGS_ON}]
     else:
         entries["hangs_on"] = reliance_rows(document.hangs_on)
     return entries
+
+
+def _assumptions(document: Document, taken_away: tuple[TakenAway, ...], globs: tuple[GlobUse, ...]) -> Assumptions:
+    """What the answer rests on."""
+    analysis = document.analysis
+    return {
+        **cast("Assumptions", document.assumptions),
+        "taken_away_by": counts_of(taken_away),
+        "taken_by_kind": taken_by_kind(analysis),
+        "backups_taken_as_none": [element_dict(element) for element in without_backups(analysis)],
+        "sanitizers_without_method": [
+            {"element": element_dict(element), "category": category, "taken_as": "pseudonymise"}
+            for element, category in analysis.unstated
+        ],
+        "standard_channels_reached": [_stopped(*row, analysis) for row in analysis.standard_reached],
+        "standard_channels_unchanged": [
+            element_dict(replace(element, leg="")) for element in analysis.standard_unchanged
+        ],
+        "overruled": [_overruled(one, by) for one, by in document.overruled],
+        "absent": [{"element": element_dict(element), "why": why} for element, why in document.absent],
+        "globs": glob_entries(globs),
+    }
 
 
 def label_key(element: Element) -> LabelKey:
@@ -202,10 +206,10 @@ def _overruled(overruled: Overruled, by: str) -> OverruledEntry:
     }
 
 
-def _ways(document: Document) -> list[WaysEntry]:
+def _ways(ways: Iterable[Ways]) -> list[WaysEntry]:
     """What lies on the ways of each kind of data to each place."""
     rows: list[WaysEntry] = []
-    for row in document.ways:
+    for row in ways:
         rows.append(
             {
                 "category": row.category,

@@ -1,12 +1,12 @@
 """The ``Document``: all that an answer says, as typed facts. Every output is a function of it and reads nothing else.
 
-It is made whole where the answer is made. What takes longer than the answer itself is None where nobody asked for it.
+It is made whole where the answer is made. What only some outputs tell is None where none of them is asked for.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.contexts import Contexts
     from rosprivacy.analysis.decisions import Decided
     from rosprivacy.analysis.findings.beyond import Added
+    from rosprivacy.analysis.findings.flows_to_leaks import PathsToLeaks
     from rosprivacy.analysis.findings.processed import Processed
     from rosprivacy.analysis.findings.review_order import Behind
     from rosprivacy.analysis.findings.sanitizing import Cleaning, Making
@@ -35,16 +36,30 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.whatif.ledger import GlobUse, TakenAway
     from rosprivacy.analysis.whatif.reliance import Reliance
     from rosprivacy.ontology.vocabulary import Vocabulary
-    from rosprivacy.report.places import Places
+    from rosprivacy.report.places import PlaceIndex
 
     Shown = tuple[str, str, str, str]  # an element as readers see it: the two sides of a wildcard are one
 
-LEDGER = "ledger"  # fields of ``Document`` that a question asks for
+LEDGER = "ledger"  # fields of ``Document`` that an output asks for
 RELIANCE = "hangs_on"
 PROPOSALS = "proposals"
+WAYS = "ways"
+PROCESSING = "processing"
+POSITIONS = "positions"
+PATHS = "paths_to_leaks"
+IN_JSON = (LEDGER, WAYS, PROCESSING)
+
+T = TypeVar("T")
 
 
-class Lines(NamedTuple):
+def required(field: T | None) -> T:
+    """Return a field of a document that must have been asked for."""
+    if field is None:
+        raise ValueError("an output reads of the document what it did not ask for")
+    return field
+
+
+class Positions(NamedTuple):
     """Where findings stand in files.
 
     Attributes
@@ -55,8 +70,23 @@ class Lines(NamedTuple):
         (element, element) -> the flow behind that step of a further path.
     """
 
-    places: Places
+    places: PlaceIndex
     flows: Mapping[tuple[Shown, Shown], Flow]
+
+
+class StatedProcessing(NamedTuple):
+    """What is stated of purposes, legal bases and responsible persons.
+
+    Attributes
+    ----------
+    of
+        Of a robot (its name) or an element.
+    by_kind
+        By kind of data, where data begin and end.
+    """
+
+    of: tuple[tuple[str | Element, Processing], ...]
+    by_kind: tuple[Processed, ...]
 
 
 class Ledger(NamedTuple):
@@ -79,7 +109,7 @@ class EnforcedFacts(NamedTuple):
 
     Attributes
     ----------
-    analysis, contexts, decided, lines
+    analysis, contexts, decided, positions, paths_to_leaks
         Of the enforced view, as those of ``Document``.
     added
         The findings that only this view has, in its order; and those in which it alone has plain data.
@@ -90,9 +120,10 @@ class EnforcedFacts(NamedTuple):
     analysis: Analysis
     contexts: Contexts
     decided: Decided | None
-    lines: Lines
     added: tuple[Added, ...]
     open: tuple[Element, ...]
+    positions: Positions | None = None
+    paths_to_leaks: PathsToLeaks | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,14 +158,8 @@ class Document:
         Whom the data of a source are about: groups of persons.
     surroundings
         Where elements work.
-    processing
-        What is stated of purposes, legal bases and responsible persons, of a robot (its name) or an element.
-    processed
-        The same by kind of data, where data begin and end.
     types
         Message types of each channel (rule S15).
-    ways
-        What lies on the ways of each kind of data to each place.
     sanitizers, derivations
         Who cleans data, and who makes one kind of another.
     recognising
@@ -151,8 +176,6 @@ class Document:
         (kind, name) of open channels that the program's own file proposes to take as mundane (rule S13).
     review_order
         Where data comes to each open element from, and what stands behind it.
-    lines
-        Where findings stand in files.
     enforced
         What the enforced view adds; None where nobody asked.
     ledger
@@ -161,6 +184,14 @@ class Document:
         What the answer hangs on, statement by statement; None where nobody asked.
     proposals
         What closes the open findings, a mitigation document; or why there is none, a word; None where nobody asked.
+    ways
+        What lies on the ways of each kind of data to each place; None where nobody asked.
+    processing
+        What is stated of purposes, legal bases and responsible persons; None where nobody asked.
+    positions
+        Where findings stand in files; None where nobody asked.
+    paths_to_leaks
+        Of pictures; None where nobody asked.
     """
 
     analysis: Analysis
@@ -177,10 +208,7 @@ class Document:
     outside: Mapping[Element, NonRosFacts]
     subjects: tuple[tuple[Element, tuple[str, ...]], ...]
     surroundings: tuple[tuple[Element, Surroundings], ...]
-    processing: tuple[tuple[str | Element, Processing], ...]
-    processed: tuple[Processed, ...]
     types: tuple[tuple[Element, tuple[MessageType, ...]], ...]
-    ways: tuple[Ways, ...]
     sanitizers: tuple[Cleaning, ...]
     derivations: tuple[Making, ...]
     recognising: Mapping[Element, tuple[str, ...]]
@@ -190,8 +218,11 @@ class Document:
     overruled: tuple[tuple[Overruled, str], ...]
     infrastructure: frozenset[tuple[str, str]]
     review_order: Mapping[Shown, Behind]
-    lines: Lines
     enforced: EnforcedFacts | None = None
     ledger: Ledger | None = None
     hangs_on: tuple[Reliance, ...] | None = None
     proposals: Mapping[str, Any] | str | None = None
+    ways: tuple[Ways, ...] | None = None
+    processing: StatedProcessing | None = None
+    positions: Positions | None = None
+    paths_to_leaks: PathsToLeaks | None = None

@@ -74,7 +74,7 @@ def glob_entries(used: Iterable[GlobUse]) -> list[GlobEntry]:
     ]
 
 
-def hanging(document: Mapping[str, Any]) -> list[tuple[str, Mapping[str, Any]]]:
+def hanging_labels(document: Mapping[str, Any]) -> list[tuple[str, Mapping[str, Any]]]:
     """Return (place, row) of each line of a label file at which data ends, where no leak was found; else nothing.
 
     A path can end at one of several of them, so no row by itself says that a leak lies behind. Of a line that closes

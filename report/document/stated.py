@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     )
     from rosprivacy.analysis.model.recording import Recording
     from rosprivacy.ontology.vocabulary import Vocabulary
-    from rosprivacy.report.document.contents import Document
+    from rosprivacy.report.document.contents import Document, StatedProcessing
     from rosprivacy.report.schemas.analysis import AnalysisDocument, ClosedEntry
     from rosprivacy.report.schemas.notation import Texts
     from rosprivacy.report.schemas.stated import (
@@ -217,21 +217,23 @@ def _not_known(element: Element, facts: NonRosFacts, holds: tuple[str, ...], hie
 
 def with_facts_of_elements(entries: AnalysisDocument, document: Document) -> AnalysisDocument:
     """Return entries with what is stated or seen of elements, where any of it is."""
-    return _with_types(_with_processing(entries, document), document)
+    if document.processing is not None:
+        entries = _with_processing(entries, document.processing)
+    return _with_types(entries, document)
 
 
-def _with_processing(entries: AnalysisDocument, document: Document) -> AnalysisDocument:
+def _with_processing(entries: AnalysisDocument, processing: StatedProcessing) -> AnalysisDocument:
     """Return entries with what is stated of processing."""
     stated: list[ProcessingEntry] = []
-    for robot_or_element, processing in document.processing:
-        stated.append(_stated(processing))
+    for robot_or_element, row in processing.of:
+        stated.append(_stated(row))
         if isinstance(robot_or_element, str):
             stated[-1]["robot"] = robot_or_element
         else:
             stated[-1]["element"] = element_dict(robot_or_element)
     if stated:
         entries["processing"] = stated
-    if by_kind := [_processed(row) for row in document.processed]:
+    if by_kind := [_processed(row) for row in processing.by_kind]:
         entries["processed_for"] = by_kind
     return entries
 

@@ -20,14 +20,12 @@ from rosprivacy.analysis.model import NO_BASIS
 from rosprivacy.analysis.non_ros import ADEQUATE, INSIDE, PARTLY, THIRD
 from rosprivacy.analysis.text import fit
 from rosprivacy.report.catalogs.words import Words
-from rosprivacy.report.element_counts import count_rows
-from rosprivacy.report.naming import key, name, without_leg
-from rosprivacy.report.page import purposes
-from rosprivacy.report.page.entries_of_robots import grouped
-from rosprivacy.report.page.index import Index
+from rosprivacy.report.naming import count_rows, key, name, without_leg
+from rosprivacy.report.page import persons
+from rosprivacy.report.page.elements import retention_text, states_retention
+from rosprivacy.report.page.index import Index, grouped
 from rosprivacy.report.page.kinds import provision
-from rosprivacy.report.page.non_ros import retention_text, states_retention
-from rosprivacy.report.page.tables import OUTSIDE
+from rosprivacy.report.page.persons import OUTSIDE
 from rosprivacy.report.spreadsheet import as_csv
 from rosprivacy.report.verdict import verdict_sentence
 
@@ -125,22 +123,22 @@ def _entry(category: str, group: Sequence[Mapping[str, Any]], facts: _Facts) -> 
     stated = [index.outside[key(element)] for element in group if key(element) in index.outside]
     law = [provision(legal, category, index) for legal in known["law"]]
     rows = facts.processed(category, group)
-    persons, unnamed = index.persons(category, group)
+    groups, unnamed = index.persons(category, group)
     kept_for, unlimited = _retention(category, group, index)
     values = {
         "activity": "",
-        "controller": purposes.controllers(rows, index) or words("record.open"),
-        "purpose": purposes.purposes(rows, index),
+        "controller": persons.controllers(rows, index) or words("record.open"),
+        "purpose": persons.purposes(rows, index),
         "category": index.data(category),
         "article9": words(f"article9.{known['article9']}"),
         "provisions": "; ".join(words.pair(p.name, p.condition) if p.condition else p.name for p in law),
-        "subjects": words.row([*persons, *([words("record.open")] if unnamed else [])]),
+        "subjects": words.row([*groups, *([words("record.open")] if unnamed else [])]),
         "exit": words.row(index.names(group)) if group else words("record.norecipient"),
         "recipient": _statement(stated, _recipient, index),
         "country": _statement(stated, _country, index),
         "form": _form(category, group, index),
         "transfer": _statement(stated, partial(_transfer, rows), index),
-        "basis": purposes.bases(rows, _bases(findings), index),
+        "basis": persons.bases(rows, _bases(findings), index),
         "retention": "; ".join([*kept_for, *([words("record.open")] if unlimited else [])]),
         "measures": "; ".join(_measures(category, group, facts)) or words("record.open"),
         "findings": words.row(finding["id"] for finding in findings),
@@ -160,7 +158,7 @@ def _not_stated(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
     """The letters of Article 30(1) for who is responsible and what for, where that is not stated of all data."""
     if not rows or not all(row["controllers"] and row["officers"] for row in rows):
         yield "a"
-    if not rows or any(purposes.PURPOSE in row["missing"] for row in rows):
+    if not rows or any(persons.PURPOSE in row["missing"] for row in rows):
         yield "b"
 
 

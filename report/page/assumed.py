@@ -1,30 +1,30 @@
-"""What the result rests on (rule S12), in sentences; the files that were read; what was said of them.
+"""What the result rests on (rule S12): assumptions, files, what was said of them; and what hangs on single statements.
 
-In: an ``Index``. Out: plain texts, in a fixed order.
+In: an ``Index``. Out: plain texts, in a fixed order. What hangs on a statement is what there would be if it were wrong:
+a user's statements before shipped ones, those on which most hangs first. Message types are told with where each is
+known from, and what they close (rule S15); a type that only a bag tells has no writer.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.model import MAY_REVEAL
 from rosprivacy.analysis.text import fit, printable
-from rosprivacy.report.document.ledger import hanging
-from rosprivacy.report.naming import infrastructure_file, name
+from rosprivacy.report.document.ledger import hanging_labels
+from rosprivacy.report.naming import infrastructure_file, key, name, opening_text
 from rosprivacy.report.observed_lines import observed_lines
-from rosprivacy.report.page.entries_of_robots import grouped
+from rosprivacy.report.page.index import grouped
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping, Sequence
 
     from rosprivacy.report.page.index import Index
 
 ALL = "all"
 
 
-@dataclass(frozen=True, slots=True)
-class File:
+class File(NamedTuple):
     """A file that was read: its role in words, its name, its hash."""
 
     role: str
@@ -32,13 +32,49 @@ class File:
     sha256: str
 
 
-@dataclass(frozen=True, slots=True)
-class Remark:
+class Remark(NamedTuple):
     """What was said of a file when it was read."""
 
     place: str
     severity: str
     text: str
+
+
+class ResultGrounds(NamedTuple):
+    """What the result rests on.
+
+    Attributes
+    ----------
+    assumptions, files, remarks
+        In sentences; what was read, and what was said of it.
+    closed
+        What closed a path.
+    hanging
+        What hangs on single statements; None where nobody asked.
+    typed, only_by_types
+        Channels of known types, and the paths that only these close: (data, ends).
+    """
+
+    assumptions: tuple[str, ...]
+    files: tuple[File, ...]
+    remarks: tuple[Remark, ...]
+    closed: tuple[ClosedSection, ...]
+    hanging: tuple[Hanging, ...] | None
+    typed: tuple[Typed, ...]
+    only_by_types: tuple[tuple[str, str], ...]
+
+
+def grounds(index: Index) -> ResultGrounds:
+    """Return what a document says that its result rests on."""
+    return ResultGrounds(
+        assumptions=tuple(assumed(index)),
+        files=files(index),
+        remarks=remarks(index),
+        closed=closed(index),
+        hanging=hanging(index),
+        typed=typed(index),
+        only_by_types=only_by_types(index),
+    )
 
 
 def assumed(index: Index) -> Iterator[str]:
@@ -99,7 +135,7 @@ def _stopped(index: Index) -> Iterator[str]:
         yield words("assumption.standard.unchanged", element=words.row(index.names(unchanged)))
     for row in said.get("absent", ()):
         yield words("assumption.absent", element=name(row["element"]), why=printable(row["why"]))
-    if rows := hanging(index.document):
+    if rows := hanging_labels(index.document):
         yield words(
             "assumption.hangs", labels=words.row(f"{name(row['element'])} ({fit(place)})" for place, row in rows)
         )
@@ -199,4 +235,195 @@ def remarks(index: Index) -> tuple[Remark, ...]:
             f"{fit(row['file'])}:{row['line']}", index.words(f"severity.{row['severity']}"), printable(row["message"])
         )
         for row in rows
+    )
+
+
+FEW = 8  # elements that a row names, of each sort; the document has all
+
+
+class Hanging(NamedTuple):
+    """One statement.
+
+    Attributes
+    ----------
+    where, line
+        The elements that it is about; file and line.
+    statement, by, why
+        What it says, who says so, with which reason; the last two may be empty.
+    findings, questions
+        What there would be without it.
+    shipped
+        Whether it is not the user's.
+    """
+
+    where: str
+    line: str
+    statement: str
+    by: str
+    why: str
+    findings: tuple[str, ...]
+    questions: tuple[str, ...]
+    shipped: bool
+
+
+def hanging(index: Index) -> tuple[Hanging, ...] | None:
+    """Return the statements on which something hangs; None where it was not worked out."""
+    rows = index.document.get("hangs_on")
+    return None if rows is None else tuple(_hanging(row, index) for row in rows)
+
+
+def _hanging(row: Mapping[str, Any], index: Index) -> Hanging:
+    words = index.words
+    ends = (_names_shown(index.names(row[end]), index) for end in ("elements", "to") if row[end])
+    return Hanging(
+        where=" → ".join(words.row(names) for names in ends),
+        line=f"{fit(row['file'])}:{row['line']}",
+        statement=_statement(row, index),
+        by=fit(row["author"]),
+        why=fit(row["why"]),
+        findings=_names_shown(list(_findings(row, index)), index),
+        questions=_names_shown(list(_questions(row, index)), index),
+        shipped=row["shipped"],
+    )
+
+
+def _statement(row: Mapping[str, Any], index: Index) -> str:
+    words = index.words
+    role = "absent" if row["method"] == "absent" else row["role"]
+    said = words(f"reliance.{role}")
+    if row["role"] == "sanitizer" and role != "absent":
+        method = words(f"method.{row['method']}")
+        said = f"{said} ({method})"
+    said = words.pair(said, index.all_data(row["categories"])) if row["categories"] else said
+    return words("closed.glob", said=said) if row["glob"] else said
+
+
+def _findings(row: Mapping[str, Any], index: Index) -> Iterator[str]:
+    words = index.words
+    if row["refused"]:
+        yield words("reliance.refused", why=fit(row["refused"]))
+    if row["perhaps"]:
+        yield words("closed.perhaps")
+    for opening in row["findings"]:
+        data = index.data(opening["category"], pseudonymised=opening["pseudonymised"])
+        ends = [words.row(index.names([opening[end]])) for end in ("source", "leak")]
+        yield opening_text(opening, words.pair(data, " → ".join(ends)), words)
+
+
+def _questions(row: Mapping[str, Any], index: Index) -> Iterator[str]:
+    for one in row["questions"]:
+        yield f"{index.words.row(index.names([one['element']]))} ({index.all_data(one['categories'])})"
+
+
+def _names_shown(texts: Sequence[str], index: Index) -> tuple[str, ...]:
+    distinct = tuple(dict.fromkeys(texts))  # the legs of a service have one name
+    return index.words.first(distinct, FEW)
+
+
+class Typed(NamedTuple):
+    """A channel, or a leg of one, that data gets to.
+
+    Attributes
+    ----------
+    types
+        (name, from where it is known) of each.
+    data
+        Kinds that it carries.
+    closed
+        Kinds that end there, since its types cannot carry them.
+    """
+
+    name: str
+    kind: str
+    types: tuple[tuple[str, str], ...]
+    data: str
+    closed: str
+
+
+def typed(index: Index) -> tuple[Typed, ...]:
+    """Return the channels with data of which types are known, in the order of the document."""
+    carries = {key(row["element"]): row for row in index.document["carries"]}
+    limits = index.document["assumptions"].get("type_limits_reached", ())
+    closed = {key(row["element"]): row["categories"] for row in limits}
+
+    def channel_of(row: Mapping[str, Any]) -> tuple[str, str]:
+        at = key(row["element"])
+        return _data(carries.get(at, {}), index), index.all_data(closed.get(at, ()))
+
+    def merge_key(row: Mapping[str, Any]) -> Any:
+        types = tuple((one["type"], one["file"], one["line"]) for one in row["types"])
+        return key(row["element"])[1:], channel_of(row), types
+
+    with_data = {*carries, *closed}
+    rows = [row for row in index.document.get("types", ()) if key(row["element"]) in with_data]
+    return tuple(_typed(some, channel_of(some[0]), index) for some in grouped(rows, merge_key))
+
+
+def _data(row: Mapping[str, Any], index: Index) -> str:
+    hidden = (index.data(category, pseudonymised=True) for category in row.get("pseudonymised", ()))
+    return index.words.row([*map(index.data, row.get("categories", ())), *hidden])
+
+
+def _typed(entries: list[Mapping[str, Any]], channel: tuple[str, str], index: Index) -> Typed:
+    return Typed(
+        index.words.row(index.names([row["element"] for row in entries])),
+        index.words.kind(entries[0]["element"]),
+        tuple((fit(one["type"]), _origin(one, index)) for one in entries[0]["types"]),
+        *channel,
+    )
+
+
+def _origin(type_entry: Mapping[str, Any], index: Index) -> str:
+    observed = {entry["file"] for entry in index.document["assumptions"].get("types", ())}
+    how = "stated" if type_entry["stated"] else "observed" if type_entry["file"] in observed else "recorded"
+    return index.words(f"channel_type.{how}", place=f"{fit(type_entry['file'])}:{type_entry['line']}")
+
+
+def only_by_types(index: Index) -> tuple[tuple[str, str], ...]:
+    """Return (kind of data, from where to where) of what only types close."""
+    return tuple(
+        (index.data(row["category"]), index.words("entry.from.to", source=name(row["source"]), leak=name(row["leak"])))
+        for row in index.document["assumptions"].get("closed_by_types", ())
+    )
+
+
+class ClosedSection(NamedTuple):
+    """One row: where data ends, which data, on whose word, and where it would get to."""
+
+    where: str
+    data: str
+    statement: str
+    lines: tuple[str, ...]
+    behind: str
+
+
+def closed(index: Index) -> tuple[ClosedSection, ...]:
+    """Return the rows that closed a path; older documents have none."""
+    rows = [row for row in index.document.get("taken_away", ()) if row["leak"] or row["open"] or row["perhaps"]]
+    rows.sort(key=lambda row: row["leak"] is None)
+    return tuple(_closed(group, index) for group in grouped(rows, _normalised))
+
+
+def _normalised(row: Mapping[str, Any]) -> Any:
+    ends = [(row[end] or {}).get("name", "") for end in ("element", "to", "leak", "open")]
+    places = tuple((place["file"], place["line"]) for place in row["places"])
+    return row["by"], tuple(ends), tuple(row["categories"]), places, row["note"]
+
+
+def _closed(rows: list[Mapping[str, Any]], index: Index) -> ClosedSection:
+    words, row = index.words, rows[0]
+
+    def of(end: str) -> str:
+        elements = [row[end] for row in rows if row[end]]
+        return words.row(index.names(elements)) if elements else ""
+
+    behind = [words("closed.leak", element=of("leak"))] if row["leak"] else []
+    behind += [words("closed.open", element=of("open"))] if row["open"] else []
+    said = words(f"closed.{row['by']}")
+    return ClosedSection(
+        where=" → ".join(end for end in (of("element"), of("to")) if end),
+        data=index.all_data(row["categories"]),
+        statement=words("closed.glob", said=said) if row["glob"] else said,
+        lines=tuple(f"{fit(place['file'])}:{place['line']}" for place in row["places"]),
+        behind=words.row(behind) if behind else words("closed.perhaps"),
     )

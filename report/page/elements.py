@@ -1,29 +1,33 @@
-"""The inventory of a report: elements that data gets to, with what labels say of them; the others by name.
+"""The elements of a report: the inventory, what lies outside ROS, who cleans data and who makes one kind of another.
 
-In: an ``Index``. Out: rows; elements that differ only in the robot are one.
+In: an ``Index`` and the entries of the report. Out: rows of plain texts; elements that differ only in the robot are
+one. Elements outside ROS stand with retention, country and recipient; what is not stated is a person's to complete, so
+it is left empty and not guessed.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from collections import Counter, defaultdict
+from itertools import islice
+from typing import TYPE_CHECKING, Any, NamedTuple
 
+from rosprivacy.analysis.legal import PROHIBITED
+from rosprivacy.analysis.model import SPECIAL
 from rosprivacy.analysis.text import fit
-from rosprivacy.report.naming import key, name
-from rosprivacy.report.page.entries_of_robots import grouped, weight
+from rosprivacy.report.naming import key, name, without_leg
+from rosprivacy.report.page.index import grouped, state, weight, without_robots
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from rosprivacy.report.naming import Key
+    from rosprivacy.report.page.finding_entries import PathEntry
     from rosprivacy.report.page.index import Index
-
 
 PASSES = ("conduit", "sanitizer")  # what is said of data that may never get there
 
 
-@dataclass(frozen=True, slots=True)
-class ElementItem:
+class ElementItem(NamedTuple):
     """An element that data gets to.
 
     Attributes
@@ -44,12 +48,53 @@ class ElementItem:
     reviewed: bool
 
 
-@dataclass(frozen=True, slots=True)
-class Enclave:
+class Enclave(NamedTuple):
     """An enclave of the policies, with the names of its nodes in a row."""
 
     name: str
     nodes: str
+
+
+class Inventory(NamedTuple):
+    """What there is: elements that data gets to, the others by kind, enclaves.
+
+    Attributes
+    ----------
+    size
+        How many elements and flows.
+    denied
+        How many flows a DENY takes back; empty if none.
+    outside
+        What lies outside ROS.
+    cleanings, makings
+        Who cleans data, and who makes one kind of another.
+    """
+
+    size: str
+    denied: str
+    items: tuple[ElementItem, ...]
+    rest: tuple[tuple[str, tuple[str, ...]], ...]
+    enclaves: tuple[Enclave, ...]
+    outside: tuple[Outside, ...]
+    cleanings: tuple[CleaningEntry, ...]
+    makings: tuple[MakingEntry, ...]
+
+
+def inventory(index: Index, entries: Iterable[PathEntry]) -> Inventory:
+    """Return the elements of a document."""
+    words, document = index.words, index.document
+    elements, flows = words.count(document["elements"], "element"), words.count(document["flows"], "flow")
+    denied = document["denied_flows"]
+    return Inventory(
+        size=words("inventory.intro", elements=elements, flows=flows),
+        denied=words("inventory.denied", flows=words.count(denied, "flow")) if denied else "",
+        items=items(index),
+        rest=unreached_names(index),
+        enclaves=enclaves(index),
+        outside=outside(index),
+        cleanings=cleanings(index, entries),
+        makings=makings(index),
+    )
 
 
 def items(index: Index) -> tuple[ElementItem, ...]:
@@ -107,3 +152,248 @@ def enclaves(index: Index) -> tuple[Enclave, ...]:
     return tuple(
         Enclave(fit(row["enclave"]), index.words.row(map(fit, row["nodes"]))) for row in index.document["enclaves"]
     )
+
+
+STORAGE = "storage"
+EVERY = "every"
+
+
+class Outside(NamedTuple):
+    """One element outside ROS.
+
+    Attributes
+    ----------
+    holds
+        Kinds of data that get there.
+    warnings
+        What has to be known and is not stated.
+    place
+        The line that states it.
+    """
+
+    name: str
+    kind: str
+    storage: bool
+    holds: str
+    retention: str
+    backups: str
+    encrypted: str
+    country: str
+    operator: str
+    recipient: str
+    transfer: str
+    contract: str
+    warnings: tuple[str, ...]
+    place: str
+
+
+def outside(index: Index) -> tuple[Outside, ...]:
+    """Return all of them, storages first."""
+    rows = sorted(index.outside.values(), key=lambda row: row["element"]["kind"] != STORAGE)
+    return tuple(_outside(row, index) for row in rows)
+
+
+def _outside(row: Mapping[str, Any], index: Index) -> Outside:
+    words, element = index.words, row["element"]
+    warnings = [words(f"missing.{what}") for what in row.get("missing", ())]
+    if row.get("without_limit"):
+        warnings.append(words("outside.unlimited", data=index.all_data(row["without_limit"])))
+    return Outside(
+        name=name(element),
+        kind=words.kind(element),
+        storage=element["kind"] == STORAGE,
+        holds=index.all_data(row["holds"]),
+        retention=retention(row, index),
+        backups=_backups(row.get("backups"), index),
+        encrypted="" if "encrypted" not in row else words("yes" if row["encrypted"] else "no"),
+        country=country(row, index),
+        operator=fit(row.get("operator", "")),
+        recipient=words.of_value(f"recipient.{row['recipient']}", row["recipient"]) if row.get("recipient") else "",
+        transfer=words.of_value(f"transfer.{row['transfer']}", row["transfer"]) if row.get("transfer") else "",
+        contract=fit(row.get("contract", "")),
+        warnings=tuple(warnings),
+        place=f"{fit(row['file'])}:{row['line']}" if row.get("file") else "",
+    )
+
+
+def country(row: Mapping[str, Any], index: Index) -> str:
+    """Return where an element lies, and what holds there; empty if it is not stated."""
+    area = index.words(f"area.{row['area']}") if row.get("area") else ""
+    return fit(row.get("country", "")) + (f" ({area})" if area else "")
+
+
+def retention(row: Mapping[str, Any], index: Index) -> str:
+    """Return how long a storage keeps what."""
+    words = index.words
+    return "; ".join(
+        words("outside.every", duration=words.duration(fit(duration)))
+        if category == EVERY
+        else words("outside.of", data=index.data(category), duration=words.duration(fit(duration)))
+        for category, duration in row.get("retention", {}).items()
+    )
+
+
+def states_retention(row: Mapping[str, Any], category: str, index: Index) -> bool:
+    """Return whether it is stated how long an element keeps a kind of data: of it, a broader one or all."""
+    return any(kind in row.get("retention", ()) for kind in (*index.upwards(category), EVERY))
+
+
+def retention_text(row: Mapping[str, Any], category: str, index: Index) -> str:
+    """Return how long a storage keeps one kind of data, as stated of it or of the nearest broader one; with backups."""
+    words, stated = index.words, row["retention"]
+    nearest = next((kind for kind in index.upwards(category) if kind in stated), EVERY)
+    duration = words.duration(fit(stated[nearest])) if nearest in stated else words("not.stated")
+    backups = row.get("backups")
+    if backups is True:
+        return words("outside.kept.backups.unknown", duration=duration)
+    return words("outside.kept.backups", duration=duration, more=_backups(backups, index)) if backups else duration
+
+
+def _backups(value: Any, index: Index) -> str:
+    if value is None:
+        return ""
+    if isinstance(value, bool):
+        return index.words("outside.backups.unknown" if value else "no")
+    return index.words.duration(fit(str(value)))
+
+
+SHOWN = 100  # entries of one row
+
+
+class CleaningEntry(NamedTuple):
+    """What an element does to some kinds of data in one way.
+
+    Attributes
+    ----------
+    method
+        In words; ``weak`` if the data are still personal.
+    unreached
+        Kinds that never get there.
+    other_readers
+        Who reads the same channels and gets the data as they are; after these, who is said to clean them, too.
+    past, remainder
+        The first entries of these kinds whose path does not lead through the element: (anchor, number); and how many
+        more there are, in words.
+    recognises
+        Kinds that it makes by which persons are recognised or judged: then it is no measure.
+    """
+
+    name: str
+    kinds: str
+    method: str
+    weak: bool
+    unreached: str
+    leaves: str
+    other_readers: tuple[str, ...]
+    past: tuple[tuple[str, int], ...]
+    remainder: str = ""
+    recognises: str = ""
+
+
+class MakingEntry(NamedTuple):
+    """That an element makes one kind of data of another; ``special`` if it can be a special category only then.
+
+    ``recognises`` if persons are recognised or judged by what it makes.
+    """
+
+    name: str
+    made_of: str
+    product: str
+    special: bool
+    recognises: bool = False
+
+
+def cleanings(index: Index, entries: Iterable[PathEntry]) -> tuple[CleaningEntry, ...]:
+    """Return what sanitizers do."""
+    past = _Past(index, entries)
+
+    def merge_key(row: Mapping[str, Any]) -> Any:
+        lists = (tuple(row["leaves"]), tuple(row["leaves_pseudonymised"]), without_robots(row["beside"]))
+        return row["element"]["kind"], row["element"]["name"], row["method"], row["stated"], lists
+
+    return tuple(_cleaning(group, past, index) for group in grouped(index.document["sanitizers"], merge_key))
+
+
+class _Past:
+    """Paths to assess on which a kind of data arrives as it is, and the elements that each leads through."""
+
+    def __init__(self, index: Index, entries: Iterable[PathEntry]) -> None:
+        self._paths: dict[str, Counter[tuple[str, int]]] = defaultdict(Counter)
+        self._through: dict[tuple[str, Key], list[tuple[str, tuple[str, int]]]] = defaultdict(list)
+        for entry in entries:
+            for finding in map(index.by_id.__getitem__, (entry.id, *entry.alike)):
+                if state(finding) == "open" and not finding["pseudonymised"]:
+                    place = entry.anchor, entry.number
+                    self._paths[entry.category][place] += 1
+                    for element in {without_leg(element) for element in finding["witness"]}:
+                        self._through[entry.category, element].append((finding["id"], place))
+
+    def of(self, elements: set[Key], categories: Iterable[str]) -> tuple[list[tuple[str, int]], int]:
+        """The first entries of the categories that lead through none of the elements, and how many there are."""
+        first: list[tuple[str, int]] = []
+        number = 0
+        for category in categories:
+            paths = self._paths[category]
+            here = {path for element in elements for path in self._through.get((category, element), ())}
+            through = Counter(place for _, place in here)
+            past = (place for place in paths if paths[place] > through[place])
+            first += islice(past, SHOWN)
+            number += len(paths) - sum(paths[place] == count for place, count in through.items())
+        return sorted(first, key=lambda place: place[1])[:SHOWN], number
+
+
+def _cleaning(group: list[Mapping[str, Any]], past: _Past, index: Index) -> CleaningEntry:
+    row, words = group[0], index.words
+    reached = dict.fromkeys(r["category"] for r in group if r["reached"])
+    unreached = [c for c in dict.fromkeys(r["category"] for r in group) if c not in reached]
+    leaves = [index.data(category) for category in row["leaves"]]
+    leaves += [index.data(category, pseudonymised=True) for category in row["leaves_pseudonymised"]]
+    recognising = {key(r["element"]) for r in index.document["sanitizers"] if r.get("recognises")}
+    too = _cleaning_too(group)
+    first, number = past.of({without_leg(r["element"]) for r in group}, reached)
+    return CleaningEntry(
+        name=words.row(index.names([r["element"] for r in group])),
+        kinds=index.all_data(reached),
+        method=words(f"method.{row['method']}" if row["stated"] else "method.unstated"),
+        weak=row["method"] == "pseudonymise",
+        unreached=index.all_data(unreached),
+        leaves=words.row(leaves),
+        other_readers=(
+            *index.names([*(e for r in group for e in r["beside"]), *(e for e in too if key(e) in recognising)]),
+            *(
+                words("sanitizer.cleans.too", element=name)
+                for name in index.names(e for e in too if key(e) not in recognising)
+            ),
+        ),
+        recognises=index.all_data(dict.fromkeys(kind for r in group for kind in r.get("recognises", ()))),
+        past=tuple(first),
+        remainder=words("more", n=number - len(first)) if number > len(first) else "",
+    )
+
+
+def _cleaning_too(group: Iterable[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+    """Older documents do not name them."""
+    return [element for row in group for element in row.get("cleaning_beside", ())]
+
+
+def makings(index: Index) -> tuple[MakingEntry, ...]:
+    """Return which element makes which kind of data of which."""
+    article9 = {name: category["article9"] in SPECIAL for name, category in index.categories.items()}
+    rows = [row for row in index.document["derivations"] if row["reached"]]
+    groups = grouped(rows, lambda row: (key(row["element"])[1:], row["from"], row["to"]))
+    return tuple(
+        MakingEntry(
+            name=index.words.row(index.names([row["element"] for row in group])),
+            made_of=index.data(group[0]["from"]),
+            product=index.data(group[0]["to"]),
+            recognises=_recognises(index.categories.get(group[0]["to"], {})),
+            special=article9.get(group[0]["to"], False) and not article9.get(group[0]["from"], False),
+        )
+        for group in groups
+    )
+
+
+def _recognises(entry: Mapping[str, Any]) -> bool:
+    """Whether persons are recognised or judged by such data, as ``recognises`` has it of a category."""
+    special = any(legal["verdict"] in SPECIAL for legal in entry.get("law", ()))
+    return special or any(at.startswith(PROHIBITED) for at in entry.get("look_at", ()))

@@ -1,22 +1,21 @@
 """Findings -> the entries of a report: one path to assess each, hop by hop, with policy lines and what is to be asked.
 
-In: an ``Index``. Out: ``Entry``, in the order of the document; those that differ only in the robot are one (rule S10).
+In: an ``Index``. Out: ``PathEntry``, in the order of the document; those that differ only in the robot are one (rule
+S10). What people decided about a finding stands with it, and decisions that match none; what the law asks for and
+nobody wrote down is named (``analysis/legal_bases.py``).
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rosprivacy.analysis.text import fit
+from rosprivacy.analysis.legal_bases import gaps
+from rosprivacy.analysis.text import fit, printable
 from rosprivacy.report.catalogs.words import finding_reason
-from rosprivacy.report.finding_order import in_order
-from rosprivacy.report.made_of import made_of
+from rosprivacy.report.finding_facts import in_order, made_of
 from rosprivacy.report.naming import key, line, name
-from rosprivacy.report.page.decision_texts import DecisionText, decision_of
-from rosprivacy.report.page.entries_of_robots import finding_pattern, grouped
-from rosprivacy.report.page.index import anchor, kind_anchor, state
+from rosprivacy.report.page.index import anchor, finding_pattern, grouped, kind_anchor, state
 from rosprivacy.report.page.look_at import revealed
 from rosprivacy.report.robots import forms_in_words
 
@@ -25,21 +24,92 @@ if TYPE_CHECKING:
 
     from rosprivacy.report.page.index import Index
 
+FIELDS = ("reason", "owner", "legal_basis", "date", "expires", "ticket", "state")
+DATES = ("date", "expires")
+ACCEPT, ORPHANED = "accept", "orphaned"
+
+
+class DecisionText(NamedTuple):
+    """One decision, in words.
+
+    Attributes
+    ----------
+    decision
+        What was decided.
+    rows
+        (name of the field, value).
+    flags
+        What has changed since, and what is missing.
+    """
+
+    decision: str
+    rows: tuple[tuple[str, str], ...]
+    flags: tuple[str, ...]
+
+
+def decision_of(finding: Mapping[str, Any], index: Index) -> DecisionText | None:
+    """Return the decision that holds for a finding, or held until it expired; None if there is none."""
+    said = finding.get("decision")
+    return _decision(said, (finding,), index) if said else None
+
+
+def orphans(index: Index) -> tuple[DecisionText, ...]:
+    """Return the decisions that match no finding, in the order of their file."""
+    said = index.document.get("decisions", ())
+    return tuple(_decision(entry, (), index) for entry in said if entry["state"] == ORPHANED)
+
+
+def _decision(decision: Mapping[str, Any], findings: Iterable[Mapping[str, Any]], index: Index) -> DecisionText:
+    words, what = index.words, decision["choice"]
+    rows = [(words(f"decision.{key}"), _value(decision[key], key, index)) for key in FIELDS if decision[key]]
+    flags = (*_changed(decision, index), *(_flags(decision, findings, index) if what == ACCEPT else ()))
+    return DecisionText(words.of_value(f"decision.{what}", what), tuple(rows), flags)
+
+
+def _changed(decision: Mapping[str, Any], index: Index) -> Iterator[str]:
+    """What is not as it was when it was decided."""
+    for change in decision.get("changed", ()):
+        yield index.words(
+            f"decision.changed.{change['what']}", before=printable(change["before"]), now=printable(change["now"])
+        )
+
+
+def _value(value: Any, key: str, index: Index) -> str:
+    words, text = index.words, printable(str(value))
+    if key == "state":
+        return words.of_value(f"decision.state.{value}", text)
+    if key == "legal_basis":
+        return "; ".join(words.basis(printable(str(part))) for part in value)
+    return words.date(text) if key in DATES else text
+
+
+def _flags(decision: Mapping[str, Any], findings: Iterable[Mapping[str, Any]], index: Index) -> Iterator[str]:
+    """What an acceptance lacks: a legal basis, a ground for special categories, one of chapter V."""
+    held = list(findings)
+    law = {f["category"]: tuple(_provisions(f["category"], held)) for f in held}
+    for gap in gaps(decision["legal_basis"], [(f["kind"], f["category"]) for f in held], law):
+        provision = index.provision(gap.category, gap.provision)
+        yield index.words(f"decision.gap.{gap.lack.name.lower()}", data=index.data(gap.category), provision=provision)
+
+
+def _provisions(category: str, findings: Iterable[Mapping[str, Any]]) -> Iterator[tuple[str, str]]:
+    """What can apply to data of a category, where their sources work too."""
+    rows = (row for f in findings if f["category"] == category for row in (*f["law"], *f.get("in_context", ())))
+    yield from dict.fromkeys((row["provision"], row["verdict"]) for row in rows)
+
 
 LINES = 4  # policy lines shown of one step
 SHOWN_AT_MOST = 3  # robots of one form that are named beside their number
 
 
-@dataclass(frozen=True, slots=True)
-class EntryLine:
+class EntryLine(NamedTuple):
     """A policy line, and whose it is."""
 
     place: str
     of: str
 
 
-@dataclass(frozen=True, slots=True)
-class Hop:
+class Hop(NamedTuple):
     """An element of a path, and the step that leaves it.
 
     Attributes
@@ -65,8 +135,7 @@ class Hop:
     data: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class Entry:
+class PathEntry(NamedTuple):
     """A path to assess: a finding, or findings that differ only in the robot.
 
     Attributes
@@ -127,7 +196,7 @@ class Entry:
         return " → ".join(hop.name for hop in self.hops)
 
 
-def finding_entries(index: Index, marks: Mapping[str, str] | None = None) -> tuple[Entry, ...]:
+def finding_entries(index: Index, marks: Mapping[str, str] | None = None) -> tuple[PathEntry, ...]:
     """Return the entries.
 
     Parameters
@@ -163,12 +232,12 @@ def _entry(
     marks: Mapping[str, str],
     *,
     detailed: bool,
-) -> Entry:
+) -> PathEntry:
     finding = group[0]
     decision = decided[finding["id"]]
     stands = state(finding)
     robots = _robots(group, index)
-    return Entry(
+    return PathEntry(
         id=finding["id"],
         anchor=anchor(finding["id"]) if detailed else kind_anchor(finding["category"]),
         detailed=detailed,

@@ -5,8 +5,7 @@ In: an ``Index`` and the entries of the report. Out: ``FleetSection``, in plain 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.text import fit
 from rosprivacy.report.naming import name
@@ -14,12 +13,11 @@ from rosprivacy.report.naming import name
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from rosprivacy.report.page.finding_entries import Entry
+    from rosprivacy.report.page.finding_entries import PathEntry
     from rosprivacy.report.page.index import Index
 
 
-@dataclass(frozen=True, slots=True)
-class AlikeRow:
+class AlikeRow(NamedTuple):
     """Robots that have the same policies and labels: the first one is shown."""
 
     model: str
@@ -27,8 +25,7 @@ class AlikeRow:
     robots: tuple[str, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class DeviantDifference:
+class DeviantDifference(NamedTuple):
     """One thing in which robots differ from most of their model.
 
     Attributes
@@ -44,13 +41,12 @@ class DeviantDifference:
     """
 
     extra: bool
-    entry: Entry | None
+    entry: PathEntry | None
     ends: tuple[str, str]
     text: str
 
 
-@dataclass(frozen=True, slots=True)
-class Deviant:
+class DeviantRobot(NamedTuple):
     """Robots that are not as most of their model."""
 
     robots: tuple[str, ...]
@@ -58,8 +54,7 @@ class Deviant:
     differences: tuple[DeviantDifference, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class FleetSection:
+class FleetSection(NamedTuple):
     """What a report tells of the robots.
 
     Attributes
@@ -71,10 +66,10 @@ class FleetSection:
     intro: str
     models: tuple[tuple[str, int], ...]
     alike: tuple[AlikeRow, ...]
-    deviants: tuple[Deviant, ...]
+    deviants: tuple[DeviantRobot, ...]
 
 
-def fleet_told(index: Index, entries: Iterable[Entry]) -> FleetSection | None:
+def fleet_told(index: Index, entries: Iterable[PathEntry]) -> FleetSection | None:
     """Return the fleet of a document; None if it is of a single robot. Complexity: O(robots + differences)."""
     fleet = index.document.get("fleet")
     if not fleet:
@@ -99,8 +94,8 @@ def fleet_told(index: Index, entries: Iterable[Entry]) -> FleetSection | None:
 
 
 def _deviant(
-    deviant: Mapping[str, Any], of_pattern: Mapping[str, tuple[Entry, tuple[str, str]]], index: Index
-) -> Deviant:
+    deviant: Mapping[str, Any], of_pattern: Mapping[str, tuple[PathEntry, tuple[str, str]]], index: Index
+) -> DeviantRobot:
     shares = [
         DeviantDifference(more, *of_pattern[share["pattern"]], _form(share, index))
         for more, key in ((True, "more"), (False, "fewer"))
@@ -113,7 +108,7 @@ def _deviant(
         for more, key in ((True, "more_open"), (False, "fewer_open"))
         if deviant[key]
     ]
-    return Deviant(tuple(map(fit, deviant["robots"])), fit(deviant["model"]), (*shares, *opened))
+    return DeviantRobot(tuple(map(fit, deviant["robots"])), fit(deviant["model"]), (*shares, *opened))
 
 
 def _ends(finding: Mapping[str, Any], index: Index) -> tuple[str, str]:

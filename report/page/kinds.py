@@ -6,28 +6,25 @@ finding first, then the others, in the document's order.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.text import fit, printable
 from rosprivacy.ontology.iris import as_published
 from rosprivacy.report.catalogs.words import spaced
-from rosprivacy.report.element_counts import count_rows
-from rosprivacy.report.naming import text
+from rosprivacy.report.naming import count_rows, text
 from rosprivacy.report.page.index import kind_anchor
 from rosprivacy.report.page.look_at import LookAt, context_of, of_kind
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from rosprivacy.report.page.finding_entries import Entry
+    from rosprivacy.report.page.finding_entries import PathEntry
     from rosprivacy.report.page.index import Index
 
 NARROWER = "⊇ "  # how the ontology writes, in other languages than English: if the data are of one of these kinds
 
 
-@dataclass(frozen=True, slots=True)
-class Provision:
+class ProvisionText(NamedTuple):
     """One provision to look at: that data of the kind can be what it speaks of.
 
     Attributes
@@ -47,8 +44,7 @@ class Provision:
     as_of: str
 
 
-@dataclass(frozen=True, slots=True)
-class KindEntry:
+class KindEntry(NamedTuple):
     """One kind of data.
 
     Attributes
@@ -78,12 +74,12 @@ class KindEntry:
     gdpr: str
     article9: str
     reason: str
-    law: tuple[Provision, ...]
+    law: tuple[ProvisionText, ...]
     origins: tuple[tuple[str, str], ...]
-    entries: tuple[Entry, ...]
+    entries: tuple[PathEntry, ...]
     places: tuple[str, ...]
     open: int
-    in_context: tuple[tuple[str, Provision], ...]
+    in_context: tuple[tuple[str, ProvisionText], ...]
     look_at: tuple[LookAt, ...]
 
     @property
@@ -92,7 +88,7 @@ class KindEntry:
         return kind_anchor(self.name)
 
     @property
-    def detailed(self) -> tuple[Entry, ...]:
+    def detailed(self) -> tuple[PathEntry, ...]:
         """The entries that are told one by one."""
         return tuple(entry for entry in self.entries if entry.detailed)
 
@@ -107,9 +103,9 @@ class KindEntry:
         return sum(entry.state in ("open", "decided") for entry in self.entries)
 
 
-def kinds(index: Index, entries: Iterable[Entry]) -> tuple[KindEntry, ...]:
+def kinds(index: Index, entries: Iterable[PathEntry]) -> tuple[KindEntry, ...]:
     """Return the kinds of data."""
-    by_category: dict[str, list[Entry]] = {}
+    by_category: dict[str, list[PathEntry]] = {}
     for entry in entries:
         by_category.setdefault(entry.category, []).append(entry)
     made = [
@@ -119,7 +115,7 @@ def kinds(index: Index, entries: Iterable[Entry]) -> tuple[KindEntry, ...]:
     return tuple(sorted(made, key=lambda kind: kind.entries[0].number if kind.entries else len(index.findings) + 1))
 
 
-def _kind(category: Mapping[str, Any], index: Index, entries: tuple[Entry, ...]) -> KindEntry:
+def _kind(category: Mapping[str, Any], index: Index, entries: tuple[PathEntry, ...]) -> KindEntry:
     language, of = index.words.language, category["name"]
     reached = [finding["leak"] for finding in index.findings if finding["category"] == of and not finding["dismissed"]]
     return KindEntry(
@@ -147,14 +143,14 @@ def _kind(category: Mapping[str, Any], index: Index, entries: tuple[Entry, ...])
     )
 
 
-def provision(legal: Mapping[str, Any], of: str, index: Index) -> Provision:
+def provision(legal: Mapping[str, Any], of: str, index: Index) -> ProvisionText:
     """Return a provision in words."""
     language = index.words.language
     condition = text(legal, "condition", language)
     if condition.startswith(NARROWER):
         condition = index.words("law.narrower", kinds=condition.removeprefix(NARROWER))
     sources = legal["translations"].get(language, {}).get("sources") if legal["sources"] else ""
-    return Provision(
+    return ProvisionText(
         name=text(legal, "provision", language),
         verdict=legal["verdict"],
         condition=condition,

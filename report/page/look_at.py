@@ -5,12 +5,11 @@ In: an ``Index``. Out: rows for the law box of a kind, for an entry, for the lis
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.model import MAY_REVEAL
 from rosprivacy.analysis.text import fit
-from rosprivacy.report.looked_at import LANGUAGE_COUNTRIES, countries_of_use, of_every_system
+from rosprivacy.report.finding_facts import LANGUAGE_COUNTRIES, countries_of_use, of_every_system
 from rosprivacy.report.naming import text
 
 if TYPE_CHECKING:
@@ -22,14 +21,40 @@ WORKPLACE = "workplace"  # the context
 ABOUT_WORK = ("AI Act", "GDPR Art. 88", "GDPR Art. 22", "BDSG § 26", "BetrVG", "Labour code")
 
 
-@dataclass(frozen=True, slots=True)
-class LookAt:
+class LookAt(NamedTuple):
     """One provision to look at, with its dates."""
 
     name: str
     title: str
     meaning: str
     dates: str
+
+
+class FurtherLaw(NamedTuple):
+    """Provisions beside those that say something of a path.
+
+    Attributes
+    ----------
+    provisions
+        What contexts and every system point at: (who calls for it, provisions).
+    contexts
+        Names of those that are stated.
+    at_work
+        What a works council has to look at.
+    national
+        Whose national law is to be looked at.
+    """
+
+    provisions: tuple[tuple[str, tuple[LookAt, ...]], ...]
+    contexts: tuple[str, ...]
+    at_work: tuple[LookAt, ...]
+    national: tuple[str, ...]
+
+
+def further_law(index: Index) -> FurtherLaw:
+    """Return the provisions to look at beside those of paths and kinds of data."""
+    contexts = tuple(context["name"] for context in index.document.get("contexts", ()))
+    return FurtherLaw(further(index), contexts, at_work(index), national(index))
 
 
 def of_kind(category: str, index: Index) -> tuple[LookAt, ...]:

@@ -8,21 +8,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import islice
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.legal_bases import CHAPTER_V
 from rosprivacy.analysis.model import THIRD_COUNTRY
 from rosprivacy.analysis.text import fit, printable
-from rosprivacy.report.element_counts import count_rows
-from rosprivacy.report.made_of import data_made
-from rosprivacy.report.naming import key, name
-from rosprivacy.report.page.entries_of_robots import grouped
-from rosprivacy.report.page.non_ros import country
+from rosprivacy.report.finding_facts import data_made
+from rosprivacy.report.naming import count_rows, key, name
+from rosprivacy.report.page.elements import country
+from rosprivacy.report.page.index import grouped
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-    from rosprivacy.report.page.finding_entries import Entry
+    from rosprivacy.report.page.finding_entries import PathEntry
     from rosprivacy.report.page.index import Index
 
 BOUND = 12  # rows; the others are told by their number
@@ -32,8 +31,7 @@ VALID = "valid"
 TO_DECIDE = ("open", "decided")  # states of entries
 
 
-@dataclass(frozen=True, slots=True)
-class ToDecide:
+class ToDecide(NamedTuple):
     """One flow to decide: a kind of data, from where, to whom.
 
     Attributes
@@ -61,7 +59,7 @@ class ToDecide:
     kinds: tuple[str, ...]
     spread: tuple[str, ...]
     facts: tuple[tuple[str, str], ...]
-    entries: tuple[Entry, ...]
+    entries: tuple[PathEntry, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,14 +113,14 @@ def opening(
     return OpeningSection(headline, (*said, *_unreviewed(index), *doubts), tuple(rows[:BOUND]), len(rows), more)
 
 
-def flows(index: Index, entries: Iterable[Entry]) -> list[ToDecide]:
+def flows(index: Index, entries: Iterable[PathEntry]) -> list[ToDecide]:
     """Return the flows that are decided by themselves, what waits for somebody first, what is accepted last."""
     decided = [entry for entry in entries if entry.state != "dismissed"]
     rows = [_row(group, index) for group in grouped(decided, _flow)]
     return sorted(rows, key=lambda row: (row.entries[0].state not in TO_DECIDE, not row.waits))
 
 
-def _flow(entry: Entry) -> Any:
+def _flow(entry: PathEntry) -> Any:
     same = (entry.category, entry.source, entry.leak, entry.robots, entry.pseudonymised)
     return same, entry.mark, entry.state in TO_DECIDE
 
@@ -160,7 +158,7 @@ def _names_shown(names: Sequence[str], index: Index) -> str:
     return index.words.row(index.words.first(names, SHOWN_AT_MOST))
 
 
-def _row(group: Sequence[Entry], index: Index) -> ToDecide:
+def _row(group: Sequence[PathEntry], index: Index) -> ToDecide:
     findings = [index.by_id[entry.id] for entry in group]
     first, entry = findings[0], group[0]
     many = len(entry.robots) > 1

@@ -1,26 +1,27 @@
-"""Open elements, in the order of review, and ends of which nothing is known (rule S11).
+"""What is not known, for a person to review: open elements in their order, ends of ways, the list of doubts (rule S11).
 
-In: an ``Index``. Out: groups of rows; elements that differ only in the robot are one.
+In: an ``Index``. Out: groups of rows, of which those that differ only in the robot are one; each sort of doubt with
+what to do, each doubt with a place.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from itertools import groupby
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rosprivacy.report.element_counts import count_rows
-from rosprivacy.report.naming import key
-from rosprivacy.report.page.entries_of_robots import grouped
+from rosprivacy.analysis.text import fit
+from rosprivacy.report.naming import count_rows, key
+from rosprivacy.report.page.index import grouped
 from rosprivacy.report.review_groups import review_groups, sources_of
+from rosprivacy.report.verdict import doubt_phrases, subject
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.report.page.index import Index
 
 
-@dataclass(frozen=True, slots=True)
-class ReviewQuestion:
+class ReviewQuestion(NamedTuple):
     """An element that data gets to and that no label covers.
 
     Attributes
@@ -43,16 +44,14 @@ class ReviewQuestion:
     brings: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class FoldedReview:
+class FoldedReview(NamedTuple):
     """Questions that are one line: what they have in common, and their names."""
 
     text: str
     names: str
 
 
-@dataclass(frozen=True, slots=True)
-class Group:
+class QuestionGroup(NamedTuple):
     """Questions of one urgency; ``key`` is that of its heading."""
 
     key: str
@@ -61,10 +60,10 @@ class Group:
     folded: tuple[FoldedReview, ...] = ()
 
 
-def review(index: Index) -> tuple[Group, ...]:
+def review(index: Index) -> tuple[QuestionGroup, ...]:
     """Return the groups that are not empty."""
     return tuple(
-        Group(
+        QuestionGroup(
             f"question.{group.key}",
             _number(group.questions, index),
             tuple(_questions(group.now, index)),
@@ -118,3 +117,58 @@ def _questions(rows: Sequence[Mapping[str, Any]], index: Index) -> list[ReviewQu
         )
         for group in grouped(rows, merge_key)
     ]
+
+
+class Sort(NamedTuple):
+    """Doubts of one sort.
+
+    Attributes
+    ----------
+    rank
+        What they do to the verdict, in words.
+    remedy
+        What to do.
+    rows
+        (what it is about, the rest: kinds of data, line, message, who accepted it, id).
+    """
+
+    title: str
+    rank: str
+    remedy: str
+    rows: tuple[tuple[str, str], ...]
+
+
+def doubts(index: Index) -> tuple[Sort, ...]:
+    """Return all doubts by sort, what breaks the verdict first; accepted ones with who accepted them."""
+    words = index.words
+    return tuple(
+        Sort(
+            words(f"doubt.{name}.title"),
+            words(f"doubt.{rank}"),
+            words("doubt.what.to.do", do=words(f"doubt.{name}.do")),
+            tuple((subject(row), "; ".join(_about(row, index))) for row in rows),
+        )
+        for (name, rank), rows in groupby(index.document.get("doubts", ()), key=lambda row: (row["doubt"], row["rank"]))
+    )
+
+
+def in_doubt(index: Index) -> Iterator[str]:
+    """Return the sentence with which a report begins, after its result; nothing where there is no doubt."""
+    if phrases := list(doubt_phrases(index.document, index.words)):
+        yield index.words("doubt.sentence", doubts="; ".join(phrases))
+
+
+def _about(row: Mapping[str, Any], index: Index) -> Iterator[str]:
+    words = index.words
+    if row["element"]:
+        yield words.kind(row["element"])
+    if row["categories"]:
+        yield index.all_data(row["categories"])
+    if row["element"] and row["line"]:
+        yield fit(f"{row['file']}:{row['line']}")
+    if row["message"]:
+        yield fit(row["message"])
+    if by := row["accepted"]:
+        date = words.date(by["expires"])
+        yield words("doubt.is.accepted", date=date, owner=fit(by["owner"]), reason=fit(by["reason"]))
+    yield row["id"]

@@ -26,8 +26,8 @@ from rosprivacy.report.pictures.looks import (
     box_look,
 )
 from rosprivacy.report.pictures.looks import legend as legend_of
+from rosprivacy.report.pictures.phrases import LONGEST_LINE, broken, quoted
 from rosprivacy.report.pictures.picture import PRIVACY, RECORD
-from rosprivacy.report.pictures.wording import LONGEST_LINE, broken, quoted
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence

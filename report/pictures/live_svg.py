@@ -31,10 +31,10 @@ from lxml import etree
 
 from rosprivacy.analysis.text import printable, shortened
 from rosprivacy.report.pictures.dot import hover, label_lines, line_hover, paired
+from rosprivacy.report.pictures.graphviz import NAMESPACE, alt_text
 from rosprivacy.report.pictures.looks import LEAK, LINE_LOOKS, OTHER, SHAPES, SHORTEST, SOURCE, box_look
 from rosprivacy.report.pictures.picture import GROUP as SEVERAL
 from rosprivacy.report.pictures.picture import RECORD
-from rosprivacy.report.pictures.svg import NAMESPACE, alt_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping

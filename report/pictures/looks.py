@@ -1,14 +1,20 @@
-"""How boxes and lines look, and what a legend says of them.
+"""How boxes and lines look, and what a legend says of them; the same as a style sheet of the Neo4j Browser (GraSS).
 
 The colours are those of Okabe and Ito, which people tell apart whatever their colour vision. None of them stands alone:
-kinds have shapes, roles have outlines and words, lines have widths, dashes and heads.
+kinds have shapes, roles have outlines and words, lines have widths, dashes and heads. In the Browser every node is a
+circle: a kind of element is the colour of the area, a role the outline, for there both views are one. Of several rules
+that fit, the last one holds.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from rosprivacy.report.pictures.picture import DRAWN, GROUP, PRIVACY, RECORD, Picture
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
 
 INK = "#000000"  # lines, outlines, and text on the paper
 TEXT = "#111111"  # text on a filled box
@@ -168,3 +174,65 @@ def legend(picture: Picture) -> list[LegendEntry]:
     if any(line.pseudonymised for line in picture.lines):
         entries.append(LegendEntry(Look("", INK, style="dashed"), picture.say("picture.dashed")))
     return entries
+
+
+OUTLINED = (SANITIZER, SOURCE, LEAK)  # the one that counts most last, as on a box of a picture
+DIAMETER = 60  # of a node, in pixels: a name has some room
+CARRYING = 3  # pixels: the Browser draws where data goes beside the flow that allows it
+TIMES = 2  # how much wider outlines are than on paper, where shapes tell more
+
+
+def grass(
+    kinds: Mapping[str, str],
+    roles: Mapping[str, Iterable[str]],
+    types: Mapping[str, str],
+    captions: Mapping[str, str],
+) -> str:
+    """Return the style sheet.
+
+    Parameters
+    ----------
+    kinds
+        Label -> kind of element.
+    roles
+        ``source``, ``leak``, ``sanitizer`` -> the labels that say so.
+    types
+        Type of relationships -> look of a line.
+    captions
+        Label of what is no element -> the property that names it.
+    """
+    return "".join(_rules(kinds, roles, types, captions))
+
+
+def _rules(
+    kinds: Mapping[str, str], roles: Mapping[str, Iterable[str]], types: Mapping[str, str], captions: Mapping[str, str]
+) -> Iterator[str]:
+    text = {"text-color-internal": TEXT, "font-size": "10px"}
+    yield _rule("node", diameter=f"{DIAMETER}px", **_area(PALE), **text, caption="'{name}'")
+    line = {"padding": "3px", "font-size": "8px", "text-color-external": INK, "text-color-internal": PALE}
+    yield _rule("relationship", **_line(LINE_LOOKS[OTHER].colour, 1), **line, caption="'<type>'")
+    for label, name in captions.items():
+        yield _rule(f"node.{label}", **_area(PALE), **text, caption=f"'{{{name}}}'")
+    for label, kind in kinds.items():
+        yield _rule(f"node.{label}", **_area(KIND_LOOKS[kind].colour), **text, caption="'{name}'")
+    for role in OUTLINED:
+        look = ROLE_LOOKS[role]
+        for label in roles[role]:
+            border = {"border-color": look.colour, "border-width": f"{max(look.width, 1 + TIMES) * TIMES:g}px"}
+            yield _rule(f"node.{label}", **border)
+    for type_, name in types.items():
+        width = CARRYING if name == DATA else LINE_LOOKS[name].width
+        yield _rule(f"relationship.{type_}", **_line(LINE_LOOKS[name].colour, width))
+
+
+def _area(colour: str) -> dict[str, str]:
+    return {"color": colour, "border-color": INK, "border-width": "1px"}
+
+
+def _line(colour: str, width: float) -> dict[str, str]:
+    return {"color": colour, "shaft-width": f"{width:g}px"}
+
+
+def _rule(selector: str, **properties: str) -> str:
+    lines = "".join(f"  {name.replace('_', '-')}: {value};\n" for name, value in properties.items())
+    return f"{selector} {{\n{lines}}}\n"

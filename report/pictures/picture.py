@@ -1,7 +1,7 @@
 """A picture before it is drawn: boxes and lines, what they mean, nothing of colours, formats or places.
 
-Made by ``views.py`` and ``query_view.py``, narrowed by ``narrow.py``, written by ``dot.py``, ``mermaid.py`` and
-``graphml.py``.
+Made by ``views.py`` and ``query_view.py``, narrowed by ``narrow.py``, written by ``dot.py`` and
+``exports.py``.
 """
 
 from __future__ import annotations

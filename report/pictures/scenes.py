@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.text import shortened
 from rosprivacy.report.catalogs.words import plain
-from rosprivacy.report.pictures.flow_lines import FlowLines, add_cleaned, ends_of_flow, flow_lines
 from rosprivacy.report.pictures.joined import Joined, choose
 from rosprivacy.report.pictures.looks import (
     ALLOWED,
@@ -28,11 +27,10 @@ from rosprivacy.report.pictures.looks import (
     UNTOUCHED,
 )
 from rosprivacy.report.pictures.narrow import folded
-from rosprivacy.report.pictures.phrases import Phrases
+from rosprivacy.report.pictures.phrases import Phrases, listed
 from rosprivacy.report.pictures.picture import GROUP, PRIVACY, Box, Picture, PictureLine, sorted_boxes, sorted_lines
-from rosprivacy.report.pictures.privacy import Reached
+from rosprivacy.report.pictures.privacy import FlowLines, ReachedElements, add_cleaned, ends_of_flow, flow_lines
 from rosprivacy.report.pictures.views import in_words, pairs
-from rosprivacy.report.pictures.wording import listed
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping
@@ -226,7 +224,7 @@ class Scenes:
     def __init__(self, analysis: Analysis, say: Phrases | None = None, why: WhyCarried | None = None) -> None:
         self.analysis, self._say = analysis, say or Phrases()
         self._joined = Joined(analysis, why)
-        self._reached: dict[tuple[str, ...], Reached] = {}
+        self._reached: dict[tuple[str, ...], ReachedElements] = {}
 
     def of(
         self,
@@ -313,14 +311,14 @@ class Scenes:
     def _ways(self, choice: JoinedChoice) -> tuple[str, ...]:
         return tuple(in_words(finding, self._say) for finding in choice.findings)
 
-    def _reached_by(self, categories: tuple[str, ...]) -> Reached:
+    def _reached_by(self, categories: tuple[str, ...]) -> ReachedElements:
         if categories not in self._reached:
-            self._reached[categories] = Reached(
+            self._reached[categories] = ReachedElements(
                 self.analysis, None if categories == self.analysis.emitted else categories, self._say
             )
         return self._reached[categories]
 
-    def _lines(self, reached: Reached, boxes: Collection[Key], choice: JoinedChoice) -> tuple[PictureLine, ...]:
+    def _lines(self, reached: ReachedElements, boxes: Collection[Key], choice: JoinedChoice) -> tuple[PictureLine, ...]:
         """What goes between the boxes; the steps to the element in hand are numbered."""
         graph, shortest = self.analysis.graph, pairs(choice.findings)
         flows = self._joined.flows(boxes)

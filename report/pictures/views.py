@@ -1,6 +1,8 @@
 """Analysis -> the two views as pictures: the ROS graph, and where personal data can go.
 
-In: an ``Analysis``. Out: a ``Picture``, with nothing of it left out in silence.
+In: an ``Analysis``, with its paths to leaks. Out: a ``Picture``, with nothing of it left out in silence: of a whole
+view, of one finding, of the shortest paths of several. What the enforced view adds is drawn dashed, along the paths of
+findings that it adds, not all that the middleware lets through (rule S6).
 
 Source: the paper, section II-B, for what the views hold and for their colours. Two things differ. A sanitizer is gone
 from the privacy view only where it ends all that comes to it: one that pseudonymises passes data on (rule S8). And all
@@ -14,25 +16,33 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.answer import Verdict
-from rosprivacy.analysis.findings.flows_to_leaks import FlowsToLeaks, flows_to_leaks
-from rosprivacy.analysis.kernel.states import Net
+from rosprivacy.analysis.findings.beyond import granted
 from rosprivacy.analysis.many_flows import one_by_one
-from rosprivacy.analysis.model import DISCLOSURE, GOES_NOWHERE, NO_LEAK_NAMED
+from rosprivacy.analysis.model import GOES_NOWHERE, NO_LEAK_NAMED
 from rosprivacy.analysis.text import shortened
 from rosprivacy.report.catalogs.words import IN_ENGLISH, Words, plain
-from rosprivacy.report.element_counts import count_elements
-from rosprivacy.report.made_of import making
-from rosprivacy.report.pictures.flow_lines import FlowLines, data_lines, ends_of_flow
-from rosprivacy.report.pictures.looks import ALLOWED, DENIED, MATCHES, SHORTEST
-from rosprivacy.report.pictures.phrases import Phrases
-from rosprivacy.report.pictures.picture import PRIVACY, ROS, Box, Picture, PictureLine, order, sorted_boxes
-from rosprivacy.report.pictures.privacy import Reached
-from rosprivacy.report.pictures.wording import listed
+from rosprivacy.report.finding_facts import making
+from rosprivacy.report.naming import count_elements
+from rosprivacy.report.pictures.looks import ALLOWED, BEYOND, DENIED, MATCHES, ONWARD, SHORTEST
+from rosprivacy.report.pictures.phrases import Phrases, listed
+from rosprivacy.report.pictures.picture import (
+    PRIVACY,
+    ROS,
+    Box,
+    Picture,
+    PictureLine,
+    order,
+    sorted_boxes,
+    sorted_lines,
+)
+from rosprivacy.report.pictures.privacy import FlowLines, ReachedElements, data_lines, ends_of_flow
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Iterator
+    from collections.abc import Callable, Collection, Iterable, Sequence
 
     from rosprivacy.analysis.answer import Analysis, Finding
+    from rosprivacy.analysis.findings.beyond import Added
+    from rosprivacy.analysis.findings.flows_to_leaks import PathsToLeaks
     from rosprivacy.analysis.model import FlowGraph, Grant
     from rosprivacy.report.pictures.picture import Key
 
@@ -121,7 +131,7 @@ def _left_out(hidden: Collection[Key], undrawn: int, words: Words, *, robots: in
 
 
 def privacy_view(
-    analysis: Analysis, robots_not_shown: Collection[str] = (), say: Phrases | None = None, drawn: Collection[Key] = ()
+    paths: PathsToLeaks, robots_not_shown: Collection[str] = (), say: Phrases | None = None, drawn: Collection[Key] = ()
 ) -> Picture:
     """Return what some category reaches, with the paths to leaks marked.
 
@@ -138,18 +148,14 @@ def privacy_view(
     -----
     Besides what the analysis took: per category with a finding O(flows), see ``flows_to_leaks``.
     """
-    say = say or Phrases()
-    words, reached = say.words, Reached(analysis, say=say)
+    say, analysis = say or Phrases(), paths.analysis
+    words, reached = say.words, ReachedElements(analysis, say=say)
     if not reached.sources():
         return Picture(PRIVACY, plain(words("picture.nothing")), (), (), words=words)
     boxes = {box.key: box for box in reached.boxes()}
-    net = Net.of(analysis.spread)
     open_findings = [finding for finding in analysis.findings if not finding.dismissed]
-    lengths: dict[int, int] = {}
-    for found in _ways_to_all(analysis, net, open_findings):
-        for flow, length in found.items():
-            lengths[flow] = min(length, lengths.get(flow, length))
-    lines = data_lines(reached, boxes, range(len(one_by_one(analysis.graph.flows))), lengths, pairs(open_findings))
+    flows = range(len(one_by_one(analysis.graph.flows)))
+    lines = data_lines(reached, boxes, flows, paths.shortest, pairs(open_findings))
     what = listed(map(say.title, analysis.emitted), limit=6, words=words)
     unreviewed = count_elements(q.element for q in analysis.open if q.element.robot not in robots_not_shown).elements
     findings, elements = words.count(len(open_findings), "terminal.finding"), words.count(unreviewed, "element")
@@ -168,20 +174,6 @@ def _verdict(analysis: Analysis, words: Words) -> str:
     return words(f"picture.lacking.{analysis.lacking}" if lacks else f"picture.verdict.{analysis.verdict}")
 
 
-def _ways_to_all(analysis: Analysis, net: Net, findings: Iterable[Finding]) -> Iterator[dict[int, int]]:
-    """The paths to the leaks of each category, and to where data are kept too long or leave the EEA (rule S10)."""
-    number = {element: vertex for vertex, element in enumerate(analysis.graph.elements)}
-    ends: dict[str, dict[int, int]] = {}
-    for finding in findings:
-        if finding.kind != DISCLOSURE:
-            both = analysis.spread.forms_of(finding.category)
-            ends.setdefault(finding.category, {})[number[finding.leak]] = both
-    for category in sorted({finding.category for finding in findings if finding.kind == DISCLOSURE}):
-        yield flows_to_leaks(net, category).flows
-    for category, where in sorted(ends.items()):
-        yield flows_to_leaks(net, category, leaks=where, past_leaks=True, ends=where).flows
-
-
 class FindingViews:
     """Pictures of findings; what they share is made once.
 
@@ -195,11 +187,9 @@ class FindingViews:
     O(flows) to begin with, and per finding what ``flows_to_leaks`` takes.
     """
 
-    def __init__(self, analysis: Analysis, say: Phrases | None = None) -> None:
-        self._analysis, self._say = analysis, say or Phrases()
-        self._net = Net.of(analysis.spread)
-        self._number = {element: vertex for vertex, element in enumerate(analysis.graph.elements)}
-        self._reached: dict[str, Reached] = {}
+    def __init__(self, paths: PathsToLeaks, say: Phrases | None = None) -> None:
+        self._paths, self._analysis, self._say = paths, paths.analysis, say or Phrases()
+        self._reached: dict[str, ReachedElements] = {}
 
     def of(self, finding: Finding, about: int | None = None) -> Picture:
         """Return the paths of one finding, from its source to its leak: the shortest, and the longer ones.
@@ -213,16 +203,9 @@ class FindingViews:
         """
         category, graph = finding.category, self._analysis.graph
         if category not in self._reached:
-            self._reached[category] = Reached(self._analysis, {category}, self._say)
+            self._reached[category] = ReachedElements(self._analysis, {category}, self._say)
         reached = self._reached[category]
-        source, leak = self._number[finding.source], self._number[finding.leak]
-        found = FlowsToLeaks({})
-        if finding.steps:
-            ends = None if finding.kind == DISCLOSURE else {leak: self._analysis.spread.forms_of(category)}
-            past = finding.dismissed or ends is not None
-            found = flows_to_leaks(
-                self._net, category, sources=[source], leaks=[leak], past_leaks=past, ends=ends, about=about
-            )
+        found = self._paths.of(finding, about)
         lengths = found.flows
         keys = {element.identity for element in finding.witness}
         for index in lengths:
@@ -263,9 +246,11 @@ def is_cut(note: str, words: Words) -> bool:
     return note.startswith(plain(words.places("picture.longer")).partition("{")[0])
 
 
-def finding_view(analysis: Analysis, finding: Finding, about: int | None = None, say: Phrases | None = None) -> Picture:
+def finding_view(
+    paths: PathsToLeaks, finding: Finding, about: int | None = None, say: Phrases | None = None
+) -> Picture:
     """Return the paths of one finding, see ``FindingViews``."""
-    return FindingViews(analysis, say).of(finding, about)
+    return FindingViews(paths, say).of(finding, about)
 
 
 def bounded(picture: Picture, limit: int) -> Picture:
@@ -317,3 +302,93 @@ def in_words(finding: Finding, say: Phrases | None = None) -> str:
 def _data(finding: Finding, say: Phrases) -> str:
     title = say.title(finding.category)
     return say.words("terminal.hidden", kind=title) if finding.pseudonymised else title
+
+
+def overview(analysis: Analysis, findings: Sequence[Finding], say: Phrases | None = None) -> Picture:
+    """Return the shortest paths of findings.
+
+    Complexity: O(flows + elements).
+    """
+    reached = ReachedElements(analysis, {finding.category for finding in findings}, say)
+    steps = {(step.source, step.target) for finding in findings for step in finding.steps}
+    elements = analysis.graph.elements
+    flows = [
+        number
+        for number, flow in enumerate(analysis.graph.flows)
+        if (elements[flow.source], elements[flow.target]) in steps
+    ]
+    boxes = {box.key: box for box in reached.boxes(core(findings))}
+    lines = data_lines(reached, boxes, flows, dict.fromkeys(flows, 1), pairs(findings))
+    words = tuple(in_words(finding) for finding in findings)
+    return Picture(PRIVACY, "", sorted_boxes(boxes.values()), lines.drawn_lines(), (), words, core(findings))
+
+
+def drawable(findings: Sequence[Finding], limit: int) -> int:
+    """Return how many findings, from the first on, have no more elements together than asked for; one at least."""
+    count = min(len(findings), 1)
+    while count < len(findings) and len(core(findings[: count + 1])) <= limit:
+        count += 1
+    return count
+
+
+BOUND = 16  # boxes of the paths of one finding, unless the shortest is longer
+
+
+def marking(analysis: Analysis) -> Callable[[Picture], Picture]:
+    """Return what marks the steps of a picture that no profile allows, by the flows of the declared view."""
+    declared = frozenset(key[:3] for key in granted(analysis.graph))  # a box is of both sides of a wildcard
+
+    def marked(picture: Picture) -> Picture:
+        lines = (replace(line, look=BEYOND) if _is_beyond(line, declared) else line for line in picture.lines)
+        return replace(picture, lines=sorted_lines(lines))
+
+    return marked
+
+
+def _is_beyond(line: PictureLine, declared: Collection[tuple[Key, Key, str]]) -> bool:
+    return bool(line.places) and all((line.source, line.target, role) not in declared for role in line.roles)
+
+
+def with_added(
+    declared: Analysis,
+    enforced: PathsToLeaks,
+    added: Collection[Added],
+    say: Phrases,
+    draw: Callable[[Collection[Key]], Picture],
+) -> Picture:
+    """Return a picture of the declared view with the paths of what the enforced view adds.
+
+    In the ROS view these are the steps that no profile allows; in the privacy view also where data goes on then.
+
+    Parameters
+    ----------
+    declared, enforced
+        The system under both views, the enforced one with its paths to leaks.
+    added
+        What the enforced view adds.
+    draw
+        Draws the declared view; it gets what will be drawn beside it.
+    """
+    marked, views = marking(declared), FindingViews(enforced, say)
+    more = [marked(views.of(one.finding, PER_BOX * BOUND)) for one in added]
+    more_boxes: dict[Key, Box] = {box.key: box for each in more for box in each.boxes}
+    picture = draw(more_boxes)
+    boxes = {**(more_boxes if picture.view == PRIVACY else {}), **{box.key: box for box in picture.boxes}}
+    there = {(line.source, line.target) for line in picture.lines}
+    new = {line.sort_key()[:2]: line for each in more for line in _new(each.lines, there, picture.view)}
+    lines = sorted_lines([*picture.lines, *(line for line in new.values() if {line.source, line.target} <= set(boxes))])
+    note = plain(picture.words.count(len(added), "picture.added"))
+    core = picture.core | (frozenset(key for one in added for key in _witness(one)) & set(boxes))
+    return replace(picture, boxes=sorted_boxes(boxes.values()), lines=lines, core=core).noted(note)
+
+
+def _new(lines: Iterable[PictureLine], present: Collection[tuple[Key, Key]], view: str) -> Iterable[PictureLine]:
+    for line in lines:
+        if line.look == BEYOND:
+            yield line
+        elif view == PRIVACY and (line.source, line.target) not in present:
+            yield replace(line, look=ONWARD)
+
+
+def _witness(added: Added) -> Iterable[Key]:
+    return (element.identity for element in added.finding.witness)

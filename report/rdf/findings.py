@@ -16,21 +16,23 @@ from rdflib.namespace import PROV
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.report.document.analysis import json_document
-from rosprivacy.report.element_counts import count_elements
-from rosprivacy.report.rdf.concepts import texts
-from rosprivacy.report.rdf.facts import changes, kinds_along, label_of, legal_of
-from rosprivacy.report.rdf.individuals import below, entries_of, files_read, names_of
-from rosprivacy.report.rdf.process import Processes
+from rosprivacy.report.document.contents import required
+from rosprivacy.report.naming import count_elements
+from rosprivacy.report.rdf.process import Processes, changes, kinds_along, label_of, legal_of
 from rosprivacy.report.rdf.terms import (
     DPV,
     RISK,
     RP,
     Triple,
     about,
+    below,
+    entries_of,
+    files_read,
     listed,
+    names_of,
     text,
 )
-from rosprivacy.report.rdf.things import Things
+from rosprivacy.report.rdf.things import Things, texts
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -42,7 +44,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.fleet.patterns import FleetView
     from rosprivacy.analysis.model import Element
     from rosprivacy.report.document.contents import Document
-    from rosprivacy.report.rdf.individuals import IndividualNames
+    from rosprivacy.report.rdf.terms import IndividualNames
 
     Files = Mapping[str, Sequence[URIRef]]  # path -> what was read there
 
@@ -129,7 +131,7 @@ class _Findings:
         analysis = document.analysis
         unstated = frozenset((element.shown_as, category) for element, category in analysis.unstated)
         unreviewed = frozenset((q.element.shown_as, category) for q in analysis.open for category in q.categories)
-        processed = {(row.element, row.category): row for row in document.processed}
+        processed = {(row.element, row.category): row for row in required(document.processing).by_kind}
         processes = Processes(document, names, things, unstated, processed)
         return cls(document, names, things, unreviewed, processes)
 

@@ -19,8 +19,7 @@ from rosprivacy.analysis.errors import shown
 from rosprivacy.ontology.turtle import local_name
 from rosprivacy.report.document.analysis import json_document
 from rosprivacy.report.rdf.findings import rdf_graph
-from rosprivacy.report.rdf.individuals import names_of
-from rosprivacy.report.rdf.terms import DPV, RP, text
+from rosprivacy.report.rdf.terms import DPV, RP, names_of, text
 from rosprivacy.report.redact import LEFT_OUT, OURS, redacted, replacements
 
 if TYPE_CHECKING:

@@ -19,10 +19,11 @@ from rosprivacy.analysis.policy_lines import in_a_file
 from rosprivacy.analysis.text import counted, utf8
 from rosprivacy.report.catalogs.words import IN_ENGLISH
 from rosprivacy.report.document.analysis import verdict_facts
-from rosprivacy.report.element_counts import ElementCount, count_elements
+from rosprivacy.report.document.contents import required
+from rosprivacy.report.naming import ElementCount, count_elements
 from rosprivacy.report.places import to_review
 from rosprivacy.report.robots import note, on_robots
-from rosprivacy.report.sarif.flows import further_paths, prose, text
+from rosprivacy.report.sarif.locations import further_paths, prose, text
 from rosprivacy.report.sarif.results import FINDING, LAW, ROOT, Files, Results, added_results
 from rosprivacy.report.sarif.rules import (
     BEYOND_PROFILE,
@@ -46,6 +47,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.fleet.patterns import FleetView, Pattern
     from rosprivacy.analysis.model import Diagnostic, Legal, Pointer
     from rosprivacy.report.document.contents import Document
+    from rosprivacy.report.sarif.rules import SarifRule
 
 SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 MAX_RESULTS = 25_000
@@ -71,6 +73,7 @@ def _log(document: Document, root: Path) -> dict[str, Any]:
     files, diagnostics = Files(root), document.diagnostics
     law = {name: strongest_first(categories[name].law) for name in analysis.emitted}
     contexts, pointed = document.contexts, document.vocabulary.pointed
+    positions = required(document.positions)
     said: list[Legal | Pointer] = [legal for several in law.values() for legal in several]
     for finding in analysis.findings:
         said += (*contexts.revealed(finding), *pointed.of_finding(finding.kind))
@@ -86,13 +89,13 @@ def _log(document: Document, root: Path) -> dict[str, Any]:
     rules = {rule.id: rule for rule in told}
     made = Results(
         analysis,
-        document.lines.places,
+        positions.places,
         files,
         categories,
         law,
         taxa={legal.iri: number for number, legal in enumerate(taxa)},
         rules={name: number for number, name in enumerate(rules)},
-        between=document.lines.flows,
+        between=positions.flows,
         accepted=document.accepted,
         contexts=contexts,
         pointed=pointed,
@@ -106,16 +109,8 @@ def _log(document: Document, root: Path) -> dict[str, Any]:
         *_about(document, results, verdict_sentence(facts)),
         *_reading_notes((*diagnostics, *analysis.diagnostics), files),
     ]
-    driver = {
-        "name": "rosprivacy",
-        "version": str(assumptions.get("rosprivacy", "")),
-        "shortDescription": {"text": "Where personal data can go in a ROS 2 system, by its SROS 2 policies."},
-        "fullDescription": {"text": NO_VERDICT},
-        "rules": descriptors(rules.values()),
-        **({"supportedTaxonomies": [{"name": LAW, "index": 0}]} if taxa else {}),
-    }
     run = {
-        "tool": {"driver": driver},
+        "tool": {"driver": _driver(str(assumptions.get("rosprivacy", "")), rules.values(), taxonomy=bool(taxa))},
         "columnKind": "unicodeCodePoints",
         "originalUriBaseIds": {ROOT: {"description": {"text": "The root of the repository."}}},
         "invocations": [{"executionSuccessful": True, "toolExecutionNotifications": notices}],
@@ -132,6 +127,18 @@ def _log(document: Document, root: Path) -> dict[str, Any]:
         },
     }
     return {"$schema": SCHEMA, "version": "2.1.0", "runs": [run]}
+
+
+def _driver(version: str, rules: Iterable[SarifRule], *, taxonomy: bool) -> dict[str, Any]:
+    """The program, with the rules that results name."""
+    return {
+        "name": "rosprivacy",
+        "version": version,
+        "shortDescription": {"text": "Where personal data can go in a ROS 2 system, by its SROS 2 policies."},
+        "fullDescription": {"text": NO_VERDICT},
+        "rules": descriptors(rules),
+        **({"supportedTaxonomies": [{"name": LAW, "index": 0}]} if taxonomy else {}),
+    }
 
 
 def _within(results: Iterable[dict[str, Any]]) -> Iterator[dict[str, Any]]:

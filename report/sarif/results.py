@@ -14,10 +14,10 @@ from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.legal import turned_special
 from rosprivacy.analysis.model import CONCERNS, MAY_REVEAL, NO_LEAK_NAMED, Place, Rank
 from rosprivacy.analysis.policy_lines import in_a_file
-from rosprivacy.report.made_of import making
+from rosprivacy.report.document.contents import required
+from rosprivacy.report.finding_facts import making
 from rosprivacy.report.places import NOWHERE, of_step, to_review
-from rosprivacy.report.sarif.artifacts import uri_of
-from rosprivacy.report.sarif.flows import element_name, flows_of, logical, prose, text
+from rosprivacy.report.sarif.locations import element_name, flows_of, logical, prose, text, uri_of
 from rosprivacy.report.sarif.rules import (
     BEYOND_PROFILE,
     NO_LEAK,
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Category, Doubt, Element, Flow, Legal, Pointer
     from rosprivacy.ontology.pointed import Pointed
     from rosprivacy.report.document.contents import EnforcedFacts
-    from rosprivacy.report.places import Places
+    from rosprivacy.report.places import PlaceIndex
 
 ROOT = "%SRCROOT%"
 LAW = "data-protection-law"
@@ -99,7 +99,7 @@ class Results:
     """
 
     analysis: Analysis
-    places: Places
+    places: PlaceIndex
     files: Files
     categories: Mapping[str, Category]
     law: Mapping[str, tuple[Legal, ...]]
@@ -307,7 +307,7 @@ def added_results(enforced: EnforcedFacts, rule: int, files: Files) -> Iterator[
     rule
         Number of ``BEYOND_PROFILE`` among the rules of the log.
     """
-    places, between = enforced.lines
+    places, between = required(enforced.positions)
     for one in enforced.added:
         finding = one.finding
         lines = [place for number in one.beyond for place in of_step(finding.steps[number])]

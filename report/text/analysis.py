@@ -10,10 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import ASSUMED, MERGED
-from rosprivacy.report.called_alike import legs, names_shown
 from rosprivacy.report.catalogs.words import IN_ENGLISH, Words
-from rosprivacy.report.element_counts import count_rows
-from rosprivacy.report.naming import shown_name
+from rosprivacy.report.naming import count_rows, legs, names_shown, shown_name
 from rosprivacy.report.observed_lines import observed_lines
 from rosprivacy.report.review_groups import SHOWN
 from rosprivacy.report.text.finding_lines import MANY, details, enforced_lines, law_lines, overview

@@ -11,12 +11,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import CHANNELS, UNPROTECTED
 from rosprivacy.analysis.text import blanked
-from rosprivacy.report.called_alike import kind_in, names_shown
 from rosprivacy.report.catalogs.words import IN_ENGLISH, Words, finding_reason, spaced
-from rosprivacy.report.finding_order import in_order
-from rosprivacy.report.looked_at import looked_at
-from rosprivacy.report.made_of import data_made
-from rosprivacy.report.naming import key, shown_name
+from rosprivacy.report.finding_facts import data_made, in_order, looked_at
+from rosprivacy.report.naming import key, kind_in, names_shown, shown_name
 from rosprivacy.report.text.fleet import on_robots, robots_of
 from rosprivacy.report.text.line_parts import place
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.report.called_alike import joined_by_and, names_shown
+from rosprivacy.report.naming import joined_by_and, names_shown
 from rosprivacy.report.robots import forms_in_words
 
 if TYPE_CHECKING:

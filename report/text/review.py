@@ -12,10 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import GOES_NOWHERE, NO_LEAK_NAMED
-from rosprivacy.report.called_alike import joined_by_and, kind_in, legs, names_shown
 from rosprivacy.report.catalogs.words import IN_ENGLISH, Words
-from rosprivacy.report.element_counts import count_rows
-from rosprivacy.report.naming import key, label_name, shown_name
+from rosprivacy.report.naming import count_rows, joined_by_and, key, kind_in, label_name, legs, names_shown, shown_name
 from rosprivacy.report.review_groups import SHOWN, next_round, review_groups, sources_of
 from rosprivacy.report.text.line_parts import place
 from rosprivacy.report.verdict import doubts_of, lacking, restriction, subject

@@ -1,7 +1,8 @@
-"""What was taken away, and on whose word: DENY lines, standard channels, message types, labels and their globs.
+"""What keeps data from going on, for the terminal: DENY lines, standard channels, message types, labels, globs.
 
-In: a JSON document of the contract. Out: lines of what is assumed, and parts of the report by themselves; with ``-v``
-one line for each row (rules S5, S7, S12, S13, S15).
+In: a JSON document of the contract; ``WhyNot`` facts. Out: lines of what is assumed and on whose word, and parts of the
+report by themselves; with ``-v`` one line for each row (rules S5, S7, S12, S13, S15). Why data does not get from one
+element to another is told in the same words.
 """
 
 from __future__ import annotations
@@ -9,14 +10,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.report.called_alike import joined_by_and, opening_text
-from rosprivacy.report.document.ledger import hanging
-from rosprivacy.report.naming import infrastructure_file, shown_name
+from rosprivacy.analysis.model import CANNOT
+from rosprivacy.analysis.whatif.why_not import NO_LEAK, NO_SOURCE, THROUGH
+from rosprivacy.report.document.ledger import hanging_labels
+from rosprivacy.report.naming import infrastructure_file, joined_by_and, opening_text, shown_name
 from rosprivacy.report.text.line_parts import listed, place, titled
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
+    from rosprivacy.analysis.whatif.why_not import Obstacle, WhyNot
     from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.text.line_parts import Line
 
@@ -157,7 +160,7 @@ def hanging_lines(report: Mapping[str, Any], limit: int | None, words: Words) ->
     """Return on which labels it hangs that no leak was found: data gets there and ends on their word (rule S12)."""
     labels = [
         f"{at} ({shown_name(row['element'])} {_row_says(row, words)}{_leak_behind(row, words)})"
-        for at, row in hanging(report)
+        for at, row in hanging_labels(report)
     ]
     if labels:
         text = words.count(len(labels), "terminal.hanging", labels=listed(labels, limit, words))
@@ -276,3 +279,38 @@ def _distinct(texts: Iterable[str], limit: int | None, words: Words) -> str:
     distinct = list(dict.fromkeys(texts))
     left_out = len(distinct) - limit if limit is not None else 0
     return words.row(distinct[:limit]) + (words("terminal.more", n=left_out) if left_out > 0 else "")
+
+
+SILENT = {
+    NO_SOURCE: "no label says that it brings in {category}",
+    NO_LEAK: "no label says that it lets {category} out",
+    THROUGH: "its label names other channels for {category}",
+}
+
+
+def lines(answers: Iterable[WhyNot]) -> Iterator[str]:
+    """Return the answers in sentences."""
+    for answer in answers:
+        ends = f"{answer.category} from {shown(answer.source.full_name)} to {shown(answer.leak.full_name)}"
+        if answer.finding:
+            yield f"{ends}: it gets there, finding {answer.finding.id}"
+        elif not answer.path:
+            yield f"{ends}: no chain of policy lines or stated flows leads there"
+        else:
+            fewest = f"of all paths this one has the fewest obstacles ({len(answer.obstacles)})"
+            yield f"{ends}: it does not get there; {fewest}"
+        if answer.path:
+            yield f"   {' -> '.join(shown(element.full_name) for element in answer.path)}"
+        for obstacle in answer.obstacles:
+            yield f"   {_obstacle(obstacle)}"
+        if not answer.finding:
+            yield f"   as things are, {answer.category} gets to {answer.reached:,} elements"
+
+
+def _obstacle(obstacle: Obstacle) -> str:
+    ends = " -> ".join(shown(end.full_name) for end in (obstacle.element, obstacle.to) if end)
+    if obstacle.by in SILENT:
+        return f"at {ends}: {SILENT[obstacle.by].format(category=obstacle.category)}"
+    where = ", ".join(f"{shown(place.file)}:{place.line}" for place in obstacle.places)
+    says = "its type cannot carry" if obstacle.by == CANNOT else f"{obstacle.by} for"
+    return f"at {ends}: {says} {obstacle.category}, {where}"

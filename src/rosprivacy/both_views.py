@@ -92,7 +92,7 @@ def _both_views(settings: Settings, reader: Callable[[Question], Reader]) -> Res
     whole = enforced(NO_CHANGE)
     found = answer(whole, question)
     remedies = Remedies(
-        Trials(whole, found, enforced, question),
+        ChangeTrials(whole, found, enforced, question),
         declared,
         granted(system.graph),
         _enclaves(whole.graph.profiles),
@@ -157,7 +157,7 @@ class Remedies:
         Ids of the findings that the declared view has in pseudonymised form only: that form is left.
     """
 
-    trials: Trials
+    trials: ChangeTrials
     declared: Callable[[PolicyChange], System]
     granted: frozenset[Ends]
     enclaves: Mapping[str, frozenset[str]]
@@ -302,7 +302,7 @@ def _channel_of(finding: Finding, number: int) -> Element:
 
 
 @dataclass(frozen=True)
-class Trials:
+class ChangeTrials:
     """Tries changes; what was made for one finding is not made again for another.
 
     Attributes

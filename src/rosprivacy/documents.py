@@ -11,26 +11,40 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.findings.sanitizing import absent, cleanings, makings, recognised
 from rosprivacy.analysis.kernel.ranks import in_words
 from rosprivacy.analysis.policy_lines import first_lines, in_a_file
-from rosprivacy.report.document.contents import LEDGER, PROPOSALS, RELIANCE, Document, EnforcedFacts, Ledger, Lines
-from rosprivacy.report.places import Places, roles_of, to_review
+from rosprivacy.report.document.contents import (
+    IN_JSON,
+    LEDGER,
+    PATHS,
+    POSITIONS,
+    PROCESSING,
+    PROPOSALS,
+    RELIANCE,
+    WAYS,
+    Document,
+    EnforcedFacts,
+    Ledger,
+    Positions,
+    StatedProcessing,
+)
+from rosprivacy.report.places import PlaceIndex, roles_of, to_review
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
 
     from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.analysis.findings.flows_to_leaks import PathsToLeaks
     from rosprivacy.analysis.model import Element, Flow, MessageType, Place, Processing
     from rosprivacy.answer import Answer, Enforced
     from rosprivacy.report.document.contents import Shown
 
 
-def document_of(answer: Answer, fields: Collection[str] = (LEDGER,)) -> Document:
+def document_of(answer: Answer, fields: Collection[str] = IN_JSON) -> Document:
     """Return all that an answer says.
 
     Parameters
     ----------
     fields
-        ``LEDGER``, ``RELIANCE``, ``PROPOSALS``: what takes longer than the answer itself. What a user asked for by
-        name is always there.
+        What only some outputs tell, by the names in ``contents.py``. What a user asked for by name is always there.
     """
     analysis, bound, spread = answer.shown, answer.bound, answer.shown.spread
     elements, kinds = analysis.graph.elements, answer.vocabulary.categories
@@ -49,10 +63,7 @@ def document_of(answer: Answer, fields: Collection[str] = (LEDGER,)) -> Document
         outside=answer.analysis.outside,
         subjects=tuple((elements[vertex], groups) for vertex, groups in sorted(bound.subjects.items())),
         surroundings=tuple((elements[vertex], where) for vertex, where in sorted(bound.surroundings.items())),
-        processing=_processing(answer),
-        processed=answer.processed,
         types=_types(answer),
-        ways=answer.ways,
         sanitizers=cleanings(spread, analysis.emitted),
         derivations=makings(spread, analysis.emitted),
         recognising={elements[vertex]: made for vertex, made in recognised(spread, kinds).items()},
@@ -62,18 +73,34 @@ def document_of(answer: Answer, fields: Collection[str] = (LEDGER,)) -> Document
         overruled=tuple((one, in_words(one.by)) for one in spread.overruled),
         infrastructure=answer.infrastructure,
         review_order=answer.review_order,
-        lines=_lines(analysis, answer.assumptions),
-        enforced=_enforced(answer.enforced) if answer.enforced else None,
+        enforced=_enforced(answer.enforced, fields) if answer.enforced else None,
         ledger=Ledger(answer.taken_away, answer.globs(answer.taken_away)) if LEDGER in fields else None,
         hangs_on=answer.hangs_on if RELIANCE in fields or answer.hangs_on_named else None,
         proposals=answer.proposals() if PROPOSALS in fields else None,
+        ways=answer.ways if WAYS in fields else None,
+        processing=StatedProcessing(_processing(answer), answer.processed) if PROCESSING in fields else None,
+        positions=_positions(analysis, answer.assumptions) if POSITIONS in fields else None,
+        paths_to_leaks=_paths(analysis) if PATHS in fields else None,
     )
 
 
-def _enforced(enforced: Enforced) -> EnforcedFacts:
+def _enforced(enforced: Enforced, fields: Collection[str]) -> EnforcedFacts:
     answer = enforced.answer
-    lines = _lines(answer.analysis, answer.assumptions)
-    return EnforcedFacts(answer.analysis, answer.contexts, answer.decided, lines, enforced.added, enforced.open)
+    return EnforcedFacts(
+        answer.analysis,
+        answer.contexts,
+        answer.decided,
+        enforced.added,
+        enforced.open,
+        positions=_positions(answer.analysis, answer.assumptions) if POSITIONS in fields else None,
+        paths_to_leaks=_paths(answer.analysis) if PATHS in fields else None,
+    )
+
+
+def _paths(analysis: Analysis) -> PathsToLeaks:
+    from rosprivacy.analysis.findings.flows_to_leaks import PathsToLeaks  # noqa: PLC0415 - for pictures only
+
+    return PathsToLeaks(analysis)
 
 
 def _processing(answer: Answer) -> tuple[tuple[str | Element, Processing], ...]:
@@ -114,11 +141,11 @@ def _holds(analysis: Analysis) -> dict[Element, tuple[str, ...]]:
     return {element: tuple(spread.names(spread.present(vertices[element]))) for element in analysis.outside}
 
 
-def _lines(analysis: Analysis, assumptions: Mapping[str, Any]) -> Lines:
-    return Lines(_places(analysis, assumptions), _flows(analysis))
+def _positions(analysis: Analysis, assumptions: Mapping[str, Any]) -> Positions:
+    return Positions(_places(analysis, assumptions), _flows(analysis))
 
 
-def _places(analysis: Analysis, assumptions: Mapping[str, Any]) -> Places:
+def _places(analysis: Analysis, assumptions: Mapping[str, Any]) -> PlaceIndex:
     """In one pass over elements and, where channels are to be reviewed, over flows."""
     profiles: dict[str, Place] = {}
     for profile in analysis.graph.profiles:
@@ -126,7 +153,7 @@ def _places(analysis: Analysis, assumptions: Mapping[str, Any]) -> Places:
             profiles.setdefault(profile.node, profile.place)
     wanted = {question.element.shown_as for question in to_review(analysis) if question.element.is_channel}
     files = [entry["file"] for kind in ("labels", "policies") for entry in assumptions.get(kind) or ()]
-    return Places(_roles(analysis), first_lines(analysis.graph, wanted), profiles, tuple(files))
+    return PlaceIndex(_roles(analysis), first_lines(analysis.graph, wanted), profiles, tuple(files))
 
 
 def _roles(analysis: Analysis) -> dict[tuple[Shown, str, str], Place]:

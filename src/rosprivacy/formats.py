@@ -8,7 +8,6 @@ is a folder in ``report/`` and a row here.
 from __future__ import annotations
 
 import os
-from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, overload
@@ -16,7 +15,16 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, overload
 from rosprivacy.analysis.errors import InputError, shown
 from rosprivacy.clock import source_date, today
 from rosprivacy.report.catalogs import LANGUAGES
-from rosprivacy.report.document.contents import LEDGER, PROPOSALS, RELIANCE
+from rosprivacy.report.document.contents import (
+    IN_JSON,
+    LEDGER,
+    PATHS,
+    POSITIONS,
+    PROCESSING,
+    PROPOSALS,
+    RELIANCE,
+    WAYS,
+)
 from rosprivacy.terminal_width import terminal_width
 
 if TYPE_CHECKING:
@@ -68,7 +76,7 @@ class Style(NamedTuple):
     assessment: str | None = None
 
 
-class Format(NamedTuple):
+class OutputFormat(NamedTuple):
     """A format in which an answer is written.
 
     Attributes
@@ -86,7 +94,7 @@ class Format(NamedTuple):
     page
         What it is called where it is refused at a terminal; empty of what people read there.
     asks
-        Fields of the document that it needs and that take longer than the answer itself.
+        Fields of the document that it tells and not every output does.
     """
 
     name: str
@@ -95,7 +103,7 @@ class Format(NamedTuple):
     styles: tuple[str, ...] = ()
     both_views: bool = False
     page: str = ""
-    asks: tuple[str, ...] = (LEDGER, RELIANCE)
+    asks: tuple[str, ...] = (*IN_JSON, RELIANCE)
 
 
 @overload
@@ -184,7 +192,7 @@ def _linked_data(form: str) -> Callable[[Document, Style], str]:
 
 def _sarif(document: Document, _: Style) -> Iterator[str]:
     from rosprivacy.report import json_text
-    from rosprivacy.report.sarif.artifacts import repository_root
+    from rosprivacy.report.sarif.locations import repository_root
     from rosprivacy.report.sarif.log import sarif
 
     named = [entry["file"] for kind in ("policies", "labels") for entry in document.assumptions.get(kind) or ()]
@@ -214,11 +222,11 @@ def _markdown(document: Document, style: Style) -> str:
 
 def _docx(document: Document, style: Style) -> bytes:
     """Without ``SOURCE_DATE_EPOCH`` the document says that it was made today (rule S14)."""
-    from rosprivacy.report.docx.document import word_document
     from rosprivacy.report.page.markdown import markdown
+    from rosprivacy.report.page.word_document import word_document
 
     told = _outline(document, style)[0]
-    return word_document(markdown(told), told.title, style.language, today(os.environ))
+    return word_document(markdown(told), told.cover.title, style.language, today(os.environ))
 
 
 def _html(document: Document, style: Style) -> str:
@@ -230,13 +238,13 @@ def _html(document: Document, style: Style) -> str:
 
 
 def _works_council(document: Document, style: Style) -> str:
-    from rosprivacy.report.page.works_council import works_council
+    from rosprivacy.report.page.html import works_council
 
     return works_council(_outline(document, style)[0])
 
 
 def _outline(document: Document, style: Style) -> tuple[Outline, Aliases | None]:
-    from rosprivacy.report.page.assessment_file import read_answers
+    from rosprivacy.report.page.assessment import read_answers
     from rosprivacy.report.page.outline import outline
 
     answers = read_answers(style.assessment) if style.assessment else None
@@ -273,33 +281,33 @@ def _rendered_parts(
     earlier = read_earlier(style.since) if style.since else None
     if not style.redact:
         return told, earlier, proposals, None
-    from rosprivacy.report.page.redacted_pictures import aliases_of
+    from rosprivacy.report.page.figures import aliases_of
     from rosprivacy.report.redact import redacted
 
     beside = [earlier.document] if earlier else []
     also = [proposals] if not isinstance(proposals, str) else []
     copies = redacted([told, *beside, *also])
-    earlier = replace(earlier, document=copies[1], file="file-0") if earlier else None
+    earlier = earlier._replace(document=copies[1], file="file-0") if earlier else None
     return copies[0], earlier, copies[-1] if also else proposals, aliases_of(told, copies[0])
 
 
 _REPORT = ("language", "title", "since", "redact", "assessment")
 _LINKED = ("base", "redact")
-_PAGE = (LEDGER, RELIANCE, PROPOSALS)
+_PAGE = (*IN_JSON, RELIANCE, PROPOSALS)
 FORMATS = {
     known.name: known
     for known in (
-        Format("text", ".txt", _text, ("language", "verbose", "quiet"), both_views=True),
-        Format("json", ".json", _short_json, both_views=True, asks=(LEDGER,)),
-        Format("json1", ".json", _json, both_views=True),
-        Format("sarif", ".sarif", _sarif, both_views=True, asks=()),
-        Format("cnil-pia", ".json", _cnil_pia, ("language",), asks=()),
-        Format("turtle", ".ttl", _linked_data("turtle"), _LINKED),
-        Format("json-ld", ".jsonld", _linked_data("json-ld"), _LINKED),
-        Format("html", ".html", _html, _REPORT, both_views=True, page="a page", asks=_PAGE),
-        Format("markdown", ".md", _markdown, _REPORT, both_views=True, asks=_PAGE),
-        Format("docx", ".docx", _docx, _REPORT, both_views=True, page="a Word document", asks=_PAGE),
-        Format("article30", ".csv", _article30, ("language", "redact")),
-        Format("works-council", ".html", _works_council, _REPORT, page="a page"),
+        OutputFormat("text", ".txt", _text, ("language", "verbose", "quiet"), both_views=True, asks=(LEDGER, RELIANCE)),
+        OutputFormat("json", ".json", _short_json, both_views=True, asks=IN_JSON),
+        OutputFormat("json1", ".json", _json, both_views=True),
+        OutputFormat("sarif", ".sarif", _sarif, both_views=True, asks=(POSITIONS,)),
+        OutputFormat("cnil-pia", ".json", _cnil_pia, ("language",), asks=(WAYS, PROCESSING)),
+        OutputFormat("turtle", ".ttl", _linked_data("turtle"), _LINKED),
+        OutputFormat("json-ld", ".jsonld", _linked_data("json-ld"), _LINKED),
+        OutputFormat("html", ".html", _html, _REPORT, both_views=True, page="a page", asks=(*_PAGE, PATHS)),
+        OutputFormat("markdown", ".md", _markdown, _REPORT, both_views=True, asks=_PAGE),
+        OutputFormat("docx", ".docx", _docx, _REPORT, both_views=True, page="a Word document", asks=_PAGE),
+        OutputFormat("article30", ".csv", _article30, ("language", "redact")),
+        OutputFormat("works-council", ".html", _works_council, _REPORT, page="a page"),
     )
 }

@@ -17,11 +17,12 @@ from rosprivacy.analysis.model import UNPROTECTED
 from rosprivacy.documents import document_of
 from rosprivacy.ingest.deployed.exposures import with_exposed
 from rosprivacy.ingest.labels.binding import join
-from rosprivacy.ingest.mitigation.deny_lines import denials, open_ended, with_denied
+from rosprivacy.ingest.mitigation.deny_lines import Denials, open_ended, with_denied
 from rosprivacy.ingest.mitigation.deny_patch import Patch, patch
 from rosprivacy.ingest.mitigation.limits_file import read_limits
 from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.report.document.analysis import json_document
+from rosprivacy.report.document.contents import LEDGER
 from rosprivacy.report.document.mitigation import mitigation_document
 
 if TYPE_CHECKING:
@@ -69,9 +70,10 @@ class Mitigation:
 
     def document(self) -> MitigationDocument:
         """Return the JSON document."""
+        report = json_document(document_of(self.result, (LEDGER,)))
         return mitigation_document(
-            json_document(document_of(self.result)), self.result.analysis, self.limits, self.proposals, self.patch.diff,
-            self.patch.why_not, self.unmatched, self.notes,
+            report, self.result.analysis, self.limits, self.proposals, self.patch.diff, self.patch.why_not,
+            self.unmatched, self.notes,
         )  # fmt: skip
 
 
@@ -105,7 +107,7 @@ def run_mitigation(
 
     system = System(
         graph, result.bound, result.vocabulary.hierarchy, result.options,
-        lambda flows: denials(result.policies, graph, flows), deny, open_ended, partial(_judged, result),
+        Denials(result.policies, graph).of, deny, open_ended, partial(_judged, result),
     )  # fmt: skip
     proposals = mitigate(system, result.analysis, limits)
     grants = list(_denied(proposals[-1:]))

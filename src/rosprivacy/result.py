@@ -11,7 +11,7 @@ from rosprivacy.answer import Answer
 from rosprivacy.documents import document_of
 from rosprivacy.formats import Style, TextFormat, written
 from rosprivacy.report.document.analysis import json_document
-from rosprivacy.report.document.contents import LEDGER, RELIANCE
+from rosprivacy.report.document.contents import IN_JSON, RELIANCE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from rosprivacy.outputs import Findings
 
 
-class Shown(TypedDict, total=False):
+class Presentation(TypedDict, total=False):
     """How an answer is shown to a person; see ``Result.to``."""
 
     verbose: bool
@@ -93,14 +93,14 @@ class Result(Answer):
 
     def document(self) -> dict[str, Any]:
         """Return the whole JSON document, ``rosprivacy.analysis/1``; ``to("json")`` is the short one, ``/2``."""
-        return {**json_document(document_of(self, (LEDGER, RELIANCE)))}
+        return {**json_document(document_of(self, (*IN_JSON, RELIANCE)))}
 
     @overload
-    def to(self, format: Literal["docx"], **how: Unpack[Shown]) -> bytes: ...
+    def to(self, format: Literal["docx"], **how: Unpack[Presentation]) -> bytes: ...
     @overload
-    def to(self, format: TextFormat, **how: Unpack[Shown]) -> str: ...
+    def to(self, format: TextFormat, **how: Unpack[Presentation]) -> str: ...
     @overload
-    def to(self, format: str, **how: Unpack[Shown]) -> str | bytes: ...
+    def to(self, format: str, **how: Unpack[Presentation]) -> str | bytes: ...
     def to(
         self,
         format: str,  # noqa: A002 - the option's name

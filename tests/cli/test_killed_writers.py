@@ -27,7 +27,7 @@ ANALYSES = ("text", "json", "sarif", "cnil-pia", "turtle", "json-ld")
 READS = ("before.policy.xml", "-l", "run3.labels.yaml")
 WHY = ("--reason", "r", "--owner", "o", "--legal-basis", "6(1)(f)")
 DECISION = ("decide", "accept", "7ac677bf059b5beb", *WHY, "--decisions", "d.yaml")
-STRAY = re.compile(r"\.(?P<name>.+)\.(?:[a-z0-9_]{8}|lock)")  # what report/atomic.py and report/editing.py may leave
+STRAY = re.compile(r"\.(?P<name>.+)\.(?:[a-z0-9_]{8}|lock)")  # what report/atomic.py may leave
 TIMED = 2  # kills of each writer by the clock, beside those at its calls
 OLD = b"old\n"
 

@@ -24,8 +24,8 @@ START = "labels: 1\nnodes:\n  /safety_camera: {source: [Video]}\n"
 # What both keep a lost line out with: the lock, and the look at the file before it is replaced.
 UNLOCKED = """
 from contextlib import nullcontext
-from rosprivacy.report import atomic, editing
-editing.editing = lambda file: nullcontext()
+from rosprivacy.report import atomic
+atomic.editing = lambda file: nullcontext()
 atomic._check_edited = lambda *_: None
 """
 

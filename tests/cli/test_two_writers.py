@@ -14,9 +14,8 @@ import yaml
 from rosprivacy.analysis.errors import InputError
 from rosprivacy.analysis.files_read import one_run
 from rosprivacy.ingest.reading.bounded_file import contents
-from rosprivacy.report import editing as editing_module
-from rosprivacy.report.atomic import write_texts
-from rosprivacy.report.editing import editing
+from rosprivacy.report import atomic
+from rosprivacy.report.atomic import editing, write_texts
 from tests.helpers.command import Cli, refused, run
 from tests.helpers.factory import BEFORE
 
@@ -77,7 +76,7 @@ def test_a_second_edit_waits_for_the_first(cli: Cli, tmp_path: Path, name: str) 
 
 
 def test_who_waits_too_long_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(editing_module, "LOCK_LIMIT", 0.1)
+    monkeypatch.setattr(atomic, "LOCK_LIMIT", 0.1)
     file = tmp_path / "labels.yaml"
     told = pytest.raises(InputError, match=r"another rosprivacy has been editing it for 0 s; wait")
     with editing(file), told, editing(file):

@@ -78,7 +78,6 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "sarif": {"", "document", "catalogs"},
         "cnil": {"", "document", "catalogs"},
         "rdf": {"", "schemas", "document"},
-        "docx": set(),
     },
     "rosprivacy": {
         "": set(),

@@ -6,10 +6,13 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.findings.findings import analyse
+from rosprivacy.analysis.findings.flows_to_leaks import PathsToLeaks
 from rosprivacy.analysis.hierarchy import Hierarchy
 from rosprivacy.analysis.model import Bound, Category, Element, Flow, FlowGraph, Grant, Place, Profile, Statement
+from rosprivacy.report.page.figures import Inline, Wishes, pictures_of
 from rosprivacy.report.pictures import narrow, views
-from rosprivacy.report.pictures.fleet_view import represented
+from rosprivacy.report.pictures.graphviz import Graphviz
+from rosprivacy.report.pictures.narrow import represented
 from tests.helpers.graphs import care_home, factory, hospital
 
 if TYPE_CHECKING:
@@ -58,11 +61,11 @@ def pictures() -> dict[str, Picture]:
     profiles = care.analysis.graph.profiles
     return {
         "factory-ros": ros(two),
-        "factory-privacy": views.privacy_view(two.analysis),
-        "factory-filtered": views.privacy_view(four.analysis),
+        "factory-privacy": views.privacy_view(PathsToLeaks(two.analysis)),
+        "factory-filtered": views.privacy_view(PathsToLeaks(four.analysis)),
         "care-home-ros": narrow.grouped(narrow.folded(ros(care)), "enclave", profiles),
-        "care-home-privacy": narrow.folded(views.privacy_view(care.analysis)),
-        "care-home-finding": views.finding_view(care.analysis, finding),
+        "care-home-privacy": narrow.folded(views.privacy_view(PathsToLeaks(care.analysis))),
+        "care-home-finding": views.finding_view(PathsToLeaks(care.analysis), finding),
         "fleet-privacy": narrow.grouped(narrow.folded(fleet_privacy()), "robot", ()),
     }
 
@@ -72,7 +75,7 @@ def fleet_privacy() -> Picture:
     result = hospital()
     assert result.fleet
     likeness = result.fleet.likeness
-    return represented(views.privacy_view(result.analysis, likeness.second), likeness)
+    return represented(views.privacy_view(PathsToLeaks(result.analysis), likeness.second), likeness)
 
 
 def hostile(names: Iterable[str] = HOSTILE) -> Analysis:
@@ -96,3 +99,9 @@ def _statement(role: str) -> Statement:
 
 def names_of(boxes: Iterable[Box]) -> set[str]:
     return {name for box in boxes for name in box.names}
+
+
+def of_findings(analysis: Analysis, wishes: Wishes | None = None) -> list[Inline | None]:
+    """The pictures of all findings, for a page."""
+    with Graphviz() as graphviz:
+        return list(pictures_of(graphviz, PathsToLeaks(analysis), analysis.findings, wishes))

@@ -21,7 +21,7 @@ from rosprivacy.ontology.vocabulary import load
 from rosprivacy.report.catalogs.words import Words
 from rosprivacy.report.cnil.pia import cnil_pia
 from rosprivacy.report.document.analysis import json_document
-from rosprivacy.report.document.contents import LEDGER, RELIANCE
+from rosprivacy.report.document.contents import IN_JSON, RELIANCE
 from rosprivacy.report.page import article30
 from tests.helpers.answers import answer_of
 from tests.helpers.systems import analysed, systems
@@ -110,7 +110,7 @@ def check(case: Case) -> None:
     bound = replace(case.system.bound(), subjects=case.persons)
     answer = answer_of(analysis, VOCABULARY, REST, bound=bound)
     columns = {WORDS(f"record.{name}"): name for name in article30.RecordEntry.__dataclass_fields__}
-    text = article30.record(json_document(document_of(answer, (LEDGER, RELIANCE))), "en").removeprefix("\ufeff")
+    text = article30.record(json_document(document_of(answer, (*IN_JSON, RELIANCE))), "en").removeprefix("\ufeff")
     vertices = {element.name: vertex for vertex, element in enumerate(case.system.graph().elements)}
     for cells in csv.DictReader(io.StringIO(text)):
         row = {columns[column]: cell for column, cell in cells.items()}

@@ -14,12 +14,13 @@ import rdflib
 from rosprivacy.analysis.fleet.likeness import Likeness
 from rosprivacy.documents import document_of
 from rosprivacy.formats import written
+from rosprivacy.report.document.contents import PATHS
 from rosprivacy.report.page.figures import figures
 from rosprivacy.report.page.html import html
 from rosprivacy.report.page.markdown import markdown
 from rosprivacy.report.page.outline import Outline, outline
 from rosprivacy.report.pictures.dot import dot
-from rosprivacy.report.pictures.fleet_view import label, represented
+from rosprivacy.report.pictures.narrow import label, represented
 from rosprivacy.report.pictures.picture import PRIVACY, Box, Picture, PictureLine
 from rosprivacy.report.redact import redacted
 from rosprivacy.report.robots import note
@@ -98,12 +99,12 @@ def test_names_count_the_robots_of_the_fleet_not_those_that_are_shown() -> None:
     origins = {kind.name: [name for name, _ in kind.origins] for kind in report.kinds}
     assert origins["Location"] == ["/navigator (40 robots)"]
     assert origins["Video"] == ["/camera_driver (24 robots)", "/camera (12 robots)"]
-    items = {(item.name, item.data): item.robots for item in report.items if item.kind == "node"}
+    items = {(item.name, item.data): item.robots for item in report.inventory.items if item.kind == "node"}
     assert items["/uplink", "location"] == 40
     assert items["/camera_driver", "video of persons"] == 24
     (scale,) = (criterion.shows for criterion in report.criteria if criterion.name == "Large scale")
     assert scale.startswith("40 robots analysed")
-    assert (40, "robots in the fleet") in report.numbers
+    assert (40, "robots in the fleet") in report.summary.numbers
 
 
 @pytest.mark.parametrize("language", ["en", "de"])
@@ -121,7 +122,7 @@ def test_deviants_stand_by_themselves_with_links_to_the_ways(language: str) -> N
     assert [(row.shown, len(row.robots)) for row in fleet.alike] == [
         ("carrier_01", 23), ("carrier_lent", 1), ("cleaner_1", 4), ("guide_01", 12),
     ]  # fmt: skip
-    page = html(told(language), figures(document_of(found()), told(language)))
+    page = html(told(language), figures(document_of(found(), (PATHS,)), told(language)))
     text = markdown(told(language))
     for shown in (page, text):
         assert "carrier_lent" in shown.replace("\\", "")

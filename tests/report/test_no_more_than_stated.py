@@ -24,7 +24,7 @@ import rosprivacy
 from rosprivacy.analysis.findings import processed
 from rosprivacy.ingest.labels.countries import countries
 from rosprivacy.report.catalogs.words import Words
-from rosprivacy.report.page import article30, purposes
+from rosprivacy.report.page import article30, persons
 from tests.helpers.fleet_files import policy
 
 if TYPE_CHECKING:
@@ -253,8 +253,8 @@ def of_all_sources(rows: Any) -> Any:
 MUTANTS: dict[str, tuple[Any, str, Callable[..., Any], Said]] = {
     "a safeguard that nobody stated": (article30, "_transfer", lambda *_: "US: derogation (Article 49)", NOTHING),
     "a measure that nobody stated": (article30, "_measures", lambda *_: iter(["disk: encrypted at rest"]), NOTHING),
-    "an operator as the controller": (purposes, "controllers", lambda *_: "operator-cloud", NOTHING),
-    "a purpose that is taken as known": (purposes, "purposes", lambda *_: "operation", NOTHING),
+    "an operator as the controller": (persons, "controllers", lambda *_: "operator-cloud", NOTHING),
+    "a purpose that is taken as known": (persons, "purposes", lambda *_: "operation", NOTHING),
     "the country of another element": (article30, "_country", lambda *_: "DE (in the EEA)", EACH),
     "a time limit of another kind": (article30, "_retention", lambda *_: (["disk: 3 days"], False), EACH),
     "the purposes of all sources": (processed._Rows, "_ways", of_all_sources, EACH),

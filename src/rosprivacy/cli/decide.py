@@ -120,8 +120,8 @@ def decide(
     from rosprivacy.clock import today
     from rosprivacy.ingest.decisions.decision_writer import DOUBTS, FINDINGS, text_in, with_decision
     from rosprivacy.ontology.vocabulary import load
+    from rosprivacy.report.atomic import editing
     from rosprivacy.report.compare.earlier import read_earlier
-    from rosprivacy.report.editing import editing
 
     names = {"category": category, "source": source, "leak": leak, "robot": robot, "from_robot": from_robot}
     pattern = {key: value for key, value in names.items() if value}

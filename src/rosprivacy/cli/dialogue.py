@@ -18,7 +18,7 @@ from rosprivacy.clock import today
 from rosprivacy.labelling.asking import asked_now, closing, contradiction, typed_label, with_answer, with_label
 from rosprivacy.labelling.conversation import AND, BEGINS, Conversation, allowed, keys_of, lines_of, takes_away
 from rosprivacy.labelling.suggested_lines import brings, limits_on_the_way, who_says
-from rosprivacy.report.editing import editing
+from rosprivacy.report.atomic import editing
 from rosprivacy.report.suggested_labels.question_lines import help_lines, keys_line, question_lines
 
 if TYPE_CHECKING:

@@ -111,7 +111,7 @@ def _usage(
 ) -> NoReturn:
     """What is granted against what was seen in use."""
     from rosprivacy.checking import usage_document
-    from rosprivacy.report.compare.usage_lines import usage_lines, usage_markdown
+    from rosprivacy.report.compare.difference import usage_lines, usage_markdown
     from rosprivacy.report.json_text import as_text
 
     saved = (_kind(granted) == "graph", _kind(observed) == "graph")
@@ -128,8 +128,7 @@ def _usage(
 
 
 def _text(document: dict[str, Any], form: DiffFormat) -> str:
-    from rosprivacy.report.compare.difference import difference_lines
-    from rosprivacy.report.compare.difference_markdown import difference_markdown
+    from rosprivacy.report.compare.difference import difference_lines, difference_markdown
     from rosprivacy.report.json_text import as_text
 
     if form is DiffFormat.json:

@@ -50,8 +50,8 @@ def fleet(
 
 
 def _lines(fleet: Fleet, groups: tuple[Alike, ...]) -> Iterator[str]:
-    from rosprivacy.report.called_alike import names_shown
     from rosprivacy.report.catalogs.words import IN_ENGLISH
+    from rosprivacy.report.naming import names_shown
 
     kinds = sum(not group.fixed for group in groups)
     yield f"{len(fleet.robots):,} robots of {kinds:,} kinds, infrastructure: {len(fleet.infrastructure):,}"

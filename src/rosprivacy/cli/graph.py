@@ -182,7 +182,7 @@ def graph(
     result, own = _drawn_of(inputs.viewed(view), both_views=view is ViewOrBoth.both)
     picture = _view(result, show, part, lang, carried_only=bool(inputs.categories), standard=draw_standard_channels)
     if result.fleet and not finding:
-        from rosprivacy.report.pictures.fleet_view import label, represented
+        from rosprivacy.report.pictures.narrow import label, represented
 
         picture = represented(picture, result.fleet.likeness)
         own = {label(name, result.fleet.likeness, picture.words): profiles for name, profiles in own.items()}
@@ -237,6 +237,7 @@ def _format(option: PictureFormat | None, output: Path | None) -> PictureFormat:
 def _view(
     result: Result, show: Shown, part: GraphPart, language: Language, *, carried_only: bool, standard: bool
 ) -> Picture:
+    from rosprivacy.analysis.findings.flows_to_leaks import PathsToLeaks
     from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.pictures import narrow, views
     from rosprivacy.report.pictures.phrases import Phrases
@@ -248,7 +249,9 @@ def _view(
     if show is Shown.privacy:
         if part.finding:
             return _finding(result, part.finding, views.PER_BOX * part.bound if part.bound else None, say)
-        return _with_added(result, say, lambda also: views.privacy_view(result.analysis, beside, say, also))
+        return _with_added(
+            result, say, lambda also: views.privacy_view(PathsToLeaks(result.analysis), beside, say, also)
+        )
     denials = [grant for policy in result.policies for grant in policy.grants if not grant.allow]
     picture = _with_added(
         result,
@@ -259,23 +262,27 @@ def _view(
 
 
 def _with_added(result: Result, say: Phrases, draw: Callable[[Collection[Key]], Picture]) -> Picture:
-    from rosprivacy.report.pictures.added_flows import with_added
+    from rosprivacy.analysis.findings.flows_to_leaks import PathsToLeaks
+    from rosprivacy.report.pictures.views import with_added
 
     if not result.enforced or not result.enforced.added:
         return draw(())
-    return with_added(result.analysis, result.enforced.answer.analysis, result.enforced.added, say, draw)
+    return with_added(result.analysis, PathsToLeaks(result.enforced.answer.analysis), result.enforced.added, say, draw)
 
 
 def _finding(result: Result, id_prefix: str, about: int | None, say: Phrases) -> Picture:
     """One that only the enforced view has is drawn of that view, with what no profile allows marked."""
+    from rosprivacy.analysis.findings.flows_to_leaks import PathsToLeaks
     from rosprivacy.report.pictures import narrow, views
-    from rosprivacy.report.pictures.added_flows import marking
+    from rosprivacy.report.pictures.views import marking
 
     added = [one.finding for one in result.enforced.added] if result.enforced else []
     if result.enforced and any(finding.id.startswith(id_prefix) for finding in added):
         finding = narrow.the_finding(replace(result.analysis, findings=tuple(added)), id_prefix)
-        return marking(result.analysis)(views.finding_view(result.enforced.answer.analysis, finding, about, say))
-    return views.finding_view(result.analysis, narrow.the_finding(result.analysis, id_prefix), about, say)
+        return marking(result.analysis)(
+            views.finding_view(PathsToLeaks(result.enforced.answer.analysis), finding, about, say)
+        )
+    return views.finding_view(PathsToLeaks(result.analysis), narrow.the_finding(result.analysis, id_prefix), about, say)
 
 
 def _narrowed(picture: Picture, part: GraphPart) -> Picture:
@@ -294,7 +301,7 @@ def _narrowed(picture: Picture, part: GraphPart) -> Picture:
 
 def _legible(picture: Picture) -> Picture:
     """The picture, smaller where it is too large to be read; what is left out is said."""
-    from rosprivacy.report.pictures.legible import legible
+    from rosprivacy.report.pictures.narrow import legible
 
     picture, left = legible(picture)
     for said in left:
@@ -307,7 +314,7 @@ def _write(
 ) -> None:
     direction = "TB" if layout_direction is Direction.down else "LR"
     if form in (PictureFormat.svg, PictureFormat.png):
-        from rosprivacy.report.pictures.layout import drawn
+        from rosprivacy.report.pictures.graphviz import drawn
 
         done = drawn(picture, form.value, direction=direction if layout_direction else "", seconds=seconds)
         for said in done.remarks:
@@ -315,7 +322,7 @@ def _write(
         emit(done.data, output)
         return
     if form is PictureFormat.graphml:
-        from rosprivacy.report.pictures.graphml import graphml
+        from rosprivacy.report.pictures.exports import graphml
 
         emit(graphml(picture).encode(), output)
         return
@@ -324,7 +331,7 @@ def _write(
 
         emit(dot(picture, direction=direction).encode(), output)
         return
-    from rosprivacy.report.pictures.mermaid import mermaid, too_large
+    from rosprivacy.report.pictures.exports import mermaid, too_large
 
     text = mermaid(picture, direction=direction)
     if too_large(picture, text):

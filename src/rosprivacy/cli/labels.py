@@ -93,7 +93,7 @@ def labels(
 def _add(inputs: Inputs, output: Path | None, *, update: bool) -> None:
     """Lines into the label file that is named, the one that people edit; remarks go to the terminal."""
     from rosprivacy.labelling.label_lines import next_lines, own_file, updated
-    from rosprivacy.report.editing import editing
+    from rosprivacy.report.atomic import editing
 
     labels = tuple(inputs.labels or ())
     file = output if output and output != PRINTED else Path(own_file(labels))
@@ -109,7 +109,7 @@ def _add(inputs: Inputs, output: Path | None, *, update: bool) -> None:
 def _pin(inputs: Inputs, output: Path | None) -> None:
     """Pins into every label file with globs, those that need none left as they are; remarks go to the terminal."""
     from rosprivacy.labelling.pinning import pinned, pinned_in_fleet
-    from rosprivacy.report.editing import editing
+    from rosprivacy.report.atomic import editing
 
     if inputs.fleet:
         files = list(pinned_in_fleet(inputs.fleet, inputs.settings))
@@ -133,7 +133,7 @@ def _accept(inputs: Inputs, accepted: list[str], by: str | None, output: Path | 
     """Suggestions that a person accepts become labels, in the file that people edit."""
     from rosprivacy.labelling.label_lines import own_file
     from rosprivacy.labelling.suggested_lines import with_accepted
-    from rosprivacy.report.editing import editing
+    from rosprivacy.report.atomic import editing
 
     labels = tuple(inputs.labels or ())
     file = output if output and output != PRINTED else Path(own_file(labels))
@@ -148,7 +148,7 @@ def _accept(inputs: Inputs, accepted: list[str], by: str | None, output: Path | 
 
 def _begin(inputs: Inputs, output: Path | None) -> None:
     """A first label file where there is none, nor one that appears while the policies are read."""
-    from rosprivacy.report.editing import editing
+    from rosprivacy.report.atomic import editing
 
     output = None if output == PRINTED else output
     with editing(output) if output else nullcontext():

@@ -57,7 +57,7 @@ def lint(
     )
     if format is LintFormat.sarif:
         from rosprivacy.report.lint import lint_sarif
-        from rosprivacy.report.sarif.artifacts import repository_root
+        from rosprivacy.report.sarif.locations import repository_root
 
         root = repository_root(file for file, _ in found.files)
         emit(as_text(lint_sarif(found.breaches, found.rules, found.files, __version__, root)), output)

@@ -19,7 +19,7 @@ from rosprivacy.cli.driver import driver_of
 from rosprivacy.cli.inputs import Inputs, reads_system, refuse
 from rosprivacy.cli.options import ViewOrBoth, ViewOrBothChosen
 from rosprivacy.cli.output import emit
-from rosprivacy.report.element_counts import count_elements
+from rosprivacy.report.naming import count_elements
 from rosprivacy.report.verdict import verdict_sentence
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.text import counted
 from rosprivacy.formats import Style, written
-from rosprivacy.report.element_counts import count_elements
+from rosprivacy.report.naming import count_elements
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

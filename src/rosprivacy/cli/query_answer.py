@@ -59,7 +59,7 @@ def answer(rows: QueryRows, form: RowFormat, title: str, *, wide: bool) -> str |
 def _drawing(rows: QueryRows, title: str) -> bytes:
     """All nodes, relationships and paths of some rows as one SVG; an error if there are none."""
     from rosprivacy.queries.graph_values import graph_values
-    from rosprivacy.report.pictures.layout import drawn
+    from rosprivacy.report.pictures.graphviz import drawn
     from rosprivacy.report.pictures.query_view import query_view
     from rosprivacy.systems.stored_rows import STORED_NAMES
 

@@ -184,7 +184,7 @@ def _with_own(labels: tuple[str, ...], into: Path | None) -> tuple[str, ...]:
 def _write(file: Path, progress: Callable[[], Suggested]) -> None:
     """The suggestions into a label file, in place of those that an earlier run has written there."""
     from rosprivacy.labelling.suggested_lines import with_suggestions
-    from rosprivacy.report.editing import editing
+    from rosprivacy.report.atomic import editing
 
     with editing(file):
         found = progress()

@@ -38,7 +38,7 @@ def why_not(
     """Tell why data of one element does not get to another: where its way ends, and on whose word."""
     from rosprivacy.report.document.ledger import why_not_document
     from rosprivacy.report.json_text import as_text
-    from rosprivacy.report.text.why_not import lines
+    from rosprivacy.report.text.taken_away import lines
 
     result = inputs.result(inputs.settings)
     answers = result.why_not(source, leak, *(categories or ()))

@@ -25,8 +25,7 @@ from rosprivacy.clock import judged_on, today
 from rosprivacy.decided import about_today, in_fleet
 from rosprivacy.ingest.decisions.decision_writer import text_in, with_decision
 from rosprivacy.ingest.decisions.decisions_file import is_date, parse_decisions
-from rosprivacy.report.atomic import write_texts
-from rosprivacy.report.editing import editing
+from rosprivacy.report.atomic import editing, write_texts
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence

@@ -22,8 +22,7 @@ from rosprivacy.ingest.labels.label_reader import SIX_LISTS
 from rosprivacy.ingest.labels.label_writer import NEW, with_entries, without_places
 from rosprivacy.ingest.reading import yaml_values
 from rosprivacy.ingest.reading.bounded_file import read_regular, read_utf8
-from rosprivacy.report.atomic import write_texts
-from rosprivacy.report.editing import editing
+from rosprivacy.report.atomic import editing, write_texts
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

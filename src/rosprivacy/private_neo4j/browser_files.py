@@ -13,8 +13,7 @@ from rosprivacy.ingest.neo4j_graph.schema import CARRIED, ELEMENT, FLOWS_TO, KIN
 from rosprivacy.queries.dashboard import dashboard
 from rosprivacy.queries.library import pack
 from rosprivacy.queries.saved import zipped
-from rosprivacy.report.pictures.grass import OUTLINED, grass
-from rosprivacy.report.pictures.looks import ALLOWED, DATA, OTHER
+from rosprivacy.report.pictures.looks import ALLOWED, DATA, OTHER, OUTLINED, grass
 from rosprivacy.report.stored import CALLED_BY
 
 if TYPE_CHECKING:

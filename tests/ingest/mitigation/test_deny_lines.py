@@ -14,7 +14,7 @@ from rosprivacy.analysis.findings.findings import Options, analyse
 from rosprivacy.analysis.mitigation.limits import DENY, Limits, Weights
 from rosprivacy.analysis.mitigation.propose import System, mitigate, open_findings
 from rosprivacy.analysis.model import Bound, Element, Grant, Method, Place, Policy, Profile, Statement
-from rosprivacy.ingest.mitigation.deny_lines import denials, open_ended, with_denied
+from rosprivacy.ingest.mitigation.deny_lines import Denials, open_ended, with_denied
 from rosprivacy.ingest.policies.flow_graph import build
 from tests.helpers.systems import HIERARCHY, statement
 
@@ -65,7 +65,7 @@ def system_of(some: Collection[Policy], said: Said, view: str) -> System:
 
     graph, bound = made(some)
     return System(
-        graph, bound, HIERARCHY, Options(), lambda flows: denials(some, graph, flows),
+        graph, bound, HIERARCHY, Options(), Denials(some, graph).of,
         lambda grants: made(with_denied(some, grants)), open_ended,
     )  # fmt: skip
 
@@ -92,7 +92,7 @@ def test_what_is_said_to_go_goes_and_nothing_that_is_not_named(policy: Policy, v
     if not graph.flows:
         return
     some = data.draw(st.sets(st.integers(0, len(graph.flows) - 1), min_size=1))
-    found = denials([policy], graph, some)
+    found = Denials([policy], graph).of(some)
     granted = {f for f in some if graph.flows[f].grants}
     used = {v for flow in graph.flows if flow.grants for v in (flow.source, flow.target)}
     assert granted <= {f for denial in found for f in denial.flows}  # for each there is a way to cut it

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from rosprivacy.analysis.errors import InputError, InputErrors
-from rosprivacy.report.page.assessment_file import FORMAT, Answers, read_answers
+from rosprivacy.report.page.assessment import FORMAT, Answers, read_answers
 from tests.helpers.graphs import hospital
 from tests.helpers.pages import page, texts, told
 from tests.helpers.paths import ROOT

@@ -27,8 +27,8 @@ def told(document: dict[str, Any]) -> Outline:
 
 def test_the_table_of_recipients_does_not_say_no_path(told: Outline) -> None:
     """Raw video of residents enters the node that talks to the cloud; one label says that it is aggregated there."""
-    (uplink,) = (row for row in told.recipients.rows if row.name == "/uplink")
-    cells = dict(zip(told.recipients.columns, (cell.text for cell in uplink.cells), strict=True))
+    (uplink,) = (row for row in told.persons.recipients.rows if row.name == "/uplink")
+    cells = dict(zip(told.persons.recipients.columns, (cell.text for cell in uplink.cells), strict=True))
     video = cells["video of persons"]
     assert video.startswith("reaches it; said to be cleaned there: aggregates, ")
     assert video.endswith(LINE)
@@ -36,7 +36,7 @@ def test_the_table_of_recipients_does_not_say_no_path(told: Outline) -> None:
 
 
 def test_all_who_read_beside_a_sanitizer_are_named(told: Outline, document: dict[str, Any]) -> None:
-    rows = {row.name: row.other_readers for row in told.cleanings}
+    rows = {row.name: row.other_readers for row in told.inventory.cleanings}
     assert rows["/blur"] == (
         "/face_recognizer",
         "/uplink (said to clean it, too)",

@@ -10,24 +10,34 @@ from lxml import etree
 from lxml import html as lxml_html
 
 from rosprivacy.analysis.errors import DrawingError
+from rosprivacy.analysis.findings.flows_to_leaks import PathsToLeaks
 from rosprivacy.documents import document_of
 from rosprivacy.report.catalogs.words import Words
-from rosprivacy.report.finding_order import in_order
+from rosprivacy.report.document.contents import PATHS
+from rosprivacy.report.finding_facts import in_order
 from rosprivacy.report.page import figures as module
-from rosprivacy.report.page import inline
-from rosprivacy.report.page.figures import Figures, figures, page_legend
+from rosprivacy.report.page.figures import (
+    DRAWS,
+    SAYS,
+    Figures,
+    Inline,
+    Wishes,
+    aliases_of,
+    figures,
+    page_legend,
+    page_svg,
+    renamed,
+)
 from rosprivacy.report.page.html import html
-from rosprivacy.report.page.inline import DRAWS, SAYS, Wishes, page_svg, picture_of, pictures_of
 from rosprivacy.report.page.outline import outline
-from rosprivacy.report.page.redacted_pictures import aliases_of, renamed
 from rosprivacy.report.pictures import dot as dot_module
 from rosprivacy.report.pictures import graphviz
 from rosprivacy.report.pictures.looks import ROLE_LOOKS
-from rosprivacy.report.pictures.privacy import Reached
+from rosprivacy.report.pictures.privacy import ReachedElements
 from rosprivacy.report.pictures.views import FindingViews, finding_view
 from rosprivacy.report.redact import redacted
 from tests.helpers.graphs import care_home, factory
-from tests.helpers.pictures import hostile
+from tests.helpers.pictures import hostile, of_findings
 from tests.helpers.reports import care
 
 if TYPE_CHECKING:
@@ -52,8 +62,8 @@ def texts(root: etree._Element) -> str:
     return "\n".join(str(text.text).replace("\xa0", " ") for text in root.iter(f"{SVG}text"))
 
 
-def made(analysis: Analysis, **wishes: Any) -> list[inline.Inline]:
-    found = list(pictures_of(analysis, analysis.findings, Wishes(**wishes)))
+def made(analysis: Analysis, **wishes: Any) -> list[Inline]:
+    found = of_findings(analysis, Wishes(**wishes))
     assert None not in found
     return [one for one in found if one]
 
@@ -71,18 +81,16 @@ def test_pictures_for_a_page_have_its_colours_and_name_both_ends() -> None:
 def test_a_way_that_is_wide_is_drawn_downwards() -> None:
     found = care_home().analysis
     for one in made(found):
-        assert float(str(etree.fromstring(one.svg).get("width")).removesuffix("pt")) <= inline.WIDEST
+        assert float(str(etree.fromstring(one.svg).get("width")).removesuffix("pt")) <= module.WIDEST
 
 
 def test_a_picture_for_a_page_is_bounded_whatever_the_names_and_says_so() -> None:
-    found = hostile()
-    (finding,) = found.findings
-    one = picture_of(found, finding)
+    (one,) = of_findings(hostile())
     assert one
     assert len(one.svg) < 40_000
     checked(one.svg)
     many = hostile([f"/topic_with_a_long_name/{i}/{'x' * (i % 7)}" for i in range(500)])
-    folded = picture_of(many, many.findings[0])
+    folded = of_findings(many)[0]
     assert folded
     assert len(folded.svg) < 10_000
     assert folded.all_paths  # all are on one box, which says how many they are
@@ -92,7 +100,7 @@ def test_what_is_not_whole_says_so_and_how_to_get_the_rest() -> None:
     result = factory(2)
     told = outline(result.document(), "en")
     one = made(result.analysis)[0]
-    page = html(told, Figures({told.entries[0].id: inline.Inline(one.svg, all_paths=False)}))
+    page = html(told, Figures({told.entries[0].id: Inline(one.svg, all_paths=False)}))
     assert "Only the shorter paths are drawn" in page
     assert f"rosprivacy graph … --finding {told.entries[0].id}" in page
     assert "Only the shorter paths" not in html(told, Figures({told.entries[0].id: one}))
@@ -100,12 +108,11 @@ def test_what_is_not_whole_says_so_and_how_to_get_the_rest() -> None:
 
 def test_the_time_that_a_picture_takes_decides_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     """Rule S14: what takes too long is an error, no smaller picture and no missing one."""
-    monkeypatch.setattr(inline, "SECONDS", 1e-9)
-    found = care_home().analysis
+    monkeypatch.setattr(module, "SECONDS", 1e-9)
     with pytest.raises(
         DrawingError, match=r"^graph: a picture takes more than 1e-09 seconds; try again .*--format markdown$"
     ):
-        picture_of(found, found.findings[0])
+        of_findings(care_home().analysis)
 
 
 def test_hostile_names_stay_text() -> None:
@@ -116,7 +123,7 @@ def test_hostile_names_stay_text() -> None:
 
 
 def test_only_what_is_known_to_draw_stays() -> None:
-    picture = FindingViews(care_home().analysis).of(care_home().analysis.findings[0])
+    picture = FindingViews(PathsToLeaks(care_home().analysis)).of(care_home().analysis.findings[0])
     evil = (
         '<svg width="9pt" height="9pt" viewBox="0 0 9 9" xmlns="http://www.w3.org/2000/svg" onload="x()">'
         '<script>x()</script><style>*{}</style><image href="http://127.0.0.1/"/><foreignObject/><?x y?><!-- c -->'
@@ -133,7 +140,7 @@ def test_only_what_is_known_to_draw_stays() -> None:
 def test_each_way_has_its_picture_and_says_it_in_words() -> None:
     result = care_home()
     told = outline(result.document(), "en")
-    drawn = figures(document_of(result), told)
+    drawn = figures(document_of(result, (PATHS,)), told)
     page = lxml_html.document_fromstring(html(told, drawn))
     pictures = page.xpath("//figure[@class='picture']//*[@role='img']")
     assert [picture.get("aria-label") for picture in pictures] == [
@@ -147,9 +154,9 @@ def test_each_way_has_its_picture_and_says_it_in_words() -> None:
 def test_what_has_no_room_is_left_out_in_order_and_it_says_how_many_and_how_to_get_them() -> None:
     result = care_home()
     told = outline(result.document(), "en")
-    every = figures(document_of(result), told)
+    every = figures(document_of(result, (PATHS,)), told)
     first = [entry.id for entry in told.entries][:1]
-    some = figures(document_of(result), told, room=len(every.of[first[0]].svg.encode()))
+    some = figures(document_of(result, (PATHS,)), told, room=len(every.of[first[0]].svg.encode()))
     assert list(some.of) == first
     page = html(told, some)
     assert "2 of the paths below have no picture here" in page
@@ -166,8 +173,8 @@ def test_what_graphviz_cannot_draw_is_left_out_alone(monkeypatch: pytest.MonkeyP
         broken = any(second in box.names for box in picture.boxes)
         return "no graph" if broken else real(picture, **options)
 
-    monkeypatch.setattr(inline, "dot", dot)
-    drawn = figures(document_of(result), told)
+    monkeypatch.setattr(module, "dot", dot)
+    drawn = figures(document_of(result, (PATHS,)), told)
     missing = [entry.id for entry in told.entries if entry.id not in drawn.of]
     assert missing
     assert told.entries[1].id in missing
@@ -178,7 +185,7 @@ def test_without_graphviz_the_report_says_in_one_place_how_to_get_pictures(monke
     monkeypatch.setattr(graphviz, "find_spec", lambda _: None)
     result = care_home()
     told = outline(result.document(), "en")
-    drawn = figures(document_of(result), told)
+    drawn = figures(document_of(result, (PATHS,)), told)
     assert drawn == Figures(installed=False)
     page = html(told, drawn)
     assert page.count("the extra [views]") == 1
@@ -192,7 +199,7 @@ def test_a_redacted_report_has_redacted_pictures() -> None:
     document = result.document()
     (copy,) = redacted([document])
     told = outline(copy, "en", redacted=True)
-    drawn = figures(document_of(result), told, aliases_of(document, copy))
+    drawn = figures(document_of(result, (PATHS,)), told, aliases_of(document, copy))
     page = html(told, drawn)
     names = {element.name for element in result.analysis.graph.elements if len(element.name) > 4}
     assert len(drawn.of) == len(told.entries)
@@ -204,7 +211,7 @@ def test_a_redacted_report_has_redacted_pictures() -> None:
 
 def test_what_has_no_alias_has_no_name() -> None:
     found = care_home().analysis
-    picture = renamed(finding_view(found, found.findings[0]), {})
+    picture = renamed(finding_view(PathsToLeaks(found), found.findings[0]), {})
     assert all(name.startswith("…") for box in picture.boxes for name in box.names)
     assert picture.title == ""
     assert len(picture.keys) == len(picture.boxes)
@@ -217,7 +224,7 @@ def test_the_legend_explains_every_role_in_both_languages() -> None:
         assert len({words for _, _, words in looks}) == len({look for look, _, _ in looks}) == len(looks)
     result = care_home()
     told = outline(result.document(), "en")
-    page = lxml_html.document_fromstring(html(told, figures(document_of(result), told)))
+    page = lxml_html.document_fromstring(html(told, figures(document_of(result, (PATHS,)), told)))
     samples = page.xpath("//div[@class='legend']//li")
     assert [sample.text_content().strip() for sample in samples] == [w for *_, w in page_legend(Words("en"))]
     assert all(sample.find("svg").get("aria-hidden") == "true" for sample in samples)
@@ -229,9 +236,9 @@ def test_what_pictures_share_is_made_once_for_each_kind_of_data(monkeypatch: pyt
 
     def reached(analysis: Analysis, categories: set[str], say: Any) -> Any:
         asked.extend(categories)
-        return Reached(analysis, categories, say)
+        return ReachedElements(analysis, categories, say)
 
-    monkeypatch.setattr("rosprivacy.report.pictures.views.Reached", reached)
+    monkeypatch.setattr("rosprivacy.report.pictures.views.ReachedElements", reached)
     found = factory(2).analysis
     made(found)
     assert len(found.findings) > 1
@@ -245,7 +252,7 @@ def test_the_room_is_that_of_a_file_that_can_be_mailed() -> None:
 def test_the_first_picture_has_the_shortest_paths_of_what_is_to_be_decided_and_nothing_else() -> None:
     result = care_home()
     told = outline(result.document(), "en")
-    drawn = figures(document_of(result), told)
+    drawn = figures(document_of(result, (PATHS,)), told)
     assert drawn.overview
     assert drawn.drawn == told.opening.count == 3
     page = lxml_html.document_fromstring(html(told, drawn))
@@ -261,6 +268,6 @@ def test_the_first_picture_stays_small_and_says_what_it_leaves_out(monkeypatch: 
     result = care_home()
     told = outline(result.document(), "en")
     monkeypatch.setattr("rosprivacy.report.page.figures.OVERVIEW", 8)
-    drawn = figures(document_of(result), told)
+    drawn = figures(document_of(result, (PATHS,)), told)
     assert drawn.drawn == 1
     assert "The shortest paths of the first 1 of 3 to decide" in html(told, drawn)

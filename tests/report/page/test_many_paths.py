@@ -9,7 +9,7 @@ from lxml import html as lxml_html
 
 import rosprivacy
 from rosprivacy.report.catalogs.words import Words, plain
-from rosprivacy.report.page.assessment_file import Answers
+from rosprivacy.report.page.assessment import Answers
 from rosprivacy.report.page.finding_entries import BOUND, share
 from rosprivacy.report.page.html import html
 from tests.helpers.daily import one_in
@@ -101,7 +101,7 @@ def test_every_link_of_the_page_leads_somewhere(root: Any) -> None:
 
 
 def test_a_sanitizer_names_the_first_paths_past_it_and_counts_the_others(report: Outline) -> None:
-    (row,) = report.cleanings
+    (row,) = report.inventory.cleanings
     assert [number for _, number in row.past] == list(range(1, 101))
     assert row.remainder == f"and {VIDEO - 100:,} more"
 

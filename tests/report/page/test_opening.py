@@ -154,14 +154,14 @@ def test_a_transfer_that_rests_on_article_6_alone_says_what_it_lacks() -> None:
 
 def test_the_view_of_the_report_is_explained_first() -> None:
     for view in ("declared", "enforced"):
-        assert told({**care(), "view": view}).glossary[0][0] == view
+        assert told({**care(), "view": view}).summary.glossary[0][0] == view
 
 
 def test_not_reviewed_is_exact_and_what_only_globs_review_is_counted_beside_it() -> None:
     """'0 elements not reviewed' is not that a person looked at each."""
-    numbers = {what: number for number, what in told(care()).numbers}
+    numbers = {what: number for number, what in told(care()).summary.numbers}
     assert numbers["elements not reviewed: data gets there, and no label or glob answers for it"] == 0
     assert numbers["elements that count as reviewed only by a glob, for some data at least"] == 3
     globbed = {row["element"]["name"] for row in by_globs(care())}
     assert globbed == {"/camera/*", "/camera/image", "/camera/blurred"}  # "/camera/*": sensitive
-    assert not any("only by a glob" in what for _, what in told(run(2)).numbers)  # no glob in these labels
+    assert not any("only by a glob" in what for _, what in told(run(2)).summary.numbers)  # no glob in these labels

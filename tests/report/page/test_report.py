@@ -112,7 +112,7 @@ def test_open_elements_are_told_in_the_order_of_review() -> None:
 
 
 def test_what_passes_beside_a_sanitizer_is_told() -> None:
-    (row,) = told(run(5)).cleanings
+    (row,) = told(run(5)).inventory.cleanings
     assert (row.name, row.other_readers) == ("/filter", ("/emergency_stop",))
 
 
@@ -125,7 +125,7 @@ def test_a_way_that_does_not_lead_through_a_sanitizer_is_named_beside_it() -> No
         }
     ]  # fmt: skip
     report = told(document)
-    assert [number for _, number in report.cleanings[0].past] == [entry.number for entry in report.entries]
+    assert [number for _, number in report.inventory.cleanings[0].past] == [entry.number for entry in report.entries]
 
 
 def test_the_elements_that_nothing_reaches_are_told_too() -> None:

@@ -14,10 +14,10 @@ import pytest
 
 from rosprivacy.documents import document_of
 from rosprivacy.report.compare.earlier import Earlier
-from rosprivacy.report.page.assessment_file import read_answers
-from rosprivacy.report.page.figures import Figures, figures
+from rosprivacy.report.document.contents import PATHS
+from rosprivacy.report.page.assessment import read_answers
+from rosprivacy.report.page.figures import Figures, Wishes, figures
 from rosprivacy.report.page.html import html
-from rosprivacy.report.page.inline import Wishes, pictures_of
 from rosprivacy.report.page.outline import outline
 from tests.helpers import browser as chrome
 from tests.helpers import pictures
@@ -49,7 +49,7 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     everything = with_decisions(with_outside(care()))
     harm = hostile(folder)
     evil = pictures.hostile()
-    drawn = [*pictures_of(evil, evil.findings), *pictures_of(evil, evil.findings, Wishes(bound=100))]
+    drawn = [*pictures.of_findings(evil), *pictures.of_findings(evil, Wishes(bound=100))]
     harmful = Figures({finding["id"]: one for finding, one in zip(harm["findings"], drawn * 9, strict=False) if one})
     all_told = outline(everything, "en", earlier=old)
     several = outline(hospital().document(), "de")
@@ -57,10 +57,10 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     said = {
         "care-en": html(outline(care(), "en", date="2026-11-21")),
         "care-de": html(outline(care(), "de", date="2026-11-21")),
-        "all-en": html(all_told, figures(document_of(care_home()), all_told)),
-        "open-de": html(open_told, figures(document_of(factory(2)), open_told)),
+        "all-en": html(all_told, figures(document_of(care_home(), (PATHS,)), all_told)),
+        "open-de": html(open_told, figures(document_of(factory(2), (PATHS,)), open_told)),
         "fleet-en": html(outline(fleet(care(), [f"robot{i:03}" for i in range(300)]), "en")),
-        "hospital-de": html(several, figures(document_of(hospital()), several)),
+        "hospital-de": html(several, figures(document_of(hospital(), (PATHS,)), several)),
         "none-en": html(outline(care() | {"findings": [], "verdict": "no-leak-found"}, "en")),
         "hostile-en": html(outline(harm, "en", title=HOSTILE[0], earlier=Earlier(harm, HOSTILE[1], "0" * 64)), harmful),
         "hostile-de": html(outline(harm, "de")),

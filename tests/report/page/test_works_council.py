@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import pytest
 from lxml import html as lxml_html
 
-from rosprivacy.report.page.assessment_file import Answers
-from rosprivacy.report.page.works_council import works_council
+from rosprivacy.report.page.assessment import Answers
+from rosprivacy.report.page.html import works_council
 from tests.helpers.graphs import hospital
 from tests.helpers.pages import LANGUAGES, told
 from tests.helpers.reports import HOSTILE, care, hostile, with_outside
@@ -22,11 +22,11 @@ def test_every_group_with_every_place_is_there_as_in_the_report(language: str) -
     for document in (care(), with_outside(care()), dict(hospital().document())):
         report = told(document, language)
         text = lxml_html.document_fromstring(works_council(report)).text_content()
-        for group in report.rights:
+        for group in report.persons.rights:
             assert group.name in text
             for place in group.places:
                 assert all(said in text for said in (place.name, place.data, place.retention, place.recipient))
-        for row in report.cleanings:
+        for row in report.inventory.cleanings:
             assert row.name in text
 
 

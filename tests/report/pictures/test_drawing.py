@@ -11,10 +11,9 @@ from lxml import etree
 from rosprivacy.analysis.text import printable
 from rosprivacy.report.catalogs.words import Words
 from rosprivacy.report.pictures import page_pictures as module
-from rosprivacy.report.pictures.legend import legend, style_sheet
 from rosprivacy.report.pictures.live_svg import Links, unnamed_dot
 from rosprivacy.report.pictures.looks import DRAWN_ROLES, LINE_LOOKS, PALE
-from rosprivacy.report.pictures.page_pictures import Drawing, Pictures, picture_alone
+from rosprivacy.report.pictures.page_pictures import Drawing, Pictures, legend, picture_alone, style_sheet
 from rosprivacy.report.pictures.phrases import TEXTS, Phrases
 from rosprivacy.report.pictures.scenes import Scene, Scenes
 from tests.helpers.graphs import care_home, factory

@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from rosprivacy.report.pictures.legend import legend, style_sheet
 from rosprivacy.report.pictures.live_svg import SMALL, Links
-from rosprivacy.report.pictures.page_pictures import Pictures
+from rosprivacy.report.pictures.page_pictures import Pictures, legend, style_sheet
 from rosprivacy.report.pictures.scenes import Scenes
 from tests.helpers import browser as chrome
 from tests.helpers.graphs import care_home, factory, hospital

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from rosprivacy.analysis.findings.flows_to_leaks import PathsToLeaks
 from rosprivacy.report.catalogs.words import Words
 from rosprivacy.report.pictures import narrow, views
 from rosprivacy.report.pictures.dot import dot, hover, line_hover
-from rosprivacy.report.pictures.fleet_view import represented
-from rosprivacy.report.pictures.legible import legible
-from rosprivacy.report.pictures.mermaid import mermaid
+from rosprivacy.report.pictures.exports import mermaid
+from rosprivacy.report.pictures.graphviz import alt_text
+from rosprivacy.report.pictures.narrow import legible, represented
 from rosprivacy.report.pictures.phrases import Phrases
-from rosprivacy.report.pictures.svg import alt_text
 from tests.helpers.languages import OTHERS, SYSTEMS, english_in
 from tests.helpers.paths import ROOT
 
@@ -35,7 +35,10 @@ def phrases(result: Result, language: str) -> Phrases:
 
 def pictures(result: Result, language: str) -> Iterator[Picture]:
     say = phrases(result, language)
-    ros, privacy = views.ros_view(result.analysis, words=say.words), views.privacy_view(result.analysis, say=say)
+    ros, privacy = (
+        views.ros_view(result.analysis, words=say.words),
+        views.privacy_view(PathsToLeaks(result.analysis), say=say),
+    )
     yield from (ros, privacy, narrow.folded(ros), narrow.without_loose_ends(ros))
     yield from (legible(picture, 5)[0] for picture in (ros, privacy))
     yield from (views.bounded(privacy, most) for most in (1, 8))
@@ -43,10 +46,12 @@ def pictures(result: Result, language: str) -> Iterator[Picture]:
     yield narrow.carrying(ros, result.analysis)
     yield narrow.around(ros, [ros.boxes[0].names[0]], 1)
     for finding in result.analysis.findings:
-        yield views.finding_view(result.analysis, finding, 5, say)
+        yield views.finding_view(PathsToLeaks(result.analysis), finding, 5, say)
     if result.fleet:
         yield narrow.of_robot(privacy, next(box.robot for box in privacy.boxes if box.robot))
-        yield represented(views.privacy_view(result.analysis, result.fleet.likeness.second, say), result.fleet.likeness)
+        yield represented(
+            views.privacy_view(PathsToLeaks(result.analysis), result.fleet.likeness.second, say), result.fleet.likeness
+        )
 
 
 def told(picture: Picture) -> str:

@@ -18,13 +18,13 @@ from hypothesis import strategies as st
 from lxml import etree
 
 import rosprivacy
+from rosprivacy.analysis.findings.flows_to_leaks import PathsToLeaks
 from rosprivacy.analysis.text import printable, shortened
 from rosprivacy.report.pictures import looks, narrow, views
 from rosprivacy.report.pictures.dot import dot, label_lines
-from rosprivacy.report.pictures.graphml import graphml
-from rosprivacy.report.pictures.layout import drawn
-from rosprivacy.report.pictures.mermaid import label, mermaid, too_large
-from rosprivacy.report.pictures.wording import broken, quoted
+from rosprivacy.report.pictures.exports import graphml, label, mermaid, too_large
+from rosprivacy.report.pictures.graphviz import drawn
+from rosprivacy.report.pictures.phrases import broken, quoted
 from tests.helpers.daily import one_in
 from tests.helpers.graphs import care_home, factory
 from tests.helpers.paths import ROOT
@@ -45,8 +45,13 @@ KNOWN = {"svg", "g", "title", "desc", "polygon", "path", "ellipse", "text", "pol
 def hostile_pictures() -> dict[str, Picture]:
     found = hostile()
     grouped = narrow.grouped(views.ros_view(found), "enclave", found.graph.profiles)
-    finding = views.finding_view(found, found.findings[0])
-    return {"ros": grouped, "privacy": views.privacy_view(found), "finding": finding, "folded": narrow.folded(grouped)}
+    finding = views.finding_view(PathsToLeaks(found), found.findings[0])
+    return {
+        "ros": grouped,
+        "privacy": views.privacy_view(PathsToLeaks(found)),
+        "finding": finding,
+        "folded": narrow.folded(grouped),
+    }
 
 
 @pytest.fixture(params=["ros", "privacy", "finding", "folded"])
@@ -211,7 +216,7 @@ def test_hostile_names_come_through_the_command_line(cli: Cli, tmp_path: Path) -
 
 
 def test_the_description_tells_the_ways_to_people_who_do_not_see_the_picture() -> None:
-    root = check_svg(drawn(views.privacy_view(factory(2).analysis), "svg").data)
+    root = check_svg(drawn(views.privacy_view(PathsToLeaks(factory(2).analysis)), "svg").data)
     assert root.get("role") == "img"
     assert root[0].text == "Where Video can go (declared): data can reach a leak"
     assert "Video: /safety_camera to /safety_video to /archive_server." in str(root[1].text)
@@ -224,7 +229,10 @@ def test_tips_name_the_policy_line() -> None:
 
 
 def test_large_flowcharts_are_known_to_be_refused_by_mermaid() -> None:
-    small, large = views.privacy_view(factory(2).analysis), views.privacy_view(hostile([f"/t{i}" for i in range(300)]))
+    small, large = (
+        views.privacy_view(PathsToLeaks(factory(2).analysis)),
+        views.privacy_view(PathsToLeaks(hostile([f"/t{i}" for i in range(300)]))),
+    )
     assert not too_large(small, mermaid(small))
     assert too_large(large, mermaid(large))
 
@@ -261,7 +269,10 @@ def test_looks_differ_in_more_than_colour() -> None:
     outlines = {name: (x.width, x.style, x.double) for name, x in looks.ROLE_LOOKS.items() if name not in in_words}
     assert len(set(outlines.values())) == len(outlines)
     said = [
-        word for box in views.privacy_view(care_home().analysis).boxes if box.look in in_words for word in box.words
+        word
+        for box in views.privacy_view(PathsToLeaks(care_home().analysis)).boxes
+        if box.look in in_words
+        for word in box.words
     ]
     assert {word.split()[0] for word in said} == {"makes", "pseudonymises", "ends"}
 

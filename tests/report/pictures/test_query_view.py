@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rosprivacy.queries.graph_values import GraphValue, Node, Path
 from rosprivacy.report.pictures.dot import dot
-from rosprivacy.report.pictures.layout import drawn
+from rosprivacy.report.pictures.graphviz import drawn
 from rosprivacy.report.pictures.picture import PRIVACY, ROS, Picture
 from rosprivacy.report.pictures.query_view import query_view
 from tests.helpers.pictures import HOSTILE

@@ -12,12 +12,13 @@ import pytest
 from hypothesis import given
 
 from rosprivacy.analysis.errors import DrawingError
+from rosprivacy.analysis.findings.flows_to_leaks import PathsToLeaks
 from rosprivacy.analysis.model import Element, Flow, FlowGraph, Grant, Place
 from rosprivacy.report.catalogs.words import IN_ENGLISH
 from rosprivacy.report.pictures import narrow, views
 from rosprivacy.report.pictures.dot import dot
-from rosprivacy.report.pictures.mermaid import mermaid
-from rosprivacy.report.pictures.overview import overview
+from rosprivacy.report.pictures.exports import mermaid
+from rosprivacy.report.pictures.views import overview
 from tests.helpers.graphs import care_home, factory
 from tests.helpers.paths import TESTS
 from tests.helpers.pictures import hostile, names_of, pictures, ros
@@ -74,7 +75,7 @@ def test_denied_lines_are_drawn_whether_or_not_something_allows_them() -> None:
 
 def test_sanitizers_that_end_the_data_and_mundane_channels_are_gone_and_said() -> None:
     """The paper, II-B; the filter of run 5."""
-    picture = views.privacy_view(factory(5).analysis)
+    picture = views.privacy_view(PathsToLeaks(factory(5).analysis))
     assert not names_of(picture.boxes) & {"/filter", "/filtered_safety_video", "/new_pose", "/stop_arm"}
     assert any("/filter, which ends what comes to it" in note for note in picture.notes)
     assert any("carry none of it" in note for note in picture.notes)
@@ -84,7 +85,11 @@ def test_sanitizers_that_end_the_data_and_mundane_channels_are_gone_and_said() -
 def test_what_gets_to_where_it_is_said_to_be_cleaned_is_drawn_and_ends_in_a_bar() -> None:
     """Raw video enters the node that talks to the cloud, and one label says that it stays there."""
     care = care_home().analysis
-    shown = [views.privacy_view(care), views.finding_view(care, care.findings[0]), overview(care, care.findings)]
+    shown = [
+        views.privacy_view(PathsToLeaks(care)),
+        views.finding_view(PathsToLeaks(care), care.findings[0]),
+        overview(care, care.findings),
+    ]
     for picture in shown:
         (line,) = (line for line in picture.lines if line.look == "cleaned")
         assert (line.source[2], line.target[2], line.carries) == ("/camera/image", "/uplink", ("Video",))
@@ -95,12 +100,12 @@ def test_what_gets_to_where_it_is_said_to_be_cleaned_is_drawn_and_ends_in_a_bar(
         assert "penwidth=0.8" in drawn
         assert "said to be cleaned there" in dot(picture)
         assert f"{picture.keys[line.source]} --x {picture.keys[line.target]}" in mermaid(picture)
-    assert "cleaned" not in lines_of(views.privacy_view(factory(2).analysis)).values()
+    assert "cleaned" not in lines_of(views.privacy_view(PathsToLeaks(factory(2).analysis))).values()
 
 
 def test_the_picture_of_a_finding_says_where_its_data_is_made() -> None:
     care = care_home().analysis
-    titles = [views.finding_view(care, finding).title for finding in care.findings]
+    titles = [views.finding_view(PathsToLeaks(care), finding).title for finding in care.findings]
     assert "made of Video of /camera at /face_recognizer" in titles[0]
     assert "How Voice can get from /microphone to /uplink (declared)" in titles
 
@@ -112,7 +117,7 @@ def test_findings_of_other_kinds_have_ways_and_words_of_their_own() -> None:
     place = next(element for element in found.graph.elements if element.name == "/navigator")
     camera = next(element for element in found.graph.elements if element.name == "/robot_camera")
     kept = replace(leak, kind="storage-limitation", source=camera, leak=place, witness=(camera, place), steps=())
-    picture = views.privacy_view(replace(found, findings=(leak, kept)))
+    picture = views.privacy_view(PathsToLeaks(replace(found, findings=(leak, kept))))
     box = next(box for box in picture.boxes if box.names == ("/navigator",))
     assert (box.look, box.words) == ("leak", ("kept without an end, or too long: Video",))
     assert lines_of(picture)["/robot_camera", "/robot_video"] == "way"
@@ -126,7 +131,7 @@ def test_a_denial_that_is_not_drawn_is_counted() -> None:
 
 def test_where_no_source_is_named_the_picture_says_that_it_says_nothing() -> None:
     system = System(2, 1, [(0, 2), (2, 1)], {1: [statement("leak", "Face")]}, {})
-    picture = views.privacy_view(system.analyse())
+    picture = views.privacy_view(PathsToLeaks(system.analyse()))
     assert picture.title == IN_ENGLISH("picture.nothing")
     assert not picture.boxes
 
@@ -137,7 +142,7 @@ def test_nothing_that_counts_is_missing_from_the_privacy_view(system: System) ->
     found = analysed(system)
     if found is None:
         return
-    picture, number, brute = views.privacy_view(found), index(system), system.brute()
+    picture, number, brute = views.privacy_view(PathsToLeaks(found)), index(system), system.brute()
     drawn = {box.key: box for box in picture.boxes}
     present = brute.spread(brute.sources())
     expected = set()
@@ -166,7 +171,7 @@ def test_every_step_of_a_finding_is_in_its_picture_however_small(system: System)
     found = analysed(system)
     if found is None:
         return
-    made = views.FindingViews(found)
+    made = views.FindingViews(PathsToLeaks(found))
     for finding in found.findings:
         whole = made.of(finding)
         small = views.bounded(narrow.folded(whole), 1)
@@ -183,7 +188,7 @@ def test_every_step_of_a_finding_is_in_its_picture_however_small(system: System)
 
 
 def test_channels_with_the_same_ends_are_one_box_that_keeps_all_names() -> None:
-    whole = views.privacy_view(hostile([f"/t{i}" for i in range(9)]))
+    whole = views.privacy_view(PathsToLeaks(hostile([f"/t{i}" for i in range(9)])))
     small = narrow.folded(whole)
     assert len(small.boxes) == 4  # the shortest way stays by itself
     assert names_of(small.boxes) == names_of(whole.boxes)
@@ -257,7 +262,7 @@ def test_groups(by: str, expected: dict[str, set[str]]) -> None:
 def test_what_carries_a_category_can_be_chosen_in_the_ros_view() -> None:
     found = factory(2).analysis
     picture = narrow.carrying(views.ros_view(found), found)
-    assert names_of(picture.boxes) == names_of(views.privacy_view(found).boxes)
+    assert names_of(picture.boxes) == names_of(views.privacy_view(PathsToLeaks(found)).boxes)
 
 
 if __name__ == "__main__":

@@ -25,9 +25,8 @@ from rosprivacy.documents import document_of
 from rosprivacy.formats import written
 from rosprivacy.ontology.iris import as_published
 from rosprivacy.ontology.vocabulary import Vocabulary
-from rosprivacy.report.rdf.facts import legal_of
 from rosprivacy.report.rdf.findings import rdf_graph
-from rosprivacy.report.rdf.individuals import IndividualNames
+from rosprivacy.report.rdf.process import legal_of
 from rosprivacy.report.rdf.serialise import as_turtle
 from rosprivacy.report.rdf.terms import (
     BASES,
@@ -38,6 +37,7 @@ from rosprivacy.report.rdf.terms import (
     RISK,
     RISKS,
     RP,
+    IndividualNames,
 )
 from tests.helpers.answers import accepting, answer_of
 from tests.helpers.cases import CASES

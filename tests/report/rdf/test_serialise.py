@@ -33,9 +33,8 @@ from rosprivacy.clock import source_date
 from rosprivacy.documents import document_of
 from rosprivacy.ontology.vocabulary import Vocabulary
 from rosprivacy.report.rdf.findings import rdf_graph
-from rosprivacy.report.rdf.individuals import IndividualNames
 from rosprivacy.report.rdf.serialise import SERIALISERS
-from rosprivacy.report.rdf.terms import RP
+from rosprivacy.report.rdf.terms import RP, IndividualNames
 from tests.helpers.answers import accepting, answer_of
 from tests.helpers.daily import one_in
 from tests.helpers.linked_data import strict

@@ -22,7 +22,8 @@ from rosprivacy.analysis.findings.findings import analyse
 from rosprivacy.analysis.model import Category, Place
 from rosprivacy.documents import document_of
 from rosprivacy.ontology.vocabulary import Vocabulary
-from rosprivacy.report.sarif import flows
+from rosprivacy.report.document.contents import POSITIONS
+from rosprivacy.report.sarif import locations
 from rosprivacy.report.sarif import log as sarif_module
 from rosprivacy.report.sarif.log import sarif
 from tests.helpers.answers import accepting, answer_of, as_json
@@ -123,7 +124,7 @@ def test_a_file_outside_has_a_whole_uri(tmp_path: Path) -> None:
     outside = [str(EXAMPLES / entry["file"]) for entry in result.assumptions["policies"]]
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(EXAMPLES)
-        log = sarif(document_of(replace(result, diagnostics=())), tmp_path / "repo")
+        log = sarif(document_of(replace(result, diagnostics=()), (POSITIONS,)), tmp_path / "repo")
     where = checked(log)["results"][0]["locations"][0]["physicalLocation"]["artifactLocation"]
     assert "uriBaseId" not in where
     assert unquote(where["uri"]) == f"file://{outside[0]}"
@@ -189,7 +190,7 @@ def test_a_finding_that_no_file_speaks_of_is_at_the_first_line_of_what_it_rests_
     analysis = analyse(graph, bound, vocabulary.hierarchy)
 
     def places(assumptions: dict[str, Any]) -> set[tuple[str, int]]:
-        log = sarif(document_of(answer_of(analysis, vocabulary, assumptions)), tmp_path)
+        log = sarif(document_of(answer_of(analysis, vocabulary, assumptions), (POSITIONS,)), tmp_path)
         (found,) = [r for r in checked(log)["results"] if r["ruleId"] == "disclosure"]
         return {physical(found["locations"][0]), *(physical(step) for step in way(found))}
 
@@ -255,7 +256,7 @@ def test_further_ways_are_further_code_flows_up_to_a_bound(tmp_path: Path) -> No
     run = checked(log_of(result, at=tmp_path))
     (found, *_) = [r for r in run["results"] if r["ruleId"] == "disclosure"]
     ways = [[physical(step) for step in way(found, number)] for number in range(len(found["codeFlows"]))]
-    assert len(ways) == flows.MAX_FLOWS == 10
+    assert len(ways) == locations.MAX_FLOWS == 10
     assert len({tuple(places) for places in ways}) == 10  # each at its own lines
     names = [way(found, number)[1]["logicalLocations"][0]["name"] for number in range(10)]
     assert names[0] == result.analysis.findings[0].witness[1].name
@@ -311,7 +312,7 @@ def log_of_system(system: System, suffix: str) -> dict[str, Any] | None:
     if analysed(system) is None:
         return None
     analysis = analyse(graph, system.bound(), HIERARCHY)
-    return sarif(document_of(answer_of(analysis, VOCABULARY, {})), ROOT)
+    return sarif(document_of(answer_of(analysis, VOCABULARY, {}), (POSITIONS,)), ROOT)
 
 
 @given(systems(), st.text(max_size=20))
@@ -335,7 +336,7 @@ def test_a_hostile_name_harms_nothing(tmp_path: Path) -> None:
     graph = replace(analysis.graph, elements=tuple(replace(e, name=names[e.name]) for e in analysis.graph.elements))
     vocabulary = result.vocabulary
     spread_anew = analyse(graph, result.bound, vocabulary.hierarchy)
-    log = sarif(document_of(answer_of(spread_anew, vocabulary, {})), tmp_path)
+    log = sarif(document_of(answer_of(spread_anew, vocabulary, {}), (POSITIONS,)), tmp_path)
     run = checked(json.loads(json.dumps(log)))
     assert all(text.isprintable() and len(text) < 1500 for text in strings(run["results"]))
     texts = [r["message"]["text"] for r in run["results"]]
@@ -350,7 +351,7 @@ def test_a_file_name_that_is_no_text_is_a_uri_all_the_same(tmp_path: Path) -> No
     assumptions = {**result.assumptions, "policies": [{"file": odd, "sha256": "0" * 64}]}
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(tmp_path)
-        log = sarif(document_of(replace(result, diagnostics=(), assumptions=assumptions)), tmp_path)
+        log = sarif(document_of(replace(result, diagnostics=(), assumptions=assumptions), (POSITIONS,)), tmp_path)
     run = checked(json.loads(json.dumps(log)))
     assert run["artifacts"][0]["location"]["uri"] == "p%FF%5Bx%5D.policy.xml"
     json.dumps(log, ensure_ascii=False).encode()

@@ -31,8 +31,7 @@ from rosprivacy.explorer.web.trial_forms import TOGETHER, offers_at, tried_in
 from rosprivacy.explorer.web.view import trial_in, view_of
 from rosprivacy.labelling.knowledge import what_is_known
 from rosprivacy.labelling.suggesting_on_demand import Suggester
-from rosprivacy.report.pictures.legend import style_sheet
-from rosprivacy.report.pictures.page_pictures import Pictures
+from rosprivacy.report.pictures.page_pictures import Pictures, style_sheet
 from rosprivacy.report.pictures.phrases import Phrases
 
 if TYPE_CHECKING:

@@ -54,7 +54,7 @@ if TYPE_CHECKING:
     from rosprivacy.queries.graph_values import GraphValue
     from rosprivacy.queries.run import QueryRows
     from rosprivacy.report.catalogs.words import Words
-    from rosprivacy.report.pictures.page_pictures import Shown
+    from rosprivacy.report.pictures.page_pictures import PagePicture
     from rosprivacy.report.pictures.phrases import Phrases
     from rosprivacy.report.pictures.picture import Picture
     from rosprivacy.settings import Settings
@@ -239,7 +239,7 @@ class QueryAnswer(NamedTuple):
     """
 
     table: QueryTable
-    picture: Shown | None
+    picture: PagePicture | None
     warning: str
 
 

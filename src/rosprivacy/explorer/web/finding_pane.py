@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from rosprivacy.explorer.web.standing import Standing
     from rosprivacy.explorer.web.view import PageView
     from rosprivacy.report.catalogs.words import Words
-    from rosprivacy.report.page.finding_entries import Entry
+    from rosprivacy.report.page.finding_entries import PathEntry
 
 SHOWN_AT_MOST = 100  # robots whose names are told
 OFFERED = 40  # choices on a page
@@ -73,7 +73,7 @@ def _law(row: Mapping[str, Any], index: Index) -> Iterable[str]:
             yield words.pair(provision, words.of_value(f"law.{law['verdict']}", law["verdict"]))
 
 
-def _hops(finding: Finding, entry: Entry, standing: Standing, view: PageView) -> Iterable[Pane]:
+def _hops(finding: Finding, entry: PathEntry, standing: Standing, view: PageView) -> Iterable[Pane]:
     """The elements of the path, as the report tells them, and what can be tried behind each."""
     session, known = standing.session, lines_of(standing)
     after = [*finding.witness[1:], None]

@@ -21,7 +21,7 @@ from rosprivacy.explorer.web.element_pane import element_pane, is_likely_source
 from rosprivacy.explorer.web.forms import METHODS
 from rosprivacy.explorer.web.panes import Pane, stands_for, title_of
 from rosprivacy.explorer.web.view import ALL
-from rosprivacy.report.finding_order import place_of
+from rosprivacy.report.finding_facts import place_of
 from rosprivacy.report.page.html import in_html
 from rosprivacy.report.page.spaced_templates import CompiledTemplates
 from rosprivacy.report.pictures.live_svg import Links
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from rosprivacy.explorer.web.standing import Standing
     from rosprivacy.explorer.web.view import PageView
     from rosprivacy.report.catalogs.words import Words
-    from rosprivacy.report.pictures.page_pictures import Pictures, Shown
+    from rosprivacy.report.pictures.page_pictures import PagePicture, Pictures
 
 FIRST_ROWS = 60  # of a group of the list; the others are found by name
 MOST_FOUND = 40
@@ -91,7 +91,7 @@ def _templates() -> Environment:
     )
 
 
-def render_page(page: Pane, words: Words, picture: Shown, side: Pane, *, read_only: bool, **fields: Any) -> str:
+def render_page(page: Pane, words: Words, picture: PagePicture, side: Pane, *, read_only: bool, **fields: Any) -> str:
     """Return the page as HTML.
 
     Parameters
@@ -115,7 +115,7 @@ def render_page(page: Pane, words: Words, picture: Shown, side: Pane, *, read_on
     )  # fmt: skip
 
 
-def draw_picture(pictures: Pictures, standing: Standing, page: Pane) -> Shown:
+def draw_picture(pictures: Pictures, standing: Standing, page: Pane) -> PagePicture:
     """Return the picture of a page, seen from the element in hand; of a finding, with its own path."""
     at = standing.elements[page.pane.id].identity if page.pane else None
     kinds = [switch.name for switch in page.switches if switch.on] or [NO_KIND]

@@ -20,10 +20,10 @@ from rosprivacy.explorer.web.element_pane import element_pane
 from rosprivacy.explorer.web.page import verdict_of
 from rosprivacy.explorer.web.panes import Pane, in_words, stands_for, titles_of
 from rosprivacy.explorer.web.view import PageView
-from rosprivacy.report.page.doubts import in_doubt
 from rosprivacy.report.page.finding_entries import finding_entries
 from rosprivacy.report.page.index import Index
 from rosprivacy.report.page.kinds import kinds
+from rosprivacy.report.page.review import in_doubt
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence

@@ -1,7 +1,9 @@
-"""Picture -> a Mermaid flowchart, for READMEs: hosts of code draw it where it stands.
+"""Picture -> a Mermaid flowchart, for READMEs; GraphML, for programs that draw or count graphs.
 
-In: a ``Picture``. Out: text. A label holds only letters, digits and a few signs as they are; all else is written as a
-number, so that no name can end a label, begin a tag, or be read as a word of the language.
+In: a ``Picture``. Out: text. In Mermaid, which hosts of code draw where it stands, a label holds only letters, digits
+and a few signs as they are; all else is written as a number, so that no name can end a label, begin a tag, or be read
+as a word of the language. In GraphML (Gephi, yEd, Cytoscape, networkx) every fact of the picture is an attribute,
+nothing is shortened; networkx writes it.
 """
 
 from __future__ import annotations
@@ -11,19 +13,11 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.text import printable, shortened
 from rosprivacy.report.pictures.dot import label_lines, paired
-from rosprivacy.report.pictures.looks import (
-    INK,
-    KIND_LOOKS,
-    LINE_LOOKS,
-    ROLE_LOOKS,
-    SHAPES,
-    TEXT,
-    legend,
-)
+from rosprivacy.report.pictures.looks import INK, KIND_LOOKS, LINE_LOOKS, ROLE_LOOKS, SHAPES, TEXT, box_look, legend
 from rosprivacy.report.pictures.picture import PRIVACY
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
     from rosprivacy.report.pictures.looks import Look
     from rosprivacy.report.pictures.picture import Box, Picture, PictureLine
@@ -142,3 +136,45 @@ def _classes(picture: Picture) -> Iterator[str]:
 def _style(look: Look) -> str:
     width = 3 if look.double else look.width
     return f"fill:{look.colour},color:{TEXT},stroke:{INK},stroke-width:{width:g}px"
+
+
+def graphml(picture: Picture) -> str:
+    """Return a picture as GraphML; lists are one name a line."""
+    import networkx as nx  # noqa: PLC0415 - heavy
+
+    graph: nx.MultiDiGraph[str] = nx.MultiDiGraph(
+        title=printable(picture.title), notes=_list(picture.notes), ways=_list(picture.ways)
+    )
+    for box in picture.boxes:
+        graph.add_node(
+            picture.keys[box.key],
+            label=printable(box.names[0]),
+            names=_list(box.names),
+            kind=box.kind,
+            robot=printable(box.robot),
+            role=box.look,
+            words=_list(box.words),
+            reviewed=not box.open,
+            wildcard=box.pattern,
+            group=printable(box.group),
+            fill=box_look(picture.view, box.look).colour,
+        )
+    for number, line in enumerate(picture.lines):
+        graph.add_edge(
+            picture.keys[line.source],
+            picture.keys[line.target],
+            key=f"e{number}",
+            look=line.look,
+            roles=_list(line.roles),
+            carries=_list(line.carries),
+            pseudonymised=line.pseudonymised,
+            policy=_list(str(place) for place in line.places),
+            steps=line.length,
+            stroke=LINE_LOOKS[line.look].colour,
+        )
+    rows = ['<?xml version="1.0" encoding="UTF-8"?>', *nx.generate_graphml(graph, encoding="utf-8"), ""]
+    return "\n".join(row for number, row in enumerate(rows) if number == 0 or not row.startswith("<?xml"))
+
+
+def _list(texts: Iterable[str]) -> str:
+    return "\n".join(printable(text) for text in texts)

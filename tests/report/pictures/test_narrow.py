@@ -10,10 +10,11 @@ import pygraphviz
 import pytest
 from hypothesis import given
 
+from rosprivacy.analysis.findings.flows_to_leaks import PathsToLeaks
 from rosprivacy.report.pictures import views
 from rosprivacy.report.pictures.dot import dot
-from rosprivacy.report.pictures.legible import legible
 from rosprivacy.report.pictures.looks import SHAPES
+from rosprivacy.report.pictures.narrow import legible
 from rosprivacy.report.pictures.picture import LEGIBLE, PRIVACY, ROS
 from tests.helpers.graphs import care_home, factory
 from tests.helpers.paths import ROOT
@@ -30,7 +31,7 @@ FLEET = ("graph", "--fleet", ROOT / "examples" / "fleet" / "fleet.yaml", "--show
 
 
 def test_a_small_picture_is_drawn_whole() -> None:
-    for picture in (ros(factory(2)), ros(care_home()), views.privacy_view(care_home().analysis)):
+    for picture in (ros(factory(2)), ros(care_home()), views.privacy_view(PathsToLeaks(care_home().analysis))):
         assert legible(picture) == (picture, ())
 
 
@@ -52,7 +53,7 @@ def test_nothing_is_hidden_in_silence_and_no_finding_at_all(system: System) -> N
     found = analysed(system)
     if found is None:
         return
-    for whole in (views.privacy_view(found), views.ros_view(found)):
+    for whole in (views.privacy_view(PathsToLeaks(found)), views.ros_view(found)):
         small, said = legible(whole, 1)
         same = (small.boxes, small.lines) == (whole.boxes, whole.lines)
         assert same == (not said)
@@ -103,7 +104,7 @@ def _laid_out(picture: Picture, direction: str) -> dict[str, tuple[float, float]
 
 @pytest.mark.parametrize(("direction", "axis"), [("LR", 0), ("TB", 1)])
 def test_sources_are_on_one_side_and_leaks_on_the_other(direction: str, axis: int) -> None:
-    picture = views.privacy_view(care_home().analysis)
+    picture = views.privacy_view(PathsToLeaks(care_home().analysis))
     at = _laid_out(picture, direction)
     where = {box.key: at[picture.keys[box.key]][axis] for box in picture.boxes}
     places = {look: {where[box.key] for box in picture.boxes if box.look == look} for look in ("source", "leak")}

@@ -9,8 +9,7 @@ from rdflib import RDF, Graph, Literal, URIRef
 
 import rosprivacy
 from rosprivacy.analysis.errors import InputError
-from rosprivacy.report.rdf.individuals import names_of
-from rosprivacy.report.rdf.terms import DPV, RP
+from rosprivacy.report.rdf.terms import DPV, RP, names_of
 from tests.helpers.linked_data import problems
 
 if TYPE_CHECKING:

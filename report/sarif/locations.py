@@ -1,13 +1,18 @@
-"""A finding's paths as SARIF's ``codeFlows``: the witness first, each step at the policy line that allows it.
+"""Where a finding stands, as SARIF has it: files as URIs, paths as ``codeFlows``, elements as logical locations.
 
-In: a ``Finding`` and where things stand. Out: plain dicts. Names come from anybody's files: they are made printable,
-short, and neither links nor placeholders.
+In: the names that a user gave; a ``Finding`` and where things stand. Out: URIs as RFC 3986 has them, relative to the
+root of the repository where they can be, so that they mean the same on every machine; plain dicts, the witness first,
+each step at the policy line that allows it. Names come from anybody's files: they are made printable, short, and
+neither links nor placeholders.
 """
 
 from __future__ import annotations
 
+import os
 from itertools import pairwise
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from urllib.parse import quote
 
 from rosprivacy.analysis.answer import Step
 from rosprivacy.analysis.errors import shown
@@ -20,10 +25,61 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import Finding
     from rosprivacy.analysis.model import Element, Place
-    from rosprivacy.report.places import Places
+    from rosprivacy.report.places import PlaceIndex
 
     Physical = Callable[[Place], dict[str, Any]]
     Pair = tuple[tuple[str, str, str, str], tuple[str, str, str, str]]
+
+LONGEST = 4000  # characters of a path; no system has longer ones
+
+
+def repository_root(files: Iterable[str]) -> Path:
+    """Return the folder that file names are shown relative to.
+
+    The repository around the working directory if it holds one of the files, else that around the first file in one,
+    else the working directory. A repository is a folder with ``.git`` in it.
+    """
+    here = Path.cwd()
+    absolute = [Path(os.path.abspath(file)) for file in files if "\0" not in file]  # noqa: PTH100 - links stay links
+    around = _repository(here)
+    if around and (not absolute or any(file.is_relative_to(around) for file in absolute)):
+        return around
+    return next((found for file in absolute if (found := _repository(file.parent))), around or here)
+
+
+def uri_of(file: str, root: Path) -> tuple[str, bool]:
+    """Return the URI of a file, and whether it is relative to the root.
+
+    >>> uri_of("/work/robot/my policy.xml", Path("/work"))
+    ('robot/my%20policy.xml', True)
+    >>> uri_of("/etc/policy.xml", Path("/work"))
+    ('file:///etc/policy.xml', False)
+    """
+    path = Path(os.path.abspath(file[:LONGEST].replace("\0", "")))  # noqa: PTH100 - what a link points to has another name
+    for base, inside in ((root, path), (_resolved(root), _resolved(path))):
+        if inside.is_relative_to(base) and inside != base:
+            return _quoted(inside.relative_to(base).as_posix()), True
+    return f"file://{'' if path.as_posix().startswith('/') else '/'}{_quoted(path.as_posix())}", False
+
+
+def _repository(folder: Path) -> Path | None:
+    try:
+        return next((above for above in (folder, *folder.parents) if (above / ".git").exists()), None)
+    except OSError:  # a name that is too long, a folder that may not be entered
+        return None
+
+
+def _resolved(path: Path) -> Path:
+    try:
+        return path.resolve()
+    except (OSError, RuntimeError):  # as above; a loop of links
+        return path
+
+
+def _quoted(path: str) -> str:
+    """Escape all that is no plain character of a path; a name that is no UTF-8 keeps its bytes."""
+    return quote(os.fsencode(path), safe="/")
+
 
 MAX_FLOWS = 10  # paths of a finding
 MAX_STEPS = 1_000  # locations of a path: what GitHub shows; 10 of them are what it takes
@@ -66,7 +122,7 @@ def further_paths(finding: Finding) -> int:
 
 
 def flows_of(
-    finding: Finding, between: Mapping[Pair, Flow], places: Places, physical: Physical
+    finding: Finding, between: Mapping[Pair, Flow], places: PlaceIndex, physical: Physical
 ) -> list[dict[str, Any]]:
     """Return the ``codeFlows`` of a finding: the witness, then further paths up to a bound, one ``threadFlow`` each."""
     paths: list[Sequence[Step]] = [finding.steps]
@@ -96,7 +152,7 @@ def _steps(path: Iterable[Element], between: Mapping[Pair, Flow]) -> list[Step]:
     return [Step(a, b, flow.role, "", pseudonymised=False, grants=flow.grants) for a, b, flow in found]
 
 
-def _start(finding: Finding, places: Places) -> Place:
+def _start(finding: Finding, places: PlaceIndex) -> Place:
     """Where a path begins: the label of the source, its profile, or the first line that lets the data go."""
     said = places.of_role(finding.source, "source", finding.steps[0].category if finding.steps else finding.category)
     lines = (place for step in finding.steps for place in of_step(step))

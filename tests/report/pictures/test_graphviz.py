@@ -13,10 +13,10 @@ import pytest
 from lxml import etree
 
 from rosprivacy.analysis.errors import DrawingError
+from rosprivacy.analysis.findings.flows_to_leaks import PathsToLeaks
 from rosprivacy.report.pictures import graphviz as module
 from rosprivacy.report.pictures import views
-from rosprivacy.report.pictures.graphviz import Graphviz, Job, TooLongError
-from rosprivacy.report.pictures.layout import WAYS, Way, crossings, drawn, way_of
+from rosprivacy.report.pictures.graphviz import WAYS, Graphviz, Job, TooLongError, Way, crossings, drawn, way_of
 from rosprivacy.report.pictures.picture import ROS, Box, Picture, PictureLine, sorted_boxes, sorted_lines
 from tests.helpers.graphs import factory
 from tests.helpers.pictures import hostile
@@ -27,7 +27,7 @@ SMALL = Job("digraph { a -> b }")
 
 @pytest.fixture
 def picture() -> Picture:
-    return views.privacy_view(factory(2).analysis)
+    return views.privacy_view(PathsToLeaks(factory(2).analysis))
 
 
 def test_one_process_draws_one_picture_after_the_other() -> None:
@@ -151,7 +151,7 @@ def test_without_a_direction_it_is_the_one_that_can_be_drawn_larger_on_a_page() 
     )
     lines = tuple(PictureLine(a.key, b.key, "data") for a, b in pairwise(boxes))
     long = Picture("privacy", "long", sorted_boxes(boxes), sorted_lines(lines))
-    wide = views.privacy_view(hostile([f"/t{i}" for i in range(30)]))
+    wide = views.privacy_view(PathsToLeaks(hostile([f"/t{i}" for i in range(30)])))
     for picture, direction, other in ((long, "TB", "LR"), (wide, "LR", "TB")):
         by_shape = drawn(picture, "svg", direction="").data
         assert by_shape == drawn(picture, "svg", direction=direction).data
@@ -162,7 +162,7 @@ def test_without_a_direction_it_is_the_one_that_can_be_drawn_larger_on_a_page() 
     "way", [replace(way, max_crossings=inf) for way in WAYS], ids=lambda way: "-".join(way.attributes)
 )
 def test_every_layout_draws_every_box(way: Way) -> None:
-    picture = views.privacy_view(hostile([f"/t{i}" for i in range(60)]))
+    picture = views.privacy_view(PathsToLeaks(hostile([f"/t{i}" for i in range(60)])))
     text = drawn(picture, "svg", ways=(way,)).data.decode()
     assert all(f'id="{key}"' in text for key in picture.keys.values())
 
@@ -170,7 +170,7 @@ def test_every_layout_draws_every_box(way: Way) -> None:
 @pytest.mark.slow
 def test_a_png_is_of_a_bounded_size_and_says_when_it_was_made_smaller() -> None:
     """A memory of some gigabytes would be what Graphviz takes otherwise."""
-    picture = views.privacy_view(hostile([f"/topic_number_{i}" for i in range(400)]))
+    picture = views.privacy_view(PathsToLeaks(hostile([f"/topic_number_{i}" for i in range(400)])))
     done = drawn(picture, "png")
     assert max(struct.unpack(">II", done.data[16:24])) <= 7200
     assert any("made smaller" in said for said in done.remarks)

@@ -1,9 +1,10 @@
-"""The tables of the report, and what storages, decisions and fleets add to it."""
+"""The tables of persons and recipients, what storages, decisions and fleets add, and rights (Articles 15, 17, 20)."""
 
 from __future__ import annotations
 
 from typing import Any
 
+from tests.helpers.graphs import hospital
 from tests.helpers.pages import texts, told
 from tests.helpers.reports import care, fleet, with_decisions, with_outside
 
@@ -17,7 +18,7 @@ def cells(table: Any) -> dict[str, dict[str, str]]:
 
 def test_who_gets_which_kind() -> None:
     """All cells are in the golden set."""
-    who = cells(told(care()).recipients)
+    who = cells(told(care()).persons.recipients)
     assert who["/recorder"]["video of persons"] == "1 path to assess, pseudonymised"
     assert who["/recorder"]["voice"] == "no path found"
     assert who["/uplink"]["voice"] == "1 path to assess"
@@ -25,7 +26,7 @@ def test_who_gets_which_kind() -> None:
 
 def test_a_recipient_that_nothing_reaches_is_a_row_all_the_same() -> None:
     document = care() | {"findings": []}
-    assert set(cells(told(document).recipients)) == {"/recorder", "/uplink"}
+    assert set(cells(told(document).persons.recipients)) == {"/recorder", "/uplink"}
 
 
 def test_tables_are_cut_into_parts_that_fit_a_page() -> None:
@@ -34,7 +35,7 @@ def test_tables_are_cut_into_parts_that_fit_a_page() -> None:
     document["categories"][3]["name"] = "Video"
     document |= {"findings": [], "roles": [row for row in document["roles"] if row["category"] == "Video"]}
     document |= {"derivations": [], "sanitizers": [], "carries": [], "open": []}
-    parts = list(told(document).recipients.parts())
+    parts = list(told(document).persons.recipients.parts())
     assert [len(part.columns) for part in parts] == [6, 6, 2]
     assert all(len(row.cells) == len(part.columns) for part in parts for row in part.rows)
 
@@ -63,7 +64,7 @@ def test_decisions_stand_beside_their_way_with_what_they_lack() -> None:
         assert "to be mitigated" in text
         assert "matches no path any more" in text
         assert "1 path to assess accepted by a person's decision; section 4 shows each" in text
-    assert {what: number for number, what in report.numbers}["paths to assess"] == 2
+    assert {what: number for number, what in report.summary.numbers}["paths to assess"] == 2
 
 
 def test_findings_that_differ_only_in_the_robot_are_one_with_its_robots_listed() -> None:  # S10
@@ -72,14 +73,47 @@ def test_findings_that_differ_only_in_the_robot_are_one_with_its_robots_listed()
     report = told(document)
     assert len(document["findings"]) == 60
     assert [len(entry.robots) for entry in report.entries] == [20, 20, 20]
-    assert [row.name for row in report.recipients.rows] == ["/recorder (20 robots)", "/uplink (20 robots)"]
+    assert [row.name for row in report.persons.recipients.rows] == ["/recorder (20 robots)", "/uplink (20 robots)"]
     for text in texts(document):
         assert all(robot in text for robot in robots)
         assert "/uplink (20 robots)" in text
-    assert {item.robots for item in report.items} == {20}
+    assert {item.robots for item in report.inventory.items} == {20}
 
 
 def test_a_way_from_robot_to_robot_is_another_pattern_than_one_inside_a_robot() -> None:
     document = fleet(care(), ["a", "b"])
     document["findings"][0]["leak"]["robot"] = "b"
     assert sorted(len(entry.robots) for entry in told(document).entries) == [0, 0, 2, 2]
+
+
+def test_each_group_that_labels_name_has_its_places() -> None:
+    groups = {group.name: {place.name: place for place in group.places} for group in told(care()).persons.rights}
+    assert set(groups) == {"residents", "staff", "visitors", "persons not stated"}
+    assert set(groups["residents"]) == {"/recorder", "/uplink"}
+    assert groups["visitors"]["/uplink"].data == "face template"  # the microphone is not about visitors
+    assert groups["residents"]["/uplink"].data == "face template, voice"
+    assert (groups["staff"]["/uplink"].retention, groups["staff"]["/uplink"].recipient) == ("not known", "not known")
+
+
+def test_a_storage_stands_first_with_how_long_it_keeps_what() -> None:
+    residents, _, visitors, _ = told(with_outside(care())).persons.rights
+    assert residents.places[0].name == "archive"
+    assert residents.places[0].retention.startswith("video of persons: 30 days")
+    speech = next(place for place in residents.places if place.name == "speech service")
+    assert speech.recipient == "Speech Inc., US (adequacy decision for some recipients)"
+    assert "speech service" not in {place.name for place in visitors.places}  # it gets voices only
+
+
+def test_every_finding_of_a_group_is_at_one_of_its_places() -> None:
+    for document in (care(), with_outside(care()), dict(hospital().document())):
+        report = told(document)
+        told_places = {place.name for group in report.persons.rights for place in group.places}
+        for finding in document["findings"]:
+            name = finding["leak"]["name"]
+            assert any(name in place for place in told_places), name
+
+
+def test_who_has_no_place_is_told_so_and_what_is_not_known_is_said() -> None:
+    for text in texts(care() | {"findings": [], "verdict": "no-leak-found"}):
+        assert "Data about residents: no path to a storage or recipient was found under the labels given." in text
+        assert "What nodes, logs and recipients keep besides is not known to the program." in text

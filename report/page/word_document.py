@@ -1,6 +1,7 @@
-"""Markdown -> a Word document: each block of the text in a style of Word's own.
+"""The report as a Word document: each block of its Markdown in a style of Word's own, which people go on with.
 
-Only the blocks that ``report.md.j2`` writes are known; any other is an error, never left out in silence.
+In: the report as Markdown (``markdown.py``), so that no sentence stands in one of them only. Out: the bytes of a
+``.docx``. Only the blocks that ``report.md.j2`` writes are known; any other is an error, never left out in silence.
 """
 
 from __future__ import annotations

@@ -13,8 +13,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import rosprivacy
-from rosprivacy.report.docx.document import word_document
 from rosprivacy.report.page.markdown import escaped
+from rosprivacy.report.page.word_document import word_document
 from tests.helpers.daily import one_in
 from tests.helpers.paths import ROOT
 from tests.helpers.word import text_of

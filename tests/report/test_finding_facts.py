@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 
 import rosprivacy
-from rosprivacy.report.finding_order import in_order, strength
+from rosprivacy.report.finding_facts import in_order, strength
 from tests.helpers.paths import ROOT
 from tests.helpers.reports import care
 

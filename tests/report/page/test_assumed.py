@@ -42,7 +42,7 @@ def told(**more: Any) -> Any:
 
 
 def test_channels_with_data_have_a_row_with_types_and_from_where_each_is_known() -> None:
-    rows = {row.name: row for row in outline(told().document(), "en").typed}
+    rows = {row.name: row for row in outline(told().document(), "en").grounds.typed}
     assert list(rows) == ["/a", "/b"]  # no data gets to /quiet
     assert rows["/a"].types == (("std_msgs/msg/Bool", "observed, t.yaml:4"),)
     assert (rows["/a"].data, rows["/a"].closed) == ("", "video of persons")
@@ -54,8 +54,8 @@ def test_channels_with_data_have_a_row_with_types_and_from_where_each_is_known()
 
 
 def test_what_only_a_type_closes_stands_there_and_not_without_limits() -> None:
-    assert outline(told().document(), "en").only_by_types == (("video of persons", "/cam to /sink"),)
-    assert outline(told(type_limits=None).document(), "en").only_by_types == ()
+    assert outline(told().document(), "en").grounds.only_by_types == (("video of persons", "/cam to /sink"),)
+    assert outline(told(type_limits=None).document(), "en").grounds.only_by_types == ()
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
@@ -92,7 +92,7 @@ def test_robots_that_are_alike_in_this_are_one_row() -> None:
     for n in (1, 2):
         Path(f"l{n}.yaml").write_text(f"{LABELS}# robot {n}\n", "utf-8")
     Path("f.yaml").write_text(f"fleet: 1\nrobots: {{{robots}}}\n", "utf-8")
-    (first, *_) = outline(rosprivacy.analyze_fleet("f.yaml").document(), "en").typed
+    (first, *_) = outline(rosprivacy.analyze_fleet("f.yaml").document(), "en").grounds.typed
     assert first.name == "/a (2 robots)"
 
 
@@ -103,7 +103,7 @@ def test_a_bag_tells_types_of_which_nobody_is_known_to_be_the_writer() -> None:
     rosbag2(Path("run1"), topics={"/a": ("sensor_msgs/msg/Image", 1)})
     Path("l.yaml").write_text(f"{LABELS}elements: {{run: {{kind: storage, bag: run1, retention: P1D}}}}\n", "utf-8")
     result = told()
-    row = next(row for row in outline(result.document(), "en").typed if row.name == "/a")
+    row = next(row for row in outline(result.document(), "en").grounds.typed if row.name == "/a")
     assert row.types == (
         ("sensor_msgs/msg/Image", "in a recording, l.yaml:4"),
         ("std_msgs/msg/Bool", "observed, t.yaml:4"),

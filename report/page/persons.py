@@ -1,0 +1,369 @@
+"""The persons: whose data there are, who gets them, what for and on which basis, and where their rights apply.
+
+In: an ``Index`` and the entries of the report. Out: ``PageTable``s, cut into parts that are narrow enough for paper,
+and rows of plain texts. In the tables every kind of data is a column and every recipient a row, also where nothing was
+found: what is missing would look like an answer. What is not stated of all data of a kind is said to be completed. A
+storage or recipient counts for a group of persons (Articles 15, 17 and 20) if data that the group's sources bring in,
+or that are made of these, can get there; how long it is kept is 'not known' where nobody states it.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from rosprivacy.analysis.text import fit
+from rosprivacy.report.naming import key
+from rosprivacy.report.page.elements import STORAGE, country, retention_text
+from rosprivacy.report.page.index import anchor, grouped, state
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+
+    from rosprivacy.report.naming import Key
+    from rosprivacy.report.page.finding_entries import PathEntry
+    from rosprivacy.report.page.index import Index
+
+COLUMNS = 6  # of one part, so that it fits a page upright
+OUTSIDE = ("storage", "external-system", "display", "participant", "person", "device")
+
+
+class Concerned(NamedTuple):
+    """Whom the data are about and who gets them.
+
+    Attributes
+    ----------
+    subjects, silent
+        Whose data, by kind; sources of which nobody says whose.
+    recipients
+        Who can get data, by kind.
+    processed
+        What for, on which basis and by whom.
+    rights
+        Of each group of persons, where data about them can lie.
+    """
+
+    subjects: PageTable
+    silent: tuple[str, ...]
+    recipients: PageTable
+    processed: tuple[PurposeRow, ...]
+    rights: tuple[Persons, ...]
+
+
+def concerned(index: Index, entries: Sequence[PathEntry]) -> Concerned:
+    """Return the persons of a document."""
+    links = TableLinks(entries)
+    table, silent = subjects(index, links)
+    return Concerned(table, silent, recipients(index, links), processed(index), rights(index))
+
+
+class Cell(NamedTuple):
+    """What a table says at one place.
+
+    Attributes
+    ----------
+    link
+        Anchor of the first entry, empty if there is none.
+    strong
+        Whether there is something to assess.
+    """
+
+    text: str
+    link: str = ""
+    strong: bool = False
+
+
+class TableRow(NamedTuple):
+    """One row."""
+
+    name: str
+    kind: str
+    cells: tuple[Cell, ...]
+
+
+class TablePart(NamedTuple):
+    """Some columns of a table, with all of its rows."""
+
+    number: int
+    parts: int
+    columns: tuple[str, ...]
+    rows: tuple[TableRow, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class PageTable:
+    """A table."""
+
+    columns: tuple[str, ...]
+    rows: tuple[TableRow, ...] = field(default=())
+
+    def parts(self) -> Iterator[TablePart]:
+        """Return the parts, each with at most ``COLUMNS`` columns; none of a table without rows."""
+        begins = range(0, len(self.columns), COLUMNS) if self.rows else range(0)
+        for number, begin in enumerate(begins, 1):
+            end = begin + COLUMNS
+            rows = tuple(TableRow(row.name, row.kind, row.cells[begin:end]) for row in self.rows)
+            yield TablePart(number, len(begins), self.columns[begin:end], rows)
+
+
+class TableLinks:
+    """Where the entry of a finding stands: findings that differ only in the robot share one."""
+
+    def __init__(self, entries: Iterable[Any]) -> None:
+        self._first = {finding: entry.anchor for entry in entries for finding in (entry.id, *entry.alike)}
+
+    def to(self, findings: Sequence[Mapping[str, Any]]) -> str:
+        """Return the anchor of the first entry."""
+        return self._first.get(findings[0]["id"], anchor(findings[0]["id"])) if findings else ""
+
+
+def recipients(index: Index, links: TableLinks) -> PageTable:
+    """Return who can get data: elements that let it out, keep it, or lie outside ROS."""
+    found = {key(f["leak"]): f["leak"] for f in index.findings}
+    found |= {element: index.elements[element] for element in index.of_role.get("leak", {})}
+    found |= {k: row["element"] for k, row in index.outside.items() if row["element"]["kind"] in OUTSIDE}
+    findings: dict[tuple[Key, str], list[Mapping[str, Any]]] = defaultdict(list)
+    for finding in index.findings:
+        findings[key(finding["leak"]), finding["category"]].append(finding)
+    ordered = sorted(found.values(), key=lambda e: (e["kind"] == "node", e["kind"], e["name"], e["robot"]))
+    rows = []
+    for group in grouped(ordered, lambda e: (e["kind"], e["name"])):
+        cells = [_gets(group, category, findings, index, links) for category in index.categories]
+        rows.append(TableRow(index.words.row(index.names(group)), index.words.kind(group[0]), tuple(cells)))
+    return PageTable(_columns(index), tuple(rows))
+
+
+def _columns(index: Index) -> tuple[str, ...]:
+    return tuple(index.data(category) for category in index.categories)
+
+
+def _gets(
+    group: Sequence[Mapping[str, Any]], category: str, findings: Mapping[Any, list[Mapping[str, Any]]],
+    index: Index, links: TableLinks,
+) -> Cell:  # fmt: skip
+    here = [finding for element in group for finding in findings.get((key(element), category), ())]
+    words = index.words
+    for stands, said in (("open", ""), ("accepted", "cell.accepted"), ("dismissed", "cell.through")):
+        some = [finding for finding in here if state(finding) == stands]
+        if some:
+            hidden = f", {words('cell.hidden')}" if all(finding["pseudonymised"] for finding in some) else ""
+            text = words(said) if said else words.count(len(some), "way")
+            return Cell(text + hidden, links.to(some), strong=stands == "open")
+    if any(category in index.outside.get(key(element), {}).get("holds", ()) for element in group):
+        return Cell(words("cell.gets"))
+    cleaned = [row for element in group if (row := index.cleaned.get((key(element), category)))]
+    if cleaned and cleaned[0].get("recognises"):
+        return Cell(words("cell.gets"))
+    return Cell(_cleaned(cleaned[0], index) if cleaned else words("cell.no"))
+
+
+def _cleaned(row: Mapping[str, Any], index: Index) -> str:
+    """That data gets to an element and is said to be cleaned there: no path, on a label's word."""
+    method = index.words(f"method.{row['method']}" if row["stated"] else "method.unstated")
+    lines = index.words.row(f"{fit(place['file'])}:{place['line']}" for place in row.get("places", ()))
+    return index.words("cell.cleaned", how=index.words.row(filter(None, (method, lines))))
+
+
+def subjects(index: Index, links: TableLinks) -> tuple[PageTable, tuple[str, ...]]:
+    """Return whose data by kind, and the names of sources of which labels do not say it."""
+    sources = index.of_role.get("source", {})
+    groups: dict[str, set[Key]] = defaultdict(set)
+    silent = []
+    for source in sources:
+        for group in index.subjects.get(source, ()):
+            groups[group].add(source)
+        if source not in index.subjects:
+            silent.append(source)
+    rows: list[tuple[str | None, set[Key]]] = sorted(groups.items())
+    rows += [(None, set(silent))] if silent else []
+    findings: dict[tuple[Key, str], list[Mapping[str, Any]]] = defaultdict(list)
+    for finding in index.findings:
+        findings[key(finding["source"]), finding["category"]].append(finding)
+    table = [
+        TableRow(
+            index.words("subject.unknown") if name is None else fit(name),
+            "",
+            tuple(_about(name, members, c, findings, index, links) for c in index.categories),
+        )
+        for name, members in rows
+    ]
+    return PageTable(_columns(index), tuple(table)), index.names([index.elements[s] for s in silent])
+
+
+def _about(
+    name: str | None, members: set[Key], category: str, findings: Mapping[Any, list[Mapping[str, Any]]],
+    index: Index, links: TableLinks,
+) -> Cell:  # fmt: skip
+    here = [finding for member in sorted(members) for finding in findings.get((member, category), ())]
+    open_findings = [finding for finding in here if state(finding) == "open"]
+    words = index.words
+    if open_findings:
+        return Cell(words.count(len(open_findings), "way"), links.to(open_findings), strong=True)
+    if here:
+        accepted = any(state(finding) == "accepted" for finding in here)
+        return Cell(words("cell.accepted" if accepted else "cell.through"), links.to(here))
+    if any(category in index.of_role["source"][member] for member in members):
+        return Cell(words("cell.brought"))
+    return Cell(words("cell.made" if index.is_of(name, category) else "cell.none"))
+
+
+PURPOSE, BASIS = "purpose", "legal_basis"  # as a document says that they are missing
+
+
+class PurposeRow(NamedTuple):
+    """A kind of data where it begins or ends."""
+
+    data: str
+    where: str
+    purposes: str
+    bases: str
+    controllers: str
+
+
+def processed(index: Index) -> tuple[PurposeRow, ...]:
+    """Return the rows, by kind of data; those of robots that say the same as one."""
+    rows = []
+    for category in index.categories:
+        here = [row for (_, of), row in index.processed_for.items() if of == category]
+        for group in grouped(
+            here, lambda row: (row["element"]["kind"], row["element"]["name"], str(_stated_purposes(row)))
+        ):
+            names = index.words.row(index.names([row["element"] for row in group]))
+            texts = purposes(group, index), bases(group, (), index), controllers(group, index)
+            rows.append(PurposeRow(index.data(category), names, *texts))
+    return tuple(rows)
+
+
+def _stated_purposes(row: Mapping[str, Any]) -> list[Any]:
+    return [row[key] for key in ("purposes", "legal_bases", "controllers", "officers", "missing")]
+
+
+def signed(index: Index) -> dict[str, str]:
+    """Return what stands in fields of the report that people sign, as far as it is stated; other fields are empty."""
+    rows = list(index.processed_for.values())
+    found = {
+        "controller": controllers(rows, index),
+        "purpose": _by_kind(index, purposes),
+        "basis": _by_kind(index, _bases),
+    }
+    return {field: said for field, said in found.items() if rows and said}
+
+
+def _by_kind(index: Index, statement: Callable[[Sequence[Mapping[str, Any]], Index], str]) -> str:
+    rows = {
+        category: [row for (_, of), row in index.processed_for.items() if of == category]
+        for category in index.categories
+    }
+    return "; ".join(
+        index.words.pair(index.data(category), statement(some, index)) for category, some in rows.items() if some
+    )
+
+
+def purposes(rows: Sequence[Mapping[str, Any]], index: Index) -> str:
+    """Return purposes; also that some are to be completed."""
+    return _with_pending(rows, "purposes", PURPOSE, fit, index)
+
+
+def bases(rows: Sequence[Mapping[str, Any]], decided: Iterable[str], index: Index) -> str:
+    """Return legal bases, those that decisions record too; also that some are to be completed."""
+    return _with_pending(rows, "legal_bases", BASIS, index.words.basis, index, decided)
+
+
+def _bases(rows: Sequence[Mapping[str, Any]], index: Index) -> str:
+    return bases(rows, (), index)
+
+
+def controllers(rows: Iterable[Mapping[str, Any]], index: Index) -> str:
+    """Return who is responsible, and the data-protection officers."""
+    who = dict.fromkeys(fit(one) for row in rows for one in row["controllers"])
+    officers = dict.fromkeys(fit(one) for row in rows for one in row["officers"])
+    return "; ".join([*who, *(index.words("record.dpo", name=one) for one in officers)])
+
+
+def _with_pending(
+    rows: Sequence[Mapping[str, Any]], key: str, fact: str, text_of: Callable[[str], str], index: Index,
+    decided: Iterable[str] = (),
+) -> str:  # fmt: skip
+    stated = dict.fromkeys([*(one for row in rows for one in row[key]), *decided])
+    lacking = not stated or any(fact in row["missing"] for row in rows)
+    return "; ".join([*map(text_of, stated), *([index.words("record.open")] if lacking else [])])
+
+
+class DataPlace(NamedTuple):
+    """Where data of a group can lie: a storage, an external recipient, or an element that lets data out."""
+
+    name: str
+    kind: str
+    data: str
+    retention: str
+    recipient: str
+
+
+class Persons(NamedTuple):
+    """A group of persons, and the places; none where no path of their data was found to one."""
+
+    name: str
+    places: tuple[DataPlace, ...]
+
+
+def rights(index: Index) -> tuple[Persons, ...]:
+    """Return the groups that labels name, then the persons that they do not name.
+
+    Complexity: O(groups x (storages + findings) x kinds of data).
+    """
+    sources = index.of_role.get("source", {})
+    groups: dict[str, set[Key]] = {}
+    for source in sources:
+        for name in index.subjects.get(source, ()):
+            groups.setdefault(name, set()).add(source)
+    told = [Persons(fit(name), tuple(_places(name, members, index))) for name, members in sorted(groups.items())]
+    silent = {source for source in sources if source not in index.subjects}
+    if silent:
+        told.append(Persons(index.words("subject.unknown"), tuple(_places(None, silent, index))))
+    return tuple(told)
+
+
+def _places(group: str | None, members: set[Key], index: Index) -> Iterator[DataPlace]:
+    """Storages first, then who receives data."""
+    there = sorted(_kinds(group, members, index).items(), key=lambda one: (one[0][1] != STORAGE, one[0]))
+    alike: dict[tuple[str, DataPlace], list[Mapping[str, Any]]] = {}
+    for place, kinds in there:
+        element = index.elements[place]
+        alike.setdefault((element["name"], _place(element, kinds, index)), []).append(element)
+    for (_, made), elements in alike.items():
+        yield made._replace(name=index.words.row(index.names(elements)))
+
+
+def _kinds(group: str | None, members: set[Key], index: Index) -> dict[Key, dict[str, bool]]:
+    """Place -> the kinds of the members' data that can get there, and whether these come pseudonymised only."""
+    found: dict[Key, dict[str, bool]] = {}
+    for finding in index.findings:
+        if key(finding["source"]) in members:
+            here, category = found.setdefault(key(finding["leak"]), {}), finding["category"]
+            here[category] = here.get(category, True) and finding["pseudonymised"]
+    for place, row in index.outside.items():
+        for category in row["holds"] if row["element"]["kind"] in OUTSIDE else ():
+            if index.is_of(group, category, [row["element"]]):
+                hidden = index.pseudonymised(row["element"], category)
+                found.setdefault(place, {}).setdefault(category, hidden)
+    return found
+
+
+def _place(element: Mapping[str, Any], kinds: Mapping[str, bool], index: Index) -> DataPlace:
+    words, row = index.words, index.outside.get(key(element), {})
+    durations = {category: retention_text(row, category, index) if row.get("retention") else "" for category in kinds}
+    stated = {duration for duration in durations.values() if duration}
+    if not stated:
+        said = words("rights.unknown")
+    elif len(set(durations.values())) == 1:
+        said = stated.pop()
+    else:
+        said = "; ".join(
+            words("outside.of", data=index.data(category), duration=duration or words("rights.unknown"))
+            for category, duration in durations.items()
+        )
+    who = [fit(row["operator"])] if row.get("operator") else []
+    who += [country(row, index)] if row.get("country") else []
+    data = words.row(index.data(category, pseudonymised=hidden) for category, hidden in kinds.items())
+    return DataPlace("", words.kind(element), data, said, words.row(who) or words("rights.unknown"))
