@@ -1,7 +1,9 @@
-"""The pack as the Neo4j Browser saves queries: a ZIP file with a folder of ``.cypher`` files, titled by the first line.
+"""The pack for other programs: as the Neo4j Browser saves queries, and as a dashboard of NeoDash.
 
-In: queries. Out: bytes, the same for the same queries. Source: the Browser's own reading of what is dropped on its page
-(``FileDrop`` and ``readZipFiles`` of neo4j-browser).
+In: queries. Out: a ZIP file with a folder of ``.cypher`` files, titled by the first line, the same bytes for the same
+queries; the JSON (version 2.4) of a dashboard with a page of tables for each sort of question. Sources: the Browser's
+own reading of what is dropped on its page (``FileDrop`` and ``readZipFiles`` of neo4j-browser); NeoDash's own published
+dashboards.
 """
 
 from __future__ import annotations
@@ -79,3 +81,46 @@ def _with_texts(query: Query, texts: Mapping[str, str]) -> str:
 
     body = [line for line in query.text.splitlines() if not line.startswith("//")]
     return _TOKEN.sub(written, "\n".join(body))
+
+
+TITLE = "What rosprivacy found"
+ABOUT = (
+    "These are answers of an analysis of what policies allow and labels state. They are no legal verdict. "
+    "*no-leak-found* means that no path was found in what was read; **doubts** say what is not known."
+)
+PAGES = {
+    "Robots": ("verdicts", "findings-by-robot", "findings-by-pattern", "robots-that-differ"),
+    "Kinds of data": ("category-overview", "findings-under-article", "pseudonymised-at-leaks", "derivations"),
+    "To review": ("review-next", "unstated-methods", "wildcards-on-leak-paths", "storages"),
+    "Loads": ("loads", "changes"),
+}
+WIDTH, HEIGHT = 24, 5  # of the grid of a page, and of a table on it
+
+
+def dashboard(queries: Mapping[str, Query]) -> str:
+    """Return the dashboard, with the defaults of the queries in the place of parameters.
+
+    >>> from rosprivacy.queries.library import pack
+    >>> [page["title"] for page in json.loads(dashboard(pack()))["pages"]]
+    ['Robots', 'Kinds of data', 'To review', 'Loads']
+    """
+    pages = [
+        {"title": title, "reports": [_text(title), *(_table(queries[name], row) for row, name in enumerate(names))]}
+        for title, names in PAGES.items()
+    ]
+    settings = {"pagenumber": 0, "editable": True, "fullscreenEnabled": True, "parameters": {}}
+    whole = {"title": TITLE, "version": "2.4", "settings": settings, "pages": pages, "parameters": {}, "extensions": {}}
+    return json.dumps(whole, indent=1, ensure_ascii=False) + "\n"
+
+
+def _text(page: str) -> dict[str, Any]:
+    return _report(f"about {page}", "", ABOUT, "text", 0, 2)
+
+
+def _table(query: Query, row: int) -> dict[str, Any]:
+    return _report(query.name, query.description, saved(query), "table", 2 + row * HEIGHT, HEIGHT)
+
+
+def _report(name: str, title: str, query: str, kind: str, y: int, height: int) -> dict[str, Any]:
+    place = {"x": 0, "y": y, "width": WIDTH, "height": height}
+    return {"id": name, "title": title, "query": query, "type": kind, **place, "selection": {}, "settings": {}}

@@ -144,7 +144,7 @@ def test_the_rooms_ship_under_the_package() -> None:
 LABELS = ["analyze", "examples/factory/after.policy.xml", "-l", "examples/factory/run5.labels.yaml"]
 FOR_SOME = [  # of ours, needed where there is such a thing: a decision, a bag, an observation, a type, a wildcard
     *("analysis.decisions", "analysis.remembered", "analysis.model.recording", "ingest.reading.legal_basis"),
-    *("ingest.policies.observed_metadata", "ingest.policies.common_names", "ingest.types.type_table"),
+    *("ingest.policies.observed_metadata", "ingest.types.type_table"),
     *("analysis.kernel.type_limits", "cli.wrong_values", "ontology.known"),
 ]
 

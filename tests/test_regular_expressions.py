@@ -13,8 +13,8 @@ import time
 import pytest
 
 from rosprivacy.analysis.bounds import BOUNDS
+from rosprivacy.ingest.deployed.access_file import MAX_BYTES
 from rosprivacy.ingest.policies.names import matcher
-from rosprivacy.ingest.reading.json5_values import MAX_BYTES
 from tests.helpers.regular_expressions import LINTER, Expression, asked, expressions
 
 pytestmark = [
@@ -29,10 +29,10 @@ ARGUMENT, MESSAGE, OURS = 131_072, 20_000, 5_000
 SQUARE = {
     "cli/wrong_values.py:LISTED": (ARGUMENT, "an argument of the user's own"),
     "ingest/policies/joint_policies.py:_WILDCARD": (BOUNDS.name, "a name in a policy"),
-    "ingest/reading/json5_values.py:_TOKEN": (MAX_BYTES, "a file that json5 has read before"),
+    "ingest/deployed/access_file.py:_TOKEN": (MAX_BYTES, "a file that json5 has read before"),
     "queries/library.py:TEXT": (OURS, "a question that comes with the program"),
-    "queries/reading.py:_EARLIER": (MESSAGE, "a message of the server"),
-    "queries/reading.py:_MISSING_NAME": (MESSAGE, "a message of the server"),
+    "queries/run.py:_EARLIER": (MESSAGE, "a message of the server"),
+    "queries/run.py:_MISSING_NAME": (MESSAGE, "a message of the server"),
     "queries/saved.py:_TOKEN": (OURS, "a question that comes with the program"),
 }
 GLOBS = "analysis/expressions.py:regex"  # made of a stranger's glob, with groups that JavaScript does not have

@@ -16,8 +16,7 @@ from rosprivacy.analysis.findings.beyond import DenyLine
 from rosprivacy.analysis.modes import View
 from rosprivacy.answering import answer
 from rosprivacy.both_views import ChangeTrials, both_views
-from rosprivacy.ingest.policies.changed_graph import changed_graph
-from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, PolicyChange, changed
+from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, PolicyChange, changed, changed_graph
 from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.ingest.policies.policy_xml import read_policy
 from rosprivacy.question import question_of

@@ -17,7 +17,7 @@ from rosprivacy.analysis.errors import LabelError, shown
 from rosprivacy.ingest.code.cpp_code import read_cpp
 from rosprivacy.ingest.code.python_code import read_python
 from rosprivacy.ingest.code.source_code import SECONDS, Code, OutOfTime
-from rosprivacy.ingest.policies.folders import contents
+from rosprivacy.ingest.policies.policy_files import contents
 from rosprivacy.ingest.reading.bounded_file import beginning, read_regular
 
 if TYPE_CHECKING:

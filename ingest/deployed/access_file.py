@@ -1,7 +1,8 @@
 """Zenoh's access control -> its rules, subjects and policies, as they are written.
 
 In: the path of a configuration (JSON5) of a session or router. Out: ``AccessFile``, or every problem at its line. What
-Zenoh refuses is refused here too: a session with it does not start. Nothing is decided here.
+Zenoh refuses is refused here too: a session with it does not start. Nothing is decided here. JSON5 is checked and its
+strings are read by the package ``json5``, which knows no lines; these are found here.
 
 Source: ``access_control`` in Zenoh's ``DEFAULT_CONFIG.json5``; ``policy_decision_point`` for the identities;
 ``eclipse-zenoh`` 1.10.2 is the judge of the tests.
@@ -15,16 +16,70 @@ from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import InputErrors, PolicyError, shown
 from rosprivacy.analysis.model import Place
 from rosprivacy.ingest.deployed.zenoh_keys import problem_of
-from rosprivacy.ingest.reading import json5_values
+from rosprivacy.ingest.reading.bounded_file import read_utf8
 from rosprivacy.ingest.reading.format_reader import FileReader
+from rosprivacy.ingest.reading.yaml_values import Builder
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable
 
+    from rosprivacy.analysis.bounds import Bounds
+    from rosprivacy.analysis.errors import InputError
     from rosprivacy.ingest.reading.yaml_values import Value
+
+MAX_BYTES = 2**18
+"""Of a file; ``json5`` takes some ten seconds for a megabyte."""
+MISSING = "install the extra [zenoh] from where rosprivacy came from"
+_TOKEN = re.compile(
+    r"""//[^\n\r\u2028\u2029]* | /\*.*?(?:\*/|$) | [{}\[\]]
+    | "(?:[^"\\]|\\(?:.|$))*(?:"|$) | '(?:[^'\\]|\\(?:.|$))*(?:'|$) | [^\s\ufeff{}\[\]"',:/]+""",
+    re.DOTALL | re.VERBOSE,
+)
+_PLACE = re.compile(r"<string>:(\d+) (.*)", re.DOTALL)
+_TOO_DEEP = ("nested more deeply than can be read", "write it flatter")
+
+
+def read_json5(file: str, fail: Callable[[int, str, str], InputError], bounds: Bounds = BOUNDS) -> tuple[Value, bytes]:
+    """Read a file; see ``yaml_values.read``."""
+    text, data = read_utf8(file, MAX_BYTES, fail)
+    return parse_json5(text, fail, bounds), data
+
+
+def parse_json5(text: str, fail: Callable[[int, str, str], InputError], bounds: Bounds = BOUNDS) -> Value:
+    """Read JSON5 text; see ``yaml_values.read``."""
+    try:
+        import json5  # noqa: PLC0415 - an extra
+    except ImportError as error:
+        raise fail(0, f"the package json5 is not there ({error})", MISSING) from error
+    try:
+        json5.loads(text)
+    except RecursionError:
+        raise fail(1, *_TOO_DEEP) from None
+    except ValueError as error:
+        place = _PLACE.fullmatch(str(error))
+        line, what = (int(place[1]), place[2]) if place else (1, str(error))
+        raise fail(line, f"not JSON5: {shown(what)}", "correct the syntax") from None
+    builder = Builder(fail, bounds)
+    line, at = 1, 0
+    for token in _TOKEN.finditer(text):
+        line += text.count("\n", at, token.start())
+        at = token.start()
+        word = token[0]
+        if word in "{[":
+            builder.begin(line, "map" if word == "{" else "list")
+        elif word in "}]":
+            builder.end()
+        elif word[0] in "\"'":
+            builder.scalar(line, "text", json5.loads(word))
+        elif word[0] != "/":  # no comment
+            builder.scalar(line, "empty" if word == "null" else "number", word)
+    assert builder.top is not None, "json5 takes no text without a value"
+    return builder.top
+
 
 SECTION = "access_control"
 FLOWS = ("egress", "ingress")
@@ -121,7 +176,7 @@ class AccessFile:
 def read_access(file: str) -> AccessFile:
     """Read the access control of a configuration; ``InputErrors`` has every problem."""
     try:
-        top, _ = json5_values.read(file, lambda line, problem, hint: PolicyError(file, line, problem, hint))
+        top, _ = read_json5(file, lambda line, problem, hint: PolicyError(file, line, problem, hint))
     except PolicyError as error:
         raise InputErrors([error]) from None
     reader = _Reader(file, error=PolicyError)

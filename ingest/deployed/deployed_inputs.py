@@ -35,7 +35,7 @@ from rosprivacy.ingest.deployed.governance import (
 from rosprivacy.ingest.deployed.permissions import enclave_of, expired, policy_of, read_permissions
 from rosprivacy.ingest.deployed.security_xml import section_of, warning
 from rosprivacy.ingest.deployed.signatures import given_by, pinned, read_authority, read_certificate, read_signed
-from rosprivacy.ingest.policies.folders import Contents, beside_keystore, contents
+from rosprivacy.ingest.policies.policy_files import Contents, beside_keystore, contents
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence

@@ -36,7 +36,7 @@ from rosprivacy.ingest.labels.label_file import OURS
 from rosprivacy.ingest.labels.label_reader import LabelReader
 from rosprivacy.ingest.labels.stated_facts import OF_SYSTEM, SURROUNDINGS, joined, two_of_one, united
 from rosprivacy.ingest.reading import yaml_values
-from rosprivacy.ingest.reading.confined import WIDEN, leaves, what_leaves
+from rosprivacy.ingest.reading.bounded_file import WIDEN, leaves, what_leaves
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

@@ -15,7 +15,7 @@ from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import Place, Surroundings
 from rosprivacy.ingest.labels.label_file import OURS
 from rosprivacy.ingest.labels.stated_facts import SURROUNDINGS
-from rosprivacy.ingest.reading.confined import unusable
+from rosprivacy.ingest.reading.bounded_file import unusable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import InputError, InputErrors, LabelError, shown
 from rosprivacy.analysis.model import Diagnostic, Place, Severity
 from rosprivacy.ingest.labels.entries import END_KINDS, End, is_non_ros
-from rosprivacy.ingest.reading.confined import WIDEN, leaves, unusable, what_leaves
+from rosprivacy.ingest.reading.bounded_file import WIDEN, leaves, unusable, what_leaves
 from rosprivacy.ingest.reading.format_reader import FileReader
 
 if TYPE_CHECKING:

@@ -20,20 +20,19 @@ from rosprivacy.analysis.many_flows import Flows
 from rosprivacy.analysis.meeting import Meeting
 from rosprivacy.analysis.model import PARTICIPANT, Element, Flow, FlowGraph, Grant, Place, Profile
 from rosprivacy.analysis.modes import View
-from rosprivacy.ingest.policies.comparisons import Comparisons, apart
 from rosprivacy.ingest.policies.enclave_rights import alike, enforced, of_each, shared
-from rosprivacy.ingest.policies.meetings import literal_ends, meetings
 from rosprivacy.ingest.policies.name_index import Expressions, PlainNames
 from rosprivacy.ingest.policies.names import dds_names, endpoints, is_pattern
 from rosprivacy.ingest.policies.unsecured import in_one_enclave, network_profiles, read_by_network, unsecured
+from rosprivacy.ingest.policies.wildcards import Comparisons, apart, literal_ends, meetings
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.bounds import Bounds
     from rosprivacy.analysis.model import Policy
-    from rosprivacy.ingest.policies.meetings import Ends
     from rosprivacy.ingest.policies.names import Endpoint
+    from rosprivacy.ingest.policies.wildcards import Ends
 
 _ends = attrgetter("source", "target", "role")  # of a flow
 NOWHERE = Place("", 0)

@@ -2,7 +2,9 @@
 
 In: paths. Out: ``Policy`` facts in a stable order. A file that was named is read or refused. What lies in a folder or
 behind a glob and is not read is said (rule S11): grants that no policy brings in with a warning, all else with a
-notice. A folder without any policy is an error.
+notice. A folder without any policy is an error. Links are followed, each folder is entered once whatever leads to it,
+and nothing is left out in silence: of what does not end in ``.xml`` the beginning is looked at, and a link to nothing
+is a problem.
 """
 
 from __future__ import annotations
@@ -10,22 +12,205 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass, field
 from functools import cache
-from glob import has_magic
+from glob import glob, has_magic
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.bounds import BOUNDS
-from rosprivacy.analysis.errors import InputError, InputErrors, PolicyError, reason
-from rosprivacy.analysis.model import NOT_READ, UNREAD_FILE, Diagnostic, Place, Policy, Severity
-from rosprivacy.ingest.policies.folders import Contents, contents, not_read_here
+from rosprivacy.analysis.errors import InputError, InputErrors, PolicyError, reason, shown
+from rosprivacy.analysis.model import ACCESS_GAP, NOT_READ, UNREAD_FILE, Diagnostic, Place, Policy, Severity
 from rosprivacy.ingest.policies.policy_xml import NotAPolicyError, read_policy
-from rosprivacy.ingest.reading.confined import WIDEN, leaves, what_leaves
-from rosprivacy.ingest.reading.file_kinds import PERMISSIONS, POLICY, kind_of_file
+from rosprivacy.ingest.reading.bounded_file import WIDEN, leaves, what_leaves
+from rosprivacy.ingest.reading.file_kinds import ACCESS_LIST, PERMISSIONS, POLICY, FileKind, kind_of_file
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.bounds import Bounds
+
+SIGNED = ".p7s"
+KEYS = (".pem", ".key")  # never opened
+UNREADABLE = FileKind("a file that cannot be read", "check its permissions")
+GRANTING = (POLICY, ACCESS_LIST, PERMISSIONS, UNREADABLE)  # or it may be
+SHOWN_AT_MOST = 3  # of the files that are passed over
+
+
+@dataclass(slots=True, eq=False, repr=False)
+class Contents:
+    """What a folder or a glob holds.
+
+    Attributes
+    ----------
+    files
+        To be read.
+    passed_over
+        Passed over, since their names do not end in ``.xml``.
+    hidden
+        Those of the others that a person does not see; they are not counted.
+    """
+
+    files: set[str] = field(default_factory=set)
+    passed_over: set[str] = field(default_factory=set)
+    hidden: set[str] = field(default_factory=set)
+    problems: list[InputError] = field(default_factory=list)
+
+    def diagnostics(self, argument: str, read: Collection[str], bounds: Bounds = BOUNDS) -> Iterator[Diagnostic]:
+        """Yield what is to be said of what is passed over: what it is by its content, not by its name (rule S11).
+
+        Parameters
+        ----------
+        read
+            Real paths of files and folders that were read all the same.
+        """
+        left = sorted(self.passed_over, key=lambda name: (name in self.hidden, name))
+        left = [name for name in left if not _within(os.path.realpath(name), read)]
+        looked = left[: bounds.passed_over]
+        kinds = {name: looked_at(name) for name in looked}
+        permissions = {name for name, kind in kinds.items() if kind is PERMISSIONS}
+        if permissions:
+            count = "1 file is" if len(permissions) == 1 else f"{len(permissions):,} files are"
+            yield not_read_here(Place(argument, 0), f"{count} ({_names_shown(permissions, argument)})")
+        yield from _unread((name, kind) for name, kind in kinds.items() if kind is not PERMISSIONS)
+        if len(looked) < len(left):
+            what = "; ".join(bounds.refusal("passed_over", len(left)))
+            yield Diagnostic(Place(argument, 0), Severity.WARNING, f"not all looked into: {what}", UNREAD_FILE)
+        others = {name for name, kind in kinds.items() if kind not in GRANTING and name not in self.hidden}
+        if others:
+            count = "1 file is" if len(others) == 1 else f"{len(others):,} files are"
+            message = f"{count} not read, as the name does not end in .xml: {_names_shown(others, argument)}"
+            yield Diagnostic(Place(argument, 0), Severity.NOTICE, message, NOT_READ)
+
+
+def beside_keystore(folder: str, read: Collection[str]) -> Iterator[Diagnostic]:
+    """Yield what is to be said of policies and access lists in a keystore: no middleware reads them there."""
+    held = [
+        contents(str(entry)) or Contents({str(entry)})
+        for entry in Path(folder).iterdir()
+        if entry.name not in ("public", "private")
+    ]
+    files = sorted({name for one in held for name in one.files | one.passed_over})
+    kinds = ((name, looked_at(name)) for name in files if not _within(os.path.realpath(name), read))
+    return _unread((name, kind) for name, kind in kinds if kind is not PERMISSIONS)  # beside those that are signed
+
+
+def _unread(kinds: Iterable[tuple[str, FileKind | None]]) -> Iterator[Diagnostic]:
+    """Yield the gap that a file with grants is which nobody reads, whatever its name."""
+    for name, kind in kinds:
+        if kind in GRANTING:
+            what = f"not read: it is {kind.name}, and what it grants is not known"
+            yield Diagnostic(
+                Place(name, 0), Severity.WARNING, f"{what}; {kind.instead}, or move it out of the folder", UNREAD_FILE
+            )
+
+
+def looked_at(name: str) -> FileKind | None:
+    """Return what a file is by its content; of keys and what is signed by its name, since these are not opened."""
+    ending = Path(name).suffix.lower()
+    if ending == SIGNED or ending in KEYS:
+        return PERMISSIONS if ending == SIGNED else None
+    try:
+        return kind_of_file(name)
+    except (OSError, ValueError):
+        return UNREADABLE
+
+
+def _within(file: str, read: Collection[str]) -> bool:
+    return file in read or any(str(folder) in read for folder in Path(file).parents)
+
+
+def _names_shown(files: Iterable[str], argument: str) -> str:
+    names = sorted(shown(os.path.relpath(name, argument) if Path(argument).is_dir() else name) for name in files)
+    return ", ".join([*names[:SHOWN_AT_MOST], *(["…"] if len(names) > SHOWN_AT_MOST else [])])
+
+
+def not_read_here(place: Place, subject: str) -> Diagnostic:
+    """Return the gap that permissions or governance in a folder of policies are: what is deployed is not read."""
+    message = f"not read: {subject} permissions or governance, and what that grants is not known"
+    return Diagnostic(
+        place, Severity.WARNING, f"{message}; name it by itself, or move it out of the folder", ACCESS_GAP
+    )
+
+
+def contents(argument: str) -> Contents | None:
+    """Return what a folder or a glob holds; None for a file that is named.
+
+    Raises
+    ------
+    OSError, ValueError
+        If there can be no such path.
+    """
+    if not argument:
+        raise ValueError("no name")
+    path = Path(argument)
+    found = _Walk(len(path.parts) - has_magic(argument))
+    if path.is_dir():
+        found.folder(argument)
+    elif has_magic(argument) and not path.exists():
+        for match in sorted(glob(argument, recursive=True)):  # noqa: PTH207 - absolute patterns too
+            found.match(match)
+    else:
+        return None
+    found.links()
+    return found.contents
+
+
+class _Walk:
+    """Walks folders: first those that stand there, then those that only a link leads to."""
+
+    def __init__(self, depth: int) -> None:
+        self.depth = depth  # of what was named, in parts of its path: above it, hidden folders are no matter
+        self.contents = Contents()
+        self._entered: set[str] = set()
+        self._links: list[str] = []
+
+    def match(self, name: str) -> None:
+        """What a glob matches: a file whatever it is called, or a folder."""
+        if Path(name).is_file():
+            self.contents.files.add(name)
+        elif Path(name).is_dir():
+            (self._links.append if Path(name).is_symlink() else self.folder)(name)
+        else:
+            self._entry(name)
+
+    def folder(self, name: str) -> None:
+        waiting = [name]
+        while waiting:
+            folder = waiting.pop()
+            real = os.path.realpath(folder)
+            if real in self._entered:
+                continue
+            self._entered.add(real)
+            try:
+                entries = sorted(os.listdir(folder))
+            except OSError as error:
+                hint = "check its permissions"
+                self.contents.problems.append(PolicyError(folder, 0, f"cannot be read: {reason(error)}", hint))
+                continue
+            for entry in entries:
+                path = str(Path(folder, entry))
+                if not Path(path).is_dir():
+                    self._entry(path)
+                elif Path(path).is_symlink():
+                    self._links.append(path)
+                else:
+                    waiting.append(path)
+
+    def links(self) -> None:
+        """Enter the folders that links lead to, and what links in these lead to."""
+        while self._links:
+            self.folder(self._links.pop(0))
+
+    def _entry(self, name: str) -> None:
+        path = Path(name)
+        if path.is_symlink() and not path.exists():
+            what = f"a link to nothing: {shown(str(path.readlink()))}"
+            self.contents.problems.append(PolicyError(name, 0, what, "correct the link, or remove it"))
+        elif path.is_file() and path.suffix.lower() == ".xml":
+            self.contents.files.add(name)
+        else:
+            self.contents.passed_over.add(name)
+            if any(part.startswith(".") for part in path.parts[self.depth :]):
+                self.contents.hidden.add(name)
 
 
 @dataclass(slots=True, eq=False, repr=False)

@@ -23,8 +23,7 @@ from lxml import etree
 from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import InputError, InputErrors, PolicyError, reason, shown
 from rosprivacy.analysis.model import EMPTY_INCLUDE, FALLBACK_TAKEN, Diagnostic, Place, Severity
-from rosprivacy.ingest.reading.bounded_file import contents, nearest_file
-from rosprivacy.ingest.reading.confined import WIDEN, leaves, what_leaves
+from rosprivacy.ingest.reading.bounded_file import WIDEN, contents, leaves, nearest_file, what_leaves
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

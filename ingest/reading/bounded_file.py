@@ -1,15 +1,17 @@
 """A file that the user names -> its bytes: a regular file, of bounded size, or an error that says why not.
 
-A pipe would be waited for, a device read without end: neither is opened. What is read is noted, so that it is not
-written in the same run.
+A pipe would be waited for, a device read without end: neither is opened. What a file names in its turn is read only
+below a folder, so that a stranger's file opens nothing else with our rights: symbolic links are followed first; a hard
+link cannot be told from the file. What is read is noted, so that it is not written in the same run.
 """
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.errors import reason
+from rosprivacy.analysis.errors import reason, shown
 from rosprivacy.analysis.files_read import noted
 from rosprivacy.analysis.written_names import MUCH, did_you_mean, nearest
 
@@ -17,6 +19,45 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from rosprivacy.analysis.errors import InputError
+
+WIDEN = "move the file inside it, or widen with --include-root"
+
+
+def leaves(file: str | Path, root: str | Path) -> bool:
+    """Return whether a file, or what a link leads to, lies outside a folder; one that is not there by its name.
+
+    Parameters
+    ----------
+    root
+        Links followed.
+
+    Examples
+    --------
+    >>> here = os.path.realpath(os.curdir)
+    >>> leaves("policies/robot.xml", here), leaves("policies/../../robot.xml", here), leaves("/etc/passwd", here)
+    (False, True, True)
+    """
+    return not Path(os.path.realpath(file)).is_relative_to(root)
+
+
+def what_leaves(name: str, root: str | Path) -> str:
+    """Return what to say of a name that leaves a folder."""
+    return f"{shown(repr(name))} leaves the folder {shown(str(root))}"
+
+
+def unusable(file: str) -> str:
+    """Return why the system can look for no file of that name, whether there is one or not; empty if it can.
+
+    >>> unusable("nowhere.xml"), unusable("a" * 300)
+    ('', 'File name too long')
+    """
+    try:
+        os.stat(file)  # noqa: PTH116 - a path object refuses some names in its own words
+    except (FileNotFoundError, NotADirectoryError):
+        return ""
+    except (OSError, ValueError) as error:
+        return reason(error)
+    return ""
 
 
 def contents(path: Path, name: str = "") -> bytes:

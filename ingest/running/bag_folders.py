@@ -19,8 +19,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import BagError, InputError, InputErrors, reason, shown
 from rosprivacy.analysis.model.recording import Bag, BagTopic
 from rosprivacy.ingest.reading import yaml_values
-from rosprivacy.ingest.reading.bounded_file import nearest_file
-from rosprivacy.ingest.reading.confined import leaves
+from rosprivacy.ingest.reading.bounded_file import leaves, nearest_file
 from rosprivacy.ingest.running.recorded_file import Recorded, moment, united
 from rosprivacy.ingest.running.sqlite_file import read_sqlite
 

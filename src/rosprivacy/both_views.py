@@ -27,8 +27,7 @@ from rosprivacy.analysis.modes import View
 from rosprivacy.answer import Enforced
 from rosprivacy.answering import answer
 from rosprivacy.ingest.deployed.zenoh_grants import ANY_SESSION
-from rosprivacy.ingest.policies.changed_graph import changed_graph
-from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, PolicyChange
+from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, PolicyChange, changed_graph
 from rosprivacy.ingest.policies.names import DDS, is_pattern, writable
 from rosprivacy.question import question_of
 from rosprivacy.systems.robot_system import system_reader

@@ -13,10 +13,9 @@ import pytest
 
 from rosprivacy.private_neo4j import connection
 from rosprivacy.private_neo4j.browser_files import DASHBOARD, QUERIES, STYLE
-from rosprivacy.queries.dashboard import dashboard
 from rosprivacy.queries.library import pack
 from rosprivacy.queries.run import run as ask
-from rosprivacy.queries.saved import saved
+from rosprivacy.queries.saved import dashboard, saved
 from rosprivacy.report.pictures.looks import GRAY, LINE_LOOKS, RED, ROLE_LOOKS, SKY
 from tests.helpers import browser as chrome
 from tests.helpers.command import run

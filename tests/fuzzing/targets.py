@@ -30,7 +30,7 @@ from rosprivacy.ingest.known_packages.package_file import read_package
 from rosprivacy.ingest.labels.label_file import parse_labels, read_labels
 from rosprivacy.ingest.language_model import answers_in, read_exchanges
 from rosprivacy.ingest.mitigation.limits_file import read_limits
-from rosprivacy.ingest.policies import common_names, names
+from rosprivacy.ingest.policies import names, wildcards
 from rosprivacy.ingest.policies.policy_xml import read_policy
 from rosprivacy.ingest.policies.saved_graph import read_saved
 from rosprivacy.ingest.running.bag_folders import read_bags
@@ -46,7 +46,7 @@ from rosprivacy.ontology.own import with_own
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.parts import parquet
 from rosprivacy.queries.library import parse
-from rosprivacy.queries.reading import refuse_too_much
+from rosprivacy.queries.run import refuse_too_much
 from rosprivacy.report.compare.earlier import read_earlier
 from rosprivacy.report.json_text import as_text
 from rosprivacy.settings import Settings
@@ -274,7 +274,7 @@ def _names() -> None:
             assert meet == names.overlaps(b, a), f"overlap of {a!r} and {b!r} is not symmetric"
             if not names.is_pattern(b) and names.covers(a, b):
                 assert meet, f"{a!r} covers {b!r}, and does not overlap it"
-    common_names.some_name(tuple(some[:2]), tuple(some[2:]))
+    wildcards.some_name(tuple(some[:2]), tuple(some[2:]))
 
 
 def _with_base(*more: str) -> tuple[str, ...]:

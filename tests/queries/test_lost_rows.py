@@ -16,8 +16,7 @@ from rosprivacy.ingest.neo4j_graph.loading import load
 from rosprivacy.queries.library import find
 from rosprivacy.settings import Settings
 from rosprivacy.systems.robot_system import robot_of
-from rosprivacy.systems.stored_rows import rows_of
-from rosprivacy.systems.stored_system import answer_stored
+from rosprivacy.systems.stored_system import answer_stored, rows_of
 from tests.helpers.daily import one_in
 from tests.helpers.fleet_files import policy
 from tests.helpers.fleet_rows import VOCABULARY

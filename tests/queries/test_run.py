@@ -13,8 +13,7 @@ from rosprivacy.analysis.errors import DatabaseError, QueryError
 from rosprivacy.private_neo4j import connection
 from rosprivacy.queries import run as running
 from rosprivacy.queries.graph_values import Relationship, plain, value_of
-from rosprivacy.queries.reading import ALIKE, DEEPEST, OPERATORS
-from rosprivacy.queries.run import run
+from rosprivacy.queries.run import ALIKE, DEEPEST, OPERATORS, run
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

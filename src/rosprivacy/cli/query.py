@@ -76,7 +76,7 @@ def query(
     """Ask the database: one of the questions that come with the program, or Cypher of your own, which only reads."""
     from rosprivacy.queries.library import find, pack
     from rosprivacy.queries.run import LIMIT
-    from rosprivacy.systems.stored_rows import rows_of
+    from rosprivacy.systems.stored_system import rows_of
 
     given = list(values or ())
     if (cypher is not None) + (file is not None) + (name is not None and "=" not in name) > 1:

@@ -61,7 +61,7 @@ def _drawing(rows: QueryRows, title: str) -> bytes:
     from rosprivacy.queries.graph_values import graph_values
     from rosprivacy.report.pictures.graphviz import drawn
     from rosprivacy.report.pictures.query_view import query_view
-    from rosprivacy.systems.stored_rows import STORED_NAMES
+    from rosprivacy.systems.stored_system import STORED_NAMES
 
     if not rows.rows:
         raise QueryError(f"{title}: no rows, so nothing can be drawn; take --format table to have that as an answer")
@@ -83,7 +83,7 @@ def _text(rows: QueryRows, form: RowFormat, *, wide: bool) -> str:
     from rosprivacy.report.json_text import as_text
     from rosprivacy.report.spreadsheet import as_csv
     from rosprivacy.report.text.graph_words import GraphWords
-    from rosprivacy.systems.stored_rows import STORED_NAMES
+    from rosprivacy.systems.stored_system import STORED_NAMES
 
     if form is RowFormat.json:
         objects = [dict(zip(rows.columns, map(plain, row), strict=True)) for row in rows.rows]

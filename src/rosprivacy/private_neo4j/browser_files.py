@@ -10,9 +10,8 @@ from urllib.parse import quote
 
 from rosprivacy.ingest.neo4j_graph.ids import carries
 from rosprivacy.ingest.neo4j_graph.schema import CARRIED, ELEMENT, FLOWS_TO, KIND_LABELS, NODES, RELATIONSHIPS
-from rosprivacy.queries.dashboard import dashboard
 from rosprivacy.queries.library import pack
-from rosprivacy.queries.saved import zipped
+from rosprivacy.queries.saved import dashboard, zipped
 from rosprivacy.report.pictures.looks import ALLOWED, DATA, OTHER, OUTLINED, grass
 from rosprivacy.report.stored import CALLED_BY
 

@@ -14,7 +14,7 @@ from rosprivacy.analysis.errors import InputErrors, PolicyError
 from rosprivacy.clock import today
 from rosprivacy.ingest.deployed.deployed_paths import deployed
 from rosprivacy.ingest.policies.policy_files import read_policies
-from rosprivacy.ingest.reading.confined import WIDEN, leaves, what_leaves
+from rosprivacy.ingest.reading.bounded_file import WIDEN, leaves, what_leaves
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

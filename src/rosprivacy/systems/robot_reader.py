@@ -18,11 +18,10 @@ from rosprivacy.ingest.labels.binding import join, remarks
 from rosprivacy.ingest.labels.label_file import OURS, read_labels
 from rosprivacy.ingest.mitigation.deny_lines import with_denied
 from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, PolicyChange, changed
-from rosprivacy.ingest.policies.comparisons import careful_warnings
 from rosprivacy.ingest.policies.flow_graph import build
-from rosprivacy.ingest.policies.joint_policies import joint_warnings
-from rosprivacy.ingest.policies.merged_policies import OF_ONE_ROBOT, merging_notices
+from rosprivacy.ingest.policies.joint_policies import OF_ONE_ROBOT, joint_warnings, merging_notices
 from rosprivacy.ingest.policies.namespaces import notices, pushed
+from rosprivacy.ingest.policies.wildcards import careful_warnings
 from rosprivacy.ingest.types.channel_types import matching_nothing
 from rosprivacy.systems.granted import read_granted
 from rosprivacy.systems.robot_system import read_types_files, with_types

@@ -22,10 +22,9 @@ from rosprivacy.ingest.labels.label_file import Labels, read_labels, unknown_cat
 from rosprivacy.ingest.labels.pins import PIN_OF_NOTHING
 from rosprivacy.ingest.labels.stated_facts import in_order
 from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, PolicyChange, changed
-from rosprivacy.ingest.policies.comparisons import careful_warnings
 from rosprivacy.ingest.policies.flow_graph import build
-from rosprivacy.ingest.policies.joint_policies import joint_warnings
-from rosprivacy.ingest.policies.merged_policies import merging_notices
+from rosprivacy.ingest.policies.joint_policies import joint_warnings, merging_notices
+from rosprivacy.ingest.policies.wildcards import careful_warnings
 from rosprivacy.ingest.types.channel_types import channel_types, matching_nothing
 from rosprivacy.question import question_of
 from rosprivacy.system import System

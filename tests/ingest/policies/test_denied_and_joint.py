@@ -14,9 +14,9 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from rosprivacy.ingest.policies.common_names import some_name
 from rosprivacy.ingest.policies.joint_policies import why_refused
 from rosprivacy.ingest.policies.names import matcher
+from rosprivacy.ingest.policies.wildcards import some_name
 from tests.helpers.command import XI
 from tests.helpers.fleet_files import write
 

@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rosprivacy.analysis.model import Element
-from rosprivacy.ingest.policies.meetings import literal_ends, meetings
 from rosprivacy.ingest.policies.names import overlaps
+from rosprivacy.ingest.policies.wildcards import literal_ends, meetings
 
 SIGNS = ("a", "b", "/", "[ab]", "[b-a]", "[!a]", "?", "*", "*", "[", "]")
 WRITTEN = st.lists(st.sampled_from(SIGNS), max_size=7).map("".join)

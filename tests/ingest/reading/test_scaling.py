@@ -30,7 +30,7 @@ from rosprivacy.ingest.running.node_info import TextFiles
 from rosprivacy.ingest.types.types_file import read_types
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.queries.library import parse
-from rosprivacy.queries.reading import refuse_too_much
+from rosprivacy.queries.run import refuse_too_much
 from rosprivacy.settings import Settings
 from tests.helpers.keystores import governance, grant, permissions, rule, topic_rule
 from tests.helpers.observed import node_info

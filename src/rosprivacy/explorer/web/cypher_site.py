@@ -36,7 +36,7 @@ from rosprivacy.report.page.html import in_html
 from rosprivacy.report.pictures.live_svg import Links
 from rosprivacy.report.pictures.query_view import query_view
 from rosprivacy.report.text.graph_words import GraphWords
-from rosprivacy.systems.stored_rows import STORED_NAMES, rows_of
+from rosprivacy.systems.stored_system import STORED_NAMES, rows_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rosprivacy.analysis.errors import PolicyError
-from rosprivacy.ingest.reading.json5_values import MAX_BYTES, parse, read
+from rosprivacy.ingest.deployed.access_file import MAX_BYTES, parse_json5, read_json5
 from rosprivacy.ingest.reading.yaml_values import parse as parse_yaml
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ def fail(line: int, problem: str, hint: str) -> PolicyError:
 
 
 def test_values_know_their_lines() -> None:
-    top = parse(WRITTEN, fail)
+    top = parse_json5(WRITTEN, fail)
     assert [(key, line, value.kind, value.text) for key, line, value in top.entries] == [
         ("id", 3, "text", "one"),
         ("key", 4, "list", ""),
@@ -67,7 +67,7 @@ def test_values_know_their_lines() -> None:
 )
 def test_what_is_no_json5_is_refused_at_its_line(text: str, message: str) -> None:
     with pytest.raises(PolicyError) as caught:
-        parse(text, fail)
+        parse_json5(text, fail)
     assert str(caught.value) == message
 
 
@@ -75,7 +75,7 @@ def test_a_large_file_is_refused(tmp_path: Path) -> None:
     file = tmp_path / "large.json5"
     file.write_text(" " * (MAX_BYTES + 1), "utf-8")
     with pytest.raises(PolicyError, match=f"more than {MAX_BYTES} bytes"):
-        read(str(file), fail)
+        read_json5(str(file), fail)
 
 
 def plain(value: Value) -> Any:
@@ -96,8 +96,8 @@ TREES = st.recursive(
 @given(TREES)
 def test_what_is_written_is_what_is_read(tree: Any) -> None:
     for text in (json.dumps(tree, indent=1, ensure_ascii=False), json5.dumps(tree, quote_keys=False)):
-        assert plain(parse(text, fail)) == tree
+        assert plain(parse_json5(text, fail)) == tree
     if tree is not None:
-        assert parse(json.dumps([tree], indent=1), fail) == parse_yaml(
+        assert parse_json5(json.dumps([tree], indent=1), fail) == parse_yaml(
             "{" + f'"a": {json.dumps([tree], indent=1)}' + "}", fail
         ).get("a")
