@@ -1,8 +1,8 @@
 """The cheapest set of changes that cuts every path of a network, and how certain it is that none is cheaper.
 
-In: ``CutNetwork`` and ``Candidate``s. Out: ``ChangeSet``s. A minimum cut gives a set of changes, and with the cost of a
-change shared among the arcs that it cuts a bound that no set undercuts. Where every change cuts one arc the two meet:
-the set is a minimum cut and exact. Where they do not meet (a change that cuts several arcs makes the problem
+In: ``CutNetwork`` and ``Candidate``s. Out: ``ChangeSet``s. networkx's minimum cut gives a set of changes, and with the
+cost of a change shared among the arcs that it cuts a bound that no set undercuts. Where every change cuts one arc the
+two meet: the set is a minimum cut and exact. Where they do not meet (a change that cuts several arcs makes the problem
 NP-hard: minimum label cut), a search by hitting sets closes the gap as long as it stays within its budget of steps.
 """
 
@@ -10,13 +10,14 @@ from __future__ import annotations
 
 from collections import defaultdict, deque
 from dataclasses import dataclass, field
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.mitigation.cut_network import BEGIN, END
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
+
+    import networkx as nx
 
     from rosprivacy.analysis.mitigation.candidates import Candidate
     from rosprivacy.analysis.mitigation.cut_network import Arc, CutNetwork
@@ -51,7 +52,7 @@ def cheapest(network: CutNetwork, changes: Sequence[Candidate], budget: int = BU
 
     Notes
     -----
-    A maximum flow on the network, twice; then at most ``budget`` steps, each O(arcs) at worst.
+    networkx's maximum flow on the network, twice; then at most ``budget`` steps, each O(arcs) at worst.
 
     Examples
     --------
@@ -164,31 +165,34 @@ class _Network:
 
     def minimum_cut(self) -> set[int]:
         """The changes of a minimum cut, each arc of a change costing as much as the change."""
-        arcs, named = self._capacities(dict.fromkeys(range(len(self.costs)), 1), 1)
-        _, far = maximum_flow(arcs, BEGIN, END)
-        return {number for (tail, head), number in named.items() if tail not in far and head in far}
+        import networkx as nx  # noqa: PLC0415 - heavy, and only needed where there is something to cut
+
+        graph, named = self._graph(dict.fromkeys(range(len(self.costs)), 1), 1)
+        _, (near, _) = nx.minimum_cut(graph, BEGIN, END)
+        return {number for (tail, head), number in named.items() if tail in near and head not in near}
 
     def bound(self) -> int:
         """A bound that no set of changes undercuts: each change shares its cost among the arcs that it cuts."""
-        arcs, _ = self._capacities(self.arcs_of, COMMON_MULTIPLE)
-        value, _ = maximum_flow(arcs, BEGIN, END)
-        return -(-value // COMMON_MULTIPLE)
+        import networkx as nx  # noqa: PLC0415 - as above
 
-    def _capacities(
-        self, parts: Mapping[int, int], total: int
-    ) -> tuple[dict[tuple[int, int], int | None], dict[tuple[int, int], int]]:
-        """The capacities of arcs, None where it cannot be cut: one that several changes cut is as many in a row."""
-        arcs: dict[tuple[int, int], int | None] = {}
+        graph, _ = self._graph(self.arcs_of, COMMON_MULTIPLE)
+        return -(-int(nx.minimum_cut_value(graph, BEGIN, END)) // COMMON_MULTIPLE)
+
+    def _graph(self, parts: Mapping[int, int], total: int) -> tuple[nx.DiGraph[int], dict[tuple[int, int], int]]:
+        """The network for networkx: an arc that several changes cut is as many in a row."""
+        import networkx as nx  # noqa: PLC0415 - as above
+
+        graph: nx.DiGraph[int] = nx.DiGraph()
         named: dict[tuple[int, int], int] = {}
         fresh = max(max(tail, head) for tail, head, _ in self.arcs) + 1
         for tail, head, numbers in self.arcs:
             here = tail
             for number in numbers:
-                arcs[here, fresh] = self.costs[number] * total // parts[number]
+                graph.add_edge(here, fresh, capacity=self.costs[number] * total // parts[number])
                 named[here, fresh] = number
                 here, fresh = fresh, fresh + 1
-            arcs[here, head] = None
-        return arcs, named
+            graph.add_edge(here, head)  # without a capacity: it cannot be cut
+        return graph, named
 
     def search(self, budget: int) -> tuple[frozenset[int] | None, int]:
         """The cheapest set, and a bound that no set undercuts; None if the budget was spent before it was found."""
@@ -205,68 +209,6 @@ class _Network:
                 chosen |= cutters
             if chosen == hitting:
                 return hitting, least
-
-
-def maximum_flow(capacities: Mapping[tuple[int, int], int | None], begin: int, end: int) -> tuple[int, set[int]]:
-    """Return how much can flow, and the vertices beyond the minimum cut that is nearest to the end.
-
-    By blocking flows (Dinic), O(vertices² · arcs) at worst. The import of networkx takes longer than most proposals.
-
-    Parameters
-    ----------
-    capacities
-        (tail, head) -> what an arc can carry, None without a bound; each way from begin to end has a bound.
-
-    Examples
-    --------
-    >>> maximum_flow({(0, 1): 3, (0, 2): 2, (1, 3): 1, (2, 3): 4, (1, 2): None}, 0, 3)
-    (5, {3})
-    """
-    boundless = 1 + sum(filter(None, capacities.values()))
-    residual: dict[int, dict[int, int]] = defaultdict(dict)
-    for (tail, head), capacity in capacities.items():
-        residual[tail][head] = residual[tail].get(head, 0) + (boundless if capacity is None else capacity)
-        residual[head].setdefault(tail, 0)
-    value = 0
-    while begin in (steps := _steps_to(end, residual)):
-        value += _blocking_flow(residual, steps, begin, end)
-    return value, set(steps)
-
-
-def _steps_to(end: int, residual: Mapping[int, Mapping[int, int]]) -> dict[int, int]:
-    """From how many steps away the end can still be reached, of each vertex."""
-    steps = {end: 0}
-    waiting = deque([end])
-    while waiting:
-        here = waiting.popleft()
-        for before in residual[here]:
-            if before not in steps and residual[before][here]:
-                steps[before] = steps[here] + 1
-                waiting.append(before)
-    return steps
-
-
-def _blocking_flow(residual: dict[int, dict[int, int]], steps: Mapping[int, int], begin: int, end: int) -> int:
-    """Send what can be sent along shortest ways, and return how much that is."""
-    nearer = {here: [there for there in residual[here] if steps.get(there) == step - 1] for here, step in steps.items()}
-    value, path = 0, [begin]
-    while path:
-        here = path[-1]
-        if here == end:
-            sent = min(residual[a][b] for a, b in pairwise(path))
-            value += sent
-            for a, b in pairwise(path):
-                residual[a][b] -= sent
-                residual[b][a] += sent
-            path = path[: next(n for n, (a, b) in enumerate(pairwise(path), 1) if not residual[a][b])]
-            continue
-        while nearer[here] and not residual[here][nearer[here][-1]]:
-            nearer[here].pop()
-        if nearer[here]:
-            path.append(nearer[here][-1])
-        elif path.pop() != begin:
-            nearer[path[-1]].pop()
-    return value
 
 
 class _Hitting:
