@@ -10,8 +10,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors
-from rosprivacy.analysis.json_shape import misfits, validator
-from rosprivacy.analysis.json_values import parsed
+from rosprivacy.analysis.json_values import misfits, parsed, validator
 from rosprivacy.analysis.text import printable
 from rosprivacy.report.compare.earlier import bytes_of
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import networkx as nx
 from hypothesis import assume, given
+from hypothesis import strategies as st
 
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.findings.findings import analyse
-from rosprivacy.analysis.findings.review_order import review_order
+from rosprivacy.analysis.findings.review_order import immediate_dominators, review_order
 from rosprivacy.analysis.model import Bound, Element, Flow, FlowGraph, Method, NonRosFacts, Place, Statement
 from rosprivacy.analysis.non_ros import by_kind
 from tests.helpers.systems import HIERARCHY, System, systems
@@ -62,3 +64,44 @@ def test_a_channel_before_a_storage_that_keeps_too_long_cannot_wait() -> None:
 
 def replace_elements(bound: Bound, elements: dict[int, tuple[Statement, ...]]) -> Bound:
     return replace(bound, elements=elements)
+
+
+EDGES = st.lists(st.tuples(st.integers(0, 9), st.integers(0, 9)), max_size=30)
+
+
+def following(edges: list[tuple[int, int]]) -> dict[int, list[int]]:
+    targets: dict[int, list[int]] = {}
+    for here, there in edges:
+        targets.setdefault(here, []).append(there)
+    return targets
+
+
+def reached(edges: list[tuple[int, int]], without: int) -> set[int]:
+    graph = nx.DiGraph([(a, b) for a, b in edges if without not in (a, b)])
+    graph.add_node(0)
+    return {0} | nx.descendants(graph, 0) if without else set()
+
+
+@given(EDGES)
+def test_dominators_are_what_every_path_passes(edges: list[tuple[int, int]]) -> None:
+    dominators = immediate_dominators(following(edges), 0)
+    assert set(dominators) == reached(edges, -1) - {0}
+    for vertex in dominators:
+        above, strict = vertex, set()
+        while above != 0:
+            above = dominators[above]
+            strict.add(above)
+        assert strict == {one for one in range(10) if one != vertex and vertex not in reached(edges, one)}
+
+
+@given(EDGES)
+def test_dominators_are_those_of_networkx(edges: list[tuple[int, int]]) -> None:
+    graph = nx.DiGraph(edges)
+    graph.add_node(0)
+    theirs = {vertex: above for vertex, above in nx.immediate_dominators(graph, 0).items() if vertex != 0}
+    assert immediate_dominators(following(edges), 0) == theirs
+
+
+def test_dominators_of_a_long_chain_are_no_deep_recursion() -> None:
+    chain = {at: [at + 1] for at in range(50_000)}
+    assert immediate_dominators(chain, 0) == {at + 1: at for at in range(50_000)}
