@@ -59,7 +59,7 @@ STEPS = ("summary", "source")  # that are asked for by name
 FIELDS = ("role", "note", "by", "method", "makes", "brings", "whose")
 
 
-class Asked(NamedTuple):
+class ReviewQuestion(NamedTuple):
     """An element that a person is asked about.
 
     Attributes
@@ -79,20 +79,22 @@ class Asked(NamedTuple):
     beyond: bool = False
 
 
-def open_elements(standing: Standing) -> tuple[Asked, ...]:
+def open_elements(standing: Standing) -> tuple[ReviewQuestion, ...]:
     """Return everything that is open, in the order in which it is asked."""
-    session, questions = standing.session, dict[str, Asked]()
+    session, questions = standing.session, dict[str, ReviewQuestion]()
     suggested = [proposals[0].label.element for proposals in standing.suggestions.of_role("source")]
     for element in sorted(suggested, key=lambda element: element.robot not in session.outliers):
         at, entries = element_id(element.identity), standing.entries_of(element)
         if at in standing.carried or any(map(says_of_data, entries)):
             continue
         if _engineers_note(entries) or not any(map(brings_nothing, entries)):
-            questions[at] = Asked(at, element, _engineers_note(entries), beyond=not session.targets_of(element))
+            questions[at] = ReviewQuestion(
+                at, element, _engineers_note(entries), beyond=not session.targets_of(element)
+            )
     for question in standing.questions:
         element, at = question.element, element_id(question.element.identity)
         left, beyond = _engineers_note(standing.entries_of(element)), not session.targets_of(element)
-        questions[at] = Asked(at, element, left, question.can_wait, beyond)
+        questions[at] = ReviewQuestion(at, element, left, question.can_wait, beyond)
     return tuple(questions.values())
 
 
@@ -100,7 +102,7 @@ def _engineers_note(entries: Sequence[Any]) -> str:
     return next(filter(None, map(left_of, entries)), "")
 
 
-def progress(standing: Standing, questions: Sequence[Asked]) -> Pane:
+def progress(standing: Standing, questions: Sequence[ReviewQuestion]) -> Pane:
     """Return how many elements are decided: data gets there, or somebody spoke of them, and nothing is open there."""
     decided = (standing.carried.keys() | standing.spoken) - {question.id for question in questions}
     return Pane(decided=len(decided), all=len(decided) + len(questions))
@@ -233,7 +235,7 @@ def sources_pane(standing: Standing, find: str, words: Words) -> Pane:
 # --- the end ----------------------------------------------------------------------------------------------------
 
 
-def summary_pane(standing: Standing, questions: Sequence[Asked], words: Words) -> Pane:
+def summary_pane(standing: Standing, questions: Sequence[ReviewQuestion], words: Words) -> Pane:
     """Return how a review stands: who decided what, what is open, where data gets out."""
     session, index = standing.session, Index(standing.session.result.document(), words)
     verdict = verdict_of(standing)
@@ -249,7 +251,7 @@ def summary_pane(standing: Standing, questions: Sequence[Asked], words: Words) -
     )
 
 
-def _end(questions: Sequence[Asked], words: Words, *, decided: bool, followed: bool) -> Iterator[str]:
+def _end(questions: Sequence[ReviewQuestion], words: Words, *, decided: bool, followed: bool) -> Iterator[str]:
     """What has to be known of the answers, in sentences; that nothing was followed comes first."""
     if not followed:
         yield words("review.end.nothing")
@@ -259,7 +261,7 @@ def _end(questions: Sequence[Asked], words: Words, *, decided: bool, followed: b
         yield words("review.end.none" if decided else "review.end.unasked")
 
 
-def _open(question: Asked, standing: Standing, words: Words) -> Pane:
+def _open(question: ReviewQuestion, standing: Standing, words: Words) -> Pane:
     name = _named_with_robots(question.element, standing, words)
     left, wait, beyond = shown(question.note), question.can_wait, question.beyond
     return Pane(id=question.id, name=name, left=left, can_wait=wait, beyond=beyond)

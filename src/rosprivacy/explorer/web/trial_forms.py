@@ -158,14 +158,14 @@ def _id(vertex: int, standing: Standing) -> str:
 # --- forms ------------------------------------------------------------------------------------------------------
 
 
-class Tried(NamedTuple):
+class ToldTrial(NamedTuple):
     """What is tried, and what a person is told of it."""
 
     trial: WhatIf
     says: tuple[str, ...]
 
 
-def tried_in(form: EditForm, standing: Standing, words: Words) -> Tried:
+def tried_in(form: EditForm, standing: Standing, words: Words) -> ToldTrial:
     """Return what a form tries."""
     tried = _KINDS[form.choice("what", _KINDS)](form, standing, words)
     if standing.session.can_mitigate:
@@ -182,7 +182,7 @@ def _robots(form: EditForm, standing: Standing, *elements: Element) -> tuple[str
     return next(filter(None, robots), ())
 
 
-def _filter(form: EditForm, standing: Standing, words: Words) -> Tried:
+def _filter(form: EditForm, standing: Standing, words: Words) -> ToldTrial:
     """One of a policy: it has a channel of its own, and what wildcards take past it gets past it."""
     ends = _ends_of(standing, form.value("flow"))
     if not ends:
@@ -191,19 +191,19 @@ def _filter(form: EditForm, standing: Standing, words: Words) -> Tried:
     source, target = (shown(end.full_name) for end in ends[0])
     step = ProposedStep(FILTER, 0, kinds or _all(standing), between=ends)
     trial = WhatIf(steps=(step,), robots=_robots(form, standing, *ends[0]))
-    return Tried(trial, (words("closing.filter", source=source, target=target, data=data),))
+    return ToldTrial(trial, (words("closing.filter", source=source, target=target, data=data),))
 
 
-def _cut(form: EditForm, standing: Standing, words: Words) -> Tried:
+def _cut(form: EditForm, standing: Standing, words: Words) -> ToldTrial:
     lines = lines_of(standing)
     place = lines[form.choice("line", lines)]
     element = standing.elements.get(form.value("element"))
     robots = _robots(form, standing, element) if element else ()
     trial = WhatIf(cut=((place.file, place.line),), robots=robots)
-    return Tried(trial, (words("explorer.try.says.cut", line=shown(str(place))),))
+    return ToldTrial(trial, (words("explorer.try.says.cut", line=shown(str(place))),))
 
 
-def _storage(form: EditForm, standing: Standing, words: Words) -> Tried:
+def _storage(form: EditForm, standing: Standing, words: Words) -> ToldTrial:
     element = element_in(form, standing.elements)
     called = words("explorer.try.storage.name")
     facts = {"kind": "storage", **_facts(form)}
@@ -212,7 +212,7 @@ def _storage(form: EditForm, standing: Standing, words: Words) -> Tried:
     says = [words("explorer.try.says.storage", element=shown(element.full_name))]
     says += [words.pair(words("column.retention"), words.duration(facts["retention"]))] if "retention" in facts else []
     says += [words.pair(words("column.place"), facts["country"])] if "country" in facts else []
-    return Tried(trial, tuple(says))
+    return ToldTrial(trial, tuple(says))
 
 
 def _facts(form: EditForm) -> dict[str, str]:
@@ -232,17 +232,17 @@ def _end(element: Element) -> str | Mapping[str, str]:
     return {element.kind: written} if element.is_node or element.is_channel else written
 
 
-def _doubt(form: EditForm, standing: Standing, words: Words) -> Tried:
+def _doubt(form: EditForm, standing: Standing, words: Words) -> ToldTrial:
     element = element_in(form, standing.elements)
     if not _cleans(standing, form.value("element")):
         raise FormError("It is not said to clean anything.")
     kinds, data = _kinds(form, standing, words)
     robots = _robots(form, standing, element)
     trial = WhatIf(doubted=((element.kind, element.name, kinds),), robots=robots)
-    return Tried(trial, (words("explorer.try.says.doubt", element=shown(element.full_name), data=data),))
+    return ToldTrial(trial, (words("explorer.try.says.doubt", element=shown(element.full_name), data=data),))
 
 
-def _proposal(form: EditForm, standing: Standing, words: Words) -> Tried:
+def _proposal(form: EditForm, standing: Standing, words: Words) -> ToldTrial:
     """A proposal of ``mitigate``, whole or one change of it."""
     mitigation = standing.mitigation if standing.session.can_mitigate else None
     proposals = mitigation.proposals if mitigation else ()
@@ -257,7 +257,7 @@ def _proposal(form: EditForm, standing: Standing, words: Words) -> Tried:
             raise FormError("There is no such change any more; ask again what closes it.")
         steps, rows = steps[at : at + 1], rows[at : at + 1]
     index = Index(standing.document, words)
-    return Tried(WhatIf(steps=steps), tuple(_change(row, index) for row in rows))
+    return ToldTrial(WhatIf(steps=steps), tuple(_change(row, index) for row in rows))
 
 
 def _change(step: Mapping[str, Any], index: Index) -> str:
@@ -282,12 +282,12 @@ def _all(standing: Standing) -> tuple[str, ...]:
     return tuple(sorted(kind for kind in vocabulary.categories if not vocabulary.hierarchy.broader(kind)))
 
 
-_KINDS: dict[str, Callable[[EditForm, Standing, Words], Tried]] = {
+_KINDS: dict[str, Callable[[EditForm, Standing, Words], ToldTrial]] = {
     "filter": _filter, "cut": _cut, "storage": _storage, "doubt": _doubt, "proposal": _proposal,
 }  # fmt: skip
 
 
-class Trials:
+class KeptTrials:
     """The trials of one session.
 
     Parameters
@@ -306,18 +306,20 @@ class Trials:
         """Their names, in the order in which they were made."""
         return tuple(self._session.scenarios)
 
-    def keep(self, name: str, tried: Tried) -> None:
+    def keep(self, name: str, tried: ToldTrial) -> None:
         """Try something, and keep it under a name; another of that name is replaced."""
         if name not in self.names and len(self.names) >= MOST_KEPT:
             raise FormError(f"There are {MOST_KEPT} trials already: forget one.")
         self._session.scenario(name, tried.trial)
         self._says[name] = tried.says
 
-    def together(self, form: EditForm) -> Tried:
+    def together(self, form: EditForm) -> ToldTrial:
         """Return what two trials that a form names try, as one, and what a person is told of it."""
         names = form.choice("first", self.names), form.choice("second", self.names)
         first, second = (self._session.scenarios[name].what_if for name in names)
-        return Tried(together(first, second), tuple(dict.fromkeys(line for name in names for line in self.says(name))))
+        return ToldTrial(
+            together(first, second), tuple(dict.fromkeys(line for name in names for line in self.says(name)))
+        )
 
     def combinable(self, name: str) -> Iterator[str]:
         """Yield the others that can be tried together with one: on the same robots."""
@@ -348,8 +350,8 @@ class Trials:
         return self._standing
 
 
-def trial_pane(now: Standing, trials: Trials, view: PageView, words: Words) -> Pane:
-    """Return what the trial of a view does; errors as of ``Trials.scenario``."""
+def trial_pane(now: Standing, trials: KeptTrials, view: PageView, words: Words) -> Pane:
+    """Return what the trial of a view does; errors as of ``KeptTrials.scenario``."""
     name = view.trial
     then, scenario = trials.standing(name), trials.scenario(name)
     difference, within, out = scenario.difference, _within(view), _within(view)._replace(trial="")
@@ -378,7 +380,7 @@ def trial_pane(now: Standing, trials: Trials, view: PageView, words: Words) -> P
     )
 
 
-def kept_trials(trials: Trials, view: PageView, words: Words) -> tuple[Pane, ...]:
+def kept_trials(trials: KeptTrials, view: PageView, words: Words) -> tuple[Pane, ...]:
     """Return the list of trials."""
     rows = []
     for trial in trials.names:
