@@ -130,7 +130,7 @@ class OpenQuestion(NamedTuple):
     missing: tuple[str, ...] = ()
 
 
-class Carried(NamedTuple):
+class CarriedData(NamedTuple):
     """What an element carries: emitted categories, sorted; ``pseudonymised`` is a plane of its own (rule S8)."""
 
     element: Element
@@ -274,7 +274,7 @@ class Analysis:
     emitted: tuple[str, ...]
     findings: tuple[Finding, ...]
     open: tuple[OpenQuestion, ...]
-    carried: tuple[Carried, ...]
+    carried: tuple[CarriedData, ...]
     roles: Mapping[Element, Mapping[str, tuple[str, ...]]]
     standard_channels: int
     spread: Spread

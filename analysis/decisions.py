@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.legal_bases import Verdicts
     from rosprivacy.analysis.model import Acceptance, Doubt
-    from rosprivacy.analysis.remembered import About, Change
+    from rosprivacy.analysis.remembered import About, ChangedAspect
 
 FARTHEST = 1_000_000
 
@@ -278,7 +278,7 @@ class Decided:
     about: tuple[tuple[str, ...], ...]
     states: tuple[State, ...]
     diagnostics: tuple[Diagnostic, ...]
-    changed: Mapping[Decision, tuple[Change, ...]] = field(default_factory=dict)
+    changed: Mapping[Decision, tuple[ChangedAspect, ...]] = field(default_factory=dict)
 
     def valid(self, finding: Finding) -> Decision | None:
         """The decision about a finding, if it is valid."""
@@ -350,7 +350,7 @@ def decided(
     return replace(result, diagnostics=said)
 
 
-def _changed(entry: Decision, findings: Iterable[str], now: Mapping[str, About]) -> tuple[Change, ...]:
+def _changed(entry: Decision, findings: Iterable[str], now: Mapping[str, About]) -> tuple[ChangedAspect, ...]:
     """What is not as it was; of an entry that lists robots, on one of these."""
     there = findings if entry.robots else (entry.id,)
     return next((found for one in there if (found := changes(entry.made_about, now.get(one)))), ())

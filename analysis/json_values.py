@@ -1,24 +1,36 @@
-"""Bytes of anybody -> the JSON that they hold, or the one problem that they have.
+"""Bytes of anybody -> the JSON that they hold, or the one problem that they have; and where it is not as a schema says.
 
 In: what stands in a file. Out: plain values, of which no reader has to fear anything but their shape: no key stands
-twice, every text can be written as UTF-8, every number fits into 64 bits, and nothing is nested without end.
+twice, every text can be written as UTF-8, every number fits into 64 bits, and nothing is nested without end. Of values
+and a schema of the program: lines, each with its place; never what stands there, which may be of a file that is not
+ours.
 """
 
 from __future__ import annotations
 
 import json
+from itertools import islice
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from rosprivacy.analysis.errors import shown
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
+
+    from jsonschema.exceptions import ValidationError
+    from jsonschema.protocols import Validator
 
     from rosprivacy.analysis.errors import RosPrivacyError
 
 DEEPEST = 64
 LARGEST = 2**63  # what databases and Parquet hold
 GZIP, UTF_16 = b"\x1f\x8b", (b"\xff\xfe", b"\xfe\xff")
+BOUND = 20  # problems of one value
+KINDS = {dict: "an object", list: "a list", str: "text", bool: "true or false", type(None): "null"}
+TYPE_NAMES = {
+    "object": "an object", "array": "a list", "string": "text", "boolean": "true or false", "null": "null",
+    "integer": "a whole number", "number": "a number",
+}  # fmt: skip
 
 
 class _RefusedError(ValueError):
@@ -131,3 +143,54 @@ def _written(text: str) -> bool:
     except UnicodeEncodeError:
         return False
     return True
+
+
+def validator(schema: Mapping[str, Any]) -> Validator:
+    """Return what checks values; 1.0 is no whole number here, though it is one in JSON Schema.
+
+    >>> check = validator({"type": "integer"})
+    >>> check.is_valid(1), check.is_valid(1.0)
+    (True, False)
+    """
+    from jsonschema import Draft202012Validator, validators  # noqa: PLC0415 - light start
+
+    whole = Draft202012Validator.TYPE_CHECKER.redefine("integer", lambda _, value: type(value) is int)
+    extend: Any = validators.extend  # has no types
+    made: Validator = extend(Draft202012Validator, type_checker=whole)(schema)
+    return made
+
+
+def misfits(check: Validator, value: Any) -> list[str]:
+    """Return where a value is not as it should be, and how; no more than ``BOUND``.
+
+    Complexity: O(its size).
+
+    Examples
+    --------
+    >>> misfits(validator({"required": ["id"], "properties": {"n": {"type": "integer"}}}), {"n": 1.0})
+    ['n is a number, not a whole number', 'the document lacks id']
+    """
+    found = (f"{_place(error)} {_wrong(error)}" for error in islice(check.iter_errors(value), BOUND))
+    return sorted(set(found))
+
+
+def _place(error: ValidationError) -> str:
+    return place("".join(f"[{key}]" if isinstance(key, int) else f".{key}" for key in error.absolute_path))
+
+
+def _wrong(error: ValidationError) -> str:
+    wanted: Any = error.validator_value
+    found: Any = error.instance
+    if error.validator == "required":
+        return f"lacks {', '.join(key for key in wanted if key not in found)}"
+    if error.validator == "type":
+        kinds = wanted if isinstance(wanted, list) else [wanted]
+        return f"is {KINDS.get(type(found), 'a number')}, not {' or '.join(TYPE_NAMES[kind] for kind in kinds)}"
+    if error.validator in ("enum", "const"):
+        values = wanted if isinstance(wanted, list) else [wanted]
+        return f"is not {' or '.join(json.dumps(value) for value in values)}"
+    if error.validator == "minItems":
+        return "is empty"
+    if error.validator == "additionalProperties":
+        return "has a key that the format does not know"
+    return "is not what the format says"

@@ -42,7 +42,7 @@ class About:
         return not self.robots or {robot for robot in ends if robot} <= self.robots
 
 
-class Change(NamedTuple):
+class ChangedAspect(NamedTuple):
     """What is not as it was when a decision was made: a field of ``About``, as text then and now."""
 
     aspect: str
@@ -50,7 +50,7 @@ class Change(NamedTuple):
     now: str
 
 
-def changes(before: About | None, now: About | None) -> tuple[Change, ...]:
+def changes(before: About | None, now: About | None) -> tuple[ChangedAspect, ...]:
     """Return what has changed, of what is known of both.
 
     >>> before = About("declared", ("/camera", "/uplink"), 1)
@@ -62,17 +62,19 @@ def changes(before: About | None, now: About | None) -> tuple[Change, ...]:
     return tuple(_changes(before, now)) if before and now else ()
 
 
-def _changes(before: About, now: About) -> Iterator[Change]:
+def _changes(before: About, now: About) -> Iterator[ChangedAspect]:
     pairs = {
         "view": (before.view, now.view),
         "path": (" -> ".join(before.path), " -> ".join(now.path)),
         "disjoint_paths": (str(before.disjoint_paths or ""), str(now.disjoint_paths or "")),
     }
     yield from (
-        Change(aspect, then, today) for aspect, (then, today) in pairs.items() if then and today and then != today
+        ChangedAspect(aspect, then, today)
+        for aspect, (then, today) in pairs.items()
+        if then and today and then != today
     )
     if before.robots and now.robots and before.robots != now.robots:
-        yield Change("robots", str(len(before.robots)), _counted(now.robots, now.robots - before.robots))
+        yield ChangedAspect("robots", str(len(before.robots)), _counted(now.robots, now.robots - before.robots))
 
 
 def _counted(robots: frozenset[str], joined: frozenset[str]) -> str:
@@ -82,10 +84,10 @@ def _counted(robots: frozenset[str], joined: frozenset[str]) -> str:
     return ", ".join([str(len(robots)), *named[:MOST_NAMED], *more])
 
 
-def change_text(changes: Iterable[Change]) -> str:
+def change_text(changes: Iterable[ChangedAspect]) -> str:
     """Return changes as one text.
 
-    >>> change_text([Change("disjoint_paths", "1", "2"), Change("robots", "2", "3, +amr-3")])
+    >>> change_text([ChangedAspect("disjoint_paths", "1", "2"), ChangedAspect("robots", "2", "3, +amr-3")])
     'disjoint paths: 1 then, 2 now; robots: 2 then, 3, +amr-3 now'
     """
     return "; ".join(f"{change.aspect.replace('_', ' ')}: {change.before} then, {change.now} now" for change in changes)

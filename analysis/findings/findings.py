@@ -14,7 +14,7 @@ from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
-from rosprivacy.analysis.answer import Analysis, Carried, Finding, Verdict
+from rosprivacy.analysis.answer import Analysis, CarriedData, Finding, Verdict
 from rosprivacy.analysis.bounds import BOUNDS, Tally
 from rosprivacy.analysis.case import Case
 from rosprivacy.analysis.findings.closures import closed_by_shipped
@@ -131,7 +131,7 @@ def analyse(
     wanted = [c for c in spread.categories if options.categories is None or c in options.categories]
     mask = _mask(spread, options)
     net = Net.cached(spread)
-    work = _Work(options.bounds)
+    work = _Tallies(options.bounds)
     findings = _kept_findings(net, mask, kinds, options, work)
     questions = open_questions(net, mask, unanswered(graph.elements, bound.outside))
     lacks = grounds(spread, mask).lacking
@@ -185,7 +185,7 @@ def chosen_findings(
         concern._replace(bits={leak: concern.bits[leak] for leak in leaks & concern.bits.keys()})
         for concern in concerns(spread, bound, hierarchy)
     )
-    return tuple(_findings(net, _mask(spread, options), kinds, options, _Work(options.bounds)))
+    return tuple(_findings(net, _mask(spread, options), kinds, options, _Tallies(options.bounds)))
 
 
 def _mask(spread: Spread, options: Options) -> int:
@@ -193,7 +193,7 @@ def _mask(spread: Spread, options: Options) -> int:
     return sum(spread.forms_of(c) for c in spread.categories if options.categories is None or c in options.categories)
 
 
-class _Work:
+class _Tallies:
     """What was made and searched, and of how many findings the paths were not counted."""
 
     def __init__(self, bounds: Bounds) -> None:
@@ -210,7 +210,9 @@ class _Work:
             yield Diagnostic(NOWHERE, Severity.WARNING, f"{what}; {hint}", PATHS_NOT_COUNTED)
 
 
-def _kept_findings(net: Net, mask: int, kinds: Sequence[Concern], options: Options, work: _Work) -> tuple[Finding, ...]:
+def _kept_findings(
+    net: Net, mask: int, kinds: Sequence[Concern], options: Options, work: _Tallies
+) -> tuple[Finding, ...]:
     """All findings; those of before, where data goes the same ways, ends at the same places and the same is asked."""
 
     def find() -> tuple[Finding, ...]:
@@ -223,7 +225,7 @@ def _kept_findings(net: Net, mask: int, kinds: Sequence[Concern], options: Optio
     return spread.course.memoised("findings", (mask, options, spread.absent_bits, ends), find)
 
 
-def _findings(net: Net, mask: int, kinds: Sequence[Concern], options: Options, work: _Work) -> Iterator[Finding]:
+def _findings(net: Net, mask: int, kinds: Sequence[Concern], options: Options, work: _Tallies) -> Iterator[Finding]:
     """All findings, sorted by category, source, leak and kind."""
     spread = net.spread
     ends = [(c, {v: b & mask for v, b in sorted(c.bits.items()) if b & mask & spread.present(v)}) for c in kinds]
@@ -267,7 +269,7 @@ def _nets(net: Net, options: Options, stops: _Stops) -> _Nets | None:
 
 def _findings_from(
     net: Net, source: int, reached: Sequence[tuple[Concern, Mapping[int, int]]], options: Options,
-    chosen: AbstractSet[Chosen] | None, work: _Work, stops: _Stops,
+    chosen: AbstractSet[Chosen] | None, work: _Tallies, stops: _Stops,
 ) -> Iterator[tuple[int, int, Finding]]:  # fmt: skip
     """(number of the category, leak, finding) of one source."""
     spread = net.spread
@@ -308,7 +310,7 @@ def _leaks_met(search: Search, leaks: Mapping[int, int]) -> dict[int, int]:
 
 def _findings_of(
     net: Net, source: int, search: Search, concern: Concern, reached: Mapping[int, int], options: Options,
-    memory: dict[Any, Any], limited_to: AbstractSet[Chosen] | None, work: _Work, stops: _Stops,
+    memory: dict[Any, Any], limited_to: AbstractSet[Chosen] | None, work: _Tallies, stops: _Stops,
 ) -> Iterator[tuple[int, int, Finding]]:  # fmt: skip
     """(leak, number of the category, finding) of one source and kind.
 
@@ -464,7 +466,7 @@ def _lacking(lacks: str, options: Options, spread: Spread) -> tuple[Diagnostic, 
     return lacking(lacks, restricted=options.categories is not None, limited=bool(spread.limited))
 
 
-def _carried(spread: Spread, mask: int, hierarchy: Hierarchy) -> tuple[Carried, ...]:
+def _carried(spread: Spread, mask: int, hierarchy: Hierarchy) -> tuple[CarriedData, ...]:
     merged: dict[tuple[str, str, str, str], int] = defaultdict(int)
     first: dict[tuple[str, str, str, str], Element] = {}
     for vertex in sorted({*spread.arrives, *spread.leaves}):
@@ -474,7 +476,7 @@ def _carried(spread: Spread, mask: int, hierarchy: Hierarchy) -> tuple[Carried, 
             merged[element.shown_as] |= bits
             first.setdefault(element.shown_as, element)
     narrowest = {bits: tuple(map(hierarchy.narrowest, spread.planes(bits))) for bits in set(merged.values())}
-    return tuple(Carried(first[key], *narrowest[bits]) for key, bits in merged.items())
+    return tuple(CarriedData(first[key], *narrowest[bits]) for key, bits in merged.items())
 
 
 def _roles(spread: Spread, mask: int) -> dict[Element, dict[str, tuple[str, ...]]]:

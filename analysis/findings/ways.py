@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 Identity = tuple[str, str, str]
 
 
-class Protection(NamedTuple):
+class MetProtection(NamedTuple):
     """That an element on the way cleans data, of this kind or of one that this kind is made of.
 
     Attributes
@@ -65,7 +65,7 @@ class Ways(NamedTuple):
     category: str
     persons: tuple[str, ...]
     unnamed: bool
-    protections: tuple[Protection, ...] = ()
+    protections: tuple[MetProtection, ...] = ()
 
 
 def ways(analysis: Analysis, bound: Bound, categories: Mapping[str, Category]) -> tuple[Ways, ...]:
@@ -152,7 +152,7 @@ def _anywhere(reach: Search) -> int:
 
 def _protections(
     spread: Spread, passed: Iterable[tuple[int, str]], places: Mapping[Identity, list[int]], category: str
-) -> tuple[Protection, ...]:
+) -> tuple[MetProtection, ...]:
     """Return the sanitizers that data of a kind pass on the ways to some places."""
     vertices = [vertex for some in places.values() for vertex in some]
     number = spread.categories.index(category)
@@ -168,7 +168,7 @@ def _protections(
             facts = spread.facts[vertex][cleaned]
             everywhere = facts.method != Method.PSEUDONYMISE or not there >> plain & 1
             found.append(
-                Protection(spread.graph.elements[vertex], cleaned, facts.method, not facts.unstated, everywhere)
+                MetProtection(spread.graph.elements[vertex], cleaned, facts.method, not facts.unstated, everywhere)
             )
     return tuple(found)
 

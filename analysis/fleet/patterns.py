@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import Analysis, Finding, OpenQuestion
     from rosprivacy.analysis.fleet.likeness import Likeness
-    from rosprivacy.analysis.fleet.tallies import Group
+    from rosprivacy.analysis.fleet.tallies import CountedPattern
     from rosprivacy.analysis.model import Element
 
 
@@ -56,7 +56,7 @@ class Pattern:
 
 
 @dataclass(frozen=True, slots=True)
-class Deviant:
+class DeviantRobots:
     """Robots whose result differs from that of most robots of their model.
 
     Attributes
@@ -81,7 +81,7 @@ class FleetView:
 
     likeness: Likeness
     patterns: tuple[Pattern, ...]
-    deviants: tuple[Deviant, ...]
+    deviants: tuple[DeviantRobots, ...]
 
     @classmethod
     def of(cls, analysis: Analysis, likeness: Likeness) -> FleetView:
@@ -133,7 +133,7 @@ def tallied(findings: Iterable[Finding], likeness: Likeness) -> Tallies:
     return tallies
 
 
-def patterns_of(groups: Iterable[Group], findings: Iterable[Finding]) -> tuple[Pattern, ...]:
+def patterns_of(groups: Iterable[CountedPattern], findings: Iterable[Finding]) -> tuple[Pattern, ...]:
     """Return the patterns, each with the finding that was made of what it shows, in the order of these.
 
     >>> from rosprivacy.analysis.example import factory
@@ -166,7 +166,7 @@ Result = tuple[frozenset[Share], frozenset["Element"]]
 
 def _deviants_of(
     shares: Mapping[str, Collection[Share]], questions: Iterable[OpenQuestion], likeness: Likeness
-) -> tuple[Deviant, ...]:
+) -> tuple[DeviantRobots, ...]:
     """Return the robots that differ from most of their model, by model and id; of equally many, the first are most.
 
     Parameters
@@ -185,7 +185,7 @@ def _deviants_of(
 
 def different(
     shares: Mapping[str, Collection[Share]], open_at: Mapping[str, Collection[Element]], likeness: Likeness
-) -> tuple[Deviant, ...]:
+) -> tuple[DeviantRobots, ...]:
     """Return the same, when it is also known what is open on each; without its robot.
 
     >>> from rosprivacy.analysis.fleet.likeness import Likeness
@@ -214,8 +214,8 @@ def different(
     return tuple(deviants)
 
 
-def _deviant(robot: str, model: str, result: Result, usual: Result, likeness: Likeness) -> Deviant:
-    return Deviant(
+def _deviant(robot: str, model: str, result: Result, usual: Result, likeness: Likeness) -> DeviantRobots:
+    return DeviantRobots(
         likeness.members[robot],
         model,
         tuple(sorted(result[0] - usual[0])),

@@ -56,7 +56,7 @@ class Pair(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Group:
+class CountedPattern:
     """A pattern without a path: the pair that is shown of it, its id, what is counted, and the robots by form."""
 
     pair: Pair
@@ -139,11 +139,11 @@ class Tallies:
         for robot in end:
             self.shares[self._likeness.second.get(robot, robot)].add(Share(key, across, *flags))
 
-    def groups(self) -> tuple[Group, ...]:
+    def groups(self) -> tuple[CountedPattern, ...]:
         """Return the patterns, without a path."""
         forms = self._forms()
         return tuple(
-            Group(
+            CountedPattern(
                 tally.shown,
                 key,
                 tally.count,

@@ -2,7 +2,7 @@
 
 In: a ``Spread`` and, per vertex, the bits that count there. Out: ``Backward``: per vertex the bits that, if they
 arrived there or left from there, would get to such a place. One run of the kernel, whatever the number of places.
-Which place is the nearest is told by ``nearest.py``.
+Which place is the nearest is told by ``findings/closures.py``.
 
 A part of what labels close can be opened for one run: then it says what that part keeps shut.
 """

@@ -1,6 +1,6 @@
 """Which of several statements about one element hold for a category (rules S7, S13).
 
-In: statements, a category, the hierarchy. Out: ``Decided``.
+In: statements, a category, the hierarchy. Out: ``RankedStatements``.
 
 Of statements that contradict each other the higher rank wins, then the one nearer in the hierarchy. ``mundane``,
 ``sensitive``, ``only`` and ``never`` are of one kind in this: each lets a category pass or stops it. A source and a
@@ -49,14 +49,14 @@ COEXISTING = frozenset(
 Rank = tuple[int, int, int]
 
 
-class Decided(NamedTuple):
+class RankedStatements(NamedTuple):
     """The statements that hold, the highest rank first; and those of sources and leaks that do not, with what won."""
 
     accepted: tuple[Statement, ...]
     outdone: tuple[tuple[Statement, Statement], ...]
 
 
-def decided(name: str, statements: Sequence[Statement], category: str, hierarchy: Hierarchy) -> Decided:
+def decided(name: str, statements: Sequence[Statement], category: str, hierarchy: Hierarchy) -> RankedStatements:
     """Return which statements about an element hold for a category.
 
     Raises
@@ -81,7 +81,7 @@ def decided(name: str, statements: Sequence[Statement], category: str, hierarchy
         and (statement.counts_for(category) or _lets_through(statement, category, hierarchy))
     ]
     if len(ranked) < 2:  # noqa: PLR2004 - nothing to weigh
-        return Decided(_observed((statement for _, statement in ranked), category), ())
+        return RankedStatements(_observed((statement for _, statement in ranked), category), ())
     ranked.sort(key=lambda pair: (pair[0], str(pair[1].place)), reverse=True)
     accepted: list[Statement] = []
     outdone: list[tuple[Statement, Statement]] = []
@@ -96,7 +96,7 @@ def decided(name: str, statements: Sequence[Statement], category: str, hierarchy
         elif statement.role in NONE_OF:
             outdone.append((statement, _decisive(statement, winners)))
     _check_sanitizers(name, category, accepted)
-    return Decided(_observed(accepted, category), tuple(sorted(outdone, key=lambda pair: by_line(pair[0]))))
+    return RankedStatements(_observed(accepted, category), tuple(sorted(outdone, key=lambda pair: by_line(pair[0]))))
 
 
 def _observed(accepted: Iterable[Statement], category: str) -> tuple[Statement, ...]:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from rosprivacy.analysis.hierarchy import Hierarchy
-    from rosprivacy.analysis.kernel.ranks import Decided
+    from rosprivacy.analysis.kernel.ranks import RankedStatements
     from rosprivacy.analysis.model import Statement
 
 TAKE_BACK = ("no-source", "no-leak")  # they hold, but review nothing
@@ -114,7 +114,7 @@ def facts(name: str, statements: Sequence[Statement], category: str, hierarchy: 
     return _sum_up(decided(name, statements, category, hierarchy), category, hierarchy)
 
 
-def _sum_up(decided: Decided, category: str, hierarchy: Hierarchy) -> Facts:
+def _sum_up(decided: RankedStatements, category: str, hierarchy: Hierarchy) -> Facts:
     accepted = decided.accepted
     by_role = {role: [s for s in accepted if s.role == role] for role in {s.role for s in accepted}}
     sanitizers = by_role.get("sanitizer", [])

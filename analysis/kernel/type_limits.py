@@ -62,7 +62,7 @@ def under_limits(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, limits: T
     """
     if limits is None or not bound.types or graph.view != View.declared:
         return bound
-    kept, said = _Kept(graph, bound, hierarchy), dict[int, Statement]()
+    kept, said = _KeptByWriters(graph, bound, hierarchy), dict[int, Statement]()
     begun, other = emitted(bound.elements.values()), _otherwise_defined(bound, limits)
     for vertex, types in bound.types.items():
         found = [
@@ -94,7 +94,7 @@ def _otherwise_defined(bound: Bound, limits: TypeLimits) -> set[tuple[str, str]]
     return {key for key, hashes in seen.items() if len(hashes) > 1 or not hashes <= limits.hashes.get(key[1], hashes)}
 
 
-class _Kept:
+class _KeptByWriters:
     """Who writes the channels of a graph, and what is not taken away from them."""
 
     def __init__(self, graph: FlowGraph, bound: Bound, hierarchy: Hierarchy) -> None:

@@ -38,7 +38,7 @@ class Affected:
 
 
 @dataclass(slots=True)
-class _Rights:
+class _ReadAndWritten:
     """What one element reads and writes."""
 
     reads: dict[Shown, set[str]]
@@ -46,7 +46,7 @@ class _Rights:
     without: dict[Shown, set[str]]
 
     @classmethod
-    def empty(cls) -> _Rights:
+    def empty(cls) -> _ReadAndWritten:
         return cls(defaultdict(set), set(), defaultdict(set))
 
 
@@ -65,7 +65,7 @@ def affected(before: Analysis, after: Analysis) -> tuple[Affected, ...]:
     was, becomes = _rights(before), _rights(after)
     rows = []
     for element in sorted(was, key=lambda e: e.sort_key()):
-        old, new = was[element], becomes.get(element, _Rights.empty())
+        old, new = was[element], becomes.get(element, _ReadAndWritten.empty())
         lost = {at: names - new.reads[at] for at, names in old.reads.items() if at in new.reads}
         less = Affected(
             element,
@@ -79,9 +79,9 @@ def affected(before: Analysis, after: Analysis) -> tuple[Affected, ...]:
     return tuple(rows)
 
 
-def _rights(analysis: Analysis) -> dict[Element, _Rights]:
+def _rights(analysis: Analysis) -> dict[Element, _ReadAndWritten]:
     graph, spread = analysis.graph, analysis.spread
-    rights: dict[Element, _Rights] = defaultdict(_Rights.empty)
+    rights: dict[Element, _ReadAndWritten] = defaultdict(_ReadAndWritten.empty)
     for index, flow in enumerate(graph.flows):
         source, target = graph.elements[flow.source], graph.elements[flow.target]
         for reads, mine, other in ((True, target, source), (False, source, target)):

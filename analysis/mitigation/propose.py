@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class System:
+class MitigatedSystem:
     """What an analysis was made of, and how it is made anew with changes.
 
     Attributes
@@ -75,7 +75,7 @@ def open_findings(analysis: Analysis) -> tuple[Finding, ...]:
 
 
 def mitigate(
-    system: System, analysis: Analysis, limits: Limits | None = None, budget: int = BUDGET
+    system: MitigatedSystem, analysis: Analysis, limits: Limits | None = None, budget: int = BUDGET
 ) -> tuple[Proposal, ...]:
     """Return a proposal per category with an open finding, in order, and one for all together where there are several.
 
@@ -91,7 +91,7 @@ def mitigate(
     >>> from rosprivacy.analysis.example import factory
     >>> graph, bound, hierarchy = factory()
     >>> analysis = analyse(graph, bound, hierarchy)
-    >>> system = System(graph, bound, hierarchy, Options(), lambda flows: (), lambda grants: (graph, bound))
+    >>> system = MitigatedSystem(graph, bound, hierarchy, Options(), lambda flows: (), lambda grants: (graph, bound))
     >>> for proposal in mitigate(system, analysis):
     ...     print(*proposal.categories, [(step.kind, step.channel.name, step.cost) for step in proposal.steps])
     FaceTemplate [('review', '/video', 1)]
@@ -107,7 +107,7 @@ def mitigate(
 class _Work:
     """How one proposal is made."""
 
-    def __init__(self, system: System, analysis: Analysis, limits: Limits, names: tuple[str, ...]) -> None:
+    def __init__(self, system: MitigatedSystem, analysis: Analysis, limits: Limits, names: tuple[str, ...]) -> None:
         self.system = system
         self.analysis = analysis
         self.names = names

@@ -67,7 +67,9 @@ from rosprivacy.analysis.model.diagnostic import (
     TYPES_OF_NOTHING,
     UNREAD_FILE,
     WITHOUT_WARNINGS,
+    Breach,
     Diagnostic,
+    LintRule,
     Place,
     Severity,
     observed_when,
@@ -98,7 +100,6 @@ from rosprivacy.analysis.model.element import (
     Element,
 )
 from rosprivacy.analysis.model.flow import Flow, FlowGraph
-from rosprivacy.analysis.model.lint_rule import Breach, LintRule
 from rosprivacy.analysis.model.message_type import OF_KIND, MessageType, kind_of_type
 from rosprivacy.analysis.model.policy import Grant, Policy, Profile, Seen
 from rosprivacy.analysis.model.protection import Exposure, Protection, TopicProtection

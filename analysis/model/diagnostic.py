@@ -1,4 +1,4 @@
-"""A line of a file, and what a reader of a report has to know about it."""
+"""A line of a file, and what a reader of a report has to know about it; rules of how a policy is written."""
 
 from __future__ import annotations
 
@@ -62,8 +62,6 @@ NO_SOURCE = "no-source"  # what 'no leak found' lacks, so that it says nothing (
 GOES_NOWHERE = "goes-nowhere"
 NO_LEAK_NAMED = "no-leak-named"
 NOTHING_FOLLOWED = (NO_SOURCE, GOES_NOWHERE)
-
-
 _WHEN = r"observed from (\S+) to (\S+) by (.+); what was not seen proves nothing"
 
 
@@ -131,3 +129,30 @@ def unread(diagnostics: Iterable[Diagnostic]) -> tuple[Place, ...]:
     """
     places = {said.place for said in diagnostics if said.code in GAPS}
     return tuple(sorted(places, key=lambda place: (place.file, place.line)))
+
+
+class LintRule(NamedTuple):
+    """A rule of policies.
+
+    Attributes
+    ----------
+    name
+        Its id, such as ``wildcard``.
+    about
+        What breaks it, in a sentence.
+    why
+        What comes of it.
+    """
+
+    name: str
+    severity: Severity
+    about: str
+    why: str
+
+
+class Breach(NamedTuple):
+    """A rule that is broken at a line."""
+
+    rule: LintRule
+    place: Place
+    message: str

@@ -139,7 +139,7 @@ def reliances(
     asked = sum(map(spread.forms_of, analysis.emitted))
     if not spots or not asked:
         return ()
-    places = Places(spread, tuple(concerns(spread, bound, hierarchy)), asked, accepts)
+    places = PlacesOfFindings(spread, tuple(concerns(spread, bound, hierarchy)), asked, accepts)
     today = _Today(bound, hierarchy, places, frozenset(unanswered(elements, bound.outside)))
     order = sorted(spots, key=lambda same: (line_key(same[0]), same[1]))
     rows = (today.without(same[0], *spots[same]) for same in order)
@@ -198,7 +198,7 @@ class _Today:
 
     bound: Bound
     hierarchy: Hierarchy
-    places: Places
+    places: PlacesOfFindings
     unknown: Collection[int]
     rounds_left: int = field(default_factory=lambda: ROUNDS)
 
@@ -340,7 +340,7 @@ def _distinct(elements: Iterable[Element]) -> tuple[Element, ...]:
     return tuple({element.shown_as: element for element in elements}.values())
 
 
-class Places(NamedTuple):
+class PlacesOfFindings(NamedTuple):
     """Where each kind of finding can be, and what people accepted there; ``question_bits``: what is asked about."""
 
     spread: Spread
@@ -375,12 +375,12 @@ class Reach(NamedTuple):
         (Categories in both forms; where these get past no other leak of them), for what more than one leak lets out.
     """
 
-    places: Places
+    places: PlacesOfFindings
     flood: Flood
     past: tuple[tuple[int, Flood], ...]
 
     @classmethod
-    def of(cls, places: Places, sources: Sequence[int]) -> Reach:
+    def of(cls, places: PlacesOfFindings, sources: Sequence[int]) -> Reach:
         """Follow the data of some sources."""
         doing = Doing.of(places.spread, sources)
         past = [(own, Flood.of(doing.stopped(stop, allowed))) for own, stop, allowed in _stops(places, doing)]
@@ -442,14 +442,14 @@ class Reach(NamedTuple):
         return result
 
 
-def _reaches(places: Places, bound: Bound) -> tuple[Reach, ...]:
+def _reaches(places: PlacesOfFindings, bound: Bound) -> tuple[Reach, ...]:
     """What the sources' data gets to, some of them at a time; also of those that another label takes away today."""
     sources = [v for v, said in sorted(bound.elements.items()) if any(s.role == "source" for s in said)]
     parts = (sources[begin : begin + TOGETHER] for begin in range(0, len(sources), TOGETHER))
     return tuple(Reach.of(places, part) for part in parts)
 
 
-def _stops(places: Places, doing: Doing) -> Iterator[tuple[int, dict[int, int], int]]:
+def _stops(places: PlacesOfFindings, doing: Doing) -> Iterator[tuple[int, dict[int, int], int]]:
     """(Categories in both forms, where they stop, what is followed): as for findings, once for what nothing makes."""
     spread, every = places.spread, doing.lanes.every
     leaks = {v: spread.bits.merged(bits) for v, bits in spread.leaks.items() if bits}
@@ -463,7 +463,7 @@ def _stops(places: Places, doing: Doing) -> Iterator[tuple[int, dict[int, int], 
         yield own, stop, every(allowed)
 
 
-def _accepted(places: Places, doing: Doing, leak: int, bits: int) -> int:
+def _accepted(places: PlacesOfFindings, doing: Doing, leak: int, bits: int) -> int:
     """What is accepted at a leak, in the lanes of the sources: it hides nothing behind it (rule S10)."""
     if places.accepts is None:
         return 0

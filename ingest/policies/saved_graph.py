@@ -15,8 +15,7 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import GraphError, InputErrors, shown
-from rosprivacy.analysis.json_shape import BOUND, misfits, validator
-from rosprivacy.analysis.json_values import parsed
+from rosprivacy.analysis.json_values import BOUND, misfits, parsed, validator
 from rosprivacy.analysis.model import (
     ACCESS_GAP,
     DEAD_DENY,

@@ -20,7 +20,7 @@ from rosprivacy.report.naming import count_elements
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from rosprivacy.analysis.answer import Analysis, Carried, Finding
+    from rosprivacy.analysis.answer import Analysis, CarriedData, Finding
     from rosprivacy.analysis.findings.processed import Processed
     from rosprivacy.analysis.findings.sanitizing import Cleaning
     from rosprivacy.analysis.findings.ways import Ways
@@ -188,7 +188,7 @@ def _title(kind: Kind, words: Told) -> Html:
 def supports(facts: AnswerFacts) -> Html:
     """Return the answer to 123: what carries the data, by its kind."""
     told = facts.words
-    carries: dict[str, dict[str, Carried]] = {}
+    carries: dict[str, dict[str, CarriedData]] = {}
     for carried in facts.analysis.carried:
         carries.setdefault(carried.element.kind, {})[told.name(carried.element)] = carried
     parts = []
@@ -325,7 +325,7 @@ def _derivations(element: Element, of: str, words: Told) -> Html:
     return words("cnil.makes", element=escaped(words.name(element)), of=escaped(words.data(of)))
 
 
-def _storages_of(carried: Carried, words: Told) -> Html:
+def _storages_of(carried: CarriedData, words: Told) -> Html:
     hidden = (words.data(name, pseudonymised=True) for name in carried.pseudonymised)
     return words.names_shown([*map(words.data, carried.categories), *hidden])
 

@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.errors import InputError, reason, shown
 from rosprivacy.analysis.files_read import noted
-from rosprivacy.analysis.json_shape import misfits, validator
-from rosprivacy.analysis.json_values import parsed
+from rosprivacy.analysis.json_values import misfits, parsed, validator
 from rosprivacy.report.document.analysis import FORMAT, SHORT
 
 if TYPE_CHECKING:

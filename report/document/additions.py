@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.findings.beyond import Added, DenyLine, Right
     from rosprivacy.analysis.fleet.counts import Counts
     from rosprivacy.analysis.fleet.likeness import Likeness
-    from rosprivacy.analysis.fleet.patterns import Deviant, FleetView, Pattern
+    from rosprivacy.analysis.fleet.patterns import DeviantRobots, FleetView, Pattern
     from rosprivacy.analysis.fleet.tallies import Share
     from rosprivacy.report.document.contents import EnforcedFacts
     from rosprivacy.report.schemas.analysis import (
@@ -210,7 +210,7 @@ def _pattern(pattern: Pattern) -> PatternEntry:
     }
 
 
-def _deviant(deviant: Deviant) -> DeviantEntry:
+def _deviant(deviant: DeviantRobots) -> DeviantEntry:
     return {
         "robots": list(deviant.robots),
         "model": deviant.model,

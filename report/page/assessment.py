@@ -14,8 +14,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import InputError, InputErrors
-from rosprivacy.analysis.json_shape import misfits, validator
-from rosprivacy.analysis.json_values import parsed
+from rosprivacy.analysis.json_values import misfits, parsed, validator
 from rosprivacy.analysis.model import SENSED, SPECIAL
 from rosprivacy.analysis.text import fit, printable
 from rosprivacy.report.compare.earlier import bytes_of

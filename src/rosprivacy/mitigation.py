@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.findings.doubts import doubts, judged
 from rosprivacy.analysis.mitigation.limits import CHANGES, DENY, Limits
-from rosprivacy.analysis.mitigation.propose import System, mitigate, open_findings
+from rosprivacy.analysis.mitigation.propose import MitigatedSystem, mitigate, open_findings
 from rosprivacy.analysis.model import UNPROTECTED
 from rosprivacy.documents import document_of
 from rosprivacy.ingest.deployed.exposures import with_exposed
@@ -105,7 +105,7 @@ def run_mitigation(
         changed = build(with_denied(result.policies, grants), view, bounds)
         return changed, with_exposed(changed, join(changed, result.labels, bounds)[0], result.policies)
 
-    system = System(
+    system = MitigatedSystem(
         graph, result.bound, result.vocabulary.hierarchy, result.options,
         Denials(result.policies, graph).of, deny, open_ended, partial(_judged, result),
     )  # fmt: skip

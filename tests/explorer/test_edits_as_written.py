@@ -15,7 +15,7 @@ from hypothesis import Phase, given, reject, settings
 from hypothesis import strategies as st
 
 from rosprivacy.analysis.errors import InputErrors
-from rosprivacy.explorer.edited_file import Saved
+from rosprivacy.explorer.edited_file import SavedFile
 from rosprivacy.explorer.edits import Edit
 from rosprivacy.explorer.questions import questions
 from rosprivacy.explorer.session import Session
@@ -138,7 +138,7 @@ def held(system: Written, deeds: list[Edit | str]) -> None:
         for deed in deeds:
             if deed == "save":
                 saved = session.save()
-                assert isinstance(saved, Saved)
+                assert isinstance(saved, SavedFile)
                 there = answer_robot((policy,), (file,), asked)
                 assert session.result.to("json1") == there.to("json1")
                 assert session.unsaved == 0
@@ -165,7 +165,7 @@ def held(system: Written, deeds: list[Edit | str]) -> None:
             assert {key: mine[key] for key in mine if mine[key] != theirs[key]} == {
                 key: theirs[key] for key in mine if mine[key] != theirs[key]
             }
-        if begin.splitlines() and isinstance(session.save(), Saved):
+        if begin.splitlines() and isinstance(session.save(), SavedFile):
             lines = Path(file).read_text("utf-8").splitlines()
             names = {edit.name.strip("=") for edit in done}
             kept = [line for line in begin.splitlines() if line.split(":")[0].strip(' "=') not in names]

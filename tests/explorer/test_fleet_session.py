@@ -11,7 +11,7 @@ import pytest
 
 import rosprivacy
 from rosprivacy.analysis.errors import InputError, InputErrors
-from rosprivacy.explorer.edited_file import Conflict, Saved
+from rosprivacy.explorer.edited_file import Conflict, SavedFile
 from rosprivacy.explorer.session import Session
 from rosprivacy.settings import Settings
 from rosprivacy.systems.fleet_system import answer_fleet
@@ -84,7 +84,7 @@ def test_edits_saved_mean_what_the_files_then_mean(hospital: Path, seed: int) ->
             continue
         touched.add(Path(change.edit.file).name)
     assert touched
-    assert isinstance(session.save(), Saved)
+    assert isinstance(session.save(), SavedFile)
     assert session.unsaved == 0
     assert session.result.to("json1") == fresh(hospital).to("json1")
     after = held(hospital)
@@ -160,7 +160,7 @@ def test_what_somebody_else_wrote_is_not_written_over(small: Path) -> None:
     assert isinstance(session.save(), Conflict)
     assert held(small) == before
     session.merge()
-    assert isinstance(session.save(), Saved)
+    assert isinstance(session.save(), SavedFile)
     assert (small.parent / "shared.yaml").read_text() == theirs + "  /recorder: conduit\n"
     assert session.result.to("json1") == fresh(small).to("json1")
 
@@ -227,7 +227,7 @@ def test_robots_that_somebody_made_alike_meanwhile_stay_apart(tmp_path: Path) ->
     session = Session.open_fleet(str(file))
     (tmp_path / "one.yaml").write_text((tmp_path / "two.yaml").read_text())
     session.label("r1:/camera", source=["Video"], note="seen")
-    assert isinstance(session.save(), Saved)
+    assert isinstance(session.save(), SavedFile)
     assert [finding.leak.full_name for finding in session.findings] == ["r2:/recorder"]
 
 
@@ -246,7 +246,7 @@ def test_robots_whose_policies_somebody_made_alike_meanwhile_stay_apart(tmp_path
     (tmp_path / "one.xml").write_text(POLICY)
     assert session.changed_inputs == (str(tmp_path / "one.xml"),)
     session.label("r2:/camera", source=["Video"], note="seen")
-    assert isinstance(session.save(), Saved)
+    assert isinstance(session.save(), SavedFile)
     assert [finding.leak.full_name for finding in session.findings] == ["r2:/recorder"]
     assert session.changed_inputs == (str(tmp_path / "one.xml"),)
 
@@ -265,6 +265,6 @@ def test_robots_whose_types_somebody_made_alike_meanwhile_stay_apart(tmp_path: P
     session = Session.open_fleet(str(file))
     (tmp_path / "one.yaml").write_text((tmp_path / "two.yaml").read_text())
     session.label("r2:/camera", source=["Video"], note="seen again")
-    assert isinstance(session.save(), Saved)
+    assert isinstance(session.save(), SavedFile)
     assert session.stands_for("r1") == ("r1",)
     assert session.changed_inputs == (str(tmp_path / "one.yaml"),)

@@ -13,7 +13,7 @@ import pytest
 
 from rosprivacy.analysis.errors import InputError
 from rosprivacy.analysis.files_read import one_run
-from rosprivacy.explorer.edited_file import Saved
+from rosprivacy.explorer.edited_file import SavedFile
 from rosprivacy.explorer.edits import Edit
 from rosprivacy.explorer.journal import read_journal
 from rosprivacy.explorer.session import Session
@@ -70,7 +70,7 @@ def test_what_was_not_saved_is_offered_and_made_again(file: Path) -> None:
     second.close()
     third = begun(file, resume=True)  # the second one was not saved either
     assert third.entries == entries
-    assert isinstance(third.save(), Saved)
+    assert isinstance(third.save(), SavedFile)
     assert journals(file) == []
     third.undo()  # of what is saved
     third.close()
@@ -187,7 +187,7 @@ def test_a_full_disk_loses_nothing_and_is_told(file: Path) -> None:
     session.label("/navigator", leak="Video")  # there is room again: all of it is written down
     (journal,) = journals(file)
     assert {edit.name for edit in read_journal(journal).edits} == {"/robot_camera", "/archive_server", "/navigator"}
-    assert isinstance(session.save(), Saved)
+    assert isinstance(session.save(), SavedFile)
 
 
 def test_a_folder_that_cannot_be_made_is_told(file: Path) -> None:
@@ -202,7 +202,7 @@ def test_a_command_can_save_twice(file: Path) -> None:
         session = begun(file)
         for name in ("/robot_camera", "/archive_server"):
             session.label(name, conduit=True)
-            assert isinstance(session.save(), Saved)
+            assert isinstance(session.save(), SavedFile)
     assert file.read_text().count("conduit") == 4
 
 

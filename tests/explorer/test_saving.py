@@ -9,7 +9,7 @@ import pytest
 
 import rosprivacy
 from rosprivacy.analysis.errors import InputError
-from rosprivacy.explorer.edited_file import Conflict, Saved
+from rosprivacy.explorer.edited_file import Conflict, SavedFile
 from rosprivacy.explorer.session import Session
 from rosprivacy.ingest.labels.edited_entries import Said
 from rosprivacy.ingest.labels.label_writer import with_entries
@@ -41,7 +41,7 @@ def test_three_edits_change_three_lines_of_449(cli: Cli, corpus: Path, tmp_path:
     session.label("/amcl", conduit=True)
     session.label("/map", kind="topic", sensitive=True)
     saved = session.save()
-    assert isinstance(saved, Saved)
+    assert isinstance(saved, SavedFile)
     assert (saved.lines, saved.remarks) == (3, ())
     after = file.read_text("utf-8").splitlines()
     changed = [(old, new) for old, new in zip(lines, after, strict=True) if old != new]
@@ -84,7 +84,7 @@ def test_odd_spaces_stay(tmp_path: Path, end: str) -> None:
     session = Session.open([BEFORE], [str(file)])
     session.label("/navigator", leak="Video")
     session.label("/new_pose", kind="topic", mundane=True)
-    assert isinstance(session.save(), Saved)
+    assert isinstance(session.save(), SavedFile)
     wanted = ODD.replace("'/navigator': conduit", "'/navigator': {leak: [Video]}")
     after = file.read_bytes().decode("utf-8")
     assert after.startswith("\ufefflabels" if ODD.startswith("labels") else "\ufeff#")
@@ -102,7 +102,7 @@ def test_a_comment_of_a_line_that_goes_stands_above(tmp_path: Path) -> None:
     session = Session.open([BEFORE], [str(file)])
     session.label("/archive_server", conduit=True, note="")
     saved = session.save()
-    assert isinstance(saved, Saved)
+    assert isinstance(saved, SavedFile)
     assert "stand above the entry" in saved.remarks[0]
     after = file.read_text()
     assert "    # to the cloud\n" in after
@@ -139,7 +139,7 @@ def test_the_six_lists_are_not_edited(tmp_path: Path) -> None:
         session.save()
     both = Session.open([BEFORE], [str(lists), str(tmp_path / "mine.yaml")])
     both.label("/archive_server", leak="Video")
-    assert isinstance(both.save(), Saved)
+    assert isinstance(both.save(), SavedFile)
     assert (tmp_path / "mine.yaml").read_text() == "labels: 1\nnodes:\n  /archive_server: {leak: [Video]}\n"
     assert "labels" not in lists.read_text()
 
@@ -153,7 +153,7 @@ def test_a_file_that_appears_meanwhile_is_not_written_over(tmp_path: Path) -> No
     assert session.changed_on_disk()
     session.merge()
     assert session.changed_on_disk() is None
-    assert isinstance(session.save(), Saved)
+    assert isinstance(session.save(), SavedFile)
     file.unlink()
     assert isinstance(session.save(), Conflict)  # gone is changed, too
 

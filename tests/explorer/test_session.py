@@ -9,7 +9,7 @@ import pytest
 
 import rosprivacy
 from rosprivacy.analysis.errors import InputErrors, LabelError
-from rosprivacy.explorer.edited_file import Conflict, Saved
+from rosprivacy.explorer.edited_file import Conflict, SavedFile
 from rosprivacy.explorer.edits import Edit
 from rosprivacy.explorer.session import Session
 from tests.helpers.factory import FACTORY
@@ -133,7 +133,7 @@ def test_saving_changes_the_lines_of_the_edits(session: Session, file: Path) -> 
     before = file.read_text().splitlines()
     session.label("/archive_server", leak="Video", note="it is far")
     saved = session.save()
-    assert isinstance(saved, Saved)
+    assert isinstance(saved, SavedFile)
     after = file.read_text().splitlines()
     assert [line for line in after if line not in before] == ['  /archive_server: {leak: [Video], note: "it is far"}']
     assert len(after) == len(before)
@@ -152,7 +152,7 @@ def test_what_somebody_else_wrote_is_not_written_over(session: Session, file: Pa
     assert "+  /navigator: {leak: [Video]}" in conflict.diff
     assert file.read_text() == theirs
     session.merge()
-    assert isinstance(session.save(), Saved)
+    assert isinstance(session.save(), SavedFile)
     assert file.read_text() == theirs.replace("/robot_camera: {source: [Video]}", "/robot_camera: conduit")
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 import rosprivacy
-from rosprivacy.explorer.edited_file import Saved, digest_of
+from rosprivacy.explorer.edited_file import SavedFile, digest_of
 from rosprivacy.explorer.session import Session
 from rosprivacy.explorer.watched_files import WatchedFiles
 from rosprivacy.settings import Settings
@@ -66,7 +66,7 @@ def test_a_file_is_told_after_labels_saving_and_merging_too(robot: Session, tmp_
     robot.label("/recorder", source="Voice")
     assert list(robot.changed_inputs) == []
     (tmp_path / "p.xml").unlink()
-    assert isinstance(robot.save(), Saved)
+    assert isinstance(robot.save(), SavedFile)
     assert list(robot.changed_inputs) == [str(tmp_path / "p.xml")]
     (tmp_path / "a.yaml").write_text(SOURCE)
     robot.merge()
@@ -115,7 +115,7 @@ def test_a_label_file_that_was_answered_into_is_told_as_one_that_can_be_taken_in
     fleet.merge()
     assert (fleet.changed_inputs, fleet.changed_on_disk()) == ((), None)
     (tmp_path / "one.yaml").write_text(LEAK)
-    assert isinstance(fleet.save(), Saved)
+    assert isinstance(fleet.save(), SavedFile)
     assert list(fleet.changed_inputs) == [str(tmp_path / "one.yaml")]
 
 

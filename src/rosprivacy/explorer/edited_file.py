@@ -1,7 +1,7 @@
 """A label file that a session edits: its text, what it says and means with edits, and the file written.
 
-In: a path, or labels from memory; edits. Out: ``Labels`` without a look at the disk; ``Saved``, with only those lines
-changed that edits are about, or ``Conflict`` where somebody else changed the file meanwhile.
+In: a path, or labels from memory; edits. Out: ``Labels`` without a look at the disk; ``SavedFile``, with only those
+lines changed that edits are about, or ``Conflict`` where somebody else changed the file meanwhile.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 MEMORY = "labels of this session"
 
 
-class Saved(NamedTuple):
+class SavedFile(NamedTuple):
     """What was written.
 
     Attributes
@@ -181,7 +181,7 @@ class EditedFile:
         diff = _difference(self.own.file, self.last[1], data)
         return Conflict(self.own.file, diff) if diff else None
 
-    def saved(self, edits: Sequence[Edit], read: Callable[[], EditedFile]) -> tuple[EditedFile, Saved | Conflict]:
+    def saved(self, edits: Sequence[Edit], read: Callable[[], EditedFile]) -> tuple[EditedFile, SavedFile | Conflict]:
         """Write edits into the file, if it is still what the session knows; return also how it is known then.
 
         Parameters
@@ -200,10 +200,12 @@ class EditedFile:
             data = own.encoded(new.text)
             if data != before:
                 write_texts([(file, data)], edited=file)
-        done = Saved(own.file, new.lines, digest_of(data), new.remarks)
+        done = SavedFile(own.file, new.lines, digest_of(data), new.remarks)
         return self._after_write(done, edits, read()), done
 
-    def saved_as(self, edits: Sequence[Edit], file: str, read: Callable[[], EditedFile]) -> tuple[EditedFile, Saved]:
+    def saved_as(
+        self, edits: Sequence[Edit], file: str, read: Callable[[], EditedFile]
+    ) -> tuple[EditedFile, SavedFile]:
         """Write it under another name, where there is none; labels that had no file have this one then."""
         new = self.own.new_text(edits)
         with one_run(), editing(Path(file)):
@@ -211,14 +213,14 @@ class EditedFile:
                 raise InputError(file, 0, "is there already", "a label file is work: name another, or remove it")
             data = new.text.encode()
             write_texts([(Path(file), data)], edited=Path(file))
-        done = Saved(file, new.lines, digest_of(data), new.remarks)
+        done = SavedFile(file, new.lines, digest_of(data), new.remarks)
         if self.own.file:
             return self, done
         own = replace(self.own, file=file, how=self.own.how._replace(file=file))
         named = replace(self, own=own, readings={(file, False): own})
         return named._after_write(done, edits, read()), done  # noqa: SLF001 - of its own class
 
-    def _after_write(self, saved: Saved, edits: Sequence[Edit], now: EditedFile) -> EditedFile:
+    def _after_write(self, saved: SavedFile, edits: Sequence[Edit], now: EditedFile) -> EditedFile:
         """The file as it was written; where somebody else was quicker since, nothing is known of its text."""
         last = now.last if now.own.digest == saved.digest else (saved.digest, "")
         written = {key: reading.labels for key, reading in now.readings.items()}

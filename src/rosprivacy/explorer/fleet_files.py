@@ -14,7 +14,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors, LabelError
-from rosprivacy.explorer.edited_file import Conflict, EditedFile, Saved, chosen, read_file
+from rosprivacy.explorer.edited_file import Conflict, EditedFile, SavedFile, chosen, read_file
 from rosprivacy.explorer.edits import Edit, differences, place_of
 from rosprivacy.explorer.label_files import Target
 from rosprivacy.explorer.scenarios import tried_on_robots
@@ -271,13 +271,13 @@ class FleetFiles:
 
     # --- the files ----------------------------------------------------------------------------------------------
 
-    def save(self, edits: Sequence[Edit]) -> Saved | Conflict:
+    def save(self, edits: Sequence[Edit]) -> SavedFile | Conflict:
         """Write edits into their files; if one of them was changed by somebody else, nothing is written."""
         edited = {name: file for name, file in self._edited.items() if file.unsaved(_of(name, edits))}
         changed = _joint(file.changed_on_disk() for file in edited.values())
         if changed:
             return changed
-        saved: list[Saved] = []
+        saved: list[SavedFile] = []
         try:
             for name, file in edited.items():
                 self._edited[name], done = file.saved(_of(name, edits), partial(self._read, file.readings))
@@ -289,9 +289,9 @@ class FleetFiles:
                 self.read = self._compared_anew(edits)
         remarks = tuple(remark for done in saved for remark in done.remarks)
         names = ", ".join(done.file for done in saved)
-        return Saved(names or "no label file", sum(done.lines for done in saved), "", remarks)
+        return SavedFile(names or "no label file", sum(done.lines for done in saved), "", remarks)
 
-    def save_as(self, _edits: Sequence[Edit], file: str) -> Saved:
+    def save_as(self, _edits: Sequence[Edit], file: str) -> SavedFile:
         """Refuse: the label files of a fleet have names already."""
         hint = "save() writes each where the fleet file names it"
         raise InputError(file, 0, "cannot take the labels of a fleet", hint)

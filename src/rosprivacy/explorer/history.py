@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
 
-    from rosprivacy.explorer.edited_file import Conflict, Saved
+    from rosprivacy.explorer.edited_file import Conflict, SavedFile
     from rosprivacy.explorer.edits import Edit
     from rosprivacy.explorer.fleet_files import FleetFiles
     from rosprivacy.explorer.journal import Unsaved
@@ -230,12 +230,12 @@ class History:
 
     # --- the files ----------------------------------------------------------------------------------------------
 
-    def save(self) -> Saved | Conflict:
+    def save(self) -> SavedFile | Conflict:
         """Write the edits into the label file: only the lines that they are about, and only over what was read.
 
         Returns
         -------
-        Saved or Conflict
+        SavedFile or Conflict
             The latter if the file, or one of several, was changed by somebody else: then nothing is written; see
             ``merge``.
 
@@ -252,7 +252,7 @@ class History:
             finally:
                 self._go_on_with_written(known)
 
-    def save_as(self, file: str) -> Saved:
+    def save_as(self, file: str) -> SavedFile:
         """Write the label file with the edits under another name, where there is none; the session goes on with it.
 
         Raises

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
     from typing import Self
 
-    from rosprivacy.explorer.edited_file import Conflict, Saved
+    from rosprivacy.explorer.edited_file import Conflict, SavedFile
     from rosprivacy.explorer.scenarios import WhatIf
     from rosprivacy.question import Question
     from rosprivacy.result import Result
@@ -169,12 +169,12 @@ class RobotFiles:
         """Go on with another question."""
         self.question = question
 
-    def save(self, edits: Sequence[Edit]) -> Saved | Conflict:
+    def save(self, edits: Sequence[Edit]) -> SavedFile | Conflict:
         """Write edits into it: only the lines that they are about, and only over what was read."""
         self._edited, done = self._edited.saved(edits, lambda: self._read(self.file))
         return done
 
-    def save_as(self, edits: Sequence[Edit], file: str) -> Saved:
+    def save_as(self, edits: Sequence[Edit], file: str) -> SavedFile:
         """Write it with edits under another name, where there is none; labels that had no file have this one then."""
         self._edited, done = self._edited.saved_as(edits, file, lambda: self._read(file))
         return done

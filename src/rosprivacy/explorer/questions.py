@@ -1,6 +1,6 @@
 """What is left to decide, in the order in which a person reviews it (rule S11).
 
-In: a ``Result``. Out: ``Question`` facts, the first one first.
+In: a ``Result``. Out: ``RankedQuestion`` facts, the first one first.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ FIRST, AT_CHANNELS, BEHIND, WAITS, PROPOSED = "first", "channels", "behind", "wa
 GROUPS = (FIRST, AT_CHANNELS, BEHIND, WAITS, PROPOSED)
 
 
-class Question(NamedTuple):
+class RankedQuestion(NamedTuple):
     """An element of which a person has to say what it does.
 
     Attributes
@@ -67,7 +67,7 @@ class Question(NamedTuple):
 
 def questions(
     result: Result, outliers: Collection[str] = (), order: Mapping[Shown, Behind] | None = None
-) -> tuple[Question, ...]:
+) -> tuple[RankedQuestion, ...]:
     """Return what is left to decide: nodes that data reaches first, channels, what lies behind; what can wait last.
 
     Parameters
@@ -79,7 +79,7 @@ def questions(
     """
     order = result.review_order if order is None else order
     rows = (_question(q, order.get(q.element.shown_as, Behind()), result.infrastructure) for q in result.shown.open)
-    asked: dict[tuple[str, str, str], Question] = {}
+    asked: dict[tuple[str, str, str], RankedQuestion] = {}
     categories = result.vocabulary.categories
     for question in sorted(rows, key=lambda question: _urgency(question, categories)):
         key = question.element.robot, question.section, question.name
@@ -90,7 +90,7 @@ def questions(
     return tuple(sorted(asked.values(), key=lambda each: (each.can_wait, each.element.robot not in outliers)))
 
 
-def _question(question: OpenQuestion, behind: Behind, proposed: Collection[tuple[str, str]]) -> Question:
+def _question(question: OpenQuestion, behind: Behind, proposed: Collection[tuple[str, str]]) -> RankedQuestion:
     element = question.element
     label = label_key(element)
     group = FIRST if question.frontier else BEHIND
@@ -98,13 +98,13 @@ def _question(question: OpenQuestion, behind: Behind, proposed: Collection[tuple
         group = WAITS if behind.waits else AT_CHANNELS
     if (element.kind, element.name) in proposed:
         group = PROPOSED
-    return Question(
+    return RankedQuestion(
         element, label["section"], label["name"], question.categories, question.distance, group, question.frontier,
         behind.through, behind.closes, behind.leaks, question.missing,
     )  # fmt: skip
 
 
-def _urgency(question: Question, categories: Mapping[str, Category]) -> tuple[object, ...]:
+def _urgency(question: RankedQuestion, categories: Mapping[str, Category]) -> tuple[object, ...]:
     """What is reviewed first; of what is alike, what the heaviest kind of data reaches."""
     place = question.element.sort_key() if question.group == PROPOSED else ()  # others come in that order, by steps
     heaviest = min(categories[kind].weight for kind in question.kinds)

@@ -38,14 +38,14 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.decisions import Decisions
     from rosprivacy.analysis.model import Element
     from rosprivacy.explorer.deciding import How
-    from rosprivacy.explorer.edited_file import Conflict, Saved
+    from rosprivacy.explorer.edited_file import Conflict, SavedFile
     from rosprivacy.explorer.edits import Label
     from rosprivacy.explorer.history import LabelFiles
     from rosprivacy.explorer.label_files import Target
-    from rosprivacy.explorer.questions import Question
+    from rosprivacy.explorer.questions import RankedQuestion
     from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.outputs import Findings
-    from rosprivacy.question import Question as Asked
+    from rosprivacy.question import Question
     from rosprivacy.report.pictures.page_pictures import AlonePicture
     from rosprivacy.result import Result
     from rosprivacy.system import System
@@ -53,7 +53,7 @@ if TYPE_CHECKING:
 OF_QUESTION = ("ontologies", "type_limits", "decisions")  # files that the answer rests on, whatever system it is about
 
 
-class Entry(NamedTuple):
+class AnsweredEntry(NamedTuple):
     """What a label file says of an element or a glob."""
 
     section: str
@@ -76,7 +76,9 @@ class Session:
         Where decisions about findings are written; None where none was named.
     """
 
-    def __init__(self, files: LabelFiles, system: System, question: Asked, decisions_file: str | None = None) -> None:
+    def __init__(
+        self, files: LabelFiles, system: System, question: Question, decisions_file: str | None = None
+    ) -> None:
         self.history = History(files, system, question)
         self.decisions_file = decisions_file
         self._scenarios: dict[str, Scenario] = {}
@@ -159,7 +161,7 @@ class Session:
         return cls.of_stored(stored_system(driver, question.vocabulary), question)
 
     @classmethod
-    def of_stored(cls, system: System, question: Asked) -> Session:
+    def of_stored(cls, system: System, question: Question) -> Session:
         """Return a session with what was read from a database."""
         return cls(RobotFiles.stored(system, question), system, question)
 
@@ -250,10 +252,10 @@ class Session:
         return {place: value for each in entries for place, value in each.items() if value is not None}
 
     @property
-    def answers(self) -> tuple[Entry, ...]:
+    def answers(self) -> tuple[AnsweredEntry, ...]:
         """All that the label files say, with the edits: of robots that are alike, those of the first one."""
         return tuple(
-            Entry(*place, value, target)
+            AnsweredEntry(*place, value, target)
             for target in self._files.answered(self.history.edits)
             for place, value in self._files.says(target.file, self.history.edits).items()
             if value is not None
@@ -318,7 +320,7 @@ class Session:
         fleet = self._files.fleet
         return next((each.model for each in fleet.robots if each.id == robot), "") if fleet else ""
 
-    def questions(self) -> tuple[Question, ...]:
+    def questions(self) -> tuple[RankedQuestion, ...]:
         """Return what is left to decide, in the order of review (rule S11); robots unlike their model first."""
         return questions.questions(self.uncounted, self.outliers)
 
@@ -438,11 +440,11 @@ class Session:
         """Make the edit again that was taken back last; return whether there was one."""
         return self.history.redo()
 
-    def save(self) -> Saved | Conflict:
+    def save(self) -> SavedFile | Conflict:
         """Write the edits into the label file: only the lines that they are about, and only over what was read."""
         return self.history.save()
 
-    def save_as(self, file: str) -> Saved:
+    def save_as(self, file: str) -> SavedFile:
         """Write the label file with the edits under another name, where there is none; the session goes on with it."""
         return self.history.save_as(file)
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from rosprivacy.analysis.fleet.tallies import Group
+    from rosprivacy.analysis.fleet.tallies import CountedPattern
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Element
@@ -122,7 +122,7 @@ class Classes:
                     found.append(PartEnd(kind, name, element, CORE, codes[row].tobytes()))
         return found
 
-    def bringers(self, groups: Iterable[Group], sources: Iterable[PartSource]) -> set[str]:
+    def bringers(self, groups: Iterable[CountedPattern], sources: Iterable[PartSource]) -> set[str]:
         """Return the units that bring the classes of what is shown to where they get."""
         wanted: dict[tuple[str, Element], set[bool]] = defaultdict(set)
         for group in groups:

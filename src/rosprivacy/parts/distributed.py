@@ -40,8 +40,8 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import ClosedByShipped
     from rosprivacy.analysis.fleet.likeness import Likeness
-    from rosprivacy.analysis.fleet.patterns import Deviant
-    from rosprivacy.analysis.fleet.tallies import Group
+    from rosprivacy.analysis.fleet.patterns import DeviantRobots
+    from rosprivacy.analysis.fleet.tallies import CountedPattern
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Element, NonRosFacts
@@ -116,8 +116,8 @@ class Found:
     emitted: tuple[str, ...]
     verdict: Verdict
     lacking: str
-    groups: tuple[Group, ...]
-    deviants: tuple[Deviant, ...]
+    groups: tuple[CountedPattern, ...]
+    deviants: tuple[DeviantRobots, ...]
     units: frozenset[str]
     examples: frozenset[str]
     leaking: frozenset[str]

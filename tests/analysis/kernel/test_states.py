@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from rosprivacy.analysis.findings.closures import Nearest
 from rosprivacy.analysis.findings.findings import Options
 from rosprivacy.analysis.kernel.backward import backward
 from rosprivacy.analysis.kernel.bits import bits_of
-from rosprivacy.analysis.kernel.nearest import Nearest
 from rosprivacy.analysis.kernel.search import search
 from rosprivacy.analysis.kernel.states import Net, States, derived_bits
 from tests.helpers.systems import System, analysed, statement, systems

@@ -14,7 +14,7 @@ from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.findings.findings import Options, analyse
 from rosprivacy.analysis.mitigation.limits import FILTER, REVIEW, Limits, Weights
 from rosprivacy.analysis.mitigation.proposals import NOT_ALLOWED
-from rosprivacy.analysis.mitigation.propose import System, mitigate, open_findings
+from rosprivacy.analysis.mitigation.propose import MitigatedSystem, mitigate, open_findings
 from tests.helpers.systems import HIERARCHY, PARENTS, statement, systems
 from tests.helpers.systems import System as Random
 
@@ -35,11 +35,11 @@ def never_called(_: object) -> tuple[FlowGraph, Bound]:
     raise AssertionError
 
 
-def system_of(random: Random, options: Options | None = None) -> System:
-    return System(random.graph(), random.bound(), HIERARCHY, options or Options(), no_denial, never_called)
+def system_of(random: Random, options: Options | None = None) -> MitigatedSystem:
+    return MitigatedSystem(random.graph(), random.bound(), HIERARCHY, options or Options(), no_denial, never_called)
 
 
-def analysed(system: System) -> Analysis | None:
+def analysed(system: MitigatedSystem) -> Analysis | None:
     """None where the labels contradict each other."""
     try:
         return analyse(system.graph, system.bound, system.hierarchy, system.options)

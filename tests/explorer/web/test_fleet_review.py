@@ -10,7 +10,7 @@ from lxml import html
 
 from rosprivacy.explorer.element_ids import element_id
 from rosprivacy.explorer.web.answered_entries import left_of
-from rosprivacy.explorer.web.review_panes import open_elements
+from rosprivacy.explorer.web.review_site import open_elements
 from rosprivacy.report.catalogs.words import Words
 from rosprivacy.settings import Settings
 from rosprivacy.systems.fleet_system import answer_fleet

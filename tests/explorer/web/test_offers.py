@@ -8,7 +8,7 @@ import pytest
 from lxml import html
 
 from rosprivacy.explorer.element_ids import element_id
-from rosprivacy.explorer.web.review_panes import open_elements
+from rosprivacy.explorer.web.review_site import open_elements
 from rosprivacy.report.catalogs.words import Words
 from tests.helpers.explorers import Explorer, label, node
 from tests.helpers.little_robots import policy_of

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from lxml import html
 
 from rosprivacy.explorer.element_ids import element_id
-from rosprivacy.explorer.web.kept_trials import BOUND
+from rosprivacy.explorer.web.trial_forms import MOST_KEPT
 from tests.helpers.daily import one_in
 from tests.helpers.explorers import BARE, FACTORY, FILTERED, Explorer, copied, label, node, version
 
@@ -195,7 +195,7 @@ def test_what_is_tried_and_not_there_any_more_is_told(explore: Explore, labels: 
 @pytest.mark.slow
 def test_no_more_trials_are_kept_than_memory_holds(explore: Explore, labels: Path) -> None:
     client = explore(BARE, labels).client()
-    for _ in range(BOUND):
+    for _ in range(MOST_KEPT):
         assert tried(client, what="filter", flow=FLOW, data="Video").status_code == 303
     answer = tried(client, what="filter", flow=FLOW, data="Video")
     assert answer.status_code == 422

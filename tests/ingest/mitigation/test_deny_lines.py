@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from rosprivacy.analysis.findings.findings import Options, analyse
 from rosprivacy.analysis.mitigation.limits import DENY, Limits, Weights
-from rosprivacy.analysis.mitigation.propose import System, mitigate, open_findings
+from rosprivacy.analysis.mitigation.propose import MitigatedSystem, mitigate, open_findings
 from rosprivacy.analysis.model import Bound, Element, Grant, Method, Place, Policy, Profile, Statement
 from rosprivacy.ingest.mitigation.deny_lines import Denials, open_ended, with_denied
 from rosprivacy.ingest.policies.flow_graph import build
@@ -57,20 +57,20 @@ SAID = st.fixed_dictionaries(
 )
 
 
-def system_of(some: Collection[Policy], said: Said, view: str) -> System:
+def system_of(some: Collection[Policy], said: Said, view: str) -> MitigatedSystem:
     def made(changed: Iterable[Policy]) -> tuple[FlowGraph, Bound]:
         graph = build(changed, view)
         elements = {v: tuple(said[e.name]) for v, e in enumerate(graph.elements) if e.is_node and said.get(e.name)}
         return graph, Bound(elements)
 
     graph, bound = made(some)
-    return System(
+    return MitigatedSystem(
         graph, bound, HIERARCHY, Options(), Denials(some, graph).of,
         lambda grants: made(with_denied(some, grants)), open_ended,
     )  # fmt: skip
 
 
-def analysed(system: System) -> Analysis:
+def analysed(system: MitigatedSystem) -> Analysis:
     return analyse(system.graph, system.bound, system.hierarchy, system.options)
 
 

@@ -23,11 +23,10 @@ from rosprivacy.explorer.web import forms
 from rosprivacy.explorer.web.answered_entries import label_of, limit_of, made_by
 from rosprivacy.explorer.web.finding_pane import finding_pane, scope_in, scope_in_words
 from rosprivacy.explorer.web.guard import Guard
-from rosprivacy.explorer.web.kept_trials import Trials, kept_trials, trial_pane
 from rosprivacy.explorer.web.page import Message, draw_picture, page_of, render_page
 from rosprivacy.explorer.web.panes import ROBOT, ROBOT_OR_MODEL, Pane, title_of, titles_of
 from rosprivacy.explorer.web.standing import Standing
-from rosprivacy.explorer.web.trial_forms import TOGETHER, offers_at, tried_in
+from rosprivacy.explorer.web.trial_forms import TOGETHER, KeptTrials, kept_trials, offers_at, trial_pane, tried_in
 from rosprivacy.explorer.web.view import trial_in, view_of
 from rosprivacy.labelling.knowledge import what_is_known
 from rosprivacy.labelling.suggesting_on_demand import Suggester
@@ -90,7 +89,7 @@ class Site:
         self._lock = RLock()
         self._suggester = Suggester(what_is_known(session.uncounted.vocabulary, settings))
         self._standing = Standing(session, self._suggester)
-        self._trials = Trials(session, self._suggester)
+        self._trials = KeptTrials(session, self._suggester)
         self._phrases = Phrases.of_report(words, titles_of(session.uncounted.vocabulary, words))
         self._pictures = Pictures(self._phrases)
         self._by = ""

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.findings.review_order import Behind, Shown
     from rosprivacy.analysis.model import Element
     from rosprivacy.explorer.edits import Edit
-    from rosprivacy.explorer.questions import Question
+    from rosprivacy.explorer.questions import RankedQuestion
     from rosprivacy.explorer.session import Session
     from rosprivacy.labelling.suggesting_on_demand import Suggester, Suggestions
     from rosprivacy.mitigation import Mitigation
@@ -57,9 +57,9 @@ class Standing:
         return self.analysis.spread.shape.memoised("page: elements", None, lambda: by_id(self.analysis.graph))
 
     @cached_property
-    def questions(self) -> Sequence[Question]:
+    def questions(self) -> Sequence[RankedQuestion]:
         """What is left to decide, of each element once: the legs of a service are one question to a person."""
-        seen: dict[tuple[str, str, str], Question] = {}
+        seen: dict[tuple[str, str, str], RankedQuestion] = {}
         for question in questions(self.result, self.session.outliers, self.order):
             identity = question.element.identity
             first = seen.setdefault(identity, question)
