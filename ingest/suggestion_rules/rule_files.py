@@ -16,7 +16,7 @@ from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import InputError, InputErrors, shown
 from rosprivacy.analysis.model import Confidence, Place
 from rosprivacy.analysis.suggesting.evidence import ANYTHING
-from rosprivacy.analysis.suggesting.library_rules import ADDRESS, CPP, PROGRAM, PYTHON, LibraryRules, Names
+from rosprivacy.analysis.suggesting.library_rules import ADDRESS, CPP, PROGRAM, PYTHON, LibraryRules, RulesByName
 from rosprivacy.analysis.suggesting.name_rules import LONGEST_PHRASE, NameRule, NameRules, words
 from rosprivacy.analysis.suggesting.packages import WHERE
 from rosprivacy.ingest.reading import yaml_values
@@ -152,7 +152,7 @@ def read_library_rules(
     quiet = {language: frozenset(name for of, name in silent if of == language) for language in (PYTHON, CPP)}
     sections = {
         section: {
-            language: Names({name: rule for (of, name), rule in joined[section].items() if of == language})
+            language: RulesByName({name: rule for (of, name), rule in joined[section].items() if of == language})
             for language in (PYTHON, CPP)
         }
         for section in SECTIONS
