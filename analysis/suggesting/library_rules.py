@@ -55,13 +55,13 @@ class RuleOfUse(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Names:
+class RulesByName:
     """Rules by name, by what names begin with (written with ``*`` at its end), and by a part of an address.
 
     >>> from rosprivacy.analysis.model import Confidence, Place
     >>> from rosprivacy.analysis.suggesting.name_rules import NameRule
     >>> rule = NameRule(("Voice",), Confidence.LIKELY, "a microphone", Place("libraries.yaml", 1))
-    >>> names = Names(dict.fromkeys(["sounddevice.InputStream", "Pa_Open*", "@ api.openai.com"], rule))
+    >>> names = RulesByName(dict.fromkeys(["sounddevice.InputStream", "Pa_Open*", "@ api.openai.com"], rule))
     >>> asked = ("sounddevice.InputStream.read", "sounddevice.play", "Pa_OpenStream", "@ https://api.openai.com/v1")
     >>> [bool(names.of(name)) for name in asked]
     [True, False, True, True]
@@ -99,12 +99,12 @@ class LibraryRules(NamedTuple):
         Names that suggest nothing; they speak where no rule has a longer name.
     """
 
-    brings_in: Mapping[str, Names]
-    lets_out: Mapping[str, Names]
-    makes: Mapping[str, Names]
+    brings_in: Mapping[str, RulesByName]
+    lets_out: Mapping[str, RulesByName]
+    makes: Mapping[str, RulesByName]
     silent: Mapping[str, frozenset[str]]
 
-    def spoken(self, section: Mapping[str, Names], use: NodeUse) -> NameRule | None:
+    def spoken(self, section: Mapping[str, RulesByName], use: NodeUse) -> NameRule | None:
         """Return the rule of a section that speaks about a use, if there is one."""
         found = section[use.language].of(use.name) if use.language in section else None
         if found is None:

@@ -16,7 +16,7 @@ from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import InputError, InputErrors, shown
 from rosprivacy.analysis.model import Confidence, Place
 from rosprivacy.analysis.suggesting.evidence import ANYTHING
-from rosprivacy.analysis.suggesting.library_rules import ADDRESS, CPP, PROGRAM, PYTHON, LibraryRules, Names
+from rosprivacy.analysis.suggesting.library_rules import ADDRESS, CPP, PROGRAM, PYTHON, LibraryRules, RulesByName
 from rosprivacy.analysis.suggesting.name_rules import LONGEST_PHRASE, NameRule, NameRules, words
 from rosprivacy.analysis.suggesting.packages import WHERE
 from rosprivacy.ingest.reading import yaml_values
@@ -44,7 +44,7 @@ class Section(NamedTuple):
     optional: tuple[str, ...] = ()
 
 
-class Format(NamedTuple):
+class RuleFormat(NamedTuple):
     """A format of rules: what they are about, the keys by which they name it, sections of rules, and lists."""
 
     about: str
@@ -62,7 +62,7 @@ class Format(NamedTuple):
 
 
 _PAIR = Section(("from", "to", "why"))  # of one kind, what comes of it
-NAMES = Format(
+NAMES = RuleFormat(
     "names",
     "name_rules",
     ("words",),
@@ -83,7 +83,7 @@ PROGRAMS, ADDRESSES = "programs", "addresses"
 LANGUAGES = {PYTHON: (PYTHON,), CPP: (CPP,), PROGRAMS: (PYTHON, CPP), ADDRESSES: (PYTHON,)}  # of names, by key
 SIGNS = {PROGRAMS: PROGRAM, ADDRESSES: ADDRESS}  # before names of these keys
 SECTIONS = ("brings_in", "lets_out", "makes")
-LIBRARIES = Format(
+LIBRARIES = RuleFormat(
     "libraries",
     "library_rules",
     tuple(LANGUAGES),
@@ -152,7 +152,7 @@ def read_library_rules(
     quiet = {language: frozenset(name for of, name in silent if of == language) for language in (PYTHON, CPP)}
     sections = {
         section: {
-            language: Names({name: rule for (of, name), rule in joined[section].items() if of == language})
+            language: RulesByName({name: rule for (of, name), rule in joined[section].items() if of == language})
             for language in (PYTHON, CPP)
         }
         for section in SECTIONS
@@ -160,7 +160,7 @@ def read_library_rules(
     return LibraryRules(**sections, silent=quiet), digests
 
 
-def _joined(readers: Iterable[_Reader]) -> dict[str, dict[Any, NameRule]]:
+def _joined(readers: Iterable[_RuleReader]) -> dict[str, dict[Any, NameRule]]:
     """The rules of all files, by section: those of later files stand for the same ones of earlier files."""
     joined: dict[str, dict[Any, NameRule]] = {}
     for reader in readers:
@@ -170,8 +170,8 @@ def _joined(readers: Iterable[_Reader]) -> dict[str, dict[Any, NameRule]]:
 
 
 def _read_each(
-    format_: Format, files: Iterable[str], vocabulary: Vocabulary, bounds: Bounds
-) -> tuple[list[_Reader], Files]:
+    format_: RuleFormat, files: Iterable[str], vocabulary: Vocabulary, bounds: Bounds
+) -> tuple[list[_RuleReader], Files]:
     """What is read of the shipped file and of each file of a user, in their order, each once."""
     shipped = f"{SHIPPED}{format_.about}"
     readers, digests = [], []
@@ -181,7 +181,7 @@ def _read_each(
             if file == shipped:
                 reader, data = _shipped(vocabulary, format_.about, bounds)
             else:
-                reader = _Reader(file, format_, vocabulary, error=InputError, bounds=bounds)
+                reader = _RuleReader(file, format_, vocabulary, error=InputError, bounds=bounds)
                 top, data = yaml_values.read(file, partial(InputError, file), bounds)
                 reader.read(top)
             problems += reader.problems
@@ -199,20 +199,20 @@ def _read_each(
 
 
 @remembered
-def _shipped(vocabulary: Vocabulary, about: str, bounds: Bounds) -> tuple[_Reader, bytes]:
+def _shipped(vocabulary: Vocabulary, about: str, bounds: Bounds) -> tuple[_RuleReader, bytes]:
     """What is read of a shipped file; it is only read from."""
     file, (format_,) = f"{SHIPPED}{about}", (one for one in (NAMES, LIBRARIES) if one.about == about)
-    reader = _Reader(file, format_, vocabulary, error=InputError, bounds=bounds)
+    reader = _RuleReader(file, format_, vocabulary, error=InputError, bounds=bounds)
     top, data = yaml_values.read_shipped(str(FOLDER / f"{about}.yaml"), InputError, file)
     reader.read(top)
     return reader, data
 
 
 @dataclass(eq=False, repr=False)
-class _Reader(FileReader):
+class _RuleReader(FileReader):
     """Reads one file of rules: sections by name, and lists by name."""
 
-    format: Format
+    format: RuleFormat
     vocabulary: Vocabulary
     sections: dict[str, dict[Any, NameRule]] = field(default_factory=dict)
     lists: dict[str, frozenset[Any]] = field(default_factory=dict)

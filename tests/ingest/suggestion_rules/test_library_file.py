@@ -17,7 +17,7 @@ from rosprivacy.ontology.vocabulary import FOLDER, load
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from rosprivacy.analysis.suggesting.library_rules import Names
+    from rosprivacy.analysis.suggesting.library_rules import RulesByName
 
 VOCABULARY = load()
 SHIPPED, FILES = read_library_rules((), VOCABULARY)
@@ -26,7 +26,7 @@ OWN = "library_rules: 1\nbrings_in:\n- {python: [%s], kinds: [Gesture], confiden
 NO_NAME = "write names such as cv2.VideoCapture, cv::VideoCapture, curl_easy_*, open(w), or a program"
 
 
-def spoken(section: Mapping[str, Names], name: str, language: str = PYTHON) -> tuple[str, ...]:
+def spoken(section: Mapping[str, RulesByName], name: str, language: str = PYTHON) -> tuple[str, ...]:
     rule = SHIPPED.spoken(section, NodeUse(name, language, Place("a", 1)))
     return (*rule.kinds, *rule.to, rule.where) if rule else ()
 
@@ -91,7 +91,7 @@ def test_a_users_rules_stand_before_ours(tmp_path: Path) -> None:
     file.write_text(OWN % "cv2.VideoCapture, requests.exceptions" + "silent: [{python: [requests]}]\n", "utf-8")
     rules, files = read_library_rules([str(file)], VOCABULARY)
 
-    def kinds(section: Mapping[str, Names], name: str) -> tuple[str, ...]:
+    def kinds(section: Mapping[str, RulesByName], name: str) -> tuple[str, ...]:
         rule = rules.spoken(section, NodeUse(name, PYTHON, Place("a", 1)))
         return rule.kinds if rule else ()
 
