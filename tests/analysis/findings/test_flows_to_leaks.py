@@ -66,7 +66,6 @@ class Walks:
                     yield [*way, target] if self.arrives(target, data) else []
                     yield from self._on([*way, target], self.leaving(target, data), {*met, (target, data)})
 
-
     def steps(self) -> set[Step]:
         """From ``BEGIN`` to ``END``; what starts where the same would go on, or end, if it came back is one state."""
         edges: set[Step] = set()
