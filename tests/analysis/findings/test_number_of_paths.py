@@ -61,7 +61,8 @@ def test_of_a_path_each_step_counts_where_it_is_looked_at() -> None:
 def test_of_a_source_each_step_counts_once_and_again_for_each_leak() -> None:
     """/n0 -> /t4 -> /n2 -> /t6 -> /n1, and the same by /t5, /n3 and /t7: eight steps."""
     edges = [(0, 4), (0, 5), (2, 6), (3, 7), (4, 2), (5, 3), (6, 1), (7, 1)]
-    spread = System(4, 4, edges, {0: [statement("source", "Face")], 1: [statement("leak", "Face")]}, {}).analyse().spread
+    said = {0: [statement("source", "Face")], 1: [statement("leak", "Face")]}
+    spread = System(4, 4, edges, said, {}).analyse().spread
     net, work, longer = Net.of(spread), Tally(BOUNDS, "path_steps"), Tally(BOUNDS, "path_steps")
     paths = NumberOfPaths(net, search(net, [0], spread.all_bits, {}), 0, {}, work)
     assert work.count == len(edges)
