@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from rosprivacy.analysis.example import ARCHIVE, FACES, factory
 from rosprivacy.analysis.findings.closures import PERHAPS, ROUNDS, behind, closed_by_shipped, closures, in_its_place
+from rosprivacy.analysis.kernel.backward import Opened
 from rosprivacy.analysis.kernel.spreading import spread
 from rosprivacy.analysis.model import STANDARD, Element, Method, Place, Statement
 from tests.helpers.systems import System, statement
@@ -65,3 +66,7 @@ def test_behind_what_a_shipped_file_closes_may_be_another_part_of_a_graph() -> N
 
 def test_parameter_events_are_in_their_place_below_the_namespace_of_any_node() -> None:
     assert in_its_place(Element("topic", "/map/parameter_events"), ["/map/server", "/camera"])
+
+
+def test_what_a_deny_takes_back_counts_as_what_a_label_closes() -> None:
+    assert Opened({0: 1}, {3: 1}, ((1, 2), (3, 4))).size == 4
