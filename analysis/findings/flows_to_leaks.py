@@ -221,11 +221,10 @@ class _Walk:
 
     def _begin(self, starts: Collection[int], leaks: Collection[int] | None) -> Iterator[Edge]:
         """Where what comes back goes on again, or ends, it is one state with what starts: circles are seen as such."""
-        spread, states = self._spread, self._states
+        states = self._states
         for vertex in sorted(starts):
-            stop, keeps = states.stop.get(vertex, 0), spread.keeps.get(vertex, spread.all_bits)
-            alike = stop if leaks is None or vertex in leaks else 0
-            alike |= keeps & ~stop
+            # A source keeps what it emits: one that cleans it is refused.
+            alike = self._spread.all_bits if leaks is None or vertex in leaks else ~states.stop.get(vertex, 0)
             for bit in bits_of(states.emitted(vertex)):
                 state = (ARRIVED if alike >> bit & 1 else STARTED, vertex, bit)
                 self._starts.add(state)

@@ -14,6 +14,7 @@ def test_made_past_no_leak_although_it_also_arrives_ready_made_through_one() -> 
     made = {(o.maker, o.category): o for o in origins(System(3, 2, edges, said, {}).analyse().spread)}
     assert set(made) == {(1, "Bio"), (2, "Bio")}
     assert made[2, "Bio"].path == (0, 3, 1, 4, 2)
+    assert made[2, "Bio"].flows == tuple(range(len(edges)))
     assert not made[2, "Bio"].past_leak  # up to /n2 there are faces only
 
 

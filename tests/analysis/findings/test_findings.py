@@ -14,11 +14,14 @@ from hypothesis import strategies as st
 from rosprivacy.analysis.answer import Analysis, Verdict
 from rosprivacy.analysis.case import Case
 from rosprivacy.analysis.errors import InputErrors
+from rosprivacy.analysis.findings.concerns import unprotected
 from rosprivacy.analysis.findings.findings import Options
 from rosprivacy.analysis.model import (
     DISCLOSURE,
+    Exposure,
     Method,
     NonRosFacts,
+    Place,
 )
 from rosprivacy.analysis.modes import Paths
 from tests.helpers.more_systems import ranked, wildcards
@@ -353,3 +356,8 @@ def test_an_answer_about_some_categories_is_a_part_of_the_whole_answer(system: S
     assert {q.element for q in part.open} == {q.element for q in found.open if name in q.categories}
     frontier = {q.element for q in found.open if q.frontier}
     assert {q.element for q in part.open if q.frontier} <= frontier
+
+
+def test_of_several_lines_that_open_a_channel_the_first_is_named() -> None:
+    lines = [Exposure("not-encrypted", Place("governance.p7s", number)) for number in (24, 5, 30)]
+    assert "governance.p7s:5" in str(unprotected(lines))

@@ -11,6 +11,10 @@ from hypothesis import strategies as st
 from rosprivacy.analysis.bounds import BOUNDS, Tally
 from rosprivacy.analysis.findings.disjoint_in_groups import number_in_groups
 from rosprivacy.analysis.findings.further_paths import number_disjoint
+from rosprivacy.analysis.findings.paths_of_source import NumberOfPaths
+from rosprivacy.analysis.kernel.search import search
+from rosprivacy.analysis.kernel.states import Net
+from tests.helpers.systems import System, statement
 
 START, END = 0, 9
 STATES = st.sampled_from([START, *range(1, 7), END])
@@ -38,6 +42,34 @@ def test_the_work_is_counted_and_is_that_of_a_path_each() -> None:
     work = Tally(BOUNDS, "path_steps")
     assert number_disjoint(wide, START, END, work) == 500
     assert len(wide) <= work.count <= 500 * len(wide)
+
+
+def test_of_a_path_each_step_counts_where_it_is_looked_at() -> None:
+    """The bound cuts at the same place on every machine (S14): what is counted is told here to the last step."""
+    looked_at = 2 * 2  # from each of two states: the state, and the one step on
+    work = Tally(BOUNDS, "path_steps")
+    assert number_disjoint([(START, 1), (1, END)], START, END, work) == 1
+    assert work.count == looked_at
+    work = Tally(BOUNDS, "path_steps")
+    assert number_in_groups([(START, 1), (1, END)], [], START, END, work) == 1
+    assert work.count == 2 * looked_at + 2  # for the layers, for the path, and its steps once more
+    work = Tally(BOUNDS, "path_steps")
+    assert number_in_groups([(1, END)], [([START], [1])], START, END, work) == 1
+    assert work.count == 2 * looked_at + 3  # a member of a group is as a step, and seen again after the path took it
+
+
+def test_of_a_source_each_step_counts_once_and_again_for_each_leak() -> None:
+    """/n0 -> /t4 -> /n2 -> /t6 -> /n1, and the same by /t5, /n3 and /t7: eight steps."""
+    edges = [(0, 4), (0, 5), (2, 6), (3, 7), (4, 2), (5, 3), (6, 1), (7, 1)]
+    said = {0: [statement("source", "Face")], 1: [statement("leak", "Face")]}
+    spread = System(4, 4, edges, said, {}).analyse().spread
+    net, work, longer = Net.of(spread), Tally(BOUNDS, "path_steps"), Tally(BOUNDS, "path_steps")
+    paths = NumberOfPaths(net, search(net, [0], spread.all_bits, {}), 0, {}, work)
+    assert work.count == len(edges)
+    assert paths.to(1, 0) == number_disjoint(edges, 0, 1, longer) == 2
+    assert work.count == len(edges) + (2 + 2) + 2 * len(edges) + longer.count  # ends; what leads there; a search
+    assert paths.to(1, 0) == 2
+    assert work.count == len(edges) + 2 * (2 + 2) + 2 * len(edges) + longer.count  # it is remembered
 
 
 MEMBERS = st.lists(STATES, min_size=1, max_size=4, unique=True).map(sorted)

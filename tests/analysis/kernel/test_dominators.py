@@ -44,6 +44,12 @@ def test_they_are_those_of_networkx(edges: list[tuple[int, int]]) -> None:
     assert immediate_dominators(following(edges), 0) == theirs
 
 
+def test_circles_that_are_entered_at_several_places_take_several_rounds() -> None:
+    """Figure 4 of Cooper, Harvey and Kennedy, A Simple, Fast Dominance Algorithm: all hang on the start alone."""
+    following = {0: [5, 4], 5: [1], 4: [2, 3], 1: [2], 2: [1, 3], 3: [2]}
+    assert immediate_dominators(following, 0) == dict.fromkeys(range(1, 6), 0)
+
+
 def test_a_long_chain_is_no_deep_recursion() -> None:
     chain = {at: [at + 1] for at in range(50_000)}
     assert immediate_dominators(chain, 0) == {at + 1: at for at in range(50_000)}

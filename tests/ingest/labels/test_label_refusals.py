@@ -78,6 +78,7 @@ REFUSED = [
     (2, "nodes: {/a: {derives: [{from: [Video], to: Voice}]}}", "a list where a category is named"),
     (2, "nodes: {/a: {derives: [{from: Video, to: Voice, by: x}]}}", "unknown key 'by'; one of from, to"),
     (2, "nodes: {/a: {note: [why]}}", "note"),
+    (2, "nodes: {/a: {leak: [Video], author: LONG}}", "author takes a name"),
     (2, "channels: {/a: {note: {why: x}}}", "note"),
     (2, "channels: {/a: conduit}", "label 'conduit' on a channel; write mundane, sensitive"),
     (2, "channels: {/a: [mundane]}", "label 'list' on a channel"),
