@@ -38,8 +38,8 @@ def test_of_many_such_lines_the_first_are_opened_and_of_others_it_is_said_that_t
         edges += [(second, channels + 1 + second), (channels + 1 + second, 1)]
     carried = System(channels, 2 * many + 3, sorted(set(edges)), said, {}).analyse().spread
     closed = closures(carried)
-    stated_at = [line for closure in closed for line in closure.lines[:1] if isinstance(line, Statement)]
-    lines = {stated.place.line: number for number, stated in enumerate(stated_at)}
+    by_closure = ((number, line) for number, closure in enumerate(closed) for line in closure.lines)
+    lines = {line.place.line: number for number, line in by_closure if isinstance(line, Statement)}
     places = behind(carried, closed, carried.leaks)
     assert [places[lines[number]] for number in sorted(lines)] == [1] * ROUNDS + [PERHAPS] * 3
 
