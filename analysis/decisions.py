@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.case import Case
 from rosprivacy.analysis.errors import DecisionError
 from rosprivacy.analysis.expressions import regex
-from rosprivacy.analysis.legal_bases import gaps
+from rosprivacy.analysis.legal import gaps
 from rosprivacy.analysis.model import Diagnostic, Place, Severity
 from rosprivacy.analysis.remembered import change_text, changes
 from rosprivacy.analysis.written_names import bare_name, is_glob
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import Finding
     from rosprivacy.analysis.hierarchy import Hierarchy
-    from rosprivacy.analysis.legal_bases import Verdicts
+    from rosprivacy.analysis.legal import Verdicts
     from rosprivacy.analysis.model import Acceptance, Doubt
     from rosprivacy.analysis.remembered import About, ChangedAspect
 

@@ -1,9 +1,9 @@
 """Flows of which most are alike: where each of many elements sends to each of as many, each pair is a flow, not stored.
 
-In: flows to store, and meetings: some written wildcards, each of which meets each of some read ones; or the nodes of an
-enclave and the channels that each of them may write, or read, as the enforced view has it (rule S6). Out: ``Flows``,
-the sequence of all flows, sorted and numbered as if all were stored. Who goes through a meeting as a whole takes it
-from ``parted``; who asks for each flow gets each pair, up to the bound of flows.
+In: flows to store, and meetings: some written wildcards, each of which meets each of some read ones (rule S4); or the
+nodes of an enclave and the channels that each of them may write, or read, as the enforced view has it (rule S6). Out:
+``Flows``, the sequence of all flows, sorted and numbered as if all were stored. Who goes through a meeting as a whole
+takes it from ``parted``; who asks for each flow gets each pair, up to the bound of flows.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import accumulate, pairwise
-from typing import TYPE_CHECKING, overload
+from typing import TYPE_CHECKING, NamedTuple, overload
 
 from rosprivacy.analysis.bounds import BOUNDS, Bounds
 from rosprivacy.analysis.errors import InputErrors, PolicyError
@@ -23,7 +23,90 @@ from rosprivacy.analysis.model import Flow, Place
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
 
-    from rosprivacy.analysis.meeting import Meeting
+    from rosprivacy.analysis.model import Grant
+
+MATCHES = "matches"
+
+
+class Right(NamedTuple):
+    """What the nodes of an enclave may do with a channel: the role, and the policy lines that allow it."""
+
+    role: str
+    grants: tuple[Grant, ...] = ()
+
+
+class Meeting(NamedTuple):
+    """Elements each of which sends to each of some others, by index; both sorted.
+
+    Attributes
+    ----------
+    written, read
+        Wildcards; or nodes and channels, in either direction.
+    of_written, of_read
+        Of each channel, where the other side is the nodes of an enclave: their right. Empty for wildcards.
+    """
+
+    written: tuple[int, ...]
+    read: tuple[int, ...]
+    of_written: tuple[Right, ...] = ()
+    of_read: tuple[Right, ...] = ()
+
+    @property
+    def size(self) -> int:
+        """How many flows it stands for."""
+        return len(self.written) * len(self.read)
+
+    @property
+    def of_wildcards(self) -> bool:
+        """Whether both sides are channels."""
+        return not self.of_written and not self.of_read
+
+    def pairs(self) -> Iterable[tuple[int, int]]:
+        """Return the ends of each flow that it stands for."""
+        return ((source, target) for source in self.written for target in self.read)
+
+    def flow(self, source: int, target: int) -> Flow:
+        """Return one of the flows."""
+        if self.of_read:
+            return Flow(source, target, *self.of_read[bisect_left(self.read, target)])
+        if self.of_written:
+            return Flow(source, target, *self.of_written[bisect_left(self.written, source)])
+        return Flow(source, target, MATCHES)
+
+    def flows(self) -> Iterable[Flow]:
+        """Return each flow that it stands for."""
+        return (self.flow(*pair) for pair in self.pairs())
+
+    def parted(self, ends: Iterable[tuple[int, int]]) -> tuple[Meeting, Meeting]:
+        """Return it without the elements of one side that some flows are of, and with these only."""
+        written, read = set(self.written), set(self.read)
+        inside = [(source, target) for source, target in ends if source in written and target in read]
+        sources, targets = {source for source, _ in inside}, {target for _, target in inside}
+        if len(sources) <= len(targets):
+            return self._part(written - sources, read), self._part(sources, read)
+        return self._part(written, read - targets), self._part(written, targets)
+
+    def _part(self, written: Collection[int], read: Collection[int]) -> Meeting:
+        sides = ((self.written, self.of_written, written), (self.read, self.of_read, read))
+        ends = [tuple(vertex for vertex in side if vertex in some) for side, _, some in sides]
+        rights = [tuple(of for vertex, of in zip(*pair, strict=False) if vertex in some) for *pair, some in sides]
+        return Meeting(ends[0], ends[1], rights[0], rights[1])
+
+
+def sharing(nodes: tuple[int, ...], channels: tuple[int, ...], rights: tuple[Right, ...], *, writes: bool) -> Meeting:
+    """Return what nodes of an enclave share: each writes, or reads, each of some channels.
+
+    Parameters
+    ----------
+    rights
+        Of each channel.
+
+    Examples
+    --------
+    >>> sharing((0, 1), (5,), (Right("subscribe"),), writes=False).flow(5, 1).role
+    'subscribe'
+    """
+    return Meeting(nodes, channels, of_read=rights) if writes else Meeting(channels, nodes, of_written=rights)
 
 
 @dataclass(frozen=True)
@@ -41,7 +124,7 @@ class Flows(Sequence[Flow]):
 
     Examples
     --------
-    >>> from rosprivacy.analysis.meeting import Meeting
+    >>> from rosprivacy.analysis.many_flows import Meeting
     >>> flows = Flows((Flow(0, 1, "publish"),), (Meeting((1, 2), (3, 4)),))
     >>> len(flows), [(flow.source, flow.target) for flow in flows], flows.number(2, 3)
     (5, [(0, 1), (1, 3), (1, 4), (2, 3), (2, 4)], 3)
@@ -210,7 +293,7 @@ def parted(
 
     Examples
     --------
-    >>> from rosprivacy.analysis.meeting import Meeting
+    >>> from rosprivacy.analysis.many_flows import Meeting
     >>> own, meetings = parted(Flows((Flow(0, 1, "publish"),), (Meeting((1, 2), (3, 4)),)))
     >>> [number for number, _ in own], len(meetings)
     ([0], 1)
@@ -221,7 +304,7 @@ def parted(
 def number(flows: Sequence[Flow], source: int, target: int) -> int:
     """Return the number of a flow of a meeting.
 
-    >>> from rosprivacy.analysis.meeting import Meeting
+    >>> from rosprivacy.analysis.many_flows import Meeting
     >>> number(Flows((), (Meeting((1, 2), (3, 4)),)), 2, 3)
     2
     """
@@ -232,7 +315,7 @@ def number(flows: Sequence[Flow], source: int, target: int) -> int:
 def find(flows: Sequence[Flow], flow: Flow) -> int | None:
     """Return the number of a flow between the same ends in the same role; None if there is none.
 
-    >>> from rosprivacy.analysis.meeting import Meeting
+    >>> from rosprivacy.analysis.many_flows import Meeting
     >>> find(Flows((), (Meeting((1, 2), (3, 4)),)), Flow(2, 3, "matches")), find((), Flow(2, 3, "matches"))
     (2, None)
     """
@@ -252,7 +335,7 @@ def one_by_one(flows: Sequence[Flow]) -> Sequence[Flow]:
 
     Examples
     --------
-    >>> from rosprivacy.analysis.meeting import Meeting
+    >>> from rosprivacy.analysis.many_flows import Meeting
     >>> len(one_by_one(Flows((), (Meeting((1, 2), (3, 4)),))))
     4
     """
@@ -262,7 +345,7 @@ def one_by_one(flows: Sequence[Flow]) -> Sequence[Flow]:
 def at_most(flows: Sequence[Flow], number: int) -> Sequence[Flow]:
     """Return flows of which so many are asked for; the same, where it is some of them only.
 
-    >>> from rosprivacy.analysis.meeting import Meeting
+    >>> from rosprivacy.analysis.many_flows import Meeting
     >>> len(at_most(Flows((), (Meeting((1, 2), (3, 4)),)), 2))
     4
     """
@@ -274,7 +357,7 @@ def at_most(flows: Sequence[Flow], number: int) -> Sequence[Flow]:
 def leaving(flows: Sequence[Flow]) -> Mapping[int, range]:
     """Return the numbers of the flows out of each element that has any.
 
-    >>> from rosprivacy.analysis.meeting import Meeting
+    >>> from rosprivacy.analysis.many_flows import Meeting
     >>> leaving(Flows((Flow(0, 1, "publish"),), (Meeting((1, 2), (3, 4)),)))
     {0: range(0, 1), 1: range(1, 3), 2: range(3, 5)}
     """

@@ -26,7 +26,7 @@ from labelled_systems import KINDS, large, turtlebot
 from measure import Measured, Row, compared, processor, run, side_by_side
 
 import rosprivacy
-from rosprivacy.explorer.element_ids import element_id
+from rosprivacy.explorer.edits import element_id
 from rosprivacy.explorer.session import Session
 from rosprivacy.explorer.web.application import Site
 from rosprivacy.explorer.web.guard import RequestDoor

@@ -7,8 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from rosprivacy.analysis.many_flows import one_by_one, parted
-from rosprivacy.analysis.meeting import MATCHES
+from rosprivacy.analysis.many_flows import MATCHES, one_by_one, parted
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Finding

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.kernel.backward import Backward
     from rosprivacy.analysis.kernel.roles import Facts
     from rosprivacy.analysis.kernel.spread import Spread
-    from rosprivacy.analysis.meeting import Meeting
+    from rosprivacy.analysis.many_flows import Meeting
     from rosprivacy.analysis.model import Element, Flow
 
 Line = Statement | Place

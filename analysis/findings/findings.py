@@ -26,8 +26,7 @@ from rosprivacy.analysis.findings.witness import witness_of
 from rosprivacy.analysis.kernel import spreading, standard_channels
 from rosprivacy.analysis.kernel.bits import bits_of
 from rosprivacy.analysis.kernel.overruled import untouched
-from rosprivacy.analysis.kernel.search import START, Search, path_to, present
-from rosprivacy.analysis.kernel.searches import ROOM, searches
+from rosprivacy.analysis.kernel.search import ROOM, START, Search, path_to, present, searches
 from rosprivacy.analysis.kernel.states import Net
 from rosprivacy.analysis.model import DISCLOSURE, PATHS_NOT_COUNTED, Diagnostic, Element, Place, Severity
 from rosprivacy.analysis.modes import Paths

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.findings.disjoint_in_groups import Group
     from rosprivacy.analysis.kernel.search import Search
     from rosprivacy.analysis.kernel.states import Net
-    from rosprivacy.analysis.meeting import Meeting
+    from rosprivacy.analysis.many_flows import Meeting
     from rosprivacy.analysis.model import Element, FlowGraph
 
 State = int  # vertex * width + form

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.kernel.states import Net
-    from rosprivacy.analysis.meeting import Meeting
+    from rosprivacy.analysis.many_flows import Meeting
     from rosprivacy.analysis.model import Element, FlowGraph
 
 NOTHING: Mapping[int, tuple[str, ...]] = MappingProxyType({})

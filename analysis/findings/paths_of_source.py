@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.bounds import Tally
     from rosprivacy.analysis.kernel.search import Search
     from rosprivacy.analysis.kernel.states import Net
-    from rosprivacy.analysis.meeting import Meeting
+    from rosprivacy.analysis.many_flows import Meeting
 
 Kinds = tuple[tuple[int, ...], tuple[tuple[tuple[int, ...], tuple[int, ...]], ...]]  # of steps; of groups
 BEGIN = -1  # in place of the source's vertex, for what it emits

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.kernel.search import Search, present, search
 from rosprivacy.analysis.kernel.states import Net
-from rosprivacy.analysis.legal_bases import GROUPS, gaps, group_of
+from rosprivacy.analysis.legal import GROUPS, gaps, group_of
 from rosprivacy.analysis.model import (
     LEGAL_BASIS,
     NOWHERE,
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.hierarchy import Hierarchy
-    from rosprivacy.analysis.legal_bases import Verdicts
+    from rosprivacy.analysis.legal import Verdicts
     from rosprivacy.analysis.model import Bound, ByCategory, Element, Place, Processing
 
 PURPOSE, BASIS = "purpose", "legal_basis"  # what can be missing

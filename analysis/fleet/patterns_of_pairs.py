@@ -15,9 +15,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rosprivacy.analysis.fleet.patterns import FleetView
+from rosprivacy.analysis.fleet.patterns import Count, FleetView, Form, Pair, Tallies
 from rosprivacy.analysis.fleet.source_leak_pairs import DISMISSED, NO_PAIR, PSEUDONYMISED, blocks
-from rosprivacy.analysis.fleet.tallies import Count, Form, Pair, Tallies
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence

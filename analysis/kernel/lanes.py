@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.kernel.spread import Spread
-    from rosprivacy.analysis.meeting import Meeting
+    from rosprivacy.analysis.many_flows import Meeting
 
 
 NOTHING: Mapping[int, int] = MappingProxyType({})

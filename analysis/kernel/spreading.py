@@ -17,10 +17,9 @@ from rosprivacy.analysis.kernel.least_solution import least_solution
 from rosprivacy.analysis.kernel.overruled import overruled
 from rosprivacy.analysis.kernel.ranks import applies, closes, in_words
 from rosprivacy.analysis.kernel.roles import Facts, facts
-from rosprivacy.analysis.kernel.searches import searches_after
+from rosprivacy.analysis.kernel.search import searches_after
 from rosprivacy.analysis.kernel.spread import Spread
-from rosprivacy.analysis.many_flows import at_most, number, parted
-from rosprivacy.analysis.meeting import MATCHES
+from rosprivacy.analysis.many_flows import MATCHES, at_most, number, parted
 from rosprivacy.analysis.model import CHANGED, STATED, Method
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from rosprivacy.analysis.mitigation.limits import DENY, FILTER, REVIEW
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 
-    from rosprivacy.analysis.mitigation.change_sites import ChangeSites
+    from rosprivacy.analysis.mitigation.changed_system import ChangeSites
     from rosprivacy.analysis.mitigation.cut_network import Arc, At
     from rosprivacy.analysis.model import FlowGraph, Grant
 
@@ -114,7 +114,7 @@ def candidates(
     >>> from rosprivacy.analysis.example import ARCHIVE, CAMERA, NAMES, factory
     >>> from rosprivacy.analysis.findings.findings import analyse
     >>> from rosprivacy.analysis.kernel.states import Net
-    >>> from rosprivacy.analysis.mitigation.change_sites import ChangeSites
+    >>> from rosprivacy.analysis.mitigation.changed_system import ChangeSites
     >>> from rosprivacy.analysis.mitigation.cut_network import CutGroup, cut_network
     >>> from rosprivacy.analysis.mitigation.limits import Limits
     >>> analysis = analyse(*factory())

@@ -19,8 +19,7 @@ from rosprivacy.analysis.kernel.spreading import spread
 from rosprivacy.analysis.kernel.states import Net
 from rosprivacy.analysis.mitigation.affected import affected
 from rosprivacy.analysis.mitigation.candidates import candidates, uncut
-from rosprivacy.analysis.mitigation.change_sites import ChangeSites
-from rosprivacy.analysis.mitigation.changed_system import opened, with_changes
+from rosprivacy.analysis.mitigation.changed_system import ChangeSites, opened, with_changes
 from rosprivacy.analysis.mitigation.cut_network import CutGroup, a_path, cut_network, open_ends
 from rosprivacy.analysis.mitigation.limits import DENY, FILTER, REVIEW, Limits
 from rosprivacy.analysis.mitigation.min_cut import BUDGET, cheapest

@@ -98,8 +98,9 @@ from rosprivacy.analysis.model.element import (
     NON_ROS,
     PARTICIPANT,
     Element,
+    Flow,
+    FlowGraph,
 )
-from rosprivacy.analysis.model.flow import Flow, FlowGraph
 from rosprivacy.analysis.model.message_type import OF_KIND, MessageType, kind_of_type
 from rosprivacy.analysis.model.policy import Grant, Policy, Profile, Seen
 from rosprivacy.analysis.model.protection import Exposure, Protection, TopicProtection

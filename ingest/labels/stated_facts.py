@@ -11,7 +11,7 @@ from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import LabelError, shown
-from rosprivacy.analysis.legal_bases import transfer_of
+from rosprivacy.analysis.legal import transfer_of
 from rosprivacy.analysis.model import (
     CONTEXTS,
     NOWHERE,

@@ -13,8 +13,7 @@ from dataclasses import dataclass, replace
 from operator import attrgetter
 from typing import TYPE_CHECKING, NamedTuple
 
-from rosprivacy.analysis.many_flows import Flows, parted
-from rosprivacy.analysis.meeting import Right, sharing
+from rosprivacy.analysis.many_flows import Flows, Right, parted, sharing
 from rosprivacy.analysis.model import Flow, Grant, Place
 from rosprivacy.ingest.policies.names import covers, endpoints, is_pattern
 
@@ -22,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.findings.beyond import DenyLine
-    from rosprivacy.analysis.meeting import Meeting
+    from rosprivacy.analysis.many_flows import Meeting
     from rosprivacy.analysis.model import Element, FlowGraph, Policy
 
 

@@ -9,12 +9,12 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.meeting import Right, sharing
+from rosprivacy.analysis.many_flows import Right, sharing
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 
-    from rosprivacy.analysis.meeting import Meeting
+    from rosprivacy.analysis.many_flows import Meeting
     from rosprivacy.analysis.model import Flow, Grant, Profile
 
 STORED = 2  # times its members a group of nodes and channels may have flows that are stored

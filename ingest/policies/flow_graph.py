@@ -16,8 +16,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.bounds import BOUNDS, Tally
 from rosprivacy.analysis.errors import PolicyError
-from rosprivacy.analysis.many_flows import Flows
-from rosprivacy.analysis.meeting import Meeting
+from rosprivacy.analysis.many_flows import Flows, Meeting
 from rosprivacy.analysis.model import PARTICIPANT, Element, Flow, FlowGraph, Grant, Place, Profile
 from rosprivacy.analysis.modes import View
 from rosprivacy.ingest.policies.enclave_rights import alike, enforced, of_each, shared

@@ -1,7 +1,7 @@
 """Legal bases as people write them in our files -> ``6(1)(f)``: one grammar for labels, fleets and decisions.
 
 In: values that know their line. Out: articles of the GDPR; a problem for each that is none. Whether one fits is for
-people to judge; what is missing is said by ``analysis/legal_bases.py``.
+people to judge; what is missing is said by ``analysis/legal.py``.
 """
 
 from __future__ import annotations

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Analysis, CarriedData, Finding
     from rosprivacy.analysis.findings.processed import Processed
     from rosprivacy.analysis.findings.sanitizing import Cleaning
-    from rosprivacy.analysis.findings.ways import Ways
+    from rosprivacy.analysis.findings.witness import Ways
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.model import Element
     from rosprivacy.report.cnil.inventory import Kind

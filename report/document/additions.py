@@ -21,8 +21,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.findings.beyond import Added, DenyLine, Right
     from rosprivacy.analysis.fleet.counts import Counts
     from rosprivacy.analysis.fleet.likeness import Likeness
-    from rosprivacy.analysis.fleet.patterns import DeviantRobots, FleetView, Pattern
-    from rosprivacy.analysis.fleet.tallies import Share
+    from rosprivacy.analysis.fleet.patterns import DeviantRobots, FleetView, Pattern, Share
     from rosprivacy.report.document.contents import EnforcedFacts
     from rosprivacy.report.schemas.analysis import (
         AddedEntry,

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import Analysis, OpenQuestion
     from rosprivacy.analysis.findings.sanitizing import Making
-    from rosprivacy.analysis.findings.ways import Ways
+    from rosprivacy.analysis.findings.witness import Ways
     from rosprivacy.analysis.kernel.overruled import Overruled
     from rosprivacy.analysis.model import Diagnostic, Doubt, Element, Flow, FlowGraph
     from rosprivacy.analysis.whatif.ledger import GlobUse, TakenAway

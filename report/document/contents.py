@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.findings.processed import Processed
     from rosprivacy.analysis.findings.review_order import Behind
     from rosprivacy.analysis.findings.sanitizing import Cleaning, Making
-    from rosprivacy.analysis.findings.ways import Ways
+    from rosprivacy.analysis.findings.witness import Ways
     from rosprivacy.analysis.fleet.counts import Counts
     from rosprivacy.analysis.fleet.patterns import FleetView
     from rosprivacy.analysis.kernel.overruled import Overruled

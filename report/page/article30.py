@@ -15,7 +15,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.decisions import State
-from rosprivacy.analysis.legal_bases import transfer_of
+from rosprivacy.analysis.legal import transfer_of
 from rosprivacy.analysis.model import NO_BASIS
 from rosprivacy.analysis.non_ros import ADEQUATE, INSIDE, PARTLY, THIRD
 from rosprivacy.analysis.text import fit

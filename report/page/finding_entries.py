@@ -2,7 +2,7 @@
 
 In: an ``Index``. Out: ``PathEntry``, in the order of the document; those that differ only in the robot are one (rule
 S10). What people decided about a finding stands with it, and decisions that match none; what the law asks for and
-nobody wrote down is named (``analysis/legal_bases.py``).
+nobody wrote down is named (``analysis/legal.py``).
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rosprivacy.analysis.legal_bases import gaps
+from rosprivacy.analysis.legal import gaps
 from rosprivacy.analysis.text import fit, printable
 from rosprivacy.report.catalogs.words import finding_reason
 from rosprivacy.report.finding_facts import in_order, made_of

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rosprivacy.analysis.legal_bases import CHAPTER_V
+from rosprivacy.analysis.legal import CHAPTER_V
 from rosprivacy.analysis.model import THIRD_COUNTRY
 from rosprivacy.analysis.text import fit, printable
 from rosprivacy.report.finding_facts import data_made

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from rosprivacy.analysis.contexts import Contexts
 from rosprivacy.analysis.findings.processed import processed
 from rosprivacy.analysis.findings.review_order import Behind, review_order
-from rosprivacy.analysis.findings.ways import Ways, ways
+from rosprivacy.analysis.findings.witness import Ways, ways
 from rosprivacy.analysis.fleet.likeness import NO_ROBOTS
 from rosprivacy.analysis.whatif.ledger import GlobUse, globs, ledger
 from rosprivacy.analysis.whatif.reliance import Reliance, reliances

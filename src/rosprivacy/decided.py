@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.decisions import Decided, Decisions
     from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.analysis.fleet.patterns import FleetView
-    from rosprivacy.analysis.legal_bases import Verdicts
+    from rosprivacy.analysis.legal import Verdicts
     from rosprivacy.analysis.model import Diagnostic, Doubt
     from rosprivacy.analysis.remembered import About
     from rosprivacy.ontology.vocabulary import Vocabulary

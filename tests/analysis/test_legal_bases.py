@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from rosprivacy.analysis.legal_bases import gaps
+from rosprivacy.analysis.legal import gaps
 from rosprivacy.analysis.model import DISCLOSURE, THIRD_COUNTRY
 from rosprivacy.ontology.vocabulary import load
 

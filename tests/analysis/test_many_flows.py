@@ -8,8 +8,7 @@ from hypothesis import strategies as st
 
 from rosprivacy.analysis.bounds import Bounds
 from rosprivacy.analysis.errors import InputErrors
-from rosprivacy.analysis.many_flows import Flows, leaving, number, one_by_one, parted
-from rosprivacy.analysis.meeting import MATCHES, Meeting, Right
+from rosprivacy.analysis.many_flows import MATCHES, Flows, Meeting, Right, leaving, number, one_by_one, parted
 from rosprivacy.analysis.model import Flow, Place
 
 SOME = st.sets(st.integers(0, 9), max_size=10)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from starlette.testclient import TestClient
 
 from rosprivacy.analysis.errors import DatabaseError
-from rosprivacy.explorer.element_ids import element_id
+from rosprivacy.explorer.edits import element_id
 from rosprivacy.explorer.session import Session
 from rosprivacy.explorer.web.application import Site
 from rosprivacy.explorer.web.cypher_site import StoredSite

@@ -34,7 +34,7 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "kernel": MODEL,
         "answer": MODEL | {"kernel"},
         "case": MODEL | {"answer"},
-        "decisions": MODEL | {"answer", "case"},
+        "decisions": MODEL | {"answer", "case", "legal"},
         "legal": MODEL | {"answer"},
         "contexts": MODEL | {"answer"},
         "findings": FACTS,

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.kernel.search import Search
-    from rosprivacy.analysis.meeting import Meeting
+    from rosprivacy.analysis.many_flows import Meeting
     from rosprivacy.analysis.model import Element, Statement
     from rosprivacy.analysis.whatif.ledger import TakenAway
     from rosprivacy.ingest.labels.label_file import Labels

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from rosprivacy.analysis.fleet.tallies import CountedPattern
+    from rosprivacy.analysis.fleet.patterns import CountedPattern
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Element

@@ -40,8 +40,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import ClosedByShipped
     from rosprivacy.analysis.fleet.likeness import Likeness
-    from rosprivacy.analysis.fleet.patterns import DeviantRobots
-    from rosprivacy.analysis.fleet.tallies import CountedPattern
+    from rosprivacy.analysis.fleet.patterns import CountedPattern, DeviantRobots
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Element, NonRosFacts

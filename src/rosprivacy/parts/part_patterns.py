@@ -11,7 +11,7 @@ from collections import Counter, defaultdict
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.fleet.tallies import Count, Form, Pair, Tallies
+from rosprivacy.analysis.fleet.patterns import Count, Form, Pair, Tallies
 from rosprivacy.parts.border import forms_of
 
 if TYPE_CHECKING:

@@ -10,8 +10,7 @@ from hypothesis import strategies as st
 
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.example import CAMERA, FACES, FILTER, ROSOUT, factory
-from rosprivacy.analysis.kernel.search import Search, search
-from rosprivacy.analysis.kernel.searches import ROOM, Searches, searches
+from rosprivacy.analysis.kernel.search import ROOM, Search, Searches, search, searches
 from rosprivacy.analysis.kernel.spreading import spread
 from rosprivacy.analysis.kernel.states import Net
 from tests.helpers.more_systems import ranked, wildcards

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from lxml import html
 
 import rosprivacy
-from rosprivacy.explorer.element_ids import element_id
+from rosprivacy.explorer.edits import element_id
 from rosprivacy.ingest.labels.label_file import parse_labels
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.report.catalogs.words import Words

@@ -10,7 +10,7 @@ import pytest
 from lxml import html
 from starlette.testclient import TestClient
 
-from rosprivacy.explorer.element_ids import element_id
+from rosprivacy.explorer.edits import element_id
 from rosprivacy.explorer.web.cypher_site import AT_ONCE, BOXES, LETTERS, LONGEST_CELL, LONGEST_TEXT, ROWS
 from rosprivacy.explorer.web.guard import LARGEST
 from rosprivacy.private_neo4j import connection

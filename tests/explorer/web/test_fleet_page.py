@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 from lxml import html
 
-from rosprivacy.explorer.element_ids import element_id
+from rosprivacy.explorer.edits import element_id
 from rosprivacy.settings import Settings
 from rosprivacy.systems.fleet_system import answer_fleet
 from tests.helpers.explorers import Explorer, label, version

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rosprivacy.analysis.model import Element
-from rosprivacy.explorer.element_ids import element_id
+from rosprivacy.explorer.edits import element_id
 from rosprivacy.explorer.web.answered_entries import label_of
 from rosprivacy.explorer.web.forms import EVERY, METHODS, EditForm, FormAnswer, FormError, answer_in, roles_of
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 from lxml import html
 
-from rosprivacy.explorer.element_ids import element_id
+from rosprivacy.explorer.edits import element_id
 from rosprivacy.explorer.web.review_site import open_elements
 from rosprivacy.report.catalogs.words import Words
 from tests.helpers.explorers import Explorer, label, node

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from rosprivacy.analysis.errors import InputErrors
-from rosprivacy.explorer.element_ids import element_id
+from rosprivacy.explorer.edits import element_id
 from rosprivacy.explorer.questions import questions
 from rosprivacy.explorer.web.application import Site
 from rosprivacy.explorer.web.standing import Standing

@@ -11,7 +11,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from lxml import html
 
-from rosprivacy.explorer.element_ids import element_id
+from rosprivacy.explorer.edits import element_id
 from rosprivacy.explorer.web.trial_forms import MOST_KEPT
 from tests.helpers.daily import one_in
 from tests.helpers.explorers import BARE, FACTORY, FILTERED, Explorer, copied, label, node, version

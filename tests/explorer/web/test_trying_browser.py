@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from rosprivacy.explorer.element_ids import element_id
+from rosprivacy.explorer.edits import element_id
 from tests.helpers import browser as chrome
 from tests.helpers.browser import WIDTHS
 from tests.helpers.explorers import BARE, FACTORY, copied

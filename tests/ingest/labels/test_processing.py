@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 import rosprivacy
-from rosprivacy.analysis.legal_bases import Lack
+from rosprivacy.analysis.legal import Lack
 from rosprivacy.analysis.model import LEGAL_BASIS
 from tests.helpers.fleet_files import policy
 

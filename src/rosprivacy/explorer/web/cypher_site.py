@@ -23,7 +23,7 @@ from starlette.routing import Route
 
 from rosprivacy.analysis.errors import DatabaseError, QueryError, RosPrivacyError
 from rosprivacy.analysis.text import printable, shortened
-from rosprivacy.explorer.element_ids import element_id
+from rosprivacy.explorer.edits import element_id
 from rosprivacy.explorer.web.application import DONE, PROBLEM, READING, Site
 from rosprivacy.explorer.web.forms import EditForm, FormError
 from rosprivacy.explorer.web.page import Message, template

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import Confidence
 from rosprivacy.analysis.suggesting.evidence import written
-from rosprivacy.explorer.element_ids import element_id
+from rosprivacy.explorer.edits import element_id
 from rosprivacy.explorer.web import forms
 from rosprivacy.explorer.web.panes import ROBOT, Pane, robot_or_model, stands_for, title_of
 from rosprivacy.ingest.suggestion_rules.accepting import LIMITING, could_close

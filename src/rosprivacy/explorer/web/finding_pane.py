@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.decisions import Choice
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import ARTICLE_10
-from rosprivacy.explorer.element_ids import element_id
+from rosprivacy.explorer.edits import element_id
 from rosprivacy.explorer.web.panes import Pane, robots_in_words
 from rosprivacy.explorer.web.trial_forms import flow_id, line_id, lines_of
 from rosprivacy.report.naming import name

@@ -1,6 +1,6 @@
 """Posted forms: bytes from a browser go in, out comes what is asked, from closed lists, or one plain sentence.
 
-Nothing of a form is ever a name of a file. An element is named by its id (``element_ids.py``), a kind of data by a name
+Nothing of a form is ever a name of a file. An element is named by its id (``edits.py``), a kind of data by a name
 that the vocabulary has. Forms are read with the standard library: they have text fields only, no files.
 """
 

@@ -15,7 +15,7 @@ from markupsafe import Markup
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.findings.witness import Witness
 from rosprivacy.analysis.model import DISCLOSURE
-from rosprivacy.explorer.element_ids import element_id
+from rosprivacy.explorer.edits import element_id
 from rosprivacy.explorer.questions import GROUPS
 from rosprivacy.explorer.web.element_pane import element_pane, is_likely_source
 from rosprivacy.explorer.web.forms import METHODS

@@ -15,8 +15,7 @@ from urllib.parse import parse_qs
 from starlette.responses import HTMLResponse
 
 from rosprivacy.analysis.errors import RosPrivacyError, shown
-from rosprivacy.explorer.edits import ROLES
-from rosprivacy.explorer.element_ids import element_id
+from rosprivacy.explorer.edits import ROLES, element_id
 from rosprivacy.explorer.web import forms
 from rosprivacy.explorer.web.answered_entries import (
     bringing_nothing,

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.findings.witness import WhyCarried
 from rosprivacy.analysis.kernel.vertices import by_identity
 from rosprivacy.analysis.suggesting.label_questions import reached_kinds
-from rosprivacy.explorer.element_ids import by_id, element_id
+from rosprivacy.explorer.edits import by_id, element_id
 from rosprivacy.explorer.questions import questions
 from rosprivacy.mitigation import REPORTED, run_mitigation
 from rosprivacy.report.document.analysis import label_key

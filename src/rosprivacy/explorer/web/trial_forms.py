@@ -18,8 +18,8 @@ from rosprivacy.analysis.many_flows import parted
 from rosprivacy.analysis.mitigation.limits import FILTER, REVIEW
 from rosprivacy.analysis.mitigation.proposals import ProposedStep
 from rosprivacy.analysis.text import fit
+from rosprivacy.explorer.edits import DIGITS, element_id
 from rosprivacy.explorer.effects import CLOSED, OPENED, PLAINER
-from rosprivacy.explorer.element_ids import DIGITS, element_id
 from rosprivacy.explorer.scenarios import WhatIf, summary_of, together
 from rosprivacy.explorer.web.forms import EVERY, FormError, element_in
 from rosprivacy.explorer.web.panes import MODEL, ROBOT, ROBOT_OR_MODEL, Pane, robots_in_words, title_of
