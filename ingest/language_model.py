@@ -250,14 +250,14 @@ def _message(data: bytes) -> str:
     return f": {shown(message)!r}" if isinstance(message, str) and message else ""
 
 
-class Answered(NamedTuple):
+class AnsweredQuestions(NamedTuple):
     """The answers to one question; why nothing of it could be read, empty if it was."""
 
     answers: tuple[Any, ...]
     unread: str = ""
 
 
-def answers_in(data: bytes, where: str) -> Answered:
+def answers_in(data: bytes, where: str) -> AnsweredQuestions:
     r"""Return the answers, of any form.
 
     Parameters
@@ -274,7 +274,7 @@ def answers_in(data: bytes, where: str) -> Answered:
     --------
     >>> text = b'{"choices": [{"message": {"content": "{\\"suggestions\\": [1]}"}}]}'
     >>> answers_in(text, "localhost"), answers_in(b'{"choices": [{"message": {"refusal": "no"}}]}', "localhost").unread
-    (Answered(answers=(1,), unread=''), 'the model refused')
+    (AnsweredQuestions(answers=(1,), unread=''), 'the model refused')
     """
 
     def fail(line: int, fault: str, hint: str) -> ModelError:
@@ -290,20 +290,20 @@ def answers_in(data: bytes, where: str) -> Answered:
     except (LookupError, TypeError, AttributeError):
         raise fail(0, "it has no choices with a message", "") from None
     if refusal or ended == "content_filter":
-        return Answered((), REFUSED)
+        return AnsweredQuestions((), REFUSED)
     if not isinstance(content, str):
-        return Answered((), NO_JSON)
+        return AnsweredQuestions((), NO_JSON)
     return _answers(content, CUT if ended == "length" else NO_JSON)
 
 
-def _answers(content: str, otherwise: str) -> Answered:
+def _answers(content: str, otherwise: str) -> AnsweredQuestions:
     try:
         inner = parsed(content.encode(), lambda _, what, hint: ModelError(f"{what}; {hint}"), "")
     except ModelError:
-        return Answered((), otherwise)
+        return AnsweredQuestions((), otherwise)
     if not isinstance(inner, dict) or list(inner) != ["suggestions"] or not isinstance(inner["suggestions"], list):
-        return Answered((), otherwise)
-    return Answered(tuple(inner["suggestions"]))
+        return AnsweredQuestions((), otherwise)
+    return AnsweredQuestions(tuple(inner["suggestions"]))
 
 
 class Exchange(NamedTuple):

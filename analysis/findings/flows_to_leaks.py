@@ -153,7 +153,7 @@ def flows_to_leaks(
     >>> [(NAMES[flow.source], NAMES[flow.target]) for flow in flows]
     [('/camera', '/video'), ('/face_id', '/faces'), ('/faces', '/archive'), ('/video', '/face_id')]
     """
-    walk = _Walk(net, category, ends, past_leaks=past_leaks)
+    walk = _LeakWalk(net, category, ends, past_leaks=past_leaks)
     starts = [v for v in net.spread.facts if net.spread.begins(v)] if sources is None else sources
     edges, before, complete, longest = walk.edges(starts, leaks), -1, True, 0
     while len(edges) != before:  # what only a detour leads to is gone in the next round
@@ -187,7 +187,7 @@ def _longest(lengths: Mapping[int, int], about: int) -> int:
     return shorter[-1] if shorter else every[0]
 
 
-class _Walk:
+class _LeakWalk:
     """How data of a category, or of what it is made of, goes from state to state."""
 
     def __init__(self, net: Net, category: str, ends: Mapping[int, int] | None, *, past_leaks: bool) -> None:

@@ -26,7 +26,7 @@ ANYTHING = "PersonalData"  # the broadest category: a type that can carry it can
 Identity = tuple[str, str, str]  # of an element
 
 
-class Label(NamedTuple):
+class SuggestedLabel(NamedTuple):
     """What is proposed for an element.
 
     Attributes
@@ -64,7 +64,7 @@ class Evidence(NamedTuple):
         Whether it agrees with no other ground.
     """
 
-    label: Label
+    label: SuggestedLabel
     ground: str
     confidence: Confidence
     reason: str
@@ -73,10 +73,10 @@ class Evidence(NamedTuple):
     alone: bool = False
 
 
-class Proposal(NamedTuple):
+class LabelProposal(NamedTuple):
     """A label that a person is asked about, how sure all evidence makes it, and the evidence: the surest first."""
 
-    label: Label
+    label: SuggestedLabel
     confidence: Confidence
     evidence: tuple[Evidence, ...]
 
@@ -101,7 +101,7 @@ def whole(element: Element) -> Element:
     return type(element)(element.kind, element.name, element.robot)
 
 
-def written(label: Label) -> WrittenLabel:
+def written(label: SuggestedLabel) -> WrittenLabel:
     """Return what a label is in a label file.
 
     ``mundane`` is ``never`` of the broadest category, and a conduit for every kind is one of the broadest: it means the
@@ -109,9 +109,11 @@ def written(label: Label) -> WrittenLabel:
 
     >>> from rosprivacy.analysis.model import Element, Method
     >>> node = Element("node", "/n")
-    >>> written(Label(node, "source", "Video")).roles, written(Label(node, "sanitizer", "Video", Method.DROP)).roles
-    ({'source': ['Video']}, {'sanitizer': {'Video': 'drop'}})
-    >>> written(Label(Element("topic", "/a*"), "mundane"))
+    >>> written(SuggestedLabel(node, "source", "Video")).roles
+    {'source': ['Video']}
+    >>> written(SuggestedLabel(node, "sanitizer", "Video", Method.DROP)).roles
+    {'sanitizer': {'Video': 'drop'}}
+    >>> written(SuggestedLabel(Element("topic", "/a*"), "mundane"))
     WrittenLabel(section='topics', name='=/a*', roles={'never': ['PersonalData']})
     """
     kind = label.kind or ANYTHING

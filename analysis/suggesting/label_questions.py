@@ -23,7 +23,7 @@ from rosprivacy.analysis.suggesting.evidence import (
     SANITIZER,
     SENSITIVE,
     SOURCE,
-    Label,
+    SuggestedLabel,
     WrittenLabel,
     written,
 )
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.model import Bound, Element
     from rosprivacy.analysis.suggesting.channels import Traffic
-    from rosprivacy.analysis.suggesting.evidence import Identity, Proposal
+    from rosprivacy.analysis.suggesting.evidence import Identity, LabelProposal
 
 BRINGS_IN, LETS_OUT, MAKES, GOES_ON, GOES_THROUGH = "brings-in", "lets-out", "makes", "goes-on", "through"
 LISTED = "listed"
@@ -142,12 +142,12 @@ class LabelQuestion(NamedTuple):
 
 
 def questions(
-    proposals: Sequence[Proposal],
+    proposals: Sequence[LabelProposal],
     analysis: Analysis,
     bound: Bound,
     ends: Traffic,
     hierarchy: Hierarchy,
-    refused: Callable[[Label], bool] = lambda _: False,
+    refused: Callable[[SuggestedLabel], bool] = lambda _: False,
 ) -> tuple[LabelQuestion, ...]:
     """Return what a person is asked next, in review order.
 
@@ -162,10 +162,10 @@ def questions(
     >>> from rosprivacy.analysis.findings.findings import analyse
     >>> from rosprivacy.analysis.model import Confidence, Place
     >>> from rosprivacy.analysis.suggesting.channels import traffic
-    >>> from rosprivacy.analysis.suggesting.evidence import Evidence, Label
+    >>> from rosprivacy.analysis.suggesting.evidence import Evidence, SuggestedLabel
     >>> from rosprivacy.analysis.suggesting.weighing import proposals
     >>> graph, bound, hierarchy = factory()
-    >>> asked = [Label(graph.elements[CAMERA], "source", kind) for kind in ("FaceImage", "Voice")]
+    >>> asked = [SuggestedLabel(graph.elements[CAMERA], "source", kind) for kind in ("FaceImage", "Voice")]
     >>> said = [Evidence(label, "name", Confidence.MAY, "a word", Place("names.yaml", 1)) for label in asked]
     >>> (one,) = questions(proposals(said), analyse(graph, bound, hierarchy), bound, traffic(graph, bound), hierarchy)
     >>> one.about, [(row.element.name, row.kinds, [reply.key for reply in row.replies]) for row in one.rows]
@@ -187,16 +187,16 @@ def one_line(finding: Finding) -> str:
     return f"{finding.category}: {finding.source.name} -> {finding.leak.name} [{finding.id}]"
 
 
-def alike(kinds: Iterable[str], about: Sequence[Proposal]) -> Alike:
+def alike(kinds: Iterable[str], about: Sequence[LabelProposal]) -> Alike:
     """Return by which rules a channel is made for other things than any of the kinds; empty if it is not said of all.
 
     A name is no such rule, and neither are the neighbours: behind a channel of which nobody knows the type, or whose
     type can carry anything, a leak could hide.
 
     >>> from rosprivacy.analysis.model import Confidence, Element, Place
-    >>> from rosprivacy.analysis.suggesting.evidence import Evidence, Label
+    >>> from rosprivacy.analysis.suggesting.evidence import Evidence, SuggestedLabel
     >>> from rosprivacy.analysis.suggesting.weighing import proposals
-    >>> never = Label(Element("topic", "/spin"), "never", "Video")
+    >>> never = SuggestedLabel(Element("topic", "/spin"), "never", "Video")
     >>> reason = Evidence(never, "type", Confidence.MAY, "a reason", Place("types.yaml", 7), "types.yaml:7")
     >>> by_name = Evidence(never, "name", Confidence.MAY, "a word", Place("names.yaml", 2))
     >>> [sorted(alike(kinds, proposals([reason]))) for kinds in (["Video"], ["Video", "Voice"])]
@@ -250,17 +250,17 @@ class _Asked:
 
     def __init__(
         self,
-        proposals: Sequence[Proposal],
+        proposals: Sequence[LabelProposal],
         analysis: Analysis,
         bound: Bound,
         ends: Traffic,
         hierarchy: Hierarchy,
-        refused: Callable[[Label], bool],
+        refused: Callable[[SuggestedLabel], bool],
     ) -> None:
         self.refused = refused
         self.proposals, self.analysis, self.hierarchy = proposals, analysis, hierarchy
         self.statements = said_of(analysis.graph, bound)
-        self.of: dict[Identity, list[Proposal]] = defaultdict(list)
+        self.of: dict[Identity, list[LabelProposal]] = defaultdict(list)
         for one in proposals:
             self.of[one.label.element.identity].append(one)
         self.open: dict[Identity, OpenQuestion] = {}
@@ -286,27 +286,27 @@ class _Asked:
             MAKES: [_row(one) for one in self.proposals if one.label.role == DERIVATION and self._gets(one)],
         }
 
-    def _gets(self, proposal: Proposal) -> bool:
+    def _gets(self, proposal: LabelProposal) -> bool:
         there = self.reached.get(proposal.label.element.identity, ())
         return any(self.hierarchy.overlap(proposal.label.kind, kind) is not None for kind in there)
 
-    def _lets_out(self, proposals: Sequence[Proposal]) -> Row | None:
+    def _lets_out(self, proposals: Sequence[LabelProposal]) -> Row | None:
         leaks = _leaks(proposals)
         asked_as_open = self._open_kinds(proposals)
         labels = [one for one in self._unsaid(leaks) if one.kind not in asked_as_open]
         return _leak(labels, _reasons(leaks)) if labels else None
 
-    def _unsaid(self, leaks: Sequence[Proposal]) -> list[Label]:
+    def _unsaid(self, leaks: Sequence[LabelProposal]) -> list[SuggestedLabel]:
         """What one element may let out of what is known to get there, where nobody has spoken of it."""
         if not leaks:
             return []
         element = leaks[0].label.element
         reached, said = self.reached.get(element.identity, ()), self.statements.get(element.identity, ())
         asked = {kind for one in leaks for kind in narrowed(one.label.kind, reached, self.hierarchy)}
-        labels = [Label(element, LEAK, kind) for kind in sorted(asked)]
+        labels = [SuggestedLabel(element, LEAK, kind) for kind in sorted(asked)]
         return [one for one in labels if not (spoken_of(one, said, self.hierarchy) or self.refused(one))]
 
-    def _open_kinds(self, proposals: Sequence[Proposal]) -> tuple[str, ...]:
+    def _open_kinds(self, proposals: Sequence[LabelProposal]) -> tuple[str, ...]:
         """The kinds of data for which a node is open, and of which it can be asked what it does with them."""
         asked = self.open.get(proposals[0].label.element.identity)
         if asked is None or not asked.element.is_node:
@@ -338,10 +338,10 @@ class _Asked:
         numbered = sorted({kind for one, _ in channels for kind in one.categories})
         return [self._channel(one, there, numbered) for one, there in channels]
 
-    def _speaks_of(self, proposal: Proposal, kind: str) -> bool:
+    def _speaks_of(self, proposal: LabelProposal, kind: str) -> bool:
         return not proposal.label.kind or self.hierarchy.overlap(proposal.label.kind, kind) is not None
 
-    def _channel(self, question: OpenQuestion, proposals: Sequence[Proposal], numbered: Sequence[str]) -> Row:
+    def _channel(self, question: OpenQuestion, proposals: Sequence[LabelProposal], numbered: Sequence[str]) -> Row:
         """One open channel.
 
         Parameters
@@ -353,7 +353,7 @@ class _Asked:
         return self._through(proposals[0].label.element, question.categories, about, numbered)
 
     def _through(
-        self, element: Element, kinds: tuple[str, ...], about: Sequence[Proposal], numbered: Sequence[str]
+        self, element: Element, kinds: tuple[str, ...], about: Sequence[LabelProposal], numbered: Sequence[str]
     ) -> Row:
         reasons, closed, likeness = _reasons(about), self._closed(kinds), alike(kinds, about)
         replies = [Reply(YES, _written(element, SENSITIVE, kinds), reasons=reasons)]
@@ -374,7 +374,7 @@ class _Asked:
         """Whether a person says what goes through a channel: that one kind at most does would take that away (S7)."""
         return any(one.role == SENSITIVE for one in self.statements.get(element.identity, ()))
 
-    def _node(self, proposals: Sequence[Proposal], kinds: tuple[str, ...]) -> Row:
+    def _node(self, proposals: Sequence[LabelProposal], kinds: tuple[str, ...]) -> Row:
         element = proposals[0].label.element
         about = [
             one for kind in kinds for one in self._about(proposals, kind) if one.label.role in (CONDUIT, SANITIZER)
@@ -398,7 +398,7 @@ class _Asked:
         reasons = tuple(dict.fromkeys((*why, *_reasons(about))))
         return Row(element, kinds, tuple(replies), reasons, refused, closed, doubtful=doubtful, by_kind=each)
 
-    def _about(self, proposals: Iterable[Proposal], kind: str) -> list[Proposal]:
+    def _about(self, proposals: Iterable[LabelProposal], kind: str) -> list[LabelProposal]:
         return [one for one in proposals if self._speaks_of(one, kind)]
 
     def _closed(self, kinds: tuple[str, ...]) -> tuple[str, ...]:
@@ -424,7 +424,7 @@ class _Asked:
         return any(self.hierarchy.overlap(kind, one) is not None for one in kinds)
 
 
-def _row(proposal: Proposal) -> Row:
+def _row(proposal: LabelProposal) -> Row:
     label = written(proposal.label)
     why = _reasons([proposal])
     return Row(proposal.label.element, (proposal.label.kind,), (Reply(YES, label, reasons=why),), why, (label,))
@@ -435,12 +435,12 @@ def _suspected(row: Row) -> bool:
     return any(one.key == OUT and one.reasons for one in row.replies)
 
 
-def _leaks(proposals: Iterable[Proposal]) -> list[Proposal]:
+def _leaks(proposals: Iterable[LabelProposal]) -> list[LabelProposal]:
     """What suggests that one element lets data out; that it is an end of data does not."""
     return [one for one in proposals if one.label.role == LEAK and not or_passes_on(one, proposals)]
 
 
-def _leak(labels: Sequence[Label], reasons: tuple[str, ...]) -> Row:
+def _leak(labels: Sequence[SuggestedLabel], reasons: tuple[str, ...]) -> Row:
     """What may be let out; a no is of what is asked, and not of the broader kind that is suggested."""
     element, kinds = labels[0].element, tuple(one.kind for one in labels)
     each = [_leak([one], reasons) for one in labels if len(labels) > 1]
@@ -452,5 +452,5 @@ def _written(element: Element, role: str, kinds: Sequence[str]) -> WrittenLabel:
     return WrittenLabel(f"{element.kind}s", literal(element.name), {role: list(kinds)})
 
 
-def _reasons(about: Iterable[Proposal]) -> tuple[str, ...]:
+def _reasons(about: Iterable[LabelProposal]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(reason.reason for one in about for reason in one.evidence))

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.model import Confidence, Place
-    from rosprivacy.analysis.suggesting.evidence import Label
+    from rosprivacy.analysis.suggesting.evidence import SuggestedLabel
     from rosprivacy.analysis.suggesting.name_rules import NameRule
 
 PYTHON, CPP = "python", "c++"
@@ -45,7 +45,7 @@ class RuleOfUse(NamedTuple):
     rule: NameRule
     use: NodeUse
 
-    def evidence(self, label: Label, sure: Confidence, consequence: str = "") -> Evidence:
+    def evidence(self, label: SuggestedLabel, sure: Confidence, consequence: str = "") -> Evidence:
         """Return what it says for a label: no surer than the rule."""
         name = self.use.name
         verb = next((verb for sign, verb in _VERBS.items() if name.startswith(sign)), "")

@@ -29,7 +29,7 @@ from rosprivacy.analysis.suggesting.evidence import (
     SOURCE,
     TYPE,
     Evidence,
-    Label,
+    SuggestedLabel,
 )
 from rosprivacy.analysis.suggesting.name_rules import has_word, of_node
 from rosprivacy.analysis.suggesting.weighing import SURENESS, weaker
@@ -148,11 +148,13 @@ class _Node:
         named = of_node(self.element.name, self.names.lets_out) if self.reads else None
         if named:
             reason = f"{named.quoted} in the name of the node: {named.rule.why}"
-            yield Evidence(Label(self.element, LEAK, ANYTHING), NAMED, named.rule.confidence, reason, named.rule.place)
+            yield Evidence(
+                SuggestedLabel(self.element, LEAK, ANYTHING), NAMED, named.rule.confidence, reason, named.rule.place
+            )
         personal = self.hears or any(not one.rule.any_type for one in self.brings_in)
         for one in self.lets_out:
             yield from (
-                one.evidence(Label(self.element, LEAK, kind), MAY if not personal else LIKELY)
+                one.evidence(SuggestedLabel(self.element, LEAK, kind), MAY if not personal else LIKELY)
                 for kind in one.rule.kinds
             )
 
@@ -296,7 +298,7 @@ class _Node:
             first = clues[0]
             if first.ground == TYPE and first.confidence is not MAY and self._cannot_write(kind):
                 reason = f"reads {kind} ({first.reason}), and no type of what it writes is made for it"
-                label = Label(self.element, SANITIZER, kind, Method.DROP)
+                label = SuggestedLabel(self.element, SANITIZER, kind, Method.DROP)
                 yield Evidence(label, DATA_FLOW, MAY, reason, first.place)
 
     def _agreeing(self, reason: Evidence, *, doubtful: bool = False) -> Evidence:
@@ -325,8 +327,8 @@ class _Node:
         """Whether none of its channels can carry a kind; of a node that writes nothing, that is not so."""
         return bool(self.written) and all(self.rules.cannot_carry(kind, one, types) for one, types, _ in self.written)
 
-    def _label(self, kind: str, to: str = "") -> Label:
-        return Label(self.element, DERIVATION if to else SOURCE, kind, to=to)
+    def _label(self, kind: str, to: str = "") -> SuggestedLabel:
+        return SuggestedLabel(self.element, DERIVATION if to else SOURCE, kind, to=to)
 
 
 def _by_kind(clues: Iterable[Clue]) -> dict[str, list[Clue]]:

@@ -21,7 +21,7 @@ from rosprivacy.analysis.suggesting.evidence import (
     SENSITIVE,
     TYPE,
     Evidence,
-    Label,
+    SuggestedLabel,
     whole,
 )
 from rosprivacy.analysis.suggesting.name_rules import of_topic_nothing
@@ -52,7 +52,7 @@ def of_channels(graph: FlowGraph, clues: Mapping[int, tuple[Clue, ...]]) -> Iter
     """
     for vertex, some in clues.items():
         for clue in some:
-            label = Label(whole(graph.elements[vertex]), SENSITIVE, clue.kind)
+            label = SuggestedLabel(whole(graph.elements[vertex]), SENSITIVE, clue.kind)
             yield Evidence(label, clue.ground, clue.confidence, clue.reason, clue.place)
 
 
@@ -108,7 +108,7 @@ def _at_node(question: OpenQuestion, let_out: Sequence[str], written: Sequence[s
         else:
             roles, rest = (LEAK, CONDUIT), NOWHERE
         for role in roles:
-            label = Label(whole(question.element), role, kind)
+            label = SuggestedLabel(whole(question.element), role, kind)
             yield Evidence(label, DATA_FLOW, Confidence.MAY, f"it gets {kind}, {rest}", FLOWS)
 
 
@@ -118,7 +118,7 @@ def _at_channel(
     element = question.element
     nothing = of_topic_nothing(element.name, rules.names) if element.kind == "topic" else None
     for kind in question.categories:
-        never = Label(whole(element), NEVER, kind)
+        never = SuggestedLabel(whole(element), NEVER, kind)
         if types and all(rules.no_leg_carries(kind, name, legs) for name in types):
             reason = f"type {_first_few(types)} of {element.name} is not made for {kind}"
             place = _place(types, element, rules)
@@ -129,7 +129,7 @@ def _at_channel(
             yield Evidence(never, NAMED, Confidence.MAY, reason, nothing.rule.place)
         else:
             reason = f"neighbour of {_first_few(writers)}, which {kind} reaches" if writers else f"{kind} reaches it"
-            yield Evidence(Label(whole(element), SENSITIVE, kind), NEIGHBOUR, Confidence.MAY, reason, FLOWS)
+            yield Evidence(SuggestedLabel(whole(element), SENSITIVE, kind), NEIGHBOUR, Confidence.MAY, reason, FLOWS)
 
 
 def _first_few(names: Sequence[str]) -> str:

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.many_flows import parted
 from rosprivacy.analysis.model import STATED, Confidence, Method
-from rosprivacy.analysis.suggesting.evidence import LEAK, NAMED, NEVER, PACKAGE, SOURCE, Evidence, Label, whole
+from rosprivacy.analysis.suggesting.evidence import LEAK, NAMED, NEVER, PACKAGE, SOURCE, Evidence, SuggestedLabel, whole
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -265,7 +265,7 @@ def package_evidence(graph: FlowGraph, of_packages: Iterable[NodeOfPackage]) -> 
         for claim in one.node.claims:
             if another and (claim.role != LEAK or claim.kind in own):
                 continue
-            label = Label(element, claim.role, claim.kind, claim.method, claim.to)
+            label = SuggestedLabel(element, claim.role, claim.kind, claim.method, claim.to)
             matched = one.is_recognised or (bare and claim.role == LEAK)
             where = f", to a {claim.where}" if claim.where else ""
             reason = f"package {package.name} {package.version}{where}: {claim.why} ({by})"
@@ -322,7 +322,7 @@ def by_package_types(
         for kind in dict.fromkeys(question.categories):
             if rules.no_leg_carries(kind, type_, of_legs):
                 reason = f"package {package.name} {package.version}: {type_}, which is not made for {kind}"
-                label = Label(whole(question.element), NEVER, kind)
+                label = SuggestedLabel(whole(question.element), NEVER, kind)
                 family = f"package {package.name}" if rules.suggests_nothing(kind, type_, of_legs) else ""
                 yield Evidence(label, PACKAGE, Confidence.MAY, reason, package.place, family)
 

@@ -37,7 +37,7 @@ from rosprivacy.analysis.suggesting.evidence import (
     TAKING_AWAY,
     TYPE,
     Evidence,
-    Proposal,
+    LabelProposal,
 )
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.model import Bound, FlowGraph, Statement
-    from rosprivacy.analysis.suggesting.evidence import Identity, Label
+    from rosprivacy.analysis.suggesting.evidence import Identity, SuggestedLabel
 
 
 class WeighingRow(NamedTuple):
@@ -90,7 +90,7 @@ PLACE_OF_ROLE = {role: place for place, role in enumerate(ROLES)}
 PLACE_OF_GROUND = {ground: place for place, ground in enumerate(GROUNDS)}
 
 
-def proposals(evidence: Iterable[Evidence], categories: Collection[str] = ()) -> tuple[Proposal, ...]:
+def proposals(evidence: Iterable[Evidence], categories: Collection[str] = ()) -> tuple[LabelProposal, ...]:
     """Join evidence, in any order, into proposals, one for each label, sorted by element, role and kind.
 
     Parameters
@@ -101,18 +101,18 @@ def proposals(evidence: Iterable[Evidence], categories: Collection[str] = ()) ->
     Examples
     --------
     >>> from rosprivacy.analysis.model import Element, Place
-    >>> from rosprivacy.analysis.suggesting.evidence import Evidence, Label
-    >>> camera = Label(Element("node", "/camera"), "source", "Video")
+    >>> from rosprivacy.analysis.suggesting.evidence import Evidence, SuggestedLabel
+    >>> camera = SuggestedLabel(Element("node", "/camera"), "source", "Video")
     >>> rule = Place("names.yaml", 3)
     >>> said = [Evidence(camera, ground, Confidence.MAY, f"its {ground}", rule) for ground in ("name", "type")]
     >>> [(str(one.confidence), [reason.reason for reason in one.evidence]) for one in proposals(said)]
     [('likely', ['its type', 'its name'])]
     """
-    of_labels: dict[Label, list[Evidence]] = defaultdict(list)
+    of_labels: dict[SuggestedLabel, list[Evidence]] = defaultdict(list)
     for one in evidence:
         of_labels[one.label].append(one)
     groups = ((label, _in_order(of_labels[label])) for label in sorted(of_labels, key=_order))
-    return tuple(Proposal(label, _weighed(label, reasons, categories), reasons) for label, reasons in groups)
+    return tuple(LabelProposal(label, _weighed(label, reasons, categories), reasons) for label, reasons in groups)
 
 
 def surer(first: Confidence, second: Confidence) -> bool:
@@ -133,19 +133,19 @@ def weaker(first: Confidence, second: Confidence) -> Confidence:
     return second if surer(first, second) else first
 
 
-def closes_finding(label: Label, categories: Collection[str]) -> bool:
+def closes_finding(label: SuggestedLabel, categories: Collection[str]) -> bool:
     """Return whether a label takes away data of which a finding is known; a conduit takes nothing away.
 
     >>> from rosprivacy.analysis.model import Element
-    >>> from rosprivacy.analysis.suggesting.evidence import Label
+    >>> from rosprivacy.analysis.suggesting.evidence import SuggestedLabel
     >>> topic = Element("topic", "/t")
-    >>> [closes_finding(Label(topic, role, "Video"), {"Video"}) for role in ("never", "sensitive")]
+    >>> [closes_finding(SuggestedLabel(topic, role, "Video"), {"Video"}) for role in ("never", "sensitive")]
     [True, False]
     """
     return label.role in TAKING_AWAY and bool(categories) and (not label.kind or label.kind in categories)
 
 
-def _weighed(label: Label, reasons: Sequence[Evidence], categories: Collection[str]) -> Confidence:
+def _weighed(label: SuggestedLabel, reasons: Sequence[Evidence], categories: Collection[str]) -> Confidence:
     if closes_finding(label, categories):
         return Confidence.MAY
     return _by_table(label.role, tuple([(one.ground, one.confidence, one.alone) for one in reasons]))
@@ -169,7 +169,7 @@ def _row(row: WeighingRow, reasons: Iterable[tuple[str, Confidence, bool]]) -> C
     return row.agreed or weaker(row.ceiling, speaking[0][1])
 
 
-def _order(label: Label) -> tuple[object, ...]:
+def _order(label: SuggestedLabel) -> tuple[object, ...]:
     return (label.element.sort_key(), PLACE_OF_ROLE[label.role], label.kind, label.method or "", label.to)
 
 
@@ -181,23 +181,25 @@ def _place(reason: Evidence) -> tuple[object, ...]:
     return (SURENESS[reason.confidence], PLACE_OF_GROUND[reason.ground], reason.reason, reason.place)
 
 
-def unsaid(proposals: Iterable[Proposal], graph: FlowGraph, bound: Bound, hierarchy: Hierarchy) -> tuple[Proposal, ...]:
+def unsaid(
+    proposals: Iterable[LabelProposal], graph: FlowGraph, bound: Bound, hierarchy: Hierarchy
+) -> tuple[LabelProposal, ...]:
     """Return the proposals that ask something: nobody has spoken of it, and no other one answers the same.
 
     >>> from rosprivacy.analysis.example import ARCHIVE, FILTERED, VIDEO, factory
     >>> from rosprivacy.analysis.model import Confidence, Place
-    >>> from rosprivacy.analysis.suggesting.evidence import Evidence, Label
+    >>> from rosprivacy.analysis.suggesting.evidence import Evidence, SuggestedLabel
     >>> from rosprivacy.analysis.suggesting.weighing import proposals
     >>> graph, bound, hierarchy = factory()
-    >>> labels = [Label(graph.elements[ARCHIVE], "leak", "Video")]
+    >>> labels = [SuggestedLabel(graph.elements[ARCHIVE], "leak", "Video")]
     >>> both = ("sensitive", "never")
-    >>> labels += [Label(graph.elements[at], role, "Video") for at in (FILTERED, VIDEO) for role in both]
+    >>> labels += [SuggestedLabel(graph.elements[at], role, "Video") for at in (FILTERED, VIDEO) for role in both]
     >>> said = [Evidence(label, "name", Confidence.MAY, "a word", Place("names.yaml", 1)) for label in labels]
     >>> [(one.label.element.name, one.label.role) for one in unsaid(proposals(said), graph, bound, hierarchy)]
     [('/filtered', 'sensitive'), ('/video', 'sensitive')]
     """
     said = said_of(graph, bound)
-    by_element: dict[Identity, list[Proposal]] = defaultdict(list)
+    by_element: dict[Identity, list[LabelProposal]] = defaultdict(list)
     for one in proposals:
         identity = one.label.element.identity
         if identity not in said or not spoken_of(one.label, said[identity], hierarchy):
@@ -220,17 +222,17 @@ def said_of(graph: FlowGraph, bound: Bound) -> dict[Identity, list[Statement]]:
     return said
 
 
-def spoken_of(label: Label, statements: Sequence[Statement], hierarchy: Hierarchy) -> bool:
+def spoken_of(label: SuggestedLabel, statements: Sequence[Statement], hierarchy: Hierarchy) -> bool:
     """Return whether a person has spoken of the element for a kind that it may be about; of a source or leak, of all.
 
     Who says that a node lets one kind out has not said that it lets out no other.
 
     >>> from rosprivacy.analysis.example import ARCHIVE, factory
-    >>> from rosprivacy.analysis.suggesting.evidence import Label
+    >>> from rosprivacy.analysis.suggesting.evidence import SuggestedLabel
     >>> graph, bound, hierarchy = factory()
     >>> archive = graph.elements[ARCHIVE]
     >>> said = said_of(graph, bound)[archive.identity]  # leak: [FaceTemplate, Video]
-    >>> [spoken_of(Label(archive, "leak", kind), said, hierarchy) for kind in ("Video", "Biometric")]
+    >>> [spoken_of(SuggestedLabel(archive, "leak", kind), said, hierarchy) for kind in ("Video", "Biometric")]
     [True, False]
     """
     near = hierarchy.distance if label.role in (SOURCE, LEAK) else hierarchy.overlap
@@ -249,7 +251,7 @@ def _only_passes_on(statement: Statement) -> bool:
     return statement.role == CONDUIT and statement.glob
 
 
-def _although(proposal: Proposal, statements: Iterable[Statement]) -> Proposal:
+def _although(proposal: LabelProposal, statements: Iterable[Statement]) -> LabelProposal:
     """The proposal that an element lets data out, with the glob that says otherwise as its first reason."""
     glob = next(filter(_only_passes_on, statements), None) if proposal.label.role == LEAK else None
     if glob is None:
@@ -260,7 +262,7 @@ def _although(proposal: Proposal, statements: Iterable[Statement]) -> Proposal:
     )
 
 
-def _outdone(proposal: Proposal, together: Sequence[Proposal], hierarchy: Hierarchy) -> bool:
+def _outdone(proposal: LabelProposal, together: Sequence[LabelProposal], hierarchy: Hierarchy) -> bool:
     """Whether another proposal for the element answers the same question, and hides less."""
     label = proposal.label
     end_or_conduit = label.role == LEAK and or_passes_on(proposal, together)
@@ -268,7 +270,7 @@ def _outdone(proposal: Proposal, together: Sequence[Proposal], hierarchy: Hierar
         return False
     others = [each for each in together if each is not proposal and _related(label, each.label, hierarchy)]
 
-    def of(*roles: str) -> list[Proposal]:
+    def of(*roles: str) -> list[LabelProposal]:
         return [each for each in others if each.label.role in roles]
 
     leaks = [each for each in of(LEAK) if not or_passes_on(each, together)]
@@ -282,16 +284,16 @@ def _outdone(proposal: Proposal, together: Sequence[Proposal], hierarchy: Hierar
     return label.role == SENSITIVE and not _of_its_own(proposal) and bool(of(NEVER, MUNDANE))
 
 
-def or_passes_on(leak: Proposal, together: Iterable[Proposal]) -> bool:
+def or_passes_on(leak: LabelProposal, together: Iterable[LabelProposal]) -> bool:
     """Return whether a leak is one of two answers: data end there, and nothing of the node itself says which.
 
     >>> from rosprivacy.analysis.example import ARCHIVE, factory
     >>> from rosprivacy.analysis.model import Confidence, Place
-    >>> from rosprivacy.analysis.suggesting.evidence import Evidence, Label
+    >>> from rosprivacy.analysis.suggesting.evidence import Evidence, SuggestedLabel
     >>> from rosprivacy.analysis.suggesting.weighing import proposals
     >>> archive = factory()[0].elements[ARCHIVE]
     >>> def asked(ground):
-    ...     labels = (Label(archive, role, "Video") for role in ("leak", "conduit"))
+    ...     labels = (SuggestedLabel(archive, role, "Video") for role in ("leak", "conduit"))
     ...     why = (ground, Confidence.MAY, "a reason", Place("a.yaml", 1))
     ...     return {one.label.role: one for one in proposals([Evidence(label, *why) for label in labels])}
     >>> [or_passes_on(said["leak"], said.values()) for said in (asked("data-flow"), asked("name"))]
@@ -301,10 +303,10 @@ def or_passes_on(leak: Proposal, together: Iterable[Proposal]) -> bool:
     return by_flows and any(one.label.role == CONDUIT and one.label.kind == leak.label.kind for one in together)
 
 
-def _of_its_own(proposal: Proposal) -> bool:
+def _of_its_own(proposal: LabelProposal) -> bool:
     """Whether anything of the channel itself says it, and not only what is beside it."""
     return any(reason.ground != NEIGHBOUR for reason in proposal.evidence)
 
 
-def _related(label: Label, other: Label, hierarchy: Hierarchy) -> bool:
+def _related(label: SuggestedLabel, other: SuggestedLabel, hierarchy: Hierarchy) -> bool:
     return not label.kind or not other.kind or hierarchy.overlap(label.kind, other.kind) is not None

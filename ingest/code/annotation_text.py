@@ -159,11 +159,11 @@ def _of_word(name: str, word: str, rest: str, place: Place, vocabulary: Vocabula
         if not rest:
             raise LabelError(*place, "note without a text", f"write: {SIGN}: {WORDS[NOTE]}")
         return Annotation(place, name, word, note=rest)
-    reader = _Reader(word, place, vocabulary, specificity(name), naming(name))
+    reader = _AnnotationReader(word, place, vocabulary, specificity(name), naming(name))
     return Annotation(place, name, word, tuple(reader.read(rest)))
 
 
-class _Reader:
+class _AnnotationReader:
     """Reads what stands behind a word."""
 
     def __init__(self, word: str, place: Place, vocabulary: Vocabulary, specific: int, how: str) -> None:

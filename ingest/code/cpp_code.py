@@ -84,7 +84,7 @@ NO_COMMENT = "an annotation stands in a macro or in code that cannot be read"
 ALONE = "put it on a line of its own above the call or class, or correct the code"
 
 
-class _Names:
+class _CppNames:
     """What the names of a file stand for, as far as it says so itself, and where each is used.
 
     Attributes
@@ -158,16 +158,16 @@ def read_cpp(file: str, data: bytes) -> Code:
         tree = parser.parse(lambda at, _: data[at : at + PIECE], progress_callback=lambda _at, _broken: late())
     except ValueError:
         raise OutOfTime from None
-    return _Reader(file, data).read(in_time(walk(tree.root_node, parts), late))
+    return _CppReader(file, data).read(in_time(walk(tree.root_node, parts), late))
 
 
-class _Reader:
+class _CppReader:
     """Reads one file from its first to its last piece."""
 
     def __init__(self, file: str, data: bytes) -> None:
         self.file = file
         self.data = data
-        self.names = _Names()
+        self.names = _CppNames()
         self.parts_of_names: set[int] = set()
         self.comments: list[SourceComment] = []
         self.classes: list[NodeClass] = []

@@ -40,7 +40,7 @@ ALL = "*"  # that is imported from a module
 TESTS = frozenset(["test", "tests", "testing"])  # folders
 
 
-class Piece(NamedTuple):
+class CodePiece(NamedTuple):
     """A class or function; an empty name is all else in a file.
 
     Attributes
@@ -83,16 +83,16 @@ class CodeUnits:
         for file in self._python:
             if PurePath(file).name == INIT:
                 self._packages[PurePath(file).parent.name].add(PurePath(file).parent.parent)
-        self.bases: dict[Piece, set[str]] = defaultdict(set)
+        self.bases: dict[CodePiece, set[str]] = defaultdict(set)
         for code in codes:
             for one in code.classes:
                 self.bases[self.piece(code, one.name)].update(one.bases)
                 if code.language == CPP:
                     self._classes[package_of(code.file)].add(one.name)
-        self.uses: dict[Piece, list[NodeUse]] = defaultdict(list)
-        self.links: dict[Piece, set[Piece]] = defaultdict(set)
+        self.uses: dict[CodePiece, list[NodeUse]] = defaultdict(list)
+        self.links: dict[CodePiece, set[CodePiece]] = defaultdict(set)
         self.local: list[Local] = []
-        self._code_units: dict[tuple[str, str], Piece | None] = {}
+        self._code_units: dict[tuple[str, str], CodePiece | None] = {}
         for code in codes:
             for use in code.uses:
                 piece = self.piece(code, use.unit)
@@ -104,11 +104,11 @@ class CodeUnits:
                     self.uses[piece] += [] if link else [used]
                     self.local += [Local(used, link.of)] if link else []
 
-    def piece(self, code: Code, name: str) -> Piece:
+    def piece(self, code: Code, name: str) -> CodePiece:
         """Return a piece of a file by its name."""
-        return Piece(package_of(code.file) if code.language == CPP and name else code.file, name)
+        return CodePiece(package_of(code.file) if code.language == CPP and name else code.file, name)
 
-    def at(self, code: Code, line: int, of_class: str) -> Piece:
+    def at(self, code: Code, line: int, of_class: str) -> CodePiece:
         """Return the piece that a line of a file stands in.
 
         Parameters
@@ -121,7 +121,7 @@ class CodeUnits:
         name = next((one.name for one in code.units if one.lines.first <= line <= one.lines.last), "")
         return self.piece(code, name)
 
-    def of_file(self, code: Code) -> tuple[Piece, ...]:
+    def of_file(self, code: Code) -> tuple[CodePiece, ...]:
         """Return all pieces of a file; of C++ what is in no class, and the classes that it says something of."""
         if code.language == CPP:
             names = {"", *(use.unit for use in code.uses), *(one.name for one in code.classes)}
@@ -133,20 +133,20 @@ class CodeUnits:
         found = self._module(folder, name)
         return found[0] if found and not found[1] else ""
 
-    def _link(self, code: Code, name: str) -> Piece | None:
+    def _link(self, code: Code, name: str) -> CodePiece | None:
         key = (str(PurePath(code.file).parent), name)
         if key not in self._code_units:
             self._code_units[key] = (self._cpp_link if code.language == CPP else self._python_link)(code, name)
         return self._code_units[key]
 
-    def _cpp_link(self, code: Code, name: str) -> Piece | None:
+    def _cpp_link(self, code: Code, name: str) -> CodePiece | None:
         package, last = package_of(code.file), name.rpartition("::")[2]
         own = any(part in self._classes[package] for part in name.split("::")[-2:])
         if not own:
             return None
-        return Piece(package, last if last in self._classes[package] else name.split("::")[-2])
+        return CodePiece(package, last if last in self._classes[package] else name.split("::")[-2])
 
-    def _python_link(self, code: Code, name: str) -> Piece | None:
+    def _python_link(self, code: Code, name: str) -> CodePiece | None:
         found = self._module(str(PurePath(code.file).parent), name)
         if found is None:
             return None
@@ -155,7 +155,7 @@ class CodeUnits:
             if not rest or rest[0] in self._units(file) or (further := self._handed_on(file, rest)) is None:
                 break
             file, rest = further
-        return Piece(file, rest[0] if rest and rest[0] in self._units(file) else "")
+        return CodePiece(file, rest[0] if rest and rest[0] in self._units(file) else "")
 
     def _units(self, file: str) -> set[str]:
         return {one.name for one in self._python[file].units}
@@ -258,7 +258,7 @@ def node_uses(codes: Sequence[Code], namespace: str = ROOT) -> CodeUses:
     """
     found = _Nodes(codes, namespace)
     own: dict[str, set[NodeUse]] = defaultdict(set)
-    reached: set[Piece] = set()
+    reached: set[CodePiece] = set()
     for piece, names in found.names.items():
         pieces = found.of_node(piece)
         for name in names:
@@ -295,8 +295,8 @@ class _Nodes:
     def __init__(self, codes: Sequence[Code], namespace: str) -> None:
         self.codes, self.namespace = codes, namespace
         self.units = CodeUnits(codes)
-        self.names: dict[Piece, set[str]] = defaultdict(set)
-        self.files: dict[str, set[Piece]] = defaultdict(set)  # the nodes of each file
+        self.names: dict[CodePiece, set[str]] = defaultdict(set)
+        self.files: dict[str, set[CodePiece]] = defaultdict(set)  # the nodes of each file
         names = CodeNames(codes, namespace)
         for code in codes:
             for site in code.sites:
@@ -311,13 +311,13 @@ class _Nodes:
             if len(pieces) == 1 and len(self.names[pieces[0]]) <= 1:
                 self.names[pieces[0]].add(f"{namespace.rstrip('/')}/{name}")
 
-    def of_node(self, piece: Piece) -> set[Piece]:
+    def of_node(self, piece: CodePiece) -> set[CodePiece]:
         """Return all pieces of code that belong to a node."""
         files = [file for file, own in self.files.items() if own == {piece}]
         alone = {one for file in files for one in self.units.of_file(self._code[file])}
         return self._reached({piece, *alone, *self._runs.get(piece, ())})
 
-    def _reached(self, starts: Iterable[Piece]) -> set[Piece]:
+    def _reached(self, starts: Iterable[CodePiece]) -> set[CodePiece]:
         waiting = [*starts]
         reached = set(waiting)
         while waiting:
@@ -329,9 +329,9 @@ class _Nodes:
                     waiting.append(other)
         return reached
 
-    def _running(self) -> Mapping[Piece, Sequence[Piece]]:
+    def _running(self) -> Mapping[CodePiece, Sequence[CodePiece]]:
         """By node: the files that run it, and no other one."""
-        found: dict[Piece, list[Piece]] = defaultdict(list)
+        found: dict[CodePiece, list[CodePiece]] = defaultdict(list)
         for code in self.codes:
             if code.language == PYTHON and code.file not in self.files and not _is_test(code.file):
                 nodes = self._run_by(code.file)
@@ -339,7 +339,7 @@ class _Nodes:
                     found[nodes[0]].extend(self.units.of_file(code))
         return found
 
-    def _run_by(self, file: str) -> list[Piece]:
+    def _run_by(self, file: str) -> list[CodePiece]:
         """The nodes of a module that is run: its own, or those that it uses."""
         if own := self.files.get(file):
             return sorted(own)

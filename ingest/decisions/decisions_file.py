@@ -73,7 +73,7 @@ def parse_decisions(file: str, text: str, vocabulary: Vocabulary, day: str) -> D
 
 
 def _decisions(file: str, top: Value, data: bytes, vocabulary: Vocabulary, day: str) -> Decisions:
-    reader = _Reader(file, vocabulary)
+    reader = _DecisionsReader(file, vocabulary)
     entries, doubts = tuple(reader.document(top)), tuple(reader.doubts(top))
     digest = hashlib.sha256(data).hexdigest()
     return reader.whole(Decisions(file, digest, day, entries, vocabulary.hierarchy, doubts=doubts))
@@ -93,7 +93,7 @@ def is_date(written: str) -> bool:
 
 
 @dataclass
-class _Reader(FileReader):
+class _DecisionsReader(FileReader):
     """One decisions file."""
 
     vocabulary: Vocabulary

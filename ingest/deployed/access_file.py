@@ -179,7 +179,7 @@ def read_access(file: str) -> AccessFile:
         top, _ = read_json5(file, lambda line, problem, hint: PolicyError(file, line, problem, hint))
     except PolicyError as error:
         raise InputErrors([error]) from None
-    reader = _Reader(file, error=PolicyError)
+    reader = _AccessReader(file, error=PolicyError)
     access = reader.access(top)
     if reader.problems:
         raise InputErrors(reader.problems)
@@ -207,7 +207,7 @@ def _stated(subject: AccessSubject) -> tuple[Identity, ...]:
     return tuple(dict.fromkeys(product(*(properties.get(name, (None,)) for name in PROPERTIES))))
 
 
-class _Reader(FileReader):
+class _AccessReader(FileReader):
     """Walks the section once. Protocols of links are not checked: each version of Zenoh knows others."""
 
     def access(self, top: Value) -> AccessFile:

@@ -81,7 +81,7 @@ def differences(
     Linear in plain names; O(rights of an enclave, times wildcards and DENY lines of the other side) beside that.
     """
     ours, theirs = (
-        {name: _Rights(grants) for name, grants in _by_name(policies, by).items()}
+        {name: _RightsOfNode(grants) for name, grants in _by_name(policies, by).items()}
         for policies, by in ((stated, name_of), (deployed, lambda grant: grant.enclave))
     )
     found: set[GrantDifference] = set()
@@ -103,7 +103,7 @@ def _by_name(policies: Iterable[Policy], name_of: Callable[[Grant], str]) -> dic
     return grants
 
 
-class _Rights:
+class _RightsOfNode:
     """What the lines of an enclave allow and deny."""
 
     def __init__(self, grants: Iterable[Grant]) -> None:
@@ -148,7 +148,7 @@ class _Rights:
         return False
 
 
-_NO_RIGHTS = _Rights(())
+_NO_RIGHTS = _RightsOfNode(())
 
 
 class Loss(NamedTuple):

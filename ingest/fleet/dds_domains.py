@@ -135,7 +135,7 @@ def called_in_fleet(members: Sequence[Member]) -> Iterator[tuple[Member, Callabl
         else:
             yield member, partial(replace, robot=member.robot.id)
     for domain, some in domains.items():
-        names = _Names(domain, some)
+        names = _DomainNames(domain, some)
         yield from ((member, names.of_member(member)) for member in some)
 
 
@@ -146,7 +146,7 @@ def is_domain(name: str) -> bool:
 
 def shared(domain: str, members: Sequence[Member], view: str, bounds: Bounds = BOUNDS) -> Part:
     """The part of robots that share a domain."""
-    names = _Names(domain, members)
+    names = _DomainNames(domain, members)
     graph = build([_marked(policy, member.robot) for member in members for policy in member.policies], view, bounds)
     added = {member.robot.id: member.robot.add for member in members}
 
@@ -168,7 +168,7 @@ def _part(member: Member, name: Callable[[Element], Element]) -> Part:
     return _with_grants(part, lambda grant: as_written(grant, member.pushed)) if member.pushed else part
 
 
-class _Names:
+class _DomainNames:
     """What the elements of a domain are called in the fleet."""
 
     def __init__(self, domain: str, members: Sequence[Member]) -> None:

@@ -19,7 +19,7 @@ from rosprivacy.analysis.written_names import A_LITTLE, FEW, bare_name, did_you_
 from rosprivacy.ingest.fleet.alike_robots import COLON, chosen, known_to_flows
 from rosprivacy.ingest.fleet.dds_domains import alone, pseudo_robot, shared
 from rosprivacy.ingest.fleet.mergeable_graph import Part, numbered, together
-from rosprivacy.ingest.labels.add_non_ros import FLOW, Ends, ambiguous, line_of, merged, missing, two_meanings
+from rosprivacy.ingest.labels.add_non_ros import FLOW, FlowEnds, ambiguous, line_of, merged, missing, two_meanings
 from rosprivacy.ingest.labels.entries import End
 from rosprivacy.ingest.labels.stated_facts import joined, over, united
 
@@ -192,7 +192,7 @@ class _Placing:
         self._whole = whole
         self._owns = own
         self._members: list[Member] = []
-        self._ends: dict[str, Ends] = {}
+        self._ends: dict[str, FlowEnds] = {}
 
     def take(self, member: Member) -> None:
         """Place a robot."""
@@ -207,12 +207,12 @@ class _Placing:
                 domains[member.robot.domain].append(member)
             else:
                 parts.append(alone(member))
-                self._ends[member.robot.id] = Ends(parts[-1].elements)
+                self._ends[member.robot.id] = FlowEnds(parts[-1].elements)
         for domain, members in sorted(domains.items()):
             parts.append(shared(domain, members, view, self._fleet.bounds))
             for member in members:
-                self._ends[member.robot.id] = Ends(_seen_by(parts[-1], member.robot.id))
-            self._ends[pseudo_robot(domain)] = Ends(_of(parts[-1], pseudo_robot(domain)))
+                self._ends[member.robot.id] = FlowEnds(_seen_by(parts[-1], member.robot.id))
+            self._ends[pseudo_robot(domain)] = FlowEnds(_of(parts[-1], pseudo_robot(domain)))
         parts.append(self._own())
         whole = together(parts)
         whole.of_robots = self._responsible(whole)
@@ -240,7 +240,7 @@ class _Placing:
         part.subjects = {element: groups for element, groups in part.subjects.items() if groups}
         part.processing = {element: said for element, said in part.processing.items() if said}
         part.surroundings = {element: where for element, where in part.surroundings.items() if where}
-        self._ends[""] = Ends(part.elements)
+        self._ends[""] = FlowEnds(part.elements)
         return part
 
     def _responsible(self, whole: Part) -> dict[str, Processing]:

@@ -63,7 +63,7 @@ def read_shipped(file: str, vocabulary: Vocabulary, name: str) -> Package:
 
 
 def _package(name: str, top: Value, data: bytes, vocabulary: Vocabulary, bounds: Bounds) -> Package:
-    reader = _Reader(name, error=PackageError, bounds=bounds, vocabulary=vocabulary)
+    reader = _PackageReader(name, error=PackageError, bounds=bounds, vocabulary=vocabulary)
     package = reader.document(top)
     if reader.problems or package is None:
         raise InputErrors(reader.problems)
@@ -71,7 +71,7 @@ def _package(name: str, top: Value, data: bytes, vocabulary: Vocabulary, bounds:
 
 
 @dataclass(kw_only=True, eq=False, repr=False)
-class _Reader(FileReader):
+class _PackageReader(FileReader):
     """One file of a package; the kinds of the vocabulary, a user's own too."""
 
     vocabulary: Vocabulary

@@ -69,7 +69,7 @@ def extended(graph: FlowGraph, files: Sequence[Labels]) -> tuple[FlowGraph, list
         stated |= merged((entry for file in files if file.own == own for entry in file.elements), problems)
     added = [Element(entry.kind, entry.name) for entry in stated.values()]
     graph = _with_stated_kinds(graph, stated)
-    ends = Ends([*graph.elements, *added])
+    ends = FlowEnds([*graph.elements, *added])
     flows: list[tuple[Element, Element, Place]] = []
     for file in files:
         for flow in file.flows:
@@ -111,7 +111,7 @@ def _facts(entry: Stated) -> tuple[object, ...]:
     return entry.kind, stated, entry.between, entry.bags
 
 
-class Ends:
+class FlowEnds:
     """The elements that the ends of stated flows name.
 
     A name or glob of ROS means nodes or channels, whichever have it; where both do, the kind has to be said.

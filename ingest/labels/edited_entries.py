@@ -35,7 +35,7 @@ Spot = tuple[str | tuple[str, ...], bool, str]
 _WORDS = {"yes": "true", "on": "true", "no": "false", "off": "false"} | {word: word for word in ("true", "false")}
 
 
-class Said(NamedTuple):
+class SaidOfElement(NamedTuple):
     """What an entry of a label file says.
 
     Attributes
@@ -54,7 +54,7 @@ class Said(NamedTuple):
     value: Any
 
 
-class Written(NamedTuple):
+class WrittenEntries(NamedTuple):
     """How a label file is read.
 
     Attributes
@@ -87,7 +87,7 @@ def same_name(first: str, second: str) -> bool:
     return first == second or (not is_glob(first) and not is_glob(second) and bare_name(first) == bare_name(second))
 
 
-def edited(labels: Labels, edits: Sequence[Said], how: Written) -> Labels:
+def edited(labels: Labels, edits: Sequence[SaidOfElement], how: WrittenEntries) -> Labels:
     """Return labels with entries said anew, each at the line of the one that it replaces, new ones below the last line.
 
     The file's name and hash say that it is not what stands on the disk (rule S12).
@@ -151,13 +151,13 @@ def _spot(kinds: tuple[str, ...], name: str) -> Spot:
     return "elements" if outside else kinds, is_glob(name), name if is_glob(name) else bare_name(name)
 
 
-def _elements(elements: Iterable[Stated], entry: Said, new: Iterable[Stated]) -> list[Stated]:
+def _elements(elements: Iterable[Stated], entry: SaidOfElement, new: Iterable[Stated]) -> list[Stated]:
     if entry.section != "elements":
         return list(elements)
     return [*(one for one in elements if one.name != entry.name), *new]
 
 
-def read_entry(entry: Said, line: int, how: Written) -> LabelReader:
+def read_entry(entry: SaidOfElement, line: int, how: WrittenEntries) -> LabelReader:
     """Read one entry as if it stood in a file.
 
     Raises

@@ -31,7 +31,7 @@ from rosprivacy.ingest.reading.kept_yaml import FAILURES, changed, comments, kee
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from rosprivacy.ingest.labels.edited_entries import Said
+    from rosprivacy.ingest.labels.edited_entries import SaidOfElement
     from rosprivacy.ingest.labels.entries import Entry
     from rosprivacy.ontology.vocabulary import Vocabulary
 
@@ -163,7 +163,7 @@ class NewText(NamedTuple):
     remarks: tuple[str, ...] = ()
 
 
-def with_entries(file: str, text: str, entries: Sequence[Said]) -> NewText:
+def with_entries(file: str, text: str, entries: Sequence[SaidOfElement]) -> NewText:
     """Return the text of a label file in which some entries say something else.
 
     Whether it means what it should is for the caller to check, who knows what it should mean.
@@ -195,7 +195,7 @@ def _comment(old: str, new: str, remarks: tuple[str, ...]) -> NewText:
     return NewText(new, sum(max(b - a, d - c) for what, a, b, c, d in steps if what != "equal"), remarks)
 
 
-def _as_yaml(file: str, text: str, entries: Sequence[Said]) -> NewText:
+def _as_yaml(file: str, text: str, entries: Sequence[SaidOfElement]) -> NewText:
     def change(top: Any) -> None:
         for one in entries:
             _with_entry(top, one)
@@ -227,7 +227,7 @@ def _only_these(text: str, unchanged: str, new: str) -> str | None:
     return "".join(merged)
 
 
-def _above(text: str, lost: Sequence[str], entries: Sequence[Said]) -> str:
+def _above(text: str, lost: Sequence[str], entries: Sequence[SaidOfElement]) -> str:
     """Put comments above the first line that names one of the entries; at the end if there is none."""
     lines = text.splitlines(True)
     end = "\r\n" if "\r\n" in text else "\n"
@@ -242,7 +242,7 @@ def _is_of(line: str, name: str) -> bool:
     return line.lstrip().lstrip("'\"").startswith((f"{name}:", f"{name}'", f'{name}"'))
 
 
-def _with_entry(top: Any, entry: Said) -> None:
+def _with_entry(top: Any, entry: SaidOfElement) -> None:
     if entry.section == PINS:
         _put_pins(top, entry.value)
         return
@@ -288,7 +288,7 @@ def _change(present: Any, value: dict[str, Any]) -> None:
             present[key] = on_one_line(one)
 
 
-def _place(top: Any, entry: Said) -> tuple[Any, Any]:
+def _place(top: Any, entry: SaidOfElement) -> tuple[Any, Any]:
     """The section of an entry, and its key there; None where there is no such entry."""
     section = top.get(entry.section)
     return section, next((key for key in section or () if same_name(str(key), entry.name)), None)
@@ -320,7 +320,7 @@ def _json(text: str) -> Any:
         return None
 
 
-def _as_json(text: str, top: Any, entries: Sequence[Said]) -> str:
+def _as_json(text: str, top: Any, entries: Sequence[SaidOfElement]) -> str:
     for one in entries:
         if one.section == PINS:
             top.pop(PINS, None)

@@ -48,8 +48,8 @@ class Denials:
         self._touched: dict[frozenset[Part], frozenset[Part]] = {}
 
     @cached_property
-    def _rights(self) -> _Rights:
-        return _Rights(self._graph)
+    def _rights(self) -> _DeniedRights:
+        return _DeniedRights(self._graph)
 
     @cached_property
     def _parts(self) -> dict[Grant, frozenset[Part]]:
@@ -126,7 +126,7 @@ def _together(
     return chosen
 
 
-class _Rights:
+class _DeniedRights:
     """By flow, what of which enclave allows it."""
 
     def __init__(self, graph: FlowGraph) -> None:

@@ -38,12 +38,12 @@ def read_limits(file: str, graph: FlowGraph, bounds: Bounds = BOUNDS) -> Limits:
         With every problem of the file, each a ``LimitsError`` of one line.
     """
     top, _ = read_values(file, partial(LimitsError, file), bounds)
-    reader = _Reader(file, graph)
+    reader = _LimitsReader(file, graph)
     return reader.whole(reader.document(top))
 
 
 @dataclass
-class _Reader(FileReader):
+class _LimitsReader(FileReader):
     """One limits file."""
 
     graph: FlowGraph

@@ -113,7 +113,7 @@ def read_stored(driver: Driver, vocabulary: Vocabulary) -> Stored:
 
 def _read(transaction: ManagedTransaction, vocabulary: Vocabulary) -> Stored:
     robots = {record["robot"]["name"]: record["robot"] for record in transaction.run(ROBOTS)}
-    reader = _Reader(vocabulary, alone=len(robots) == 1)
+    reader = _StoredReader(vocabulary, alone=len(robots) == 1)
     if not robots:
         reader.problem("there is no robot in it", "load one with rosprivacy load")
     elif others := of_other_schemas(robots.values()):
@@ -145,7 +145,7 @@ class _Vertex:
     properties: Mapping[str, Any]
 
 
-class _Reader:
+class _StoredReader:
     """Rows -> facts; problems are gathered."""
 
     def __init__(self, vocabulary: Vocabulary, *, alone: bool) -> None:

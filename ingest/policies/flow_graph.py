@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.bounds import Bounds
     from rosprivacy.analysis.model import Policy
     from rosprivacy.ingest.policies.names import Endpoint
-    from rosprivacy.ingest.policies.wildcards import Ends
+    from rosprivacy.ingest.policies.wildcards import MeetingEnds
 
 _ends = attrgetter("source", "target", "role")  # of a flow
 NOWHERE = Place("", 0)
@@ -246,12 +246,12 @@ class _Drafts:
                     if (met := self._met(pattern, reader)) is not None:
                         self._match(pattern, reader, met | gone.get(pattern, set()) | gone.get(reader, set()))
 
-    def _by_ends(self, met: Mapping[Element, set[Grant]]) -> dict[Element, Ends]:
+    def _by_ends(self, met: Mapping[Element, set[Grant]]) -> dict[Element, MeetingEnds]:
         """The patterns of which their literal ends tell what they meet: of one DDS topic, and no DENY is about them."""
         alone = (e for e, dds in self.ordered.items() if len(dds) == 1 and not self.rules.get(e) and e not in met)
         return {e: ends for e in alone if (ends := literal_ends(self.ordered[e][0])) is not None}
 
-    def _meet(self, by_ends: Mapping[Element, Ends]) -> None:
+    def _meet(self, by_ends: Mapping[Element, MeetingEnds]) -> None:
         """Join patterns by their ends; large groups as a whole."""
 
         def count(element: Element, groups: int) -> None:

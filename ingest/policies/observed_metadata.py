@@ -63,7 +63,7 @@ SHOWN_AT_MOST = 3  # of folded names
 Key = tuple[str, str, str, str]  # node, kind, role, name
 
 
-class Observed(NamedTuple):
+class ObservedMetadata(NamedTuple):
     """What an observation says of itself, in the policy that was made of it (rule S16).
 
     Attributes
@@ -86,7 +86,7 @@ class Observed(NamedTuple):
     folded: tuple[tuple[str, str], ...] = ()
 
 
-def diagnostics_of(observed: Observed, place: Place) -> Iterator[Diagnostic]:
+def diagnostics_of(observed: ObservedMetadata, place: Place) -> Iterator[Diagnostic]:
     """Return what a reader has to know of a policy that was made of an observation."""
     yield Diagnostic(place, Severity.NOTICE, when_observed(observed.first, observed.last, observed.by), OBSERVED)
     if observed.made_up_enclaves:
@@ -116,7 +116,7 @@ def observed_in(metadata: etree._Element) -> etree._Element | None:
     return next((child for child in metadata if child.tag == TAG and child.get("version") is not None), None)
 
 
-def observed_of(element: etree._Element) -> Observed:
+def observed_of(element: etree._Element) -> ObservedMetadata:
     """Return what an observation says of itself.
 
     Raises
@@ -127,7 +127,7 @@ def observed_of(element: etree._Element) -> Observed:
     if element.get("version") != VERSION:
         raise ValueError(f"version {shown(repr(element.get('version')))} of an observation is not known")
     folded = [(_text(child, "name"), _text(child, "rule")) for child in element if child.tag == FOLDED]
-    return Observed(
+    return ObservedMetadata(
         _doors(element),
         _time(element, "from"),
         _time(element, "to"),
@@ -172,10 +172,10 @@ def participants_of(element: etree._Element) -> Mapping[str, str]:
     return found
 
 
-def together(several: list[Observed]) -> Observed:
+def together(several: list[ObservedMetadata]) -> ObservedMetadata:
     """Return what the enclaves of a policy say, as one.
 
-    >>> one = Observed(("text",), "2026-11-22T10:00:00Z", "2026-11-22T10:05:00Z", (("no-node", 2),), 1)
+    >>> one = ObservedMetadata(("text",), "2026-11-22T10:00:00Z", "2026-11-22T10:05:00Z", (("no-node", 2),), 1)
     >>> together([one, one]).made_up_enclaves, together([one, one]).gaps
     (2, (('no-node', 2),))
     """
@@ -183,7 +183,7 @@ def together(several: list[Observed]) -> Observed:
     for one in several:
         for gap, number in one.gaps:
             gaps[gap] = max(number, gaps.get(gap, 0))
-    return Observed(
+    return ObservedMetadata(
         tuple(sorted({door for one in several for door in one.by})),
         min(one.first for one in several),
         max(one.last for one in several),

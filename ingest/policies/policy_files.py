@@ -142,7 +142,7 @@ def contents(argument: str) -> Contents | None:
     if not argument:
         raise ValueError("no name")
     path = Path(argument)
-    found = _Walk(len(path.parts) - has_magic(argument))
+    found = _FolderWalk(len(path.parts) - has_magic(argument))
     if path.is_dir():
         found.folder(argument)
     elif has_magic(argument) and not path.exists():
@@ -154,7 +154,7 @@ def contents(argument: str) -> Contents | None:
     return found.contents
 
 
-class _Walk:
+class _FolderWalk:
     """Walks folders: first those that stand there, then those that only a link leads to."""
 
     def __init__(self, depth: int) -> None:

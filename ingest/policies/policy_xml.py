@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.bounds import Bounds
     from rosprivacy.analysis.model import Seen
-    from rosprivacy.ingest.policies.observed_metadata import Key, Observed
+    from rosprivacy.ingest.policies.observed_metadata import Key, ObservedMetadata
 
     Read = tuple[Mapping[Key, Seen], Mapping[str, str]]  # when grants were seen; which profiles are of no node
 
@@ -101,7 +101,7 @@ def read_policy(file: str, *, include_root: str | None = None, bounds: Bounds = 
     """
     documents = Documents(Path(include_root) if include_root else Path(file).parent, bounds)
     root = documents.open(file)
-    reader = _Reader(documents, file, bounds)
+    reader = _PolicyReader(documents, file, bounds)
     reader.policy(root)
     reader.observed()
     problems = [*documents.problems, *reader.problems]
@@ -117,7 +117,7 @@ def read_policy(file: str, *, include_root: str | None = None, bounds: Bounds = 
 
 
 @dataclass(eq=False, repr=False)
-class _Reader:
+class _PolicyReader:
     """Walks the document once, from the outside in."""
 
     documents: Documents
@@ -129,7 +129,7 @@ class _Reader:
     grants: list[Grant] = field(default_factory=list)
     old: bool = False
     namespace: str = ""
-    observations: list[tuple[Place, Observed]] = field(default_factory=list)
+    observations: list[tuple[Place, ObservedMetadata]] = field(default_factory=list)
     seen_by_key: Mapping[Key, Seen] = field(default_factory=dict)  # of the profiles that are being read (rule S16)
     participants: Mapping[str, str] = field(default_factory=dict)  # those of them that are of no node
     first: Place | None = None  # where sros2 has read its fill of this enclave: what follows is dead (rule S5)

@@ -213,18 +213,18 @@ def _has(token: Token, character: int) -> bool:
 _Group = tuple[tuple[str, bool], tuple[str, bool]]
 
 
-class Ends(NamedTuple):
+class MeetingEnds(NamedTuple):
     """The literal beginning of an expression up to its first ``*``, and the end after the last; backwards."""
 
     beginning: str
     end: str
 
 
-def literal_ends(expression: str) -> Ends | None:
+def literal_ends(expression: str) -> MeetingEnds | None:
     """Return the ends of an expression, or None where it has no ``*``, no names, or ends that are not literal.
 
     >>> literal_ends("rt/robot*/[ab]/s*_7"), literal_ends("rt/cam?/*"), literal_ends("rt/cam?")
-    (Ends(beginning='rt/robot', end='7_'), None, None)
+    (MeetingEnds(beginning='rt/robot', end='7_'), None, None)
     """
     found = tokens(expression)
     if None not in found or () in found:
@@ -233,11 +233,11 @@ def literal_ends(expression: str) -> Ends | None:
     ends = found[:first], found[::-1][:last]
     if any(token is None or len(token) != 1 or token[0][0] != token[0][1] for end in ends for token in end):
         return None
-    return Ends(*("".join(chr(token[0][0]) for token in end if token) for end in ends))
+    return MeetingEnds(*("".join(chr(token[0][0]) for token in end if token) for end in ends))
 
 
 def meetings(
-    written: Mapping[Element, Ends], read: Mapping[Element, Ends], count: Callable[[Element, int], None]
+    written: Mapping[Element, MeetingEnds], read: Mapping[Element, MeetingEnds], count: Callable[[Element, int], None]
 ) -> Iterator[tuple[list[Element], list[Element]]]:
     """Yield groups of which each written element meets each read one; each pair that meets is in one of them.
 

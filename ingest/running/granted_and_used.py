@@ -84,7 +84,7 @@ def usage(granted: Iterable[Policy], observed: Iterable[Policy], view: str = Vie
     """
     granted = tuple(granted)
     seen = [grant for policy in observed for grant in policy.grants if grant.observation]
-    rights = _Rights(granted, view)
+    rights = _UsedRights(granted, view)
     not_granted = tuple(sorted(filter(None, map(rights.missing, seen)), key=lambda use: _key(use.grant)))
     used: dict[str, set[tuple[bool, str]]] = defaultdict(set)
     for node in {plain_name(profile.node)[0] for policy in observed for profile in policy.profiles}:
@@ -142,7 +142,7 @@ def _is_used(grant: Grant, used: Collection[tuple[bool, str]]) -> bool:
     return any(end.writes == writes and covers(end.dds, dds) for end in ends for writes, dds in used)
 
 
-class _Rights:
+class _UsedRights:
     """What the policies allow and deny, by the node that may use it."""
 
     def __init__(self, policies: Iterable[Policy], view: str) -> None:

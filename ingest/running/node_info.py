@@ -85,7 +85,7 @@ def read_node_info(text: str, at: str, name: str = "text", *, whole: bool = True
     >>> [(one.node, one.role, one.name, one.type) for one in seen.endpoints]
     [('/cam', 'publish', '/image', 'sensor_msgs/msg/Image')]
     """
-    reader = _Reader(name, Span(at, at))
+    reader = _NodeInfoReader(name, Span(at, at))
     for number, line in enumerate(text.removeprefix("\ufeff").split("\n"), 1):
         reader.line(number, line.rstrip())
     if reader.problems:
@@ -97,7 +97,7 @@ def read_node_info(text: str, at: str, name: str = "text", *, whole: bool = True
 
 
 @dataclass(slots=True)
-class _Reader:
+class _NodeInfoReader:
     """Goes through the lines once."""
 
     file: str

@@ -20,7 +20,7 @@ from rosprivacy.ingest.labels.entries import SECTIONS
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from rosprivacy.analysis.suggesting.evidence import Proposal, WrittenLabel
+    from rosprivacy.analysis.suggesting.evidence import LabelProposal, WrittenLabel
 
 MARK, REFUSED = "# suggest: ", "# not: "
 BECAUSE = " because "
@@ -59,14 +59,14 @@ def hides(roles: Iterable[str]) -> bool:
     return not ADDING.issuperset(roles)
 
 
-def comment_of(proposal: Proposal) -> str:
+def comment_of(proposal: LabelProposal) -> str:
     """Return the line of a proposal.
 
     >>> from rosprivacy.analysis.model import Element, Place
-    >>> from rosprivacy.analysis.suggesting.evidence import Evidence, Label, Proposal
-    >>> label = Label(Element("node", "/camera"), "source", "Video")
+    >>> from rosprivacy.analysis.suggesting.evidence import Evidence, SuggestedLabel, LabelProposal
+    >>> label = SuggestedLabel(Element("node", "/camera"), "source", "Video")
     >>> why = Evidence(label, "type", Confidence.LIKELY, "type sensor_msgs/msg/Image of /image", Place("t.yaml", 1))
-    >>> print(comment_of(Proposal(label, Confidence.LIKELY, (why,))))
+    >>> print(comment_of(LabelProposal(label, Confidence.LIKELY, (why,))))
     # suggest: likely {"nodes": {"/camera": {"source": ["Video"]}}} because type sensor_msgs/msg/Image of /image
     """
     at = written(proposal.label)

@@ -113,7 +113,7 @@ def _shipped(vocabulary: Vocabulary, bounds: Bounds) -> TypeTable:
 
 
 def _table(file: str, top: Value, data: bytes, vocabulary: Vocabulary, bounds: Bounds) -> TypeTable:
-    reader = _Reader(file, vocabulary, error=TypesError, bounds=bounds)
+    reader = _TypeTableReader(file, vocabulary, error=TypesError, bounds=bounds)
     limits, hashes, suggestions = reader.whole(reader.document(top))
     return TypeTable(TypeLimits(file, hashlib.sha256(data).hexdigest(), limits, hashes), suggestions)
 
@@ -172,7 +172,7 @@ class _Entry:
 
 
 @dataclass
-class _Reader(FileReader):
+class _TypeTableReader(FileReader):
     """One table."""
 
     vocabulary: Vocabulary

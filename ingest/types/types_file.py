@@ -60,7 +60,7 @@ class SeenChannel:
 
 
 @dataclass(frozen=True, slots=True)
-class Observed:
+class ObservedTypes:
     """From when to when was looked, and by which doors."""
 
     start: str = ""
@@ -74,7 +74,7 @@ class TypesFile:
 
     file: str
     sha256: str
-    observed: Observed
+    observed: ObservedTypes
     channels: tuple[SeenChannel, ...]
 
 
@@ -87,7 +87,7 @@ def read_types(file: str, bounds: Bounds = BOUNDS) -> TypesFile:
         With every problem of the file, each a ``TypesError`` of one line.
     """
     top, data = read_values(file, partial(TypesError, file), bounds)
-    reader = _Reader(file, error=TypesError, bounds=bounds)
+    reader = _TypesReader(file, error=TypesError, bounds=bounds)
     observed, channels = reader.whole(reader.document(top))
     return TypesFile(file, hashlib.sha256(data).hexdigest(), observed, channels)
 
@@ -96,7 +96,7 @@ def as_dict(types: TypesFile) -> dict[str, Any]:
     """Return a file of types as plain values, with the lines of its types: for a saved graph.
 
     >>> seen = SeenType("std_msgs/msg/Bool", ends=(("/door",), ()), line=5)
-    >>> as_dict(TypesFile("t.yaml", "", Observed(), (SeenChannel("topic", "/open", (seen,)),)))["topics"]
+    >>> as_dict(TypesFile("t.yaml", "", ObservedTypes(), (SeenChannel("topic", "/open", (seen,)),)))["topics"]
     {'/open': [{'type': 'std_msgs/msg/Bool', 'line': 5, 'writers': ['/door']}]}
     """
     observed = {"from": types.observed.start, "to": types.observed.end, "by": list(types.observed.by)}
@@ -110,7 +110,7 @@ def from_dict(saved: Mapping[str, Any]) -> TypesFile:
     """Return what ``as_dict`` was made from.
 
     >>> seen = SeenType("std_msgs/msg/Bool", ends=(("/door",), ()), line=5)
-    >>> types = TypesFile("t.yaml", "", Observed(), (SeenChannel("topic", "/open", (seen,)),))
+    >>> types = TypesFile("t.yaml", "", ObservedTypes(), (SeenChannel("topic", "/open", (seen,)),))
     >>> from_dict(as_dict(types)) == types
     True
     """
@@ -120,7 +120,7 @@ def from_dict(saved: Mapping[str, Any]) -> TypesFile:
         for section, kind in KINDS.items()
         for name, some in sorted(saved[section].items())
     ]
-    observed = Observed(said.get("from", ""), said.get("to", ""), tuple(said.get("by", ())))
+    observed = ObservedTypes(said.get("from", ""), said.get("to", ""), tuple(said.get("by", ())))
     return TypesFile(saved["file"], saved["sha256"], observed, tuple(channels))
 
 
@@ -141,15 +141,15 @@ def _filled(values: dict[str, Any]) -> dict[str, Any]:
 
 
 @dataclass
-class _Reader(FileReader):
+class _TypesReader(FileReader):
     """One file of types."""
 
     channels: list[SeenChannel] = field(default_factory=list)
 
-    def document(self, top: Value) -> tuple[Observed, tuple[SeenChannel, ...]]:
+    def document(self, top: Value) -> tuple[ObservedTypes, tuple[SeenChannel, ...]]:
         if not self.is_format(top, "types", "a file of types"):
-            return Observed(), ()
-        observed = Observed()
+            return ObservedTypes(), ()
+        observed = ObservedTypes()
         for key, _, value in self.entries_of(top, ("types", "observed", *KINDS)):
             if key == "observed":
                 observed = self._observed(value)
@@ -158,14 +158,14 @@ class _Reader(FileReader):
         order = list(KINDS.values())
         return observed, tuple(sorted(self.channels, key=lambda one: (order.index(one.kind), one.name)))
 
-    def _observed(self, value: Value) -> Observed:
+    def _observed(self, value: Value) -> ObservedTypes:
         if value.kind != "map":
             self.problem(value.line, f"observed is a map, not a {value.kind}", "write {from: …, to: …, by: [dds]}")
-            return Observed()
+            return ObservedTypes()
         said = self.values_of(value, ("from", "to", "by"))
         start, end = (self._time(said[key], key) if key in said else "" for key in ("from", "to"))
         doors = self.list_of(said["by"], "by") if "by" in said else ()
-        return Observed(start, end, tuple(filter(None, (self._text(door, "by") for door in doors))))
+        return ObservedTypes(start, end, tuple(filter(None, (self._text(door, "by") for door in doors))))
 
     def _section(self, section: str, value: Value) -> Iterator[SeenChannel]:
         if value.kind not in ("map", "empty"):

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.errors import InputError
     from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.analysis.model import Diagnostic
-    from rosprivacy.analysis.suggesting.evidence import Evidence, Label, Proposal
+    from rosprivacy.analysis.suggesting.evidence import Evidence, LabelProposal, SuggestedLabel
     from rosprivacy.analysis.suggesting.library_rules import NodeUse
     from rosprivacy.report.schemas.suggested import EvidenceEntry, ModelEntry, ProposalEntry, SuggestionsDocument
 
@@ -20,9 +20,9 @@ FORMAT = "rosprivacy.suggestions/1"
 
 
 def suggestions_document(
-    proposals: Iterable[Proposal],
+    proposals: Iterable[LabelProposal],
     open_elements: Collection[tuple[str, str, str]],
-    by_hand: Collection[Label],
+    by_hand: Collection[SuggestedLabel],
     verdict: str,
     rests_on: Mapping[str, Any],
     likeness: Likeness,
@@ -83,7 +83,7 @@ def suggestions_document(
     return document
 
 
-def _proposal(proposal: Proposal, *, is_open: bool, by_hand: bool) -> ProposalEntry:
+def _proposal(proposal: LabelProposal, *, is_open: bool, by_hand: bool) -> ProposalEntry:
     at = written(proposal.label)
     return {
         "robot": proposal.label.element.robot,

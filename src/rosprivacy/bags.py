@@ -101,7 +101,7 @@ def answer_bags(
 
 
 @dataclass(frozen=True, slots=True)
-class Said:
+class SaidOfBags:
     """What is said of a topic by its name.
 
     Attributes
@@ -121,13 +121,13 @@ class Said:
     shipped: bool = False
 
 
-def judged(bags: Iterable[Bag], said_of: Callable[[str], Said], table: TypeTable) -> tuple[JudgedBag, ...]:
+def judged(bags: Iterable[Bag], said_of: Callable[[str], SaidOfBags], table: TypeTable) -> tuple[JudgedBag, ...]:
     """Return bags with what can be in them; ``said_of`` tells it of the name of a topic."""
     known = cache(said_of)
     return tuple(JudgedBag(bag, tuple(_judged(bag, topic, known, table) for topic in bag.topics)) for bag in bags)
 
 
-def _judged(bag: Bag, topic: BagTopic, said_of: Callable[[str], Said], table: TypeTable) -> TopicKinds:
+def _judged(bag: Bag, topic: BagTopic, said_of: Callable[[str], SaidOfBags], table: TypeTable) -> TopicKinds:
     if topic.messages == 0 and bag.complete:
         return TopicKinds(topic, why=NO_MESSAGE)
     said = said_of(topic.name)
@@ -138,7 +138,7 @@ def _judged(bag: Bag, topic: BagTopic, said_of: Callable[[str], Said], table: Ty
     return TopicKinds(topic, said.kinds, said.unknown, said.why, suggested)
 
 
-def _questions(statements: Said, suggested: Sequence[Suggestion], *, looked_at: bool) -> Said:
+def _questions(statements: SaidOfBags, suggested: Sequence[Suggestion], *, looked_at: bool) -> SaidOfBags:
     """What is said of a topic that no person's label names, under the question of its types."""
     whose = (
         "only the program's own labels say that it carries nothing"
@@ -153,7 +153,7 @@ def _questions(statements: Said, suggested: Sequence[Suggestion], *, looked_at: 
     return statements
 
 
-def by_system(result: Result) -> Callable[[str], Said]:
+def by_system(result: Result) -> Callable[[str], SaidOfBags]:
     """Return what tells of a topic what it carries in the system that was analysed."""
     analysis, bound = result.analysis, result.bound
     graph, spread = analysis.graph, analysis.spread
@@ -177,34 +177,34 @@ def by_system(result: Result) -> Callable[[str], Said]:
             return vertices.get(channel, [])
         return [vertex for vertex in patterns[kind, leg] if covers(graph.elements[vertex].name, name)]
 
-    def said_of(topic: str) -> Said:
+    def said_of(topic: str) -> SaidOfBags:
         here = [vertex for channel in recorded_channels(topic) for vertex in statement_of(channel)]
         if not here:
-            return Said(unknown="the policies do not name it")
+            return SaidOfBags(unknown="the policies do not name it")
         kinds = {name for vertex in here for name in spread.names(spread.present(vertex))}
         if kinds:
-            return Said(tuple(sorted(kinds)), why="what the policies and labels let arrive there")
+            return SaidOfBags(tuple(sorted(kinds)), why="what the policies and labels let arrive there")
         stated = labels(topic)
         if not stated.unknown:
             return stated
         if analysis.lacking in NOTHING_FOLLOWED:
-            return Said(unknown="no label names a source whose data goes anywhere")
+            return SaidOfBags(unknown="no label names a source whose data goes anywhere")
         if unread_files:
-            return Said(unknown=f"grants were not read: {shown(str(unread_files[0]))}")
+            return SaidOfBags(unknown=f"grants were not read: {shown(str(unread_files[0]))}")
         return by_writers(here)
 
-    def by_writers(vertices: Sequence[int]) -> Said:
+    def by_writers(vertices: Sequence[int]) -> SaidOfBags:
         """A channel to which no data gets: that is known if all that write to it were looked at."""
         for vertex in vertices:
             sending = _senders(vertex, writers, analysis)
             if not sending:
-                return Said(unknown="no node of the policies writes to it")
+                return SaidOfBags(unknown="no node of the policies writes to it")
             spoken = {one for one in sending if bound.elements.get(one) and graph.elements[one] not in unreached}
             silent = sorted(graph.elements[one].name for one in sending - spoken)
             if silent:
                 more = f" and {len(silent) - 1} more" if len(silent) > 1 else ""
-                return Said(unknown=f"no label says what {shown(silent[0])}{more} sends")
-        return Said(why="no kind of data gets to those that write to it, and labels speak of all of them")
+                return SaidOfBags(unknown=f"no label says what {shown(silent[0])}{more} sends")
+        return SaidOfBags(why="no kind of data gets to those that write to it, and labels speak of all of them")
 
     return said_of
 
@@ -223,7 +223,7 @@ def _senders(vertex: int, writers: dict[int, list[int]], analysis: Analysis) -> 
     return sending
 
 
-def by_labels(files: Sequence[Labels], vocabulary: Vocabulary) -> Callable[[str], Said]:
+def by_labels(files: Sequence[Labels], vocabulary: Vocabulary) -> Callable[[str], SaidOfBags]:
     """Return what tells of a topic what label files say of it, where no policy says who writes to it."""
     entries = [entry for file in files for entry in file.entries]
     sources = [one for entry in entries for one in entry.statements if one.role == "source" and one.through]
@@ -232,14 +232,14 @@ def by_labels(files: Sequence[Labels], vocabulary: Vocabulary) -> Callable[[str]
     for at, entry in enumerate(entries):
         if not is_glob(entry.name):
             named[bare_name(entry.name)].append(at)
-    decided: dict[tuple[Statement, ...], Said] = {}
+    decided: dict[tuple[Statement, ...], SaidOfBags] = {}
 
-    def said_of(topic: str) -> Said:
+    def said_of(topic: str) -> SaidOfBags:
         channels = recorded_channels(topic)
         names = {name for _, name, _ in channels}
         kinds = {kind for one in sources if any(covered(end, names) for end in one.through) for kind in one.categories}
         if kinds:
-            return Said(tuple(sorted(kinds)), why="sources that name the channel", covered=True)
+            return SaidOfBags(tuple(sorted(kinds)), why="sources that name the channel", covered=True)
         near = [entries[at] for at in sorted({at for name in names for at in named.get(name, ())}.union(globs))]
         said = tuple(statement for entry in near if _is_about(entry, channels) for statement in entry.statements)
         if said not in decided:
@@ -253,7 +253,7 @@ def _is_about(entry: Entry, channels: Sequence[Channel]) -> bool:
     return any(kind in entry.kinds and covered(entry.name, [name]) for kind, name, _ in channels)
 
 
-def _decided(topic: str, statements: Sequence[Statement], vocabulary: Vocabulary) -> Said:
+def _decided(topic: str, statements: Sequence[Statement], vocabulary: Vocabulary) -> SaidOfBags:
     """What some statements say of a topic; of most topics the same ones speak, or none."""
     decided = {name: facts(topic, statements, name, vocabulary.hierarchy) for name in sorted(vocabulary.categories)}
     passing = [name for name, fact in decided.items() if fact.passes]
@@ -262,12 +262,12 @@ def _decided(topic: str, statements: Sequence[Statement], vocabulary: Vocabulary
         shipped = len(own) < len(statements) and any(
             facts(topic, own, name, vocabulary.hierarchy).passes for name in decided
         )
-        return Said(why=f"{_lines(statements)}: it carries no kind of data", covered=not shipped, shipped=shipped)
+        return SaidOfBags(why=f"{_lines(statements)}: it carries no kind of data", covered=not shipped, shipped=shipped)
     if len(passing) < len(decided) and (only := {s for fact in decided.values() for s in fact.by_role("only")}):
         stated = {name for statement in only for name in statement.categories}.intersection(passing)
         if stated:
-            return Said(tuple(sorted(stated)), why=f"{_lines(only)}: it carries these at most", covered=True)
-    return Said(unknown="no label says what it carries")
+            return SaidOfBags(tuple(sorted(stated)), why=f"{_lines(only)}: it carries these at most", covered=True)
+    return SaidOfBags(unknown="no label says what it carries")
 
 
 def _lines(statements: Iterable[Statement]) -> str:

@@ -45,7 +45,7 @@ SECONDS = {"": 1, "s": 1, "m": 60, "h": 3600, "d": 86400}
 
 
 @dataclass(frozen=True, slots=True)
-class Written:
+class ObservedTexts:
     """What is made of an observation.
 
     Attributes
@@ -160,13 +160,13 @@ def observe(
     return added_up(seen) if seen else None
 
 
-def written(observation: Observation) -> Written | None:
+def written(observation: Observation) -> ObservedTexts | None:
     """Return the policy and the types of an observation; None if there is nothing that a policy can say."""
     ready = prepared(observation)
     if not ready.enclaves:
         return None
     labels = declared_labels(observation.declared, observation.span)
-    return Written(policy_xml(ready), types_yaml(ready.observation), labels, tuple(_remarks(ready)))
+    return ObservedTexts(policy_xml(ready), types_yaml(ready.observation), labels, tuple(_remarks(ready)))
 
 
 def _of_declarations(observation: Observation) -> Iterator[str]:

@@ -11,7 +11,7 @@ import rosprivacy
 from rosprivacy.analysis.errors import InputError
 from rosprivacy.explorer.edited_file import Conflict, SavedFile
 from rosprivacy.explorer.session import Session
-from rosprivacy.ingest.labels.edited_entries import Said
+from rosprivacy.ingest.labels.edited_entries import SaidOfElement
 from rosprivacy.ingest.labels.label_writer import with_entries
 from tests.helpers.factory import FACTORY
 from tests.helpers.turtlebot import TURTLEBOT3
@@ -122,7 +122,7 @@ def test_a_comment_of_a_line_that_goes_stands_above(tmp_path: Path) -> None:
     ],
 )
 def test_forms_of_files(text: str, wanted: str | None) -> None:
-    new = with_entries("l", text, [Said("nodes", "/a", {"leak": ["Video"]})])
+    new = with_entries("l", text, [SaidOfElement("nodes", "/a", {"leak": ["Video"]})])
     if wanted is not None:
         assert new.text == wanted
     entries = {entry.name: entry for entry in rosprivacy.parse_labels(new.text).entries}

@@ -20,7 +20,7 @@ from rosprivacy.ingest.known_packages.package_folders import read_packages
 from rosprivacy.ingest.suggestion_rules.rule_files import read_library_rules, read_name_rules
 from rosprivacy.ingest.types import TABLE
 from rosprivacy.ingest.types.type_table import read_table
-from rosprivacy.labelling.knowledge import Known, evidence
+from rosprivacy.labelling.knowledge import KnownOfSystem, evidence
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.settings import Settings
 from rosprivacy.systems.robot_system import answer_robot
@@ -161,7 +161,9 @@ def suggested(system: System, look: Look, folder: Path) -> Mapping[Pair, Confide
     packages = read_packages((), vocabulary, bounds) if look.packages else ()
     libraries = read_library_rules((), vocabulary, bounds)[0]
     uses = uses_of(system, result.analysis.graph.elements) if look.code else {}
-    made = proposals(evidence(result.analysis, result.bound, Known(rules, tuple(packages), libraries, ()), uses))
+    made = proposals(
+        evidence(result.analysis, result.bound, KnownOfSystem(rules, tuple(packages), libraries, ()), uses)
+    )
     asked = unsaid(made, result.analysis.graph, result.bound, vocabulary.hierarchy)
     found: dict[Pair, Confidence] = {}
     for one in asked:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from rosprivacy.analysis.suggesting.label_questions import LabelQuestion
-    from rosprivacy.labelling.label_lines import Written
+    from rosprivacy.labelling.label_lines import LabelLines
     from rosprivacy.labelling.suggesting import Suggested
     from rosprivacy.settings import Settings
 
@@ -69,7 +69,7 @@ def ask(file: Path, progress: Callable[[], Suggested], by: str | None, settings:
         ask_again()
         return asked_now(last[0])
 
-    def write(answered: Callable[[str], Written], labels: Iterable[WrittenLabel]) -> tuple[str, ...]:
+    def write(answered: Callable[[str], LabelLines], labels: Iterable[WrittenLabel]) -> tuple[str, ...]:
         with one_run(), editing(file):  # of its own: the file was read before, and is ours
             written = answered(today(os.environ))
             if written.added:

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from rosprivacy.analysis.errors import InputError, InputErrors, LabelError, shown
 from rosprivacy.analysis.files_read import one_run
 from rosprivacy.explorer.edits import Edit, differences
-from rosprivacy.ingest.labels.edited_entries import Written, edited, entries_of
+from rosprivacy.ingest.labels.edited_entries import WrittenEntries, edited, entries_of
 from rosprivacy.ingest.labels.label_file import OURS, Labels, parse_labels, read_labels
 from rosprivacy.ingest.labels.label_reader import SIX_LISTS
 from rosprivacy.ingest.labels.label_writer import NEW, with_entries, without_places
@@ -82,7 +82,7 @@ class FileText:
     digest: str
     labels: Labels
     says: Entries
-    how: Written
+    how: WrittenEntries
 
     @property
     def name(self) -> str:
@@ -293,7 +293,7 @@ def read_file(
         Whether a robot of a fleet reads it as its own: then it outranks what its model's files say.
     """
     name = file if isinstance(file, str) else ""
-    how = Written(name or MEMORY, vocabulary, settings.bounds, root=settings.include_root or "", own=alone)
+    how = WrittenEntries(name or MEMORY, vocabulary, settings.bounds, root=settings.include_root or "", own=alone)
     if isinstance(file, Labels):
         lines = max((entry.place.line for entry in file.entries), default=0)
         return FileText("", None, "", file, {}, how._replace(file=file.file, lines=lines))

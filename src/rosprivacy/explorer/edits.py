@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypedDict
 from rosprivacy.analysis.errors import InputErrors, LabelError, shown
 from rosprivacy.analysis.model import NON_ROS
 from rosprivacy.analysis.suggesting.evidence import whole
-from rosprivacy.ingest.labels.edited_entries import KINDS, Said, same_name
+from rosprivacy.ingest.labels.edited_entries import KINDS, SaidOfElement, same_name
 from rosprivacy.ingest.labels.keywords import CHANNEL, NO_KIND, NODE, moves_data
 
 if TYPE_CHECKING:
@@ -112,7 +112,7 @@ class Edit(NamedTuple):
     Attributes
     ----------
     section, name, value
-        As of ``Said``; a value of None takes the entry away.
+        As of ``SaidOfElement``; a value of None takes the entry away.
     file
         The label file of a fleet that it goes to; empty where a session edits one only.
     """
@@ -123,9 +123,9 @@ class Edit(NamedTuple):
     file: str = ""
 
     @property
-    def statement(self) -> Said:
+    def statement(self) -> SaidOfElement:
         """What the entry says after it."""
-        return Said(self.section, self.name, self.value)
+        return SaidOfElement(self.section, self.name, self.value)
 
 
 def copied(value: Any) -> Any:

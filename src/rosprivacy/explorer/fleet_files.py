@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import InputError, InputErrors, LabelError
 from rosprivacy.explorer.edited_file import Conflict, EditedFile, SavedFile, chosen, read_file
 from rosprivacy.explorer.edits import Edit, differences, place_of
-from rosprivacy.explorer.label_files import Target
+from rosprivacy.explorer.label_files import LabelTarget
 from rosprivacy.explorer.scenarios import tried_on_robots
 from rosprivacy.ingest.fleet.dds_domains import pseudo_robot
 from rosprivacy.ingest.labels.label_file import OURS
@@ -59,12 +59,12 @@ class Targets:
         """Return the robots that read a label file, by id."""
         return tuple(self._readers.get(os.path.realpath(file), ()))
 
-    def of(self, robot: str) -> tuple[Target, ...]:
+    def of(self, robot: str) -> tuple[LabelTarget, ...]:
         """Return the files for an element of a robot: that of its model, and its own; none where neither has one.
 
         For a domain these are the files of the robots in it; what the fleet file itself states has none.
         """
-        targets: dict[str, Target] = {}
+        targets: dict[str, LabelTarget] = {}
         for reader in self._robot_names(robot):
             for files, alone in ((reader.labels, False), (reader.own, True)):
                 if files not in self._chosen:
@@ -79,10 +79,10 @@ class Targets:
             return (self._robots[robot],)
         return (each for each in self._robots.values() if each.domain and pseudo_robot(each.domain) == robot)
 
-    def _target(self, file: str, *, alone: bool) -> Target:
+    def _target(self, file: str, *, alone: bool) -> LabelTarget:
         readers = self._readers[os.path.realpath(file)]
         models = dict.fromkeys(robot.model for robot in readers.values() if robot.model)
-        return Target(file, tuple(readers), tuple(models), alone)
+        return LabelTarget(file, tuple(readers), tuple(models), alone)
 
 
 class FleetFiles:
@@ -169,11 +169,11 @@ class FleetFiles:
 
     # --- what they say ------------------------------------------------------------------------------------------
 
-    def targets(self, robot: str) -> tuple[Target, ...]:
+    def targets(self, robot: str) -> tuple[LabelTarget, ...]:
         """Return the files that an answer about a robot can go to: that of its model before its own."""
         return self._targets.of(robot)
 
-    def answered(self, edits: Sequence[Edit]) -> tuple[Target, ...]:
+    def answered(self, edits: Sequence[Edit]) -> tuple[LabelTarget, ...]:
         """Return all files for answers; of robots that are alike, those of the first one and those with edits."""
         robots = [group.robots[0].id for group in self.read.groups]
         robots += [robot for edit in edits for robot in self._targets.readers(edit.file)]

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.errors import InputError, reason, shown
 from rosprivacy.explorer.edits import Edit
-from rosprivacy.ingest.labels.edited_entries import KINDS, Said
+from rosprivacy.ingest.labels.edited_entries import KINDS, SaidOfElement
 from rosprivacy.report.atomic import write_texts
 
 if TYPE_CHECKING:
@@ -268,7 +268,7 @@ def read_journal(file: Path) -> Left:
 
 
 def _edit(entry: Any) -> Edit:
-    section, name, value, file = entry if len(entry) > len(Said._fields) else (*entry, "")
+    section, name, value, file = entry if len(entry) > len(SaidOfElement._fields) else (*entry, "")
     if section not in KINDS or not isinstance(name, str) or not isinstance(file, str):
         raise ValueError
     return Edit(section, name, value, file)

@@ -34,7 +34,7 @@ SHOWN_ONLY = (
 )
 
 
-class Target(NamedTuple):
+class LabelTarget(NamedTuple):
     """A label file that an answer can go to.
 
     Attributes
@@ -122,11 +122,11 @@ class RobotFiles:
         """Of what it holds, as the session knows it."""
         return self._edited.last[0]
 
-    def targets(self, robot: str) -> tuple[Target, ...]:
+    def targets(self, robot: str) -> tuple[LabelTarget, ...]:
         """Return the file for an answer about a robot; none where nothing can be changed."""
-        return () if self.refusal else (Target("", (robot,)),)
+        return () if self.refusal else (LabelTarget("", (robot,)),)
 
-    def answered(self, _edits: Sequence[Edit]) -> tuple[Target, ...]:
+    def answered(self, _edits: Sequence[Edit]) -> tuple[LabelTarget, ...]:
         """Return the file for answers."""
         return self.targets("")
 

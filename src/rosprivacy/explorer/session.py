@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from rosprivacy.explorer.edited_file import Conflict, SavedFile
     from rosprivacy.explorer.edits import Label
     from rosprivacy.explorer.history import LabelFiles
-    from rosprivacy.explorer.label_files import Target
+    from rosprivacy.explorer.label_files import LabelTarget
     from rosprivacy.explorer.questions import RankedQuestion
     from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.outputs import Findings
@@ -59,7 +59,7 @@ class AnsweredEntry(NamedTuple):
     section: str
     name: str
     value: Any
-    target: Target
+    target: LabelTarget
 
 
 class Session:
@@ -261,11 +261,11 @@ class Session:
             if value is not None
         )
 
-    def targets_of(self, element: Element) -> tuple[Target, ...]:
+    def targets_of(self, element: Element) -> tuple[LabelTarget, ...]:
         """Return the label files that an answer can go to: that of the model, and the robot's own."""
         return self._files.targets(element.robot)
 
-    def target(self, robot: str, *, only_this_robot: bool = False) -> Target:
+    def target(self, robot: str, *, only_this_robot: bool = False) -> LabelTarget:
         """Return the label file that an answer about a robot goes to.
 
         Raises
@@ -282,7 +282,7 @@ class Session:
             raise InputErrors([FleetError(self._files.name, 0, what, hint)])
         return target
 
-    def _target(self, robot: str, *, only_this_robot: bool) -> Target | None:
+    def _target(self, robot: str, *, only_this_robot: bool) -> LabelTarget | None:
         targets = [target for target in self._files.targets(robot) if target.alone or not only_this_robot]
         return targets[-1 if only_this_robot else 0] if targets else None
 

@@ -21,7 +21,7 @@ from rosprivacy.ingest.labels.label_file import parse_labels
 from rosprivacy.ingest.suggestion_rules.accepting import NewLabel, with_labels
 from rosprivacy.ingest.suggestion_rules.comments import refusal, with_refusals
 from rosprivacy.labelling.conversation import NO, by_likeness
-from rosprivacy.labelling.label_lines import Written
+from rosprivacy.labelling.label_lines import LabelLines
 from rosprivacy.labelling.suggested_lines import check_room, text_of
 from rosprivacy.labelling.suggesting import refused_in
 from rosprivacy.ontology.vocabulary import load
@@ -49,7 +49,7 @@ def asked_now(suggestions: Suggested) -> tuple[LabelQuestion, ...]:
     return tuple(_without_closing(one, result) for one in made)
 
 
-def with_answer(file: str, question: LabelQuestion, key: str, person: str, day: str, settings: Settings) -> Written:
+def with_answer(file: str, question: LabelQuestion, key: str, person: str, day: str, settings: Settings) -> LabelLines:
     """Return a label file with what a person has said of all rows of a question.
 
     Raises
@@ -62,14 +62,14 @@ def with_answer(file: str, question: LabelQuestion, key: str, person: str, day: 
         lines = [refusal(label, person, day) for row in question.rows for label in row.refused]
         new = with_refusals(text, lines)
         check_room(file, text, new, vocabulary)
-        return Written(file, new, len(lines))
+        return LabelLines(file, new, len(lines))
     done = with_labels(
         file, text, list(_labels(question, key, f"answered by {person} on {day}{_in_list(question)}")), vocabulary
     )
-    return Written(file, done.text, done.count, done.remarks)
+    return LabelLines(file, done.text, done.count, done.remarks)
 
 
-def with_label(file: str, label: WrittenLabel, person: str, day: str, settings: Settings) -> Written:
+def with_label(file: str, label: WrittenLabel, person: str, day: str, settings: Settings) -> LabelLines:
     """Return a label file with a label that a person has typed.
 
     Raises
@@ -79,7 +79,7 @@ def with_label(file: str, label: WrittenLabel, person: str, day: str, settings: 
     """
     text, vocabulary = _begun(file, settings)
     done = with_labels(file, text, [NewLabel(*label, f"typed by {person} on {day}")], vocabulary)
-    return Written(file, done.text, done.count, done.remarks)
+    return LabelLines(file, done.text, done.count, done.remarks)
 
 
 def _begun(file: str, settings: Settings) -> tuple[str, Vocabulary]:

@@ -59,7 +59,7 @@ class UserFiles(NamedTuple):
 NO_FILES = UserFiles()
 
 
-class Known(NamedTuple):
+class KnownOfSystem(NamedTuple):
     """What suggestions are made by, whatever the system, with (file, SHA-256) of what was read."""
 
     rules: Rules
@@ -113,7 +113,7 @@ class Basis(NamedTuple):
     code: CodeSaid
 
 
-def what_is_known(vocabulary: Vocabulary, settings: Settings, files: UserFiles = NO_FILES) -> Known:
+def what_is_known(vocabulary: Vocabulary, settings: Settings, files: UserFiles = NO_FILES) -> KnownOfSystem:
     """Read rules and packages, for many answers about one system; source code is not read here.
 
     Raises
@@ -127,11 +127,11 @@ def what_is_known(vocabulary: Vocabulary, settings: Settings, files: UserFiles =
     packages = tuple(read_packages(files.packages, vocabulary, settings.bounds))
     libraries, of_libraries = read_library_rules(files.libraries, vocabulary, settings.bounds)
     of_table = (table.limits.file, table.limits.sha256)
-    return Known(rules, packages, libraries, (of_table, *of_names, *of_libraries, *rests_on(packages)))
+    return KnownOfSystem(rules, packages, libraries, (of_table, *of_names, *of_libraries, *rests_on(packages)))
 
 
 def evidence(
-    analysis: Analysis, bound: Bound, knowledge: Known, uses: Mapping[int, Sequence[NodeUse]]
+    analysis: Analysis, bound: Bound, knowledge: KnownOfSystem, uses: Mapping[int, Sequence[NodeUse]]
 ) -> Iterator[Evidence]:
     """Yield what every provider finds.
 
@@ -153,7 +153,7 @@ def lasting_evidence(
     bound: Bound,
     ends: Traffic,
     of_packages: Sequence[NodeOfPackage],
-    knowledge: Known,
+    knowledge: KnownOfSystem,
     uses: Mapping[int, Sequence[NodeUse]],
 ) -> Iterator[Evidence]:
     """Yield what is found whatever a person has said: of what is bound to the graph, only types are looked at."""

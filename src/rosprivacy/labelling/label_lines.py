@@ -43,7 +43,7 @@ NAME_ONE = "say which, such as nodes: {/camera: {source: [Video]}} (rosprivacy l
 
 
 @dataclass(frozen=True, slots=True)
-class Written:
+class LabelLines:
     """The new text of a label file, how many lines are new, and what to tell a person."""
 
     file: str
@@ -52,7 +52,7 @@ class Written:
     remarks: tuple[str, ...] = ()
 
 
-def updated(policies: tuple[str, ...], labels: tuple[str, ...], settings: Settings) -> Written:
+def updated(policies: tuple[str, ...], labels: tuple[str, ...], settings: Settings) -> LabelLines:
     """Return a label file with an empty line for every element that no line of the label files speaks of.
 
     Of a glob that lost its rank over standard channels (rule S13), what it said of them is written out.
@@ -79,10 +79,10 @@ def updated(policies: tuple[str, ...], labels: tuple[str, ...], settings: Settin
     lines = [*restored, *_lines(new, neighbours(graph, listed))]
     remarks = [f"{error.file}:{error.line}: {error.problem}; {error.hint}" for error in problems]
     remarks += [f"{own.file}: {shown(line.name)} is written out: {line.remark}" for line in restored]
-    return Written(own.file, with_lines(own.file, text, lines, vocabulary), len(lines), tuple(remarks))
+    return LabelLines(own.file, with_lines(own.file, text, lines, vocabulary), len(lines), tuple(remarks))
 
 
-def next_lines(policies: tuple[str, ...], labels: tuple[str, ...], settings: Settings) -> Written:
+def next_lines(policies: tuple[str, ...], labels: tuple[str, ...], settings: Settings) -> LabelLines:
     """Return a label file with an empty line for each element to review next, which says where data comes from.
 
     Before any source is named these are the nodes whose names sound like a sensor.
@@ -115,7 +115,7 @@ def next_lines(policies: tuple[str, ...], labels: tuple[str, ...], settings: Set
     if code := lacking(report):
         remarks.append(f"{own.file}: nothing is left to review, but {lacking_step(code)}")
     text = with_lines(own.file, text, list(lines.values()), vocabulary)
-    return Written(own.file, text, len(lines), tuple(remarks))
+    return LabelLines(own.file, text, len(lines), tuple(remarks))
 
 
 def own_file(labels: tuple[str, ...]) -> str:

@@ -29,7 +29,7 @@ from rosprivacy.analysis.suggesting.evidence import (
     SENSITIVE,
     SOURCE,
     Evidence,
-    Label,
+    SuggestedLabel,
     whole,
 )
 from rosprivacy.analysis.text import counted
@@ -372,7 +372,7 @@ def judged(
             continue
         what, text = quoted
         to = answer["to"] if answer["role"] == DERIVATION else ""
-        label = Label(elements[answer["id"]].element, answer["role"], answer["kind"], to=to)
+        label = SuggestedLabel(elements[answer["id"]].element, answer["role"], answer["kind"], to=to)
         reason = f"language model {model}, by {shown(answer['quote'])!r} in the {what} {shown(text)}"
         made = Evidence(label, MODEL, Confidence.MAY, reason, Place(f"model:{model}", 0))
         if made in evidence:

@@ -19,13 +19,13 @@ from rosprivacy.analysis.model import Place
 from rosprivacy.analysis.whatif.answered_by_globs import answered_by_globs
 from rosprivacy.answering import answer
 from rosprivacy.ingest.fleet.dds_domains import called_in_fleet
-from rosprivacy.ingest.labels.edited_entries import Said
+from rosprivacy.ingest.labels.edited_entries import SaidOfElement
 from rosprivacy.ingest.labels.label_file import OURS, Labels, parse_labels
 from rosprivacy.ingest.labels.label_writer import with_entries, without_places
 from rosprivacy.ingest.labels.pins import PINS, Pin, as_section, spot
 from rosprivacy.ingest.reading import yaml_values
 from rosprivacy.ingest.reading.bounded_file import read_utf8
-from rosprivacy.labelling.label_lines import Written, own_file
+from rosprivacy.labelling.label_lines import LabelLines, own_file
 from rosprivacy.question import question_of
 from rosprivacy.systems.fleet_system import read_once
 from rosprivacy.systems.robot_reader import files_of
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     Arrivals = Mapping[str, Mapping[Ends, set[str]]]  # file -> element or flow -> kinds
 
 
-def pinned(policies: tuple[str, ...], labels: tuple[str, ...], settings: Settings) -> Iterator[Written]:
+def pinned(policies: tuple[str, ...], labels: tuple[str, ...], settings: Settings) -> Iterator[LabelLines]:
     """Yield the label files of a robot that have globs, or pins, with the pins that they need now.
 
     Raises
@@ -67,7 +67,7 @@ def pinned(policies: tuple[str, ...], labels: tuple[str, ...], settings: Setting
     yield from _written({file.file: file for file in files if not file.shipped}, arrivals, vocabulary)
 
 
-def pinned_in_fleet(fleet: str, settings: Settings) -> Iterator[Written]:
+def pinned_in_fleet(fleet: str, settings: Settings) -> Iterator[LabelLines]:
     """Yield the same of the label files that a fleet file leads to; see ``pinned``."""
     question = question_of(settings)
     read = read_once(fleet, question)
@@ -117,7 +117,7 @@ def _copies(system: FleetSystem) -> Mapping[tuple[str, str], tuple[str, ...]]:
     return {key: tuple(names) for key, names in copies.items()}
 
 
-def _written(files: Mapping[str, Labels], arrivals: Arrivals, vocabulary: Vocabulary) -> Iterator[Written]:
+def _written(files: Mapping[str, Labels], arrivals: Arrivals, vocabulary: Vocabulary) -> Iterator[LabelLines]:
     """The texts, each file once, whatever the names that lead to it."""
     pins: dict[str, dict[Ends, set[str]]] = defaultdict(lambda: defaultdict(set))
     names: dict[str, str] = {}
@@ -135,15 +135,15 @@ def _written(files: Mapping[str, Labels], arrivals: Arrivals, vocabulary: Vocabu
             yield _with_pins(labels, name, tuple(now) if by_globs else None, vocabulary)
 
 
-def _with_pins(labels: Labels, name: str, pins: tuple[Pin, ...] | None, vocabulary: Vocabulary) -> Written:
+def _with_pins(labels: Labels, name: str, pins: tuple[Pin, ...] | None, vocabulary: Vocabulary) -> LabelLines:
     text, data = read_utf8(name, yaml_values.MAX_BYTES, partial(LabelError, name))
     if hashlib.sha256(data).hexdigest() != labels.sha256:
         raise LabelError(name, 0, "was changed while it was read", "run the command again")
     if pins is None or _facts(pins) != _facts(labels.pins or ()) or labels.pins is None:
-        new = with_entries(name, text, [Said(PINS, PINS, None if pins is None else as_section(pins))])
+        new = with_entries(name, text, [SaidOfElement(PINS, PINS, None if pins is None else as_section(pins))])
         _check(name, text, new.text, pins, vocabulary)
-        return Written(name, new.text, new.lines, new.remarks)
-    return Written(name, text, 0)
+        return LabelLines(name, new.text, new.lines, new.remarks)
+    return LabelLines(name, text, 0)
 
 
 def _check(name: str, text: str, new: str, pins: tuple[Pin, ...] | None, vocabulary: Vocabulary) -> None:

@@ -26,7 +26,7 @@ from rosprivacy.ingest.reading import yaml_values
 from rosprivacy.ingest.reading.bounded_file import read_utf8
 from rosprivacy.ingest.suggestion_rules.accepting import LIMITING, NewLabel, accept, overlap
 from rosprivacy.ingest.suggestion_rules.comments import comment_of, taken_apart, with_comments
-from rosprivacy.labelling.label_lines import Written, own_file
+from rosprivacy.labelling.label_lines import LabelLines, own_file
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.systems.robot_system import answer_robot, read_label_files
 
@@ -50,7 +50,7 @@ HINT = "see whether it is still so"
 LOOK = "name the policies as well, and what of it is on the way is told"
 
 
-def with_suggestions(file: str, suggestions: Suggested) -> Written:
+def with_suggestions(file: str, suggestions: Suggested) -> LabelLines:
     """Return a label file with what is suggested, in place of what was suggested before.
 
     Raises
@@ -65,7 +65,7 @@ def with_suggestions(file: str, suggestions: Suggested) -> Written:
     comments = [comment_of(one) for one in suggestions.proposals if one.label not in suggestions.by_hand]
     new = with_comments(taken_apart(file, text)[0], comments)
     check_room(file, text, new, vocabulary)
-    return Written(file, new, len(comments))
+    return LabelLines(file, new, len(comments))
 
 
 def check_room(file: str, text: str, new: str, vocabulary: Vocabulary) -> None:
@@ -89,7 +89,7 @@ def with_accepted(
     by: str | None,
     settings: Settings,
     policies: tuple[str, ...] = (),
-) -> Written:
+) -> LabelLines:
     """Return the label file that people edit, with the suggestions in it that are accepted as labels.
 
     Parameters
@@ -131,7 +131,7 @@ def with_accepted(
         told = limits_on_the_way(result(text), result(done.text))
     elif new_data:
         told = _limits_said(new_data, _own_labels(read(done.text), vocabulary, settings), vocabulary)
-    return Written(file, done.text, done.count, (*done.remarks, *told))
+    return LabelLines(file, done.text, done.count, (*done.remarks, *told))
 
 
 def _own_labels(labels: tuple[str | Labels, ...], vocabulary: Vocabulary, settings: Settings) -> tuple[Labels, ...]:

@@ -38,11 +38,11 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.findings.review_order import Shown
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.model import Bound, Category, MessageType, Weight
-    from rosprivacy.analysis.suggesting.evidence import Evidence, Identity, Label, Proposal
+    from rosprivacy.analysis.suggesting.evidence import Evidence, Identity, LabelProposal, SuggestedLabel
     from rosprivacy.analysis.suggesting.library_rules import LibraryRules, NodeUse
     from rosprivacy.ingest.code.node_uses import Local
     from rosprivacy.ingest.labels.label_file import Labels
-    from rosprivacy.labelling.knowledge import Known, UserFiles
+    from rosprivacy.labelling.knowledge import KnownOfSystem, UserFiles
     from rosprivacy.labelling.model_interview import Interview
     from rosprivacy.report.schemas.suggested import ModelEntry, SuggestionsDocument
     from rosprivacy.result import Result
@@ -70,9 +70,9 @@ class Suggested:
         Folders with code of others that were left out.
     """
 
-    proposals: tuple[Proposal, ...]
+    proposals: tuple[LabelProposal, ...]
     open: frozenset[Identity]
-    by_hand: frozenset[Label]
+    by_hand: frozenset[SuggestedLabel]
     result: Result
     rules: tuple[tuple[str, str], ...]
     model: ModelEntry | None = None
@@ -147,7 +147,7 @@ def suggested(
 
 
 def suggested_by(
-    knowledge: Known, result: Result, sources: Sequence[str] = (), interview: Interview | None = None
+    knowledge: KnownOfSystem, result: Result, sources: Sequence[str] = (), interview: Interview | None = None
 ) -> Suggested:
     """Return what could be said of the elements of an answer, by what is known; parameters as of ``suggest_labels``.
 
@@ -183,7 +183,7 @@ def suggested_by(
 
 def asked_by(
     evidence: Iterable[Evidence], result: Result, categories: Collection[str], refused: Refused
-) -> tuple[Proposal, ...]:
+) -> tuple[LabelProposal, ...]:
     """Return what a person is asked of what evidence says; of each element it depends on its own evidence alone.
 
     Parameters
@@ -214,15 +214,15 @@ def basis_of(result: Result, sources: Sequence[str] = ()) -> Basis:
 
 
 def in_review_order(
-    proposals: Sequence[Proposal], places: Mapping[Identity, int], categories: Mapping[str, Category]
-) -> tuple[Proposal, ...]:
+    proposals: Sequence[LabelProposal], places: Mapping[Identity, int], categories: Mapping[str, Category]
+) -> tuple[LabelProposal, ...]:
     """Return proposals in the order in which a person reviews them (rule S11).
 
     Open elements come first; then what brings data in or lets it out. The surest come first, and of these the kinds of
     data that weigh most.
     """
 
-    def place(proposal: Proposal) -> tuple[int, bool, int, Weight]:
+    def place(proposal: LabelProposal) -> tuple[int, bool, int, Weight]:
         label = proposal.label
         at = places.get(label.element.identity, NOT_OPEN)
         weight = categories[label.to or label.kind or TOP].weight
@@ -253,7 +253,7 @@ def _not_by_code_alone(evidence: Iterable[Evidence], result: Result) -> Iterator
         yield one._replace(family="") if by_code else one
 
 
-def _one_of_alike(proposals: tuple[Proposal, ...], result: Result) -> Iterable[Proposal]:
+def _one_of_alike(proposals: tuple[LabelProposal, ...], result: Result) -> Iterable[LabelProposal]:
     """Proposals without those for the second of robots that are alike: the first stands for all (rule S10)."""
     if result.fleet is None:
         return proposals
@@ -299,13 +299,13 @@ class Refused(NamedTuple):
     of_robots: Mapping[str, frozenset[str]]
     hierarchy: Hierarchy
 
-    def says(self, label: Label) -> bool:
+    def says(self, label: SuggestedLabel) -> bool:
         """Return whether a label was refused; of a leak, that a broader kind gets out was, too."""
         keys = self.of_robots.get(label.element.robot, self.of_robots.get("", frozenset()))
         kinds = self.hierarchy.ancestors[label.kind] if label.role == LEAK and label.kind else (label.kind,)
         return bool(keys) and any(refusal_key(written(label._replace(kind=kind))) in keys for kind in kinds)
 
-    def silences(self, label: Label, reached: Mapping[Identity, Iterable[str]]) -> bool:
+    def silences(self, label: SuggestedLabel, reached: Mapping[Identity, Iterable[str]]) -> bool:
         """Return whether a label need not be suggested: a leak, if all that gets there now was refused.
 
         Parameters

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.findings.review_order import Behind, Shown
     from rosprivacy.analysis.model import FlowGraph, MessageType
     from rosprivacy.analysis.suggesting.channels import Traffic
-    from rosprivacy.analysis.suggesting.evidence import Evidence, Identity, Proposal
-    from rosprivacy.labelling.knowledge import Known
+    from rosprivacy.analysis.suggesting.evidence import Evidence, Identity, LabelProposal
+    from rosprivacy.labelling.knowledge import KnownOfSystem
     from rosprivacy.labelling.suggesting import Refused
     from rosprivacy.result import Result
 
@@ -54,7 +54,7 @@ class Suggester:
         What suggestions are made by.
     """
 
-    def __init__(self, knowledge: Known) -> None:
+    def __init__(self, knowledge: KnownOfSystem) -> None:
         self.knowledge = knowledge
         self._last: _Lasting | None = None
 
@@ -83,31 +83,33 @@ class Suggester:
 class Suggestions:
     """What could be said of the elements of one answer; made by ``Suggester.under``."""
 
-    def __init__(self, knowledge: Known, lasting: _Lasting, result: Result, order: Mapping[Shown, Behind]) -> None:
+    def __init__(
+        self, knowledge: KnownOfSystem, lasting: _Lasting, result: Result, order: Mapping[Shown, Behind]
+    ) -> None:
         self._knowledge, self._lasting, self._result, self._order = knowledge, lasting, result, order
 
-    def of(self, identity: Identity) -> tuple[Proposal, ...]:
+    def of(self, identity: Identity) -> tuple[LabelProposal, ...]:
         """Return what could be said of one element."""
         return self._of({identity})
 
-    def of_role(self, *roles: str) -> tuple[tuple[Proposal, ...], ...]:
+    def of_role(self, *roles: str) -> tuple[tuple[LabelProposal, ...], ...]:
         """Return for each element of which one of some roles could be said all that could be, in review order."""
         there = {at for at, said in self._lasting.evidence.items() if any(one.label.role in roles for one in said)}
         if LEAK in roles:  # where data ends; of no other role of these is anything said of what is open
             there |= {question.element.identity for question in self._result.analysis.open}
         asked = self._of(there)
-        found: dict[Identity, list[Proposal]] = defaultdict(list)
+        found: dict[Identity, list[LabelProposal]] = defaultdict(list)
         for one in asked:
             found[one.label.element.identity].append(one)
         wanted = dict.fromkeys(one.label.element.identity for one in asked if one.label.role in roles)
         return tuple(tuple(found[at]) for at in wanted)
 
-    def although_a_glob(self) -> tuple[Proposal, ...]:
+    def although_a_glob(self) -> tuple[LabelProposal, ...]:
         """Return what says of nodes that they let data out although a glob calls them conduits."""
         there = {at for at, said in self._lasting.evidence.items() if any(one.label.role == LEAK for one in said)}
         return tuple(one for one in self._of(there) if one.evidence[0].ground == GLOBBED)
 
-    def _of(self, identities: Collection[Identity]) -> tuple[Proposal, ...]:
+    def _of(self, identities: Collection[Identity]) -> tuple[LabelProposal, ...]:
         if not identities:
             return ()
         result, lasting = self._result, self._lasting

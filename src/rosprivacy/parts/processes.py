@@ -38,7 +38,7 @@ KILLED = (
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class PartStep:
     """A function of a part: the file that it lies in, and the folder for what comes of it; empty: it is made anew."""
 
     function: str
@@ -64,7 +64,7 @@ class LocalParts:
     names: tuple[str, ...]
     progress: Callable[[Sequence[str]], Iterable[str]]
     resumed: KeptParts | None
-    steps: tuple[Step, ...]
+    steps: tuple[PartStep, ...]
 
     def map(self, function: Callable[[Any], Any], *, keep: bool = False) -> LocalParts:
         """Do the same with each part, when it is asked for."""
@@ -76,7 +76,7 @@ class LocalParts:
         kept = self.folder / str(number)
         if keep:
             kept.mkdir()
-        return replace(self, steps=(*self.steps, Step(str(file), str(kept) if keep else "")))
+        return replace(self, steps=(*self.steps, PartStep(str(file), str(kept) if keep else "")))
 
     def collect(self) -> Iterator[Any]:
         """Give what comes of each part, in order; an error in one is raised here."""
@@ -138,7 +138,7 @@ def _scattered(
     for number, chunk in enumerate(chunks):
         (begun / str(number)).write_bytes(pickle.dumps(chunk))
     names = tuple(chunk[0].name for chunk in chunks)
-    return LocalParts(pool, folder, names, progress, resumed, (Step("", str(begun)),))
+    return LocalParts(pool, folder, names, progress, resumed, (PartStep("", str(begun)),))
 
 
 def _processors() -> int:
@@ -158,7 +158,7 @@ def _begin() -> None:
     Thread(target=end_with_it, daemon=True).start()
 
 
-def _value(part: int, steps: Sequence[Step]) -> Any:
+def _value(part: int, steps: Sequence[PartStep]) -> Any:
     """In a process of the pool: what comes of a part, from the last step of which it is kept."""
     files = [Path(step.folder, str(part)) if step.folder else None for step in steps]
     last = max(number for number, file in enumerate(files) if file and file.exists())

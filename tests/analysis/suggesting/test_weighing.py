@@ -21,7 +21,7 @@ from rosprivacy.analysis.suggesting.evidence import (
     SOURCE,
     TYPE,
     Evidence,
-    Label,
+    SuggestedLabel,
 )
 from rosprivacy.analysis.suggesting.weighing import proposals
 
@@ -31,7 +31,7 @@ RULE = Place("rules.yaml", 1)
 
 
 def said(role: str, *grounds: tuple[str, Confidence], kind: str = "Video") -> list[Evidence]:
-    label = Label(NODE, role, kind, Method.DROP if role == SANITIZER else None)
+    label = SuggestedLabel(NODE, role, kind, Method.DROP if role == SANITIZER else None)
     return [Evidence(label, ground, sure, f"its {ground}", RULE) for ground, sure in grounds]
 
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Step
     from rosprivacy.analysis.findings.witness import Witness
     from rosprivacy.analysis.model import Element, Grant
-    from rosprivacy.analysis.suggesting.evidence import Proposal
+    from rosprivacy.analysis.suggesting.evidence import LabelProposal
     from rosprivacy.explorer.web.standing import Standing
     from rosprivacy.explorer.web.view import PageView
     from rosprivacy.report.catalogs.words import Words
@@ -104,17 +104,17 @@ def _all_kinds(standing: Standing, words: Words) -> tuple[tuple[str, str], ...]:
 # --- what could be said of it -----------------------------------------------------------------------------------
 
 
-def _is_whole(offer: Proposal) -> bool:
+def _is_whole(offer: LabelProposal) -> bool:
     """Whether an answer can be made of it: how something is cleaned is never guessed."""
     return offer.label.role != forms.SANITIZER or offer.label.method is not None
 
 
-def is_likely_source(offer: Proposal) -> bool:
+def is_likely_source(offer: LabelProposal) -> bool:
     """Return whether it is more than perhaps so that an element brings data in."""
     return offer.label.role == forms.SOURCE and offer.confidence is not Confidence.MAY
 
 
-def _offer(offer: Proposal, standing: Standing, words: Words) -> Pane:
+def _offer(offer: LabelProposal, standing: Standing, words: Words) -> Pane:
     """What could be said, with reasons; the fields are those of the form."""
     label = offer.label
     role = {"derivation": forms.DERIVES, "never": forms.MUNDANE}.get(label.role, label.role)

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import Finding
     from rosprivacy.analysis.model import Element, Weight
-    from rosprivacy.analysis.suggesting.evidence import Proposal
+    from rosprivacy.analysis.suggesting.evidence import LabelProposal
     from rosprivacy.explorer.web.standing import Standing
     from rosprivacy.explorer.web.view import PageView
     from rosprivacy.report.catalogs.words import Words
@@ -219,7 +219,7 @@ def _suggested(standing: Standing, view: PageView, words: Words) -> Pane:
     return _group(SUGGESTED, tuple(rows.values()), sure=any(map(is_likely_source, surest)))
 
 
-def _gets_data(offer: Proposal, standing: Standing) -> bool:
+def _gets_data(offer: LabelProposal, standing: Standing) -> bool:
     """Whether data that it is thought to let out gets there."""
     carried = standing.carried.get(element_id(offer.label.element.identity), ())
     return any(standing.vocabulary.hierarchy.overlap(offer.label.kind, kind) is not None for kind in carried)

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from rosprivacy.analysis.model import Element
-    from rosprivacy.explorer.label_files import Target
+    from rosprivacy.explorer.label_files import LabelTarget
     from rosprivacy.explorer.session import Session
     from rosprivacy.explorer.web.standing import Standing
     from rosprivacy.ontology.vocabulary import Vocabulary
@@ -55,12 +55,12 @@ def robot_or_model(session: Session, element: Element, words: Words) -> tuple[Pa
     )
 
 
-def in_words(target: Target, words: Words) -> str:
+def in_words(target: LabelTarget, words: Words) -> str:
     """Return of which robots it is said what goes to a label file.
 
-    >>> from rosprivacy.explorer.label_files import Target
+    >>> from rosprivacy.explorer.label_files import LabelTarget
     >>> from rosprivacy.report.catalogs.words import IN_ENGLISH
-    >>> in_words(Target("carrier.labels.yaml", ("carrier_1", "carrier_2"), ("carrier",), alone=False), IN_ENGLISH)
+    >>> in_words(LabelTarget("carrier.labels.yaml", ("carrier_1", "carrier_2"), ("carrier",), alone=False), IN_ENGLISH)
     'of model carrier: 2 robots'
     """
     models = () if target.alone else target.models

@@ -58,7 +58,7 @@ STEPS = ("summary", "source")  # that are asked for by name
 FIELDS = ("role", "note", "by", "method", "makes", "brings", "whose")
 
 
-class ReviewQuestion(NamedTuple):
+class AskedQuestion(NamedTuple):
     """An element that a person is asked about.
 
     Attributes
@@ -78,22 +78,20 @@ class ReviewQuestion(NamedTuple):
     beyond: bool = False
 
 
-def open_elements(standing: Standing) -> tuple[ReviewQuestion, ...]:
+def open_elements(standing: Standing) -> tuple[AskedQuestion, ...]:
     """Return everything that is open, in the order in which it is asked."""
-    session, questions = standing.session, dict[str, ReviewQuestion]()
+    session, questions = standing.session, dict[str, AskedQuestion]()
     suggested = [proposals[0].label.element for proposals in standing.suggestions.of_role("source")]
     for element in sorted(suggested, key=lambda element: element.robot not in session.outliers):
         at, entries = element_id(element.identity), standing.entries_of(element)
         if at in standing.carried or any(map(says_of_data, entries)):
             continue
         if _engineers_note(entries) or not any(map(brings_nothing, entries)):
-            questions[at] = ReviewQuestion(
-                at, element, _engineers_note(entries), beyond=not session.targets_of(element)
-            )
+            questions[at] = AskedQuestion(at, element, _engineers_note(entries), beyond=not session.targets_of(element))
     for question in standing.questions:
         element, at = question.element, element_id(question.element.identity)
         left, beyond = _engineers_note(standing.entries_of(element)), not session.targets_of(element)
-        questions[at] = ReviewQuestion(at, element, left, question.can_wait, beyond)
+        questions[at] = AskedQuestion(at, element, left, question.can_wait, beyond)
     return tuple(questions.values())
 
 
@@ -101,7 +99,7 @@ def _engineers_note(entries: Sequence[Any]) -> str:
     return next(filter(None, map(left_of, entries)), "")
 
 
-def progress(standing: Standing, questions: Sequence[ReviewQuestion]) -> Pane:
+def progress(standing: Standing, questions: Sequence[AskedQuestion]) -> Pane:
     """Return how many elements are decided: data gets there, or somebody spoke of them, and nothing is open there."""
     decided = (standing.carried.keys() | standing.spoken) - {question.id for question in questions}
     return Pane(decided=len(decided), all=len(decided) + len(questions))
@@ -234,7 +232,7 @@ def sources_pane(standing: Standing, find: str, words: Words) -> Pane:
 # --- the end ----------------------------------------------------------------------------------------------------
 
 
-def summary_pane(standing: Standing, questions: Sequence[ReviewQuestion], words: Words) -> Pane:
+def summary_pane(standing: Standing, questions: Sequence[AskedQuestion], words: Words) -> Pane:
     """Return how a review stands: who decided what, what is open, where data gets out."""
     session, index = standing.session, Index(standing.session.result.document(), words)
     verdict = verdict_of(standing)
@@ -250,7 +248,7 @@ def summary_pane(standing: Standing, questions: Sequence[ReviewQuestion], words:
     )
 
 
-def _end(questions: Sequence[ReviewQuestion], words: Words, *, decided: bool, followed: bool) -> Iterator[str]:
+def _end(questions: Sequence[AskedQuestion], words: Words, *, decided: bool, followed: bool) -> Iterator[str]:
     """What has to be known of the answers, in sentences; that nothing was followed comes first."""
     if not followed:
         yield words("review.end.nothing")
@@ -260,7 +258,7 @@ def _end(questions: Sequence[ReviewQuestion], words: Words, *, decided: bool, fo
         yield words("review.end.none" if decided else "review.end.unasked")
 
 
-def _open(question: ReviewQuestion, standing: Standing, words: Words) -> Pane:
+def _open(question: AskedQuestion, standing: Standing, words: Words) -> Pane:
     name = _named_with_robots(question.element, standing, words)
     left, wait, beyond = shown(question.note), question.can_wait, question.beyond
     return Pane(id=question.id, name=name, left=left, can_wait=wait, beyond=beyond)
