@@ -282,20 +282,12 @@ class _Run:
         groups, shares = crossed.tallies.groups(), crossed.tallies.shares
         mine = {v: e for v, e in enumerate(piece.graph.elements) if e.robot in (HUB, GATE)}
         core_open = workers.open_elements(replace(piece, border=tuple(mine)), ours, mask)
-        unit = unit_of(split(self._task.groups)[1])
-        needed = self._units | classes.bringers(groups, sources)
-        needed |= {unit[robot] for robot in opened.robots if robot in unit}
-        onward = {
-            element
-            for flow, (from_core, _) in zip(self._fleet.flows, at.ends, strict=True)
-            for element in (from_core if COLON in flow.target else ())
-        }
-        beyond = [v for v, element in enumerate(piece.graph.elements) if element in onward or element.robot == HUB]
-        closed += workers.doubtful(ours, mask, beyond)
+        closed += workers.doubtful(ours, mask, self._beyond(piece, at))
         shown = _one_of_each(closed, self._likeness)
-        needed |= {unit[row.channel.robot] for row in shown if row.channel.robot in unit}
-        at_ends = (element.robot for group in groups for element in (group.pair.source, group.pair.leak))
-        needed |= {unit[robot] for robot in at_ends if robot in unit}
+        robots = {element.robot for group in groups for element in (group.pair.source, group.pair.leak)}
+        robots |= {*opened.robots, *(row.channel.robot for row in shown)}
+        unit = unit_of(split(self._task.groups)[1])
+        needed = self._units | classes.bringers(groups, sources) | {unit[robot] for robot in robots if robot in unit}
         lacking = reasons.lacking
         verdict = Verdict.of(
             leak=any(group.count.all > group.count.dismissed for group in groups),
@@ -323,6 +315,15 @@ class _Run:
             closed=shown,
             broken=frozenset(e.robot for row in closed if row.rank is Rank.BREAKS for e in row.at),
         )
+
+    def _beyond(self, piece: Piece, at: Border) -> list[int]:
+        """The vertices of the core from which data goes on to other units."""
+        onward = {
+            element
+            for flow, (from_core, _) in zip(self._fleet.flows, at.ends, strict=True)
+            for element in (from_core if COLON in flow.target else ())
+        }
+        return [v for v, element in enumerate(piece.graph.elements) if element in onward or element.robot == HUB]
 
 
 def _one_of_each(closed: Iterable[ClosedByShipped], likeness: Likeness) -> tuple[ClosedByShipped, ...]:
