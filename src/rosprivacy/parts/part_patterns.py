@@ -68,8 +68,10 @@ class _Many:
 
     def apart_from(self, other: _Many) -> Iterator[tuple[Element, str]]:
         """Those that have one of another unit in ``other``; the core is beside itself."""
-        units = set(other.weights)
-        return ((e, unit) for e, unit in self.elements if unit == CORE or units - {unit})
+        several, only = len(other.weights) > 1, next(iter(other.weights), None)
+        return (
+            (e, unit) for e, unit in self.elements if unit == CORE or several or (only is not None and unit != only)
+        )
 
 
 class Crossed:
