@@ -26,7 +26,7 @@ from rosprivacy.parts import kept_parts, processes
 from rosprivacy.parts.fleet_in_parts import run_in_processes
 from rosprivacy.settings import Settings
 from tests.helpers.fleet_files import policy, write
-from tests.helpers.parts import ASKED, documents, fleet_file, in_list, same
+from tests.helpers.parts import ASKED, FLEET, documents, fleet_file, in_list, same
 from tests.helpers.paths import ROOT
 from tests.helpers.random_fleets import Case, fleets
 
@@ -45,7 +45,7 @@ OWN = stat.S_IRUSR | stat.S_IWUSR | stat.S_IXUSR
 def pool() -> Iterator[ProcessPoolExecutor]:
     """One for all random fleets; its processes find the tests, too."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("PYTHONPATH", os.pathsep.join([str(ROOT), *sys.path]))
+        patch.setattr(sys, "path", [str(ROOT), *sys.path])
         with ProcessPoolExecutor(2, get_context("spawn"), processes._begin) as executor:
             yield executor
 
@@ -89,7 +89,12 @@ def test_what_was_read_is_not_read_again(fleet_file: str, tmp_path: Path) -> Non
     assert folder.stat().st_mode & 0o777 == OWN
     assert (answer(), kept_in(folder)) == (first, kept)
     assert answer() == run_in_processes(fleet_file, Settings()).to("json")
-    for name, text in (("eye.xml", policy("/camera>/image", "/uplink</image,/other")), ("odd.yaml", "labels: 1\n")):
+    changes = {
+        "eye.xml": policy("/camera>/image", "/uplink</image,/other"),
+        "odd.yaml": "labels: 1\n",
+        fleet_file: FLEET.replace("only: [Video]", "only: [Voice]"),
+    }
+    for name, text in changes.items():
         write(name, text)
         assert answer() == run_in_processes(fleet_file, Settings()).to("json") != first
         assert kept_in(folder) != kept
@@ -185,7 +190,7 @@ def test_a_run_that_is_killed_goes_on_and_leaves_no_process(tmp_path: Path) -> N
     for number in range(MANY):
         (tmp_path / "p" / f"{number}.xml").write_text(policy(f"/n{number}>/t", "/uplink</t"), "utf-8")
     robots = "\n".join(f"  r{number}: {{policies: p/{number}.xml}}" for number in range(MANY))
-    (tmp_path / "f.yaml").write_text(f"fleet: 1\nrobots:\n{robots}\n", "utf-8")
+    (tmp_path / "f.yaml").write_text(f"fleet: 1\ncontext: [workplace, care]\nrobots:\n{robots}\n", "utf-8")
     command = [sys.executable, "-m", "rosprivacy", "analyze", "--fleet", "f.yaml", "--engine", "parts", "-f", "json"]
     resuming = [*command, "--resume", "kept"]
     folder = tmp_path / "kept"

@@ -99,7 +99,7 @@ def run_in_processes(file: str, settings: Settings, resume: str | None = None) -
         If a process ends before its part is done.
     """
     task, question = task_of(file, settings, PROCESSES)
-    resumed = kept_parts(resume, question.settings) if resume else None
+    resumed = kept_parts(resume, question.settings, task.fleet.sources) if resume else None
     with processes(settings.progress, resumed) as scatter_here:
         return result(task, analyse_in_parts(task, scatter_here), question, PROCESSES)
 

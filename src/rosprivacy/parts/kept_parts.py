@@ -12,6 +12,7 @@ import hashlib
 import os
 import pickle
 import stat
+import time
 from dataclasses import dataclass, fields
 from functools import cache
 from io import BytesIO
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
     from rosprivacy.settings import Settings
 
 OPTION = "--resume"
+TICK = 100_000_000  # nanoseconds: the clock of a file system is a little behind
 ANOTHER = "name a folder that is not there yet"
 PLAIN = {("builtins", "frozenset"), ("builtins", "set"), ("collections", "defaultdict"), ("collections", "Counter")}
 
@@ -44,7 +46,7 @@ class KeptParts:
     Attributes
     ----------
     key
-        Hash of all with which any part is read: program, settings and the files that these name.
+        Hash of all with which any part is read: program, fleet file, settings and the files that these name.
     """
 
     folder: str
@@ -54,31 +56,40 @@ class KeptParts:
         """Return what was read of some units, if it was; else read them, and keep that.
 
         What had errors is not kept, nor what is read in the place of a file that is not there: it may be there the
-        next time.
+        next time. Nor is a part of which a file changed while it was read.
 
         Raises
         ------
         InputErrors
             If the file of the part is not as it was written, or is not its owner's alone.
         """
-        file = Path(self.folder, hashlib.sha256(pickle.dumps((self.key, tuple(units)))).hexdigest()[:32])
+        robots = [(robot.id, robot.files) for unit in units for group in unit.groups for robot in group.robots]
+        file = Path(self.folder, hashlib.sha256(repr((self.key, robots)).encode()).hexdigest()[:32])
         if file.exists():
             seen, kept = _read(file)
             if all(_state(name) == state for name, state in seen.items()):
                 there: Built = kept
                 return there
+        begun = time.time_ns() - TICK
         with one_run():
             new = build(units)
             names = {*names_read(), *_folders(units)}
-        if not new.report.problems and not any(said.code == FALLBACK_TAKEN for said in new.report.diagnostics):
-            seen = {name: _state(name) for name in sorted(names | {str(Path(name).parent) for name in names})}
+        names |= {str(Path(name).parent) for name in names}
+        unsure = new.report.problems or any(said.code == FALLBACK_TAKEN for said in new.report.diagnostics)
+        if not unsure and not any(_changed_since(name, begun) for name in names):
+            seen = {name: _state(name) for name in sorted(names)}
             content = pickle.dumps((seen, new))
             write_texts([(file, hashlib.sha256(content).digest() + content)])
         return new
 
 
-def kept_parts(folder: str, settings: Settings) -> KeptParts:
+def kept_parts(folder: str, settings: Settings, fleet: Sequence[tuple[str, str]]) -> KeptParts:
     """Return the parts in a folder, which is made if it is not there.
+
+    Parameters
+    ----------
+    fleet
+        The files of the fleet, each with the hash of what was read: flows between robots stand there.
 
     Raises
     ------
@@ -93,7 +104,7 @@ def kept_parts(folder: str, settings: Settings) -> KeptParts:
     named = (*settings.ontologies, *settings.types, *settings.permissions_ca)
     named += tuple(file for file in (settings.standard_channels, settings.type_limits) if file)
     asked = [(field.name, getattr(settings, field.name)) for field in fields(settings) if field.name != "progress"]
-    key = (__version__, _program(), asked, str(Path.cwd()), [(file, digest(file)) for file in named])
+    key = (__version__, _program(), [*fleet], asked, str(Path.cwd()), [(file, digest(file)) for file in named])
     return KeptParts(folder, hashlib.sha256(repr(key).encode()).hexdigest())
 
 
@@ -123,6 +134,14 @@ def _folders(units: Sequence[Unit]) -> Iterator[str]:
     for name in {name for unit in units for group in unit.groups for name in group.robots[0].policies}:
         if Path(name).is_dir():
             yield from (folder for folder, _, _ in os.walk(name, followlinks=True))
+
+
+def _changed_since(name: str, begun: int) -> bool:
+    """Whether a file or folder was changed, or put there, after a time."""
+    try:
+        return Path(name).stat().st_ctime_ns > begun
+    except OSError:
+        return True
 
 
 def _state(name: str) -> str | int | None:
