@@ -11,6 +11,7 @@ import subprocess
 import sys
 import time
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
 from functools import partial
 from hashlib import sha256
 from multiprocessing import get_context
@@ -22,8 +23,9 @@ import pytest
 from hypothesis import given
 
 from rosprivacy.analysis.errors import ClusterError, InputError, InputErrors
-from rosprivacy.parts import kept_parts, processes
-from rosprivacy.parts.fleet_in_parts import run_in_processes
+from rosprivacy.parts import kept_parts, processes, workers
+from rosprivacy.parts.fleet_in_parts import run_in_processes, task_of
+from rosprivacy.parts.units import split
 from rosprivacy.settings import Settings
 from tests.helpers.fleet_files import policy, write
 from tests.helpers.parts import ASKED, FLEET, documents, fleet_file, in_list, same
@@ -159,6 +161,26 @@ def test_what_is_read_in_the_place_of_a_missing_file_is_not_kept(fleet_file: str
     write(fleet_file, "fleet: 1\nmodels: {eye: {policies: eye.xml}}\ngroups: [{robots: 2, model: eye}]\n")
     run_in_processes(fleet_file, Settings(), "kept")
     assert not list((tmp_path / "kept").iterdir())
+
+
+def test_a_part_of_which_a_file_changed_while_it_was_read_is_not_kept(fleet_file: str, tmp_path: Path) -> None:
+    """What was read is not what its hash would say."""
+    task, _ = task_of(fleet_file, Settings(), "parts")
+    alone = replace(task.fleet, robots=(), infrastructure=())
+    units = split(task.groups)[1]
+
+    def build(some: Sequence[Unit], *, touch: bool) -> workers.Built:
+        new = workers.built(some, alone, task.view, task.reader)
+        if touch:
+            Path("eye.xml").touch()
+        return new
+
+    folder = kept_parts.kept_parts("kept", Settings(), ())
+    time.sleep(2 * kept_parts.TICK / 1e9)  # the files were written just now
+    for touch, kept in ((True, 0), (False, 1)):
+        folder.built(units, partial(build, touch=touch))
+        assert len(list((tmp_path / "kept").iterdir())) == kept
+        time.sleep(2 * kept_parts.TICK / 1e9)
 
 
 def test_another_program_reads_again(fleet_file: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
