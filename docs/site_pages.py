@@ -28,7 +28,7 @@ BESIDE = {
     "CHANGELOG.md": "changelog.md",
 }
 ONTOLOGY = "ontology.md"  # on the site it stands for the folder of the Turtle files
-MODEL = ("category", "diagnostic", "element", "flow", "policy", "statement")
+MODEL = ("category", "diagnostic", "element", "policy", "statement")
 FACTS = (
     "rosprivacy.analysis.answer",
     *(f"rosprivacy.analysis.model.{module}" for module in MODEL),
