@@ -153,7 +153,7 @@ def fleet_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
 
 PER_ROBOT = (  # of the robots that are shown
     "carries", "roles", "open", "outside", "unreached", "denied", "sanitizers", "derivations", "taken_away", "subjects",
-    "processing", "surroundings",
+    "processing", "surroundings", "unknown_ends",
 )  # fmt: skip
 OF_ELEMENTS = {LEGAL_BASIS, *RANKS} - {*GAPS, *RIDES, RESTRICTED}  # codes of what is told of an element
 ASSUMED_PER_ROBOT = ("backups_taken_as_none", "taken_away_by", "standard_channels_reached")
