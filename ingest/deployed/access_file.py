@@ -22,7 +22,7 @@ from rosprivacy.analysis.model import Place
 from rosprivacy.ingest.deployed.zenoh_keys import problem_of
 from rosprivacy.ingest.reading.bounded_file import read_utf8
 from rosprivacy.ingest.reading.format_reader import FileReader
-from rosprivacy.ingest.reading.yaml_values import Builder
+from rosprivacy.ingest.reading.yaml_values import Builder, feed_json
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -64,19 +64,7 @@ def parse_json5(text: str, fail: Callable[[int, str, str], InputError], bounds: 
         line, what = (int(place[1]), place[2]) if place else (1, str(error))
         raise fail(line, f"not JSON5: {shown(what)}", "correct the syntax") from None
     builder = Builder(fail, bounds)
-    line, at = 1, 0
-    for token in _TOKEN.finditer(text):
-        line += text.count("\n", at, token.start())
-        at = token.start()
-        word = token[0]
-        if word in "{[":
-            builder.begin(line, "map" if word == "{" else "list")
-        elif word in "}]":
-            builder.end()
-        elif word[0] in "\"'":
-            builder.scalar(line, "text", json5.loads(word))
-        elif word[0] != "/":  # no comment
-            builder.scalar(line, "empty" if word == "null" else "number", word)
+    feed_json(text, builder, _TOKEN, json5.loads)
     assert builder.top is not None, "json5 takes no text without a value"
     return builder.top
 

@@ -98,7 +98,7 @@ def parse(text: str, fail: Callable[[int, str, str], InputError], bounds: Bounds
         raise fail(1, "this is XML, such as a policy, and not YAML or JSON", "name policies without an option")
     builder = Builder(fail, bounds)
     if text.lstrip().startswith("{") and _is_json(text, fail):
-        _feed_json(text, builder)
+        feed_json(text, builder, _JSON_TOKEN, json.loads)
     else:
         _feed_yaml(text, builder, fail)
     if builder.top is None:
@@ -221,10 +221,18 @@ def _is_json(text: str, fail: Callable[[int, str, str], InputError]) -> bool:
     return True
 
 
-def _feed_json(text: str, builder: Builder) -> None:
-    """Walk over JSON that is known to be right."""
+def feed_json(text: str, builder: Builder, tokens: re.Pattern[str], decode: Callable[[str], str]) -> None:
+    """Walk over JSON or JSON5 that is known to be right.
+
+    Parameters
+    ----------
+    tokens
+        Matches brackets, texts, other values, and comments where there are some.
+    decode
+        A text with its quotes -> what it says.
+    """
     line, at = 1, 0
-    for token in _JSON_TOKEN.finditer(text):
+    for token in tokens.finditer(text):
         line += text.count("\n", at, token.start())
         at = token.start()
         word = token[0]
@@ -232,7 +240,7 @@ def _feed_json(text: str, builder: Builder) -> None:
             builder.begin(line, "map" if word == "{" else "list")
         elif word in "}]":
             builder.end()
-        elif word.startswith('"'):
-            builder.scalar(line, "text", json.loads(word))
-        else:
+        elif word[0] in "\"'":
+            builder.scalar(line, "text", decode(word))
+        elif word[0] != "/":  # no comment
             builder.scalar(line, "empty" if word == "null" else "number", word)
