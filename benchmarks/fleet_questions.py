@@ -12,16 +12,12 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
-from fleet_robots import everything
-from fleet_wiring import fleet
+from fleet_wiring import fleet, loaded
 from graph_database import bare, private_server, served, timed, wipe
 from measure import REPOSITORY, Measured, NotMeasured, Row, compared
 
-from rosprivacy.answering import answer
-from rosprivacy.ingest.neo4j_graph.fleet_rows import MOST_ACROSS
 from rosprivacy.ingest.neo4j_graph.loading import load
 from rosprivacy.ontology.vocabulary import load as load_vocabulary
-from rosprivacy.systems.fleet_system import fleet_system, rows_of_fleet
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -56,7 +52,7 @@ def rows(*, quick: bool) -> Iterator[Row]:
     with private_server() as (driver, _), TemporaryDirectory() as folder:
         costs: list[dict[str, Cost]] = []
         for robots in SIZES:
-            written = rows_of(fleet(Path(folder), robots))
+            written = list(loaded(fleet(Path(folder), robots), load_vocabulary()))
             yield Row(
                 f"load {robots:,} robots that all differ", "bare UNWIND … CREATE",
                 partial(_against_bare, driver, written), bound=3,
@@ -75,13 +71,6 @@ def questions() -> dict[str, str]:
     """The questions of the page, with the Cypher that is right."""
     parts = re.split(r"^### ", PAGE.read_text("utf-8"), flags=re.MULTILINE)[1:]
     return {part.partition("\n")[0]: re.findall(r"```cypher\n(.*?)```", part, re.DOTALL)[0] for part in parts}
-
-
-def rows_of(file: str) -> list[RobotRows]:
-    """Read a fleet, analyse it, and make all that ``load`` writes."""
-    question = everything(load_vocabulary())._replace(every=True, most_across=MOST_ACROSS)
-    system = fleet_system(file, question)
-    return list(rows_of_fleet(system, question, answer(system, question)))
 
 
 def _against_bare(driver: Driver, written: list[RobotRows]) -> Measured:

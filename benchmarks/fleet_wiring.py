@@ -24,10 +24,11 @@ from rosprivacy.ontology.vocabulary import load
 from rosprivacy.systems.fleet_system import fleet_system, rows_of_fleet
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
 
     from measure import Measured
 
+    from rosprivacy.ingest.neo4j_graph.rows import RobotRows
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 BOUND = 1.3
@@ -103,9 +104,14 @@ def page(file: str, known: Vocabulary) -> str:
 
 def rows_loaded(file: str, known: Vocabulary) -> int:
     """Read a fleet, analyse it, and make all that ``load`` writes; return how many rows that is."""
+    return sum(robot.size for robot in loaded(file, known))
+
+
+def loaded(file: str, known: Vocabulary) -> Iterable[RobotRows]:
+    """Read a fleet, analyse it, and return all that ``load`` writes."""
     question = everything(known)._replace(every=True, most_across=MOST_ACROSS)
     system = fleet_system(file, question)
-    return sum(robot.size for robot in rows_of_fleet(system, question, answer(system, question)))
+    return rows_of_fleet(system, question, answer(system, question))
 
 
 def fleet(folder: Path, robots: int, kinds: int = 3) -> str:

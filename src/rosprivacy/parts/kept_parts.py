@@ -61,7 +61,7 @@ class KeptParts:
         Raises
         ------
         InputErrors
-            If the file of the part is not as it was written, or is not its owner's alone.
+            If the file of the part is not as it was written.
         """
         robots = [(robot.id, robot.files) for unit in units for group in unit.groups for robot in group.robots]
         file = Path(self.folder, hashlib.sha256(repr((self.key, robots)).encode()).hexdigest()[:32])
@@ -144,13 +144,10 @@ def _changed_since(name: str, begun: int) -> bool:
         return True
 
 
-def _state(name: str) -> str | int | None:
-    """The hash of a file; when a folder got or lost one; None for what is not there."""
+def _state(name: str) -> str | int:
+    """The hash of a file, empty for what is not there; when a folder got or lost one."""
     path = Path(name)
-    try:
-        return path.stat().st_mtime_ns if path.is_dir() else hashlib.sha256(path.read_bytes()).hexdigest()
-    except OSError:
-        return None
+    return path.stat().st_mtime_ns if path.is_dir() else digest(name)
 
 
 class _Unpickler(pickle.Unpickler):
@@ -164,7 +161,7 @@ class _Unpickler(pickle.Unpickler):
         raise pickle.UnpicklingError(f"{module}.{name} is no part")
 
 
-def _read(file: Path) -> tuple[dict[str, str | int | None], Any]:
+def _read(file: Path) -> tuple[dict[str, str | int], Any]:
     """What was read then, and what came of it."""
     content = file.read_bytes()
     problem = "" if hashlib.sha256(content[32:]).digest() == content[:32] else "another hash"
