@@ -224,6 +224,6 @@ def _note(analysis: Analysis, assumptions: Mapping[str, Any], about: str, senten
 
 def _read(assumptions: Mapping[str, Any], words: Told) -> Html:
     """Which files it rests on (rule S12)."""
-    files = [entry for kind in ("fleet", "policies", "labels") for entry in assumptions.get(kind) or ()]
+    files = [entry for kind in ("project", "fleet", "policies", "labels") for entry in assumptions.get(kind) or ()]
     rows = [escaped(f"{entry['file'][-120:]} (sha256 {entry['sha256'][:12]})") for entry in files]
     return joined(paragraph(words("cnil.rests")), _rows(rows, words)) if files else Html("")

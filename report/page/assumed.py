@@ -217,7 +217,7 @@ def files(index: Index) -> tuple[File, ...]:
     said, words = index.document["assumptions"], index.words
     rows = [
         File(words(f"file.{kind}"), fit(entry["file"]), entry["sha256"])
-        for kind in ("fleet", "policies", "types", "labels", "ontologies")
+        for kind in ("project", "fleet", "policies", "types", "labels", "ontologies")
         for entry in said.get(kind, ())
     ]
     standard = said["standard_channels"]

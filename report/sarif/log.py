@@ -180,7 +180,9 @@ def _artifacts(assumptions: Mapping[str, Any], files: Files) -> Iterator[dict[st
     read = {
         "analysisTarget": assumptions.get("policies") or (),
         "userSpecifiedConfiguration": [
-            entry for kind in ("fleet", "types", "labels", "ontologies") for entry in assumptions.get(kind) or ()
+            entry
+            for kind in ("project", "fleet", "types", "labels", "ontologies")
+            for entry in assumptions.get(kind) or ()
         ],
         "toolSpecifiedConfiguration": [entry for entry in (standard, assumptions.get("type_limits")) if entry],
     }

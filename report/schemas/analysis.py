@@ -190,6 +190,7 @@ class Assumptions(TypedDict):
     policies: list[FileEntry]
     labels: list[FileEntry]
     fleet: Annotated[NotRequired[list[FileEntry]], "Fleet file and its includes."]
+    project: Annotated[NotRequired[list[FileEntry]], "The project file that names what was read; one at most."]
     standard_channels: StandardFile | None
     unlabelled_node: str
     unlabelled_channel: str

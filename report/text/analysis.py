@@ -154,7 +154,8 @@ def _assumed(report: Mapping[str, Any], words: Words, limit: int | None) -> Iter
     if "database" in assumptions:
         robots = words.count(assumptions["database"]["robots"], "robot")
         yield f"   {words('terminal.database', robots=robots)}", ""
-    yield from _files(assumptions.get("fleet", ()), "fleet", words)
+    for kind in ("project", "fleet"):
+        yield from _files(assumptions.get(kind, ()), kind, words)
     yield from _files(assumptions["labels"], "labels", words)
     if not assumptions["labels"]:
         yield f"   {words('terminal.no.labels')}", ""

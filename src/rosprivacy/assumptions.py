@@ -70,6 +70,7 @@ def _of_question(analysis: Analysis, question: Question) -> dict[str, Any]:
         **({"may_be_asked": broader} if broader else {}),
         "paths": settings.paths,
         "max_paths": settings.max_paths,
+        **({"project": [{"file": settings.project[0], "sha256": settings.project[1]}]} if settings.project else {}),
     }
 
 

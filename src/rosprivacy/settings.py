@@ -129,6 +129,8 @@ class FleetOptions(Options, total=False):
 class Settings:
     """How to read and what to ask: each field as in ``Options``, with files as text and lists as tuples.
 
+    ``project`` is the (name, SHA-256) of the project file that names what is read, if one does.
+
     Raises
     ------
     InputErrors
@@ -158,6 +160,7 @@ class Settings:
     progress: Callable[[Sequence[str]], Iterable[str]] = field(default=lambda files: files)
     decisions: str | None = None
     today: str | None = None
+    project: tuple[str, str] | None = None
 
     def __post_init__(self) -> None:
         """Refuse modes that there are not; one name where several may stand is a list of one."""

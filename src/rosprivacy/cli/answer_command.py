@@ -271,7 +271,10 @@ def answer(
     default
         What the command fails on, where nothing is named.
     """
-    fail_on, per_policy, save_graph = tuple(written.fail_on or (default,)), question.per_policy, written.save_graph
+    stated = inputs.stated
+    in_ci = stated.fail_on if stated and default is not FailOn.never else ()
+    fail_on = tuple(written.fail_on or in_ci or (default,))
+    per_policy, save_graph = question.per_policy, written.save_graph
     if FailOn.never in fail_on and len(set(fail_on)) > 1:
         raise typer.BadParameter("--fail-on never stands alone")
     both = question.view is ViewOrBoth.both
@@ -279,6 +282,8 @@ def answer(
     settings = question.settings(inputs.settings)
     _check(inputs, computed, save_graph=bool(save_graph), per_policy=per_policy)
     style, known = written.style(form), FORMATS[form]
+    if stated and stated.lang and not written.lang and "language" in known.styles:
+        style = style._replace(language=stated.lang.value)
     if both and (per_policy or computed.engine is not Engine.memory or not known.both_views):
         able = ", ".join(name for name, each in FORMATS.items() if each.both_views)
         raise typer.BadParameter(f"--view both writes {able}, and takes neither --per-policy nor a fleet in parts")

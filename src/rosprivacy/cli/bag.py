@@ -27,7 +27,7 @@ class BagFormat(StrEnum):
 
 @reads_system(
     "bags, and the policies of one robot",
-    without=("policies", "fleet", "from_database", "categories", "decisions"),
+    without=("policies", "fleet", "from_database", "categories", "decisions", "project", "no_project"),
 )
 def bag(
     bags: Annotated[

@@ -24,7 +24,7 @@ class FailOnCheck(StrEnum):
     "a policy and what is deployed",
     without=(
         "policies", "labels", "fleet", "from_database", "neo4j", "add", "ontology", "standard_channels",
-        "types", "type_limits", "categories", "category", "view", "decisions",
+        "types", "type_limits", "categories", "category", "view", "decisions", "project", "no_project",
     ),
 )  # fmt: skip
 def check(

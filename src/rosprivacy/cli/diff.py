@@ -51,9 +51,16 @@ State = "a policy, a folder of them, a fleet file, a saved analysis or a saved g
     without=("policies", "fleet", "from_database", "neo4j", "add", "categories"),
 )
 def diff(
-    old: Annotated[str, typer.Argument(metavar="OLD", show_default=False, help=f"Before: {State}")],
-    new: Annotated[str, typer.Argument(metavar="NEW", show_default=False, help="After.")],
     inputs: Inputs,
+    old: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="OLD", show_default=False, help=f"Before: {State} Without both, the baseline of the project file."
+        ),
+    ] = None,
+    new: Annotated[
+        str | None, typer.Argument(metavar="NEW", show_default=False, help="After; the system of the project file.")
+    ] = None,
     old_labels: Annotated[
         list[str] | None,
         typer.Option(
@@ -91,19 +98,37 @@ def diff(
     """
     if compared_as is As.usage:
         refuse("diff --as usage", "policies alone", inputs.given_options("labels"))
+        if not old or not new:
+            raise typer.BadParameter("name what is granted and what was observed", param_hint="OLD NEW")
         _usage(old, new, inputs, format, output, patch)
     if patch:
         raise typer.BadParameter("--patch is for --as usage")
     from rosprivacy.report.compare.difference import difference, differs, incomparable
 
+    (before, after), inputs = _states(old, new, inputs)
     settings, given = inputs.settings, tuple(inputs.labels or ())
-    before = _snapshot(old, tuple(old_labels) if old_labels else given, settings)
-    document = difference(before, _snapshot(new, given, settings))
+    document = difference(
+        _snapshot(before, tuple(old_labels) if old_labels else given, settings), _snapshot(after, given, settings)
+    )
     emit(_text(document, format), output)
     if fail_on is FailOnChange.never:
         raise typer.Exit(0)
     failed = document["worse"] if fail_on is FailOnChange.worse else differs(document)
     raise typer.Exit(1 if failed else UNDETERMINED if incomparable(document) else 0)
+
+
+def _states(old: str | None, new: str | None, inputs: Inputs) -> tuple[tuple[tuple[str, ...], ...], Inputs]:
+    """What is compared: what is named, or the baseline and the system of the project file."""
+    if old and new:
+        return ((old,), (new,)), inputs._replace(no_project=True)
+    from rosprivacy.cli.project_file import project_of
+
+    stated = None if old else project_of(inputs.project, ignored=inputs.no_project)
+    if stated is None or not stated.baseline or not (stated.policies or stated.fleet):
+        what = "name two states; or a baseline, and policies or a fleet, in a project file"
+        raise typer.BadParameter(what, param_hint="OLD NEW")
+    inputs = inputs.completed()
+    return ((stated.baseline,), (stated.fleet,) if stated.fleet else stated.policies), inputs
 
 
 def _usage(
@@ -138,15 +163,15 @@ def _text(document: dict[str, Any], form: DiffFormat) -> str:
     return "".join(f"{line}\n" for line in difference_lines(document))
 
 
-def _snapshot(state: str, labels: tuple[str, ...], settings: Settings) -> Snapshot:
-    """Read a state, whatever it is."""
+def _snapshot(states: tuple[str, ...], labels: tuple[str, ...], settings: Settings) -> Snapshot:
+    """Read a state, whatever it is; several files are policies."""
     from dataclasses import replace
 
     from rosprivacy.report.compare.snapshot import snapshot
     from rosprivacy.systems.fleet_system import answer_fleet
     from rosprivacy.systems.robot_system import answer_robot
 
-    kind = _kind(state)
+    state, kind = states[0], _kind(states[0])
     if kind == "analysis":
         from rosprivacy.report.compare.earlier import read_earlier
 
@@ -156,7 +181,7 @@ def _snapshot(state: str, labels: tuple[str, ...], settings: Settings) -> Snapsh
     elif kind == "graph":
         result = answer_robot((), labels, replace(settings, add=(state,)))
     else:
-        result = answer_robot((state,), labels, settings)
+        result = answer_robot(states, labels, settings)
     return snapshot(result.document(), result.policies)
 
 

@@ -6,8 +6,10 @@ In: the options of a user. Out: ``Inputs``. A field of ``Inputs`` is an option; 
 from __future__ import annotations
 
 import inspect
+import sys
 from copy import copy
 from functools import wraps
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, get_args, get_type_hints
 
 import typer
@@ -26,9 +28,11 @@ from rosprivacy.cli.options import (
     FromDatabase,
     IncludeRoot,
     LabelFiles,
+    NoProject,
     Ontologies,
     PermissionsCA,
     Policies,
+    ProjectFile,
     SavedGraphs,
     Server,
     SixLists,
@@ -43,6 +47,7 @@ from rosprivacy.cli.output import progress_of
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator
 
+    from rosprivacy.cli.project_file import Project
     from rosprivacy.result import Result
     from rosprivacy.settings import Settings
 
@@ -69,6 +74,15 @@ class Inputs(NamedTuple):
     category: SixLists = "PersonalData"
     view: ViewChosen = View.declared
     decisions: DecisionsFile = None
+    project: ProjectFile = None
+    no_project: NoProject = False
+
+    @property
+    def stated(self) -> Project | None:
+        """What the project file states that these inputs were completed from; None without one."""
+        from rosprivacy.cli.project_file import project_of
+
+        return project_of(self.project) if self.project and not self.no_project else None
 
     @property
     def settings(self) -> Settings:
@@ -91,6 +105,7 @@ class Inputs(NamedTuple):
             bounds=Bounds.raised(self.bound or ()),
             progress=progress_of,
             decisions=str(self.decisions) if self.decisions else None,
+            project=stated.name_and_hash if (stated := self.stated) and self._is_of(stated) else None,
         )
 
     @property
@@ -110,6 +125,34 @@ class Inputs(NamedTuple):
             refuse("--from-database", "what is in the database", self.given_options(*OF_FILES))
         if self.fleet:
             refuse("--fleet", "what the fleet file names", self.given_options("policies", "labels", "add", "types"))
+
+    def completed(self, without: Collection[str] = ()) -> Inputs:
+        """Return the same with what the project file states and is not named here; say in one line what was taken.
+
+        Parameters
+        ----------
+        without
+            Options that the command does not take; one that takes no policies takes nothing.
+        """
+        from rosprivacy.cli.project_file import project_of
+
+        project = None if {"project", "policies"} & {*without} else project_of(self.project, ignored=self.no_project)
+        if project is None:
+            return self
+        there = [name for name in OF_SYSTEM if name not in without and getattr(project, name) not in (None, ())]
+        taken: dict[str, Any] = {}
+        if self._is_of(project):
+            named = [name for name in there if getattr(self, name) not in (None, [])]
+            taken = {name: _as_option(name, getattr(project, name)) for name in there if name not in named}
+            line = project.use([*taken], [name for name in named if name != "policies"], "others are named")
+        else:
+            line = project.use([], there, "another system is named")
+        if line:
+            print(line, file=sys.stderr)
+        return self._replace(project=Path(project.file), **taken)
+
+    def _is_of(self, project: Project) -> bool:
+        return not (self.from_database or self.add) and project.is_about(self.policies, self.fleet)
 
     def viewed(self, view: ViewOrBoth) -> Inputs:
         """Return the same under the view of a command that has one more; with both, the declared one is of record."""
@@ -142,6 +185,7 @@ class Inputs(NamedTuple):
         return both_views(self.required_policies, tuple(self.labels or ()), settings)
 
 
+OF_SYSTEM = ("policies", "fleet", "labels", "types", "decisions", "domain")  # what a project file states of one
 OF_FILES = (
     "policies", "labels", "add", "fleet", "standard_channels", "types", "domain",
     "allow_unsigned", "permissions_ca", "include_root", "category", "view",
@@ -185,15 +229,18 @@ def reads_system(
         }
 
         @wraps(command)
-        def run(**values: Any) -> None:
+        def run(context: typer.Context, **values: Any) -> None:
             for name, fields in groups.items():
                 values[name] = kinds[name](**{field.name: values.pop(field.name) for field in fields})
             inputs = values["inputs"]
             refuse(command.__name__.replace("_", "-"), takes, inputs.given_options(*without))
+            inputs = values["inputs"] = inputs.completed(without)
             inputs.check()
+            if (stated := inputs.stated) and stated.lang and own.get("lang") and not _is_given(context, "lang"):
+                values["lang"] = stated.lang
             command(**values)
 
-        parameters = []
+        parameters = [inspect.Parameter("context", inspect.Parameter.KEYWORD_ONLY, annotation=typer.Context)]
         for name, parameter in own.items():
             parameters += groups.get(name) or [parameter.replace(kind=inspect.Parameter.KEYWORD_ONLY)]
         vars(run)["__signature__"] = inspect.Signature(parameters)  # typer reads it
@@ -201,6 +248,17 @@ def reads_system(
         return run
 
     return decorated
+
+
+def _as_option(name: str, value: Any) -> Any:
+    """What a project file states, as typer gives it."""
+    return [*value] if isinstance(value, tuple) else Path(value) if name == "decisions" else value
+
+
+def _is_given(context: typer.Context, option: str) -> bool:
+    """Whether an option stands on the command line, be it with its default."""
+    source = context.get_parameter_source(option)
+    return source is not None and source.name == "COMMANDLINE"
 
 
 def _parameters(group: Any, hidden: Collection[str]) -> Iterator[inspect.Parameter]:

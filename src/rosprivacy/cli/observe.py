@@ -28,7 +28,7 @@ SHORTEST = "10s"  # what most middlewares need until all is found
     "labels for --watch",
     without=(
         "policies", "fleet", "from_database", "neo4j", "add", "include_root", "decisions", "view",
-        "categories", "types",
+        "categories", "types", "project", "no_project",
     ),
 )  # fmt: skip
 def observe(

@@ -185,6 +185,20 @@ IncludeRoot = Annotated[
         rich_help_panel=READ,
     ),
 ]
+ProjectFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--project",
+        metavar="FILE",
+        show_default=False,
+        help="Project file, which names what is not named here; by default rosprivacy.toml, or "
+        r"\[tool.rosprivacy] of pyproject.toml, of the nearest folder upwards.",
+        rich_help_panel=READ,
+    ),
+]
+NoProject = Annotated[
+    bool, typer.Option("--no-project", help="Take nothing from a project file.", rich_help_panel=READ)
+]
 BoundsRaised = Annotated[
     list[str] | None,
     typer.Option(
