@@ -27,6 +27,7 @@ from rosprivacy.ingest.running.doors import seen_by
 from rosprivacy.ingest.running.observation import TYPE, Observation, added_up, moment
 from rosprivacy.ingest.running.observed_files import policy_xml, prepared, types_yaml, yaml_text
 from rosprivacy.ingest.running.observed_names import is_name
+from rosprivacy.ingest.types import named_after, types_path
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -106,16 +107,6 @@ def time_of(text: str) -> str:
     raise InputError("--at", 0, f"{shown(repr(text))} is no time with a time zone", "write 2026-11-22T10:00:00Z")
 
 
-def types_file(policy: Path) -> Path:
-    """Return the file of types that stands beside a policy.
-
-    >>> from pathlib import Path
-    >>> str(types_file(Path("a/robot.policy.xml"))), str(types_file(Path("robot.xml")))
-    ('a/robot.types.yaml', 'robot.types.yaml')
-    """
-    return _sibling(policy, "types")
-
-
 def declared_file(policy: Path) -> Path:
     """Return the label file with what nodes declare of themselves, beside a policy; one that is there stays.
 
@@ -123,8 +114,8 @@ def declared_file(policy: Path) -> Path:
     >>> str(declared_file(Path("robot.policy.xml")))
     'robot.declared.labels.yaml'
     """
-    numbered = (_sibling(policy, f"declared-{number}.labels") for number in count(2))
-    return next(file for file in chain([_sibling(policy, "declared.labels")], numbered) if not file.exists())
+    numbered = (named_after(policy, f"declared-{number}.labels") for number in count(2))
+    return next(file for file in chain([named_after(policy, "declared.labels")], numbered) if not file.exists())
 
 
 def keeps_what_is_there(policy: Path) -> None:
@@ -136,18 +127,9 @@ def keeps_what_is_there(policy: Path) -> None:
         If there is a policy, or a file of types, of that name.
     """
     hint = "remove it, or write to another file; --earlier POLICY adds what was seen then"
-    there = [file for file in (policy, types_file(policy)) if file.is_file()]
+    there = [file for file in (policy, types_path(policy)) if file.is_file()]
     if there:
         raise InputErrors([InputError(str(file), 0, "is there already and would be lost", hint) for file in there])
-
-
-def _sibling(policy: Path, content: str) -> Path:
-    name = policy.name
-    for ending in (".policy.xml", ".xml"):
-        if name.lower().endswith(ending) and len(name) > len(ending):
-            name = name[: -len(ending)]
-            break
-    return policy.with_name(f"{name}.{content}.yaml")
 
 
 def observe(

@@ -199,3 +199,13 @@ def test_a_file_that_others_could_have_put_there(cli: Cli, home: Path) -> None:
     if os.getuid() == 0:
         os.chown(home / "rosprivacy.toml", 65534, -1)
         assert "another user" in "".join(refused(cli("analyze", "-q", cwd=home)))
+
+
+def test_types_that_nobody_names_are_said_to_lie_there(cli: Cli, home: Path) -> None:
+    """They could turn a leak into 'undetermined' (rule S15), so a folder alone does not make them count."""
+    before = cli("analyze", cwd=home).stdout
+    (home / "care-home.types.yaml").write_text("types: 1\ntopics: {}\n")
+    after = cli("analyze", "--lang", "en", cwd=home).stdout
+    assert "message types lie in care-home.types.yaml, and are not read" in after
+    assert "care-home.types.yaml" not in before
+    assert "not read" not in cli("analyze", "--types", "care-home.types.yaml", "--lang", "en", cwd=home).stdout

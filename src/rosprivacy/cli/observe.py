@@ -186,11 +186,12 @@ def _doors(text: list[str] | None, earlier: list[str] | None, at: str | None, wa
     """The doors that a user named, those that have looked already first."""
     from rosprivacy.ingest.running.node_info import Ros2Program, TextFiles
     from rosprivacy.ingest.running.observed_files import EarlierFiles
-    from rosprivacy.observing import now, time_of, types_file
+    from rosprivacy.ingest.types import types_path
+    from rosprivacy.observing import now, time_of
 
     doors: list[Door] = []
     if earlier:
-        doors.append(EarlierFiles(tuple((file, str(types_file(Path(file)))) for file in earlier)))
+        doors.append(EarlierFiles(tuple((file, str(types_path(Path(file)))) for file in earlier)))
     if text:
         doors.append(TextFiles(tuple(text), now, time_of(at) if at else ""))
     if ros2:
@@ -226,7 +227,8 @@ def _watching(inputs: Inputs) -> Callable[[Observation | None, Observation], Non
 
 def _write(observation: Observation | None, output: Path | None) -> None:
     """The policy and the types, both or none; what there is to say goes to standard error."""
-    from rosprivacy.observing import declared_file, types_file, written
+    from rosprivacy.ingest.types import types_path
+    from rosprivacy.observing import declared_file, written
 
     made = written(observation) if observation else None
     if made is None:
@@ -235,7 +237,7 @@ def _write(observation: Observation | None, output: Path | None) -> None:
         said = "nothing was seen, so nothing is written: nothing runs, it was too short a look, or you may not look"
         print(said, file=sys.stderr)
         raise typer.Exit(UNDETERMINED)
-    beside = {types_file(output): made.types} if output else {}
+    beside = {types_path(output): made.types} if output else {}
     if output and made.declared:
         beside[declared_file(output)] = made.declared
     emit(made.policy, output, beside)

@@ -7,11 +7,20 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors
-from rosprivacy.analysis.model import MERGED, REFUSED_NAME, SEEN_ALTHOUGH_DENIED, SHARED_ENCLAVE
+from rosprivacy.analysis.model import (
+    MERGED,
+    REFUSED_NAME,
+    SEEN_ALTHOUGH_DENIED,
+    SHARED_ENCLAVE,
+    Diagnostic,
+    Place,
+    Severity,
+)
 from rosprivacy.analysis.suggesting.outdated_reasons import outdated_reasons
 from rosprivacy.answering import answer
 from rosprivacy.assumptions import files_read, remembered, types_read
@@ -25,15 +34,16 @@ from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, PolicyChange,
 from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.ingest.policies.joint_policies import joint_warnings, merging_notices
 from rosprivacy.ingest.policies.wildcards import careful_warnings
+from rosprivacy.ingest.types import types_path
 from rosprivacy.ingest.types.channel_types import channel_types, matching_nothing
 from rosprivacy.question import question_of
 from rosprivacy.system import System
 from rosprivacy.systems.granted import Read, read_granted
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
-    from rosprivacy.analysis.model import Bound, Diagnostic, FlowGraph, Policy
+    from rosprivacy.analysis.model import Bound, FlowGraph, Policy
     from rosprivacy.ingest.neo4j_graph.rows import Beyond, RobotRows
     from rosprivacy.ingest.policies.saved_graph import Saved
     from rosprivacy.ingest.types.channel_types import Written
@@ -83,6 +93,8 @@ def system_reader(
     settings = question.settings
     graphs = read_graphs(settings)
     (policies_read, remarks), types = read_system(policies, settings, graphs), observed_types(settings, graphs)
+    if not types:
+        remarks += tuple(_unread_types(policies_read))
 
     def read(change: PolicyChange) -> System:
         there = changed(policies_read, change)
@@ -91,6 +103,15 @@ def system_reader(
         return _under(labels, graph=graph, read=read_so, types=types, settings=settings, vocabulary=question.vocabulary)
 
     return read
+
+
+def _unread_types(policies: Iterable[Policy]) -> Iterator[Diagnostic]:
+    """Say of which policies message types lie in the same folder: only a user says that they are of this system."""
+    for name in dict.fromkeys(policy.file for policy in policies):
+        file = types_path(Path(name))
+        if file.is_file():
+            message = f"message types lie in {file}, and are not read: --types names those that count (rule S15)"
+            yield Diagnostic(Place(name, 0), Severity.WARNING, message)
 
 
 def _under(
