@@ -21,6 +21,7 @@ CODE, PACKAGE, TYPE, NAMED, DATA_FLOW, NEIGHBOUR = "code", "package", "type", "n
 MODEL = "model"  # a language model, which read names and types; it makes nothing surer than may
 GLOBBED = "glob"  # a label that says otherwise, and names no element
 GROUNDS = (GLOBBED, CODE, PACKAGE, TYPE, NAMED, DATA_FLOW, NEIGHBOUR, MODEL)  # in the order of reasons
+WHERE = ("network", "display", "file", "loudspeaker", "device", "domain")  # to which a node sends what leaves ROS
 ANYTHING = "PersonalData"  # the broadest category: a type that can carry it can carry anything
 
 Identity = tuple[str, str, str]  # of an element
@@ -62,6 +63,8 @@ class Evidence(NamedTuple):
         knows them. Of channels of one family it can be said in one list; empty if it is for each by itself.
     alone
         Whether it agrees with no other ground.
+    where
+        Of what lets data out: where to, one of ``WHERE``; empty where that is not known.
     """
 
     label: SuggestedLabel
@@ -71,6 +74,7 @@ class Evidence(NamedTuple):
     place: Place
     family: str = ""
     alone: bool = False
+    where: str = ""
 
 
 class LabelProposal(NamedTuple):

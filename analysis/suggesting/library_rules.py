@@ -51,7 +51,8 @@ class RuleOfUse(NamedTuple):
         verb = next((verb for sign, verb in _VERBS.items() if name.startswith(sign)), "")
         what = f"{verb} {name[2:]}" if verb else f"uses {name}"
         reason = f"{what} ({self.use.place}): {self.rule.why}{consequence}"
-        return Evidence(label, CODE, weaker(sure, self.rule.confidence), reason, self.use.place, alone=self.rule.alone)
+        sure = weaker(sure, self.rule.confidence)
+        return Evidence(label, CODE, sure, reason, self.use.place, alone=self.rule.alone, where=self.rule.where)
 
 
 @dataclass(frozen=True)

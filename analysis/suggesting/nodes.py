@@ -148,9 +148,8 @@ class _Node:
         named = of_node(self.element.name, self.names.lets_out) if self.reads else None
         if named:
             reason = f"{named.quoted} in the name of the node: {named.rule.why}"
-            yield Evidence(
-                SuggestedLabel(self.element, LEAK, ANYTHING), NAMED, named.rule.confidence, reason, named.rule.place
-            )
+            label, rule = SuggestedLabel(self.element, LEAK, ANYTHING), named.rule
+            yield Evidence(label, NAMED, rule.confidence, reason, rule.place, where=rule.where)
         personal = self.hears or any(not one.rule.any_type for one in self.brings_in)
         for one in self.lets_out:
             yield from (

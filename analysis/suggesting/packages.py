@@ -36,7 +36,6 @@ USES = {  # what a node does with its interfaces, in the file -> (kind of channe
     "executes": ("action", "execute"),
     "calls": ("action", "call"),
 }
-WHERE = ("network", "display", "file", "loudspeaker", "device", "domain")  # to which a node sends what leaves ROS
 MAKERS = {"topic": "publish", "service": "reply", "action": "execute"}  # whose type is that of the channel
 
 
@@ -270,7 +269,7 @@ def package_evidence(graph: FlowGraph, of_packages: Iterable[NodeOfPackage]) -> 
             where = f", to a {claim.where}" if claim.where else ""
             reason = f"package {package.name} {package.version}{where}: {claim.why} ({by})"
             ground, sure = (PACKAGE, claim.confidence) if matched else (NAMED, Confidence.MAY)
-            yield Evidence(label, ground, sure, reason, claim.place)
+            yield Evidence(label, ground, sure, reason, claim.place, where=claim.where)
 
 
 def by_package_types(

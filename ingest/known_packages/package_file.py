@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import InputError, InputErrors, PackageError, shown
 from rosprivacy.analysis.model import OF_KIND, Confidence, Method, Place, kind_of_type
-from rosprivacy.analysis.suggesting.evidence import CONDUIT, DERIVATION, LEAK, SANITIZER, SOURCE
-from rosprivacy.analysis.suggesting.packages import USES, WHERE, Claim, Interface, Package, PackageNode, Source
+from rosprivacy.analysis.suggesting.evidence import CONDUIT, DERIVATION, LEAK, SANITIZER, SOURCE, WHERE
+from rosprivacy.analysis.suggesting.packages import USES, Claim, Interface, Package, PackageNode, Source
 from rosprivacy.ingest.reading import yaml_values
 from rosprivacy.ingest.reading.format_reader import FileReader
 

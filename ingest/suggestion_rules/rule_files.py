@@ -15,10 +15,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import InputError, InputErrors, shown
 from rosprivacy.analysis.model import Confidence, Place
-from rosprivacy.analysis.suggesting.evidence import ANYTHING
+from rosprivacy.analysis.suggesting.evidence import ANYTHING, WHERE
 from rosprivacy.analysis.suggesting.library_rules import ADDRESS, CPP, PROGRAM, PYTHON, LibraryRules, RulesByName
 from rosprivacy.analysis.suggesting.name_rules import LONGEST_PHRASE, NameRule, NameRules, words
-from rosprivacy.analysis.suggesting.packages import WHERE
 from rosprivacy.ingest.reading import yaml_values
 from rosprivacy.ingest.reading.format_reader import FileReader
 from rosprivacy.ontology.vocabulary import FOLDER, remembered
@@ -71,7 +70,7 @@ NAMES = RuleFormat(
         "brings_in": Section(("words", "why", "kinds"), ("instead_of", "any_type")),
         "unprompted": Section(("why", "kinds"), ("words",)),
         "nothing": Section(("words", "why")),
-        "lets_out": Section(("words", "why")),
+        "lets_out": Section(("words", "why"), ("where",)),
         "becomes": _PAIR,
         "tells": _PAIR,
     },

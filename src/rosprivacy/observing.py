@@ -17,20 +17,21 @@ from typing import TYPE_CHECKING
 
 from ruamel.yaml.comments import CommentedMap
 
-from rosprivacy.analysis.errors import InputError, InputErrors, shown
+from rosprivacy.analysis.errors import InputError, InputErrors, ObservationError, shown
 from rosprivacy.analysis.model import WITHOUT_WARNINGS
 from rosprivacy.analysis.text import blanked, counted
 from rosprivacy.clock import source_date
 from rosprivacy.ingest.labels.entries import LONGEST_NAME
 from rosprivacy.ingest.policies.observed_metadata import GAPS, UNWARNED
 from rosprivacy.ingest.running.doors import seen_by
+from rosprivacy.ingest.running.node_info import Ros2Program, TextFiles
 from rosprivacy.ingest.running.observation import TYPE, Observation, added_up, moment
 from rosprivacy.ingest.running.observed_files import policy_xml, prepared, types_yaml, yaml_text
 from rosprivacy.ingest.running.observed_names import is_name
 from rosprivacy.ingest.types import named_after, types_path
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator, Sequence
     from pathlib import Path
 
     from rosprivacy.ingest.running.doors import Door
@@ -140,6 +141,29 @@ def observe(
     """Look through some doors, one after the other, and return what they have seen together; None if nothing."""
     seen = [one for door in doors if (one := seen_by(door, seconds, notify))]
     return added_up(seen) if seen else None
+
+
+def observed_texts(texts: Sequence[str] = ()) -> ObservedTexts:
+    """Return what runs, as the texts that ``observe`` writes.
+
+    Parameters
+    ----------
+    texts
+        Files with texts of ``ros2 node info``; without any the ``ros2`` program of this machine is asked.
+
+    Raises
+    ------
+    InputErrors
+        If a text cannot be read.
+    ObservationError
+        If nothing was seen.
+    """
+    door: Door = TextFiles(tuple(texts), now) if texts else Ros2Program(now)
+    seen = observe([door], 0.0)
+    made = written(seen) if seen else None
+    if made is None:
+        raise ObservationError(texts[0] if texts else "ros2", 0, "no node is seen", "start the robot, and look again")
+    return made
 
 
 def written(observation: Observation) -> ObservedTexts | None:

@@ -922,13 +922,13 @@ def test_a_hostile_model_hides_no_planted_leak(robot: Path, roles: Sequence[str]
 
 def test_a_leak_that_nobody_has_labelled_is_not_accepted_away_without_looking(tmp_path: Path) -> None:
     """At an end of data, and at one behind a node that passes them on."""
-    nodes: Nodes = {"eye": (["/a"], []), "middle": (["/b"], ["/a"]), "here": ([], ["/a"]), "uplink": ([], ["/b"])}
+    nodes: Nodes = {"eye": (["/a"], []), "middle": (["/b"], ["/a"]), "here": ([], ["/a"]), "roof": ([], ["/b"])}
     robot_of(tmp_path, nodes, "labels: 1\nnodes:\n  /eye: {source: [Video]}\n")
     accept_without_looking(str(tmp_path / "p.xml"), tmp_path / "l.yaml")
     assert "/middle: {conduit: [Video]" in text_of(tmp_path)
     analysis = rosprivacy.analyze(str(tmp_path / "p.xml"), str(tmp_path / "l.yaml")).analysis
     assert analysis.verdict == "undetermined"
-    assert {one.element.name for one in analysis.open} == {"/here", "/uplink"}
+    assert {one.element.name for one in analysis.open} == {"/here", "/roof"}
 
 
 @pytest.mark.slow

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.suggesting.packages import USES, WHERE
+from rosprivacy.analysis.suggesting.evidence import WHERE
+from rosprivacy.analysis.suggesting.packages import USES
 from rosprivacy.ingest.known_packages.package_file import METHODS
 from tests.fuzzing.label_texts import written
 from tests.fuzzing.words import KINDS

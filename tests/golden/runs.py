@@ -100,6 +100,7 @@ def of_one_robot(robot: Arguments) -> Iterator[Arguments]:
     yield ("mitigate", *robot, "-f", "json", "--view", "enforced")
     yield ("suggest", *undecided)
     yield ("suggest", *undecided, "-f", "json")
+    yield ("try", *undecided)
     yield ("labels", *undecided, "--update", "-o", "-")
     yield ("lint", robot[0])
     yield ("lint", robot[0], "-f", "json")
@@ -138,6 +139,7 @@ def of_a_policy(policy: str) -> Iterator[Arguments]:
     yield ("graph", policy, "-f", "dot", "-o", "out")
     yield ("labels", policy, "--init", "-o", "-")
     yield ("suggest", policy)
+    yield ("try", policy)
 
 
 def of_single_commands() -> Iterator[Arguments]:

@@ -17,10 +17,12 @@ import typer
 from rosprivacy.analysis.errors import RosPrivacyError
 from rosprivacy.analysis.files_read import one_run
 from rosprivacy.cli.exit_code import OWN_ERROR
-from rosprivacy.cli.help import ANALYSE, DECIDE, LABEL, MANY, OBSERVE, SEE, HelpGroup
+from rosprivacy.cli.help import ANALYSE, BEGIN, DECIDE, LABEL, MANY, OBSERVE, SEE, HelpGroup
 from rosprivacy.version import __version__
 
 COMMANDS = {  # name -> its group in help; each stands in the module of its name
+    "try": BEGIN,
+    "init": BEGIN,
     "observe": OBSERVE,
     "labels": LABEL,
     "explore": LABEL,
@@ -45,6 +47,7 @@ COMMANDS = {  # name -> its group in help; each stands in the module of its name
     "query": MANY,
     "db": MANY,
 }
+FUNCTIONS = {"try": "try_out"}  # of commands whose name is none that Python allows
 
 
 @cache
@@ -61,12 +64,13 @@ def program(command_name: str = "") -> typer.Typer:
     app.callback(invoke_without_command=True)(root)
     for name, panel in COMMANDS.items():
         if command_name in ("", name):
-            module = import_module(f"rosprivacy.cli.{name.replace('-', '_')}")
+            function = FUNCTIONS.get(name, name.replace("-", "_"))
+            module = import_module(f"rosprivacy.cli.{function}")
             if name == "db":
                 what = "The private Neo4j: start it, stop it, see where it is."
                 app.add_typer(module.app, name=name, help=what, rich_help_panel=panel)
             else:
-                app.command(name, rich_help_panel=panel)(getattr(module, name.replace("-", "_")))
+                app.command(name, rich_help_panel=panel)(getattr(module, function))
     return app
 
 

@@ -15,6 +15,7 @@ from rosprivacy.cli.exit_code import SIGPIPE
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+BEGIN = "Begin"
 OBSERVE = "Observe"
 LABEL = "Label"
 ANALYSE = "Analyse"

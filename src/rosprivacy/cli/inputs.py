@@ -116,8 +116,12 @@ class Inputs(NamedTuple):
         return tuple(self.policies or ())
 
     def given_options(self, *names: str) -> list[str]:
-        """Return those of some options that a user gave, as they are written."""
-        return [WRITTEN[name] for name in names if getattr(self, name) != DEFAULTS[name]]
+        """Return those of some options that a user gave, as they are written; not what the project file states."""
+        given = [name for name in names if getattr(self, name) != DEFAULTS[name]]
+        stated = self.stated if given else None
+        if stated and self._is_of(stated):
+            given = [name for name in given if getattr(self, name) != _as_option(name, getattr(stated, name, None))]
+        return [WRITTEN[name] for name in given]
 
     def check(self) -> None:
         """Refuse options that name a second system beside a first, and how to read files where none is read."""

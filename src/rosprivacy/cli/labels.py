@@ -74,7 +74,7 @@ def labels(
         refuse("labels --pin", "what it reads, and writes into it", ["--by"] if by else [])
         _pin(inputs, output)
         return
-    refuse("labels", "the policies of one robot, but with --pin", inputs.given_options("fleet", "types"))
+    refuse("labels", "the policies of one robot, but with --pin", inputs.given_options("fleet"))
     if accept:
         _accept(inputs, accept, by, output)
         return

@@ -149,7 +149,7 @@ def closing(rows: Sequence[Row], result: Result) -> Sequence[Row]:
 def _closes(rows: Sequence[Row], result: Result) -> bool:
     """Whether a finding is lost by what is said of channels; where nobody can tell, it is."""
     try:
-        after = _with_more(result, (reply.label for row in rows for reply in row.replies), "a list of channels")
+        after = with_more(result, (reply.label for row in rows for reply in row.replies), "a list of channels")
     except InputErrors:  # they go against what a label says
         return True
     if after is None:
@@ -189,7 +189,7 @@ def typed_label(line: str, elements: Iterable[Element], vocabulary: Vocabulary) 
 def contradiction(label: WrittenLabel, result: Result) -> str:
     """Return what a label goes against, in words; nothing if it can be said beside all that is said."""
     try:
-        _with_more(result, [label], "this label")
+        with_more(result, [label], "this label")
     except InputErrors as error:
         return str(error)
     return ""
@@ -204,7 +204,7 @@ def _unknown(name: str, kinds: Sequence[str], elements: Iterable[Element], vocab
     return f"unknown category {shown(other)!r}; {vocabulary.hint(other)}" if other else ""
 
 
-def _with_more(result: Result, labels: Iterable[WrittenLabel], name: str) -> Result | None:
+def with_more(result: Result, labels: Iterable[WrittenLabel], name: str) -> Result | None:
     """Return the answer with some labels more, as a file of that name; None if nobody can tell.
 
     Raises

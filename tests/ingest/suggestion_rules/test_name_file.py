@@ -154,7 +154,7 @@ def test_a_users_rules_stand_before_ours_and_a_kind_of_their_own_takes_part(tmp_
         ("name_rules: 1\ncarries:\n- {words: [a], kinds: [Video]}\n",
          "f.yaml:3: a rule without why; write words, why, kinds"),
         ("name_rules: 1\nlets_out:\n- {words: [a], kinds: [Video], why: x}\n",
-         "f.yaml:3: unknown key 'kinds'; one of words, why, confidence, source"),
+         "f.yaml:3: unknown key 'kinds'; one of words, why, where, confidence, source"),
         ("name_rules: 1\nnothing:\n- {words: [a], why: x, confidence: certain}\n",
          "f.yaml:3: confidence 'certain'; write likely or may"),
         ("name_rules: 1\ncarries:\n- {words: [a], kinds: [Video], why: x, any_type: 1}\n",

@@ -1,0 +1,152 @@
+"""The ways out that a system has if suggestions are right, those that weigh most first.
+
+In: proposals, and the findings of an analysis in which they count as labels. Out: ``WayOut`` for each place where data
+gets out. No proposal that closes a way is among them, so a wrong one shows a way too many, and hides none.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from rosprivacy.analysis.model import Confidence
+from rosprivacy.analysis.suggesting.evidence import DERIVATION, LEAK, SOURCE, whole
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Mapping, Sequence
+
+    from rosprivacy.analysis.answer import Finding
+    from rosprivacy.analysis.model import Category, Element, Weight
+    from rosprivacy.analysis.suggesting.evidence import Identity, LabelProposal
+
+FARTHEST_FIRST = ("network", "domain", "", "device", "loudspeaker", "display", "file")  # '' where it is not known
+OUTSIDE = {"external-system": "network", "storage": "file"}  # what the kind of an element says
+MAKING = (SOURCE, DERIVATION)  # data that were not there before
+SURE = (Confidence.CERTAIN, Confidence.LIKELY)
+LEAST_SURE_FIRST = (Confidence.MAY, Confidence.LIKELY, Confidence.CERTAIN)
+
+
+class WayOut(NamedTuple):
+    """A place where data gets out, and what of it is only suggested.
+
+    Attributes
+    ----------
+    where
+        Where the data goes from there: one of ``WHERE``, or empty.
+    findings
+        One for each kind of data and source, what weighs most first.
+    proposals
+        On which the first finding hangs, the least sure first; none if it is stated.
+    """
+
+    exit: Element
+    where: str
+    findings: tuple[Finding, ...]
+    proposals: tuple[LabelProposal, ...]
+
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        """The kinds of data that get out there, what weighs most first."""
+        return tuple(dict.fromkeys(finding.category for finding in self.findings))
+
+
+def opening(proposals: Sequence[LabelProposal], *, sourced: bool = False) -> tuple[LabelProposal, ...]:
+    """Return what may count in a trial: what surely or likely brings data in or makes it, and all that lets it out.
+
+    Where nothing brings data in more surely, what may do so counts, too: without a source there is nothing to follow.
+
+    Parameters
+    ----------
+    sourced
+        Whether labels name a source.
+    """
+    sourced = sourced or any(one.label.role == SOURCE and one.confidence in SURE for one in proposals)
+
+    def counts(proposal: LabelProposal) -> bool:
+        role = proposal.label.role
+        sure = proposal.confidence in SURE
+        return role == LEAK or (role in MAKING and sure) or (role == SOURCE and not sourced)
+
+    return tuple(filter(counts, proposals))
+
+
+def ways_out(
+    findings: Iterable[Finding],
+    proposals: Iterable[LabelProposal],
+    categories: Mapping[str, Category],
+    stated: Collection[str] = (),
+) -> tuple[WayOut, ...]:
+    """Return the places where data gets out.
+
+    The first are those from which it goes farthest; of these those of the heaviest kind (``Weight``), what is stated
+    before what is suggested, and the surest.
+
+    Parameters
+    ----------
+    findings
+        Of an analysis in which the proposals count as labels. What gets there through another leak counts, too: that
+        one may be none.
+    stated
+        Ids of findings that there are without the proposals.
+    """
+    known: dict[Identity, list[LabelProposal]] = {}
+    for one in proposals:
+        known.setdefault(one.label.element.identity, []).append(one)
+    exits: dict[Element, list[Finding]] = {}
+    for finding in findings:
+        if not finding.accepted and (finding.through or not finding.dismissed):
+            exits.setdefault(whole(finding.leak), []).append(finding)
+
+    def hanging_on(finding: Finding) -> list[LabelProposal]:
+        return [] if finding.id in stated else _proposals_of(finding, known)
+
+    def weight(finding: Finding) -> tuple[bool, Weight, int, tuple[int, int], str]:
+        on = [LEAST_SURE_FIRST.index(one.confidence) for one in hanging_on(finding)]
+        sureness = (1, -min(on)) if on else (0, 0)
+        return finding.pseudonymised, categories[finding.category].weight, len(finding.witness), sureness, finding.id
+
+    ways = []
+    for element, here in exits.items():
+        here.sort(key=weight)
+        on = sorted(hanging_on(here[0]), key=_least_sure)
+        ways.append(WayOut(element, _where(element, known.get(element.identity, ())), tuple(here), tuple(on)))
+
+    def place(way: WayOut) -> tuple[int, bool, Weight, tuple[int, int], int, str]:
+        first = way.findings[0]
+        pseudonymised, heaviest, _, sureness, _ = weight(first)
+        return FARTHEST_FIRST.index(way.where), pseudonymised, heaviest, sureness, -len(way.kinds), way.exit.full_name
+
+    return tuple(sorted(ways, key=place))
+
+
+def _proposals_of(finding: Finding, of_element: Mapping[Identity, Iterable[LabelProposal]]) -> list[LabelProposal]:
+    """What is only suggested of a finding: that data comes in, is made of others on the way, or gets out.
+
+    Of several suggestions that one node lets data out, the surest is enough.
+    """
+    on_the_way = {finding.category, *(step.category for step in finding.steps)}
+    surest: dict[tuple[Identity, str, str], LabelProposal] = {}
+    for element in finding.witness:
+        for one in of_element.get(whole(element).identity, ()):
+            role, kind = one.label.role, one.label.kind
+            comes_in = role == SOURCE and element == finding.source and kind in on_the_way
+            gets_out = role == LEAK and element == finding.leak
+            makes = role == DERIVATION and one.label.to in on_the_way and kind in on_the_way
+            if comes_in or gets_out or makes:
+                key = (whole(element).identity, role, "" if gets_out else f"{kind} {one.label.to}")
+                best = surest.setdefault(key, one)
+                if LEAST_SURE_FIRST.index(one.confidence) > LEAST_SURE_FIRST.index(best.confidence):
+                    surest[key] = one
+    return list(surest.values())
+
+
+def _least_sure(proposal: LabelProposal) -> tuple[int, bool]:
+    """The order in which to ask; where both ends are as sure, whether data gets out."""
+    return LEAST_SURE_FIRST.index(proposal.confidence), proposal.label.role != LEAK
+
+
+def _where(element: Element, proposals: Iterable[LabelProposal]) -> str:
+    """Where data goes from a place: what the surest suggestion says that it lets data out, else what its kind says."""
+    leaks = [one for one in proposals if one.label.role == LEAK]
+    surest = max(leaks, key=lambda one: LEAST_SURE_FIRST.index(one.confidence), default=None)
+    said = (reason.where for reason in surest.evidence) if surest else ()
+    return next(filter(None, said), OUTSIDE.get(element.kind, ""))
