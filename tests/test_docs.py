@@ -33,6 +33,7 @@ from rosprivacy.ingest.neo4j_graph.schema import NODES, RELATIONSHIPS, Property
 from rosprivacy.ontology.vocabulary import TOP, load
 from rosprivacy.queries.library import pack
 from rosprivacy.report.catalogs.words import IN_ENGLISH
+from rosprivacy.report.document.tables import TABLES
 from rosprivacy.report.text import categories
 from tests.fuzzing import record
 from tests.fuzzing.targets import TARGETS
@@ -51,6 +52,7 @@ if TYPE_CHECKING:
 ARCHITECTURE = ROOT / "docs" / "architecture.md"
 COMMAND_LINE = ROOT / "docs" / "command-line.md"
 DATABASE = ROOT / "docs" / "database.md"
+FORMATS_PAGE = ROOT / "docs" / "formats.md"
 LABELS = ROOT / "docs" / "labels.md"
 LINT = ROOT / "docs" / "lint.md"
 DECISIONS = ROOT / "docs" / "decisions.md"
@@ -240,6 +242,12 @@ def schema_text(document: Any, earlier: str) -> str:
     return contract.text(document)
 
 
+def formats_page(text: str) -> str:
+    """The page with the columns of the tables."""
+    rows = [f"| `{table}` | `{column}` | {meaning} |" for table, of in TABLES.items() for column, meaning in of.items()]
+    return with_parts(text, tables="\n".join(["| table | column | meaning |", "| --- | --- | --- |", *rows, ""]))
+
+
 def categories_page(text: str) -> str:
     """The page with the tree as the program prints it."""
     tree = f"```text\n{categories.tree(load(), TOP)}```"
@@ -252,6 +260,7 @@ GENERATED: dict[Path, Callable[[str], str]] = {
     COMMAND_LINE: lambda _: command_line(),
     DATABASE: database_page,
     DECISIONS: decisions_page,
+    FORMATS_PAGE: formats_page,
     LABELS: labels_page,
     LINT: lint_page,
     SECURITY: security_page,

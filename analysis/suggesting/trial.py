@@ -9,14 +9,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.model import Confidence
-from rosprivacy.analysis.suggesting.evidence import DERIVATION, LEAK, SOURCE, whole
+from rosprivacy.analysis.suggesting.evidence import DERIVATION, LEAK, SOURCE, LabelProposal, whole
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence
 
     from rosprivacy.analysis.answer import Finding
     from rosprivacy.analysis.model import Category, Element, Weight
-    from rosprivacy.analysis.suggesting.evidence import Identity, LabelProposal
+    from rosprivacy.analysis.suggesting.evidence import Identity
 
 FARTHEST_FIRST = ("network", "domain", "", "device", "loudspeaker", "display", "file")  # '' where it is not known
 OUTSIDE = {"external-system": "network", "storage": "file"}  # what the kind of an element says
@@ -58,6 +58,18 @@ def opening(proposals: Sequence[LabelProposal], *, sourced: bool = False) -> tup
     ----------
     sourced
         Whether labels name a source.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.model import Element
+    >>> from rosprivacy.analysis.suggesting.evidence import SuggestedLabel
+    >>> rows = [("/cam", "source", "likely"), ("/mic", "source", "may"), ("/up", "leak", "may"), ("/x", "never", "may")]
+    >>> proposals = [
+    ...     LabelProposal(SuggestedLabel(Element("node", name), role, "Video"), Confidence(sure), ())
+    ...     for name, role, sure in rows
+    ... ]
+    >>> [one.label.element.name for one in opening(proposals)], len(opening(proposals[1:]))
+    (['/cam', '/up'], 2)
     """
     sourced = sourced or any(one.label.role == SOURCE and one.confidence in SURE for one in proposals)
 
@@ -87,6 +99,14 @@ def ways_out(
         one may be none.
     stated
         Ids of findings that there are without the proposals.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import CATEGORIES, factory
+    >>> from rosprivacy.analysis.findings.findings import analyse
+    >>> findings = analyse(*factory()).findings
+    >>> [(way.exit.name, way.where, way.kinds) for way in ways_out(findings, (), CATEGORIES)]
+    [('/archive', '', ('FaceTemplate', 'Video')), ('disk', 'file', ('FaceTemplate', 'Video'))]
     """
     known: dict[Identity, list[LabelProposal]] = {}
     for one in proposals:

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.ingest.types.types_file import TypesFile
     from rosprivacy.outputs import Findings
+    from rosprivacy.report.document.tables import Row
 
 
 class Presentation(TypedDict, total=False):
@@ -94,6 +95,24 @@ class Result(Answer):
     def document(self) -> dict[str, Any]:
         """Return the whole JSON document, ``rosprivacy.analysis/1``; ``to("json")`` is the short one, ``/2``."""
         return {**json_document(document_of(self, (*IN_JSON, RELIANCE)))}
+
+    def tables(self) -> dict[str, list[Row]]:
+        """Return the answer as named tables of plain rows, for ``pandas.DataFrame`` and ``polars.DataFrame``.
+
+        The columns are those of ``rosprivacy.report.document.tables.TABLES``. Table ``answer`` has the verdict; what is
+        open and in doubt stands in ``open`` and ``doubts``: ``findings`` alone is not the answer.
+
+        Examples
+        --------
+        >>> import rosprivacy
+        >>> result = rosprivacy.analyze("examples/factory/before.policy.xml", "examples/factory/run2.labels.yaml")
+        >>> tables = result.tables()
+        >>> tables["answer"][0]["verdict"], len(tables["findings"]), len(tables["open"])
+        ('leak', 2, 6)
+        """
+        from rosprivacy.report.document.tables import tables  # noqa: PLC0415 - light start
+
+        return tables(document_of(self, ()))
 
     @overload
     def to(self, format: Literal["docx"], **how: Unpack[Presentation]) -> bytes: ...

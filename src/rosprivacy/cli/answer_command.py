@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
+from rosprivacy.analysis.errors import InputError, reason
 from rosprivacy.analysis.modes import Article9Level, Paths
 from rosprivacy.cli.exit_code import FailOn, exit_code
 from rosprivacy.cli.inputs import Inputs, refuse
@@ -221,6 +222,14 @@ class Written(NamedTuple):
     save_graph: Annotated[
         Path | None, typer.Option(metavar="GRAPH.json", help="Save what the policies grant.", show_default=False)
     ] = None
+    tables: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="DIR",
+            show_default=False,
+            help="Write the answer as tables into this folder, too: CSV files for spreadsheets and data frames.",
+        ),
+    ] = None
     fail_on: Annotated[
         list[FailOn] | None,
         typer.Option(
@@ -290,6 +299,7 @@ def answer(
     if known.page:
         not_for_a_terminal(known.page, written.output)
     if per_policy:
+        refuse("--per-policy", "one file for all", ["--tables"] if written.tables else [])
         raise typer.Exit(_each_alone(inputs, settings, form, style, written.output, fail_on))
     if computed.results and written.output:
         from rosprivacy.report.atomic import check_outputs
@@ -299,11 +309,12 @@ def answer(
         result = _in_parts(inputs.fleet, settings, computed)
     else:
         result = inputs.result(settings, both_views=both)
-    graphs = {save_graph: _saved_graph(result)} if save_graph else {}
+    others = {save_graph: _saved_graph(result)} if save_graph else {}
+    others |= _tables(result, written.tables) if written.tables else {}
     text = in_pieces(result, form, style)
     if isinstance(text, str) and form != "text":
         text = text.encode()  # a file says of itself that it is UTF-8, whatever the terminal understands
-    emit(text, written.output, graphs)
+    emit(text, written.output, others)
     raise typer.Exit(exit_code(result, fail_on))
 
 
@@ -334,6 +345,21 @@ def _check(inputs: Inputs, computed: Computed, *, save_graph: bool, per_policy: 
         raise typer.BadParameter("--resume is for --engine parts")
     if per_policy:
         refuse("--per-policy", "policies by themselves", [*inputs.given_options("add"), *saved])
+
+
+def _tables(result: Result, folder: Path) -> dict[Path, str]:
+    """The files of a folder, which is made if it is not there."""
+    from rosprivacy.report.document.tables import TABLES
+    from rosprivacy.report.spreadsheet import as_csv
+
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(str(folder), 0, reason(error), "name another folder") from None
+    return {
+        folder / f"{name}.csv": as_csv(TABLES[name], (row.values() for row in rows))
+        for name, rows in result.tables().items()
+    }
 
 
 def _saved_graph(result: Result) -> str:
