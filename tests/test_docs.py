@@ -343,7 +343,18 @@ def test_the_readmes_commands_run_as_they_stand_there(cli: Cli, tmp_path: Path) 
             done = cli(*arguments, cwd=tmp_path)
             ran[arguments[0]] = done.returncode
             assert done.returncode in (0, 1, 4), (line, done.stderr)
-    assert ran.keys() == {"analyze", "decide", "labels", "mitigate", "report", "graph", "diff", "observe", "suggest"}
+    assert ran.keys() == {
+        "analyze",
+        "decide",
+        "labels",
+        "mitigate",
+        "report",
+        "graph",
+        "diff",
+        "observe",
+        "suggest",
+        "try",
+    }
     assert "- id: 7ac677bf059b5beb" in (tmp_path / "decisions.yaml").read_text("utf-8")
     assert (tmp_path / "report.html").stat().st_size > 10_000
 
