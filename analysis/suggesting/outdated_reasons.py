@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import Diagnostic, Severity
+from rosprivacy.analysis.text import counted
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
     from rosprivacy.analysis.model import Bound, FlowGraph
 
@@ -48,6 +49,31 @@ def outdated_reasons(graph: FlowGraph, bound: Bound) -> Iterator[Diagnostic]:
                 yield Diagnostic(
                     one.place, Severity.WARNING, f"{what}; it is {now} now ({new[0].place}): look at it anew"
                 )
+
+
+def surest(reasons: Iterable[str]) -> str:
+    """Return the first of some reasons, those that are looked at again, and how many more there are.
+
+    >>> surest(["its name", "type a/msg/B of /d is not made for Voice", "its reader", "its writer"])
+    'its name; type a/msg/B of /d is not made for Voice; and 2 more reasons'
+    """
+    first, *others = [*dict.fromkeys(reasons)] or [""]
+    types = [reason for reason in others if NOT_MADE in reason]
+    more = len(others) - len(types)
+    return "; ".join([first, *types, *([f"and {counted(more, 'more reason')}"] if more else [])])
+
+
+def grounds_of(reasons: Iterable[str]) -> str:
+    """Return what reasons rest on, for a note that people read: the first, and those that are looked at again.
+
+    >>> grounds_of(["package usb_cam 0.8.1: it films (its name)", "type a/msg/B of /c: a picture"])
+    'package usb_cam 0.8.1'
+    >>> grounds_of(["package nav2 1.5.0: a/action/Spin, which is not made for Video", "its name"])
+    'package nav2 1.5.0: a/action/Spin, which is not made for Video'
+    """
+    first, *others = [*dict.fromkeys(reasons)] or [""]
+    types = [reason for reason in others if NOT_MADE in reason]
+    return "; ".join([first if NOT_MADE in first else first.partition(": ")[0], *types])
 
 
 def types_in(note: str) -> tuple[str, ...]:

@@ -21,6 +21,7 @@ from ruamel.yaml.scalarstring import DoubleQuotedScalarString
 
 from rosprivacy.analysis.errors import InputErrors, LabelError, shown
 from rosprivacy.analysis.model import Confidence
+from rosprivacy.analysis.suggesting.outdated_reasons import grounds_of
 from rosprivacy.analysis.suggesting.weighing import surer
 from rosprivacy.analysis.text import blanked, counted
 from rosprivacy.analysis.written_names import bare_name, literal
@@ -128,7 +129,8 @@ def accept(
 
 
 def _accepted(comment: Comment, person: str, day: str) -> NewLabel:
-    note = f"accepted by {person} on {day} ({comment.confidence}): {comment.why}"
+    why = grounds_of(comment.why.split("; "))
+    note = f"accepted by {person} on {day} ({comment.confidence}): {why}"
     return NewLabel(comment.section, comment.name, comment.roles, note, comment.line)
 
 

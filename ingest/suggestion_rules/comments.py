@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from rosprivacy.analysis.errors import InputErrors, LabelError, shown
 from rosprivacy.analysis.model import Confidence
 from rosprivacy.analysis.suggesting.evidence import CONDUIT, LEAK, SENSITIVE, SOURCE, written
+from rosprivacy.analysis.suggesting.outdated_reasons import surest
 from rosprivacy.analysis.text import LONGEST_LINE, blanked, cut, printable
 from rosprivacy.ingest.labels.entries import SECTIONS
 
@@ -71,7 +72,7 @@ def comment_of(proposal: LabelProposal) -> str:
     """
     at = written(proposal.label)
     said = json.dumps({at.section: {at.name: at.roles}})
-    reasons = "; ".join(dict.fromkeys(cut(printable(reason.reason), LONGEST_LINE) for reason in proposal.evidence))
+    reasons = surest(cut(printable(reason.reason), LONGEST_LINE) for reason in proposal.evidence)
     return f"{MARK}{proposal.confidence} {said}{BECAUSE}{blanked(reasons, '?')}"
 
 

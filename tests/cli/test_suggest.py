@@ -524,7 +524,8 @@ def test_no_reason_is_cut(cli: Cli, tmp_path: Path) -> None:
     assert reason
     accept(cli, tmp_path, "/face_recognizer=FaceImage")
     assert "…" not in text_of(tmp_path)
-    assert reason[1] in text_of(tmp_path).partition("# suggest")[0]
+    note = text_of(tmp_path).partition("# suggest")[0]
+    assert reason[1].partition(": ")[0].partition("; ")[0] in note
 
 
 def test_all_of_a_confidence_are_accepted_but_what_could_hide_a_leak(cli: Cli, robot: Path) -> None:

@@ -96,4 +96,4 @@ def test_what_a_package_says_is_written_and_accepted_like_the_rest(cli: Cli, rob
     text = (robot / "l.yaml").read_text("utf-8")
     (line,) = (one for one in text.splitlines() if one.strip().startswith("/acme_blur:"))
     assert "leak: [Video]" in line
-    assert "package acme_blur 2.1, to a file: it keeps the last pictures" in text
+    assert "(likely): package acme_blur 2.1, to a file" in text

@@ -16,6 +16,7 @@ from rosprivacy.analysis.errors import InputErrors, shown
 from rosprivacy.analysis.suggesting.channels import traffic
 from rosprivacy.analysis.suggesting.evidence import WrittenLabel
 from rosprivacy.analysis.suggesting.label_questions import LISTED, NOTHING, TYPED_AS, questions
+from rosprivacy.analysis.suggesting.outdated_reasons import grounds_of
 from rosprivacy.analysis.written_names import did_you_mean, literal, nearest
 from rosprivacy.ingest.labels.label_file import parse_labels
 from rosprivacy.ingest.suggestion_rules.accepting import NewLabel, with_labels
@@ -94,7 +95,7 @@ def _labels(question: LabelQuestion, key: str, note: str) -> Iterator[NewLabel]:
     for row in question.rows:
         reply = row.reply(key)
         if reply:
-            why = f": {'; '.join(reply.reasons)}" if reply.reasons else ""
+            why = f": {grounds_of(reply.reasons)}" if reply.reasons else ""
             yield NewLabel(*reply.label, f"{note}{why}")
 
 
