@@ -15,6 +15,7 @@ from rosprivacy.analysis.suggesting.label_questions import (
     MAKES,
     TYPED_AS,
 )
+from rosprivacy.analysis.text import counted
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
@@ -40,10 +41,11 @@ KEYS = {  # a word, and what it means
     "k": ("kind by kind", "asks about each kind of data by itself"),
     "/": ("another label", TYPED_AS),
     "s": ("later", "not in this conversation any more; what you have written into the file meanwhile is read"),
+    "u": ("undo", "takes the last answer back, and asks it anew"),
     "q": ("stop", "ends it; the same command goes on from there"),
     "?": ("help", "shows this"),
 }
-ALWAYS = ("/", "q", "?")
+ALWAYS = ("/", "u", "q", "?")
 PICK = "picks a row, or puts it back; other keys speak of the picked rows, or of all if none is picked"
 ONE_FIRST = ": pick a row of which this can be said"
 NEITHER = "neither", "none of these; it is remembered, and not asked again, and the node stays open"
@@ -62,10 +64,11 @@ def question_lines(question: LabelQuestion) -> Iterator[str]:
     for letter, row in zip(ascii_uppercase, rows, strict=False):
         at = f"{letter}  " if len(rows) > 1 else ""
         yield f"  {at}{row.element.kind} {shown(row.element.name)}{_of_row(question, row)}"
-        most = SHOWN if question.about != LISTED and not row.doubtful else len(row.reasons)
+        several = 1 if len(rows) > 1 else SHOWN  # many rows fit on a screen; one by one they tell more
+        most = several if question.about != LISTED and not row.doubtful else len(row.reasons)
         yield from (f"       {shown(reason)}" for reason in row.reasons[:most])
         if len(row.reasons) > most:
-            yield f"       and {len(row.reasons) - most} more reasons"
+            yield f"       and {counted(len(row.reasons) - most, 'more reason')}"
     closes = dict.fromkeys(told for row in rows for told in row.closes)
     if closes and any(one.takes_away for row in rows for one in row.replies):
         yield f"  known findings, {CLOSES_NONE if question.about == LISTED else MAY_HANG}:"
@@ -141,7 +144,7 @@ def _list_line(rows: int, out: Collection[int], key: str) -> str:
     left = rows - len(out)
     without = f"without {' '.join(ascii_uppercase[at] for at in sorted(out))}: " if out else ""
     confirm = f"{left} and Enter for {key} in all {left}, " if left > 1 else ""
-    return f"  {without}{confirm}A-Z take out or put back, o not as a list, s later, q stop, ? help"
+    return f"  {without}{confirm}A-Z take out or put back, o not as a list, s later, u undo, q stop, ? help"
 
 
 def _of_row(question: LabelQuestion, row: Row) -> str:

@@ -349,3 +349,35 @@ def test_a_hostile_name_gets_into_neither_the_file_nor_the_terminal(
     assert all(sign.isprintable() or sign == "\n" for sign in done.stdout)
     said = rosprivacy.analyze(str(tmp_path / "p.xml"), str(tmp_path / "l.yaml")).document()
     assert {one["element"]["name"] for one in said["roles"]} <= {"/camera", "/up"}
+
+
+def test_the_last_answer_is_taken_back_and_asked_anew(robot: Path, by_keys: ByKeys) -> None:
+    by_keys(robot, "A1 q")
+    once = text_of(robot)
+    robot_of(robot, NODES, SOURCE)
+    done = by_keys(robot, "A1 AB2 u q")
+    assert text_of(robot) == once
+    assert "1 answer in" in done.stdout
+    robot_of(robot, NODES, SOURCE)
+    done = by_keys(robot, "A1 u u q")
+    assert text_of(robot) == SOURCE
+    assert "there is no answer to take back" in done.stdout
+    assert "0 answers in" in done.stdout
+
+
+def test_what_somebody_has_written_since_is_never_taken_back(
+    robot: Path, by_keys: ByKeys, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The file is changed between the answer and the key."""
+    taking_back = Conversation._take_back
+
+    def edited(conversation: Conversation) -> None:
+        with (robot / "l.yaml").open("a") as file:
+            file.write("# mine\n")
+        taking_back(conversation)
+
+    monkeypatch.setattr(Conversation, "_take_back", edited)
+    done = by_keys(robot, "A1 u q")
+    assert "somebody has changed the file since: nothing is taken back" in done.stdout
+    assert text_of(robot).endswith("# mine\n")
+    assert "/customer_bridge" in text_of(robot)

@@ -17,7 +17,7 @@ from rosprivacy.cli.output import emit
 from rosprivacy.clock import today
 from rosprivacy.labelling.asking import asked_now, closing, contradiction, typed_label, with_answer, with_label
 from rosprivacy.labelling.conversation import AND, BEGINS, Conversation, allowed, keys_of, lines_of, takes_away
-from rosprivacy.labelling.suggested_lines import brings, limits_on_the_way, who_says
+from rosprivacy.labelling.suggested_lines import brings, limits_on_the_way, text_of, who_says
 from rosprivacy.report.atomic import editing
 from rosprivacy.report.suggested_labels.question_lines import help_lines, keys_line, question_lines
 
@@ -69,9 +69,13 @@ def ask(file: Path, progress: Callable[[], Suggested], by: str | None, settings:
         ask_again()
         return asked_now(last[0])
 
+    changes: list[tuple[str, str]] = []  # the text of the file before each, and after it
+
     def write(answered: Callable[[str], LabelLines], labels: Iterable[WrittenLabel]) -> tuple[str, ...]:
         with one_run(), editing(file):  # of its own: the file was read before, and is ours
+            before = text_of(str(file))
             written = answered(today(os.environ))
+            changes.append((before, written.text if written.added else before))
             if written.added:
                 emit(written.text, file, edited=file)
                 brought.extend(brings(labels))
@@ -84,7 +88,15 @@ def ask(file: Path, progress: Callable[[], Suggested], by: str | None, settings:
     def typed(label: WrittenLabel) -> tuple[str, ...]:
         return write(lambda day: with_label(str(file), label, who, day, settings), [label])
 
-    conversation = Conversation(now, keep, person, lambda rows: closing(rows, last[0].result), typed)
+    def undo(number: int) -> str:
+        with one_run(), editing(file):
+            if text_of(str(file)) != changes[-1][1]:
+                return "somebody has changed the file since: nothing is taken back"
+            emit(changes[-number][0], file, edited=file)
+        del changes[-number:]
+        return ""
+
+    conversation = Conversation(now, keep, person, lambda rows: closing(rows, last[0].result), typed, undo)
     whole = conversation.run()
     if not whole:
         ask_again()

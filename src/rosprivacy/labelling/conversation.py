@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 
     Said = tuple[str, Identity, tuple[str, ...]]  # what a row asks, in this conversation
 
-NO, OPEN, SKIP, QUIT, EXACTLY, EACH_KIND = "n", "o", "s", "q", "x", "k"
+NO, OPEN, SKIP, QUIT, EXACTLY, EACH_KIND, UNDO = "n", "o", "s", "q", "x", "k", "u"
 FEWEST = 2  # rows of a list: one row is asked by itself
 BEGINS, AND = "/", "; "  # a name begins so; between the rows of a list
 STAGES = {
@@ -87,6 +87,8 @@ class Conversation:
         Which of some channels, each with the one reply that is said of it, would close a finding: no list has these.
     typed
         Keeps a label that was typed in place of an answer; returns remarks.
+    undo
+        Takes so many changes back that ``keep`` and ``typed`` made last; returns why not, or nothing.
     lists
         How many rows each list had that was confirmed.
     """
@@ -96,12 +98,14 @@ class Conversation:
     person: Person
     closing: Callable[[Sequence[Row]], Sequence[Row]] = lambda rows: rows
     typed: Callable[[WrittenLabel], tuple[str, ...]] = lambda _: ("no label is kept here",)
+    undo: Callable[[int], str] = lambda _: "nothing is taken back here"
     answers: int = 0
     _later: dict[tuple[str, Identity], set[str]] = field(default_factory=lambda: defaultdict(set))
     lists: list[int] = field(default_factory=list)
     _alone: set[Said] = field(default_factory=set)
     _taken_out: set[Said] = field(default_factory=set)
     _kind_by_kind: set[tuple[str, Identity]] = field(default_factory=set)
+    _changes: list[int] = field(default_factory=list)  # of each answer
 
     def run(self) -> bool:
         """Ask; return whether nothing is left to ask, and False if the person has stopped before."""
@@ -120,8 +124,8 @@ class Conversation:
             answer = self._answer(question)
             if answer is None:
                 return False
-            if isinstance(answer, WrittenLabel):
-                self._typed(answer)
+            if isinstance(answer, WrittenLabel) or answer[0] == UNDO:
+                self._typed(answer) if isinstance(answer, WrittenLabel) else self._take_back()
                 return True
             key, rows = answer
             if len(rows) > 1 and takes_away_of_each(rows, key):
@@ -162,6 +166,7 @@ class Conversation:
             self._keep_answer(LabelQuestion(question.about, tuple(row for row in question.rows if row not in rows)), NO)
             self.answers -= 1  # both are one answer
             self._keep_answer(LabelQuestion(question.about, tuple(rows)), YES)
+            self._changes[-2:] = [sum(self._changes[-2:])]
             return True
         return self._keep_answer(LabelQuestion(question.about, tuple(rows)), key)
 
@@ -227,6 +232,8 @@ class Conversation:
                 out = set(range(len(question.rows)))
             elif key == SKIP:
                 self._postponed(GOES_THROUGH, rows)
+            elif key == UNDO:
+                self._take_back()
             elif key == str(len(rows)) and len(rows) >= FEWEST:
                 self._confirmed(LabelQuestion(LISTED, rows), by_hand=by_hand)
             else:
@@ -251,7 +258,7 @@ class Conversation:
             self.person.remark(remark)
         if remarks:
             self._postponed(GOES_THROUGH, question.rows)
-        self.answers += 1
+        self._count()
         self.lists.append(len(question.rows))
 
     def _answer(self, question: LabelQuestion) -> tuple[str, list[Row]] | WrittenLabel | None:
@@ -267,7 +274,7 @@ class Conversation:
             at = letter(key)
             if 0 <= at < len(question.rows) and len(question.rows) > 1:
                 picked ^= {at}
-            elif key in allowed(question, picked):
+            elif key == UNDO or key in allowed(question, picked):
                 return key, rows
             else:
                 self.person.remark(f"{key!r} is no answer here")
@@ -275,7 +282,20 @@ class Conversation:
     def _typed(self, label: WrittenLabel) -> None:
         for remark in self.typed(label):
             self.person.remark(remark)
+        self._count()
+
+    def _count(self) -> None:
         self.answers += 1
+        self._changes.append(1)
+
+    def _take_back(self) -> None:
+        """Ask the last answer anew."""
+        why = self.undo(self._changes[-1]) if self._changes else "there is no answer to take back"
+        if why:
+            self.person.remark(why)
+            return
+        self._changes.pop()
+        self.answers -= 1
 
     def _keep_answer(self, question: LabelQuestion, key: str) -> bool:
         """Keep an answer; return whether it changes what data get where."""
@@ -284,7 +304,7 @@ class Conversation:
             self.person.remark(remark)
         if remarks:
             self._postponed(question.about, question.rows)
-        self.answers += 1
+        self._count()
         if key == NO:
             return False
         reply = question.rows[0].reply(key)
