@@ -85,7 +85,9 @@ def cost(driver: Driver, text: str) -> Cost:
     """Ask once to warm up, once for the hits, once for the time."""
     served(driver, text, {})
     with driver.session() as session:
-        plan = session.run(f"PROFILE {text}").consume().profile
+        result = session.run(f"PROFILE {text}")
+        list(result)  # a profile is there when all rows are
+        plan = result.consume().profile
     return Cost(hits(plan or {}), served(driver, text, {}))
 
 

@@ -7,11 +7,12 @@ import sys
 from datetime import date
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import typer
 
 from rosprivacy.analysis.errors import DecisionError, InputErrors, shown
+from rosprivacy.cli.inputs import takes_groups
 from rosprivacy.cli.options import Ontologies, complete_category
 from rosprivacy.cli.output import emit
 
@@ -32,15 +33,16 @@ class Decide(StrEnum):
     avoid = "avoid"
 
 
-def decide(
-    choice: Annotated[Decide, typer.Argument(metavar="DECISION", help="accept, mitigate, delegate or avoid.")],
+class DecisionTarget(NamedTuple):
+    """What is decided about, and in which file."""
+
     ids: Annotated[
         list[str] | None,
         typer.Argument(metavar="ID", help="Of findings; without one, a pattern.", show_default=False),
-    ] = None,
-    decisions: Annotated[
-        Path, typer.Option(metavar="FILE", help="The decisions file; made if it is not there.")
-    ] = Path("decisions.yaml"),
+    ] = None
+    decisions: Annotated[Path, typer.Option(metavar="FILE", help="The decisions file; made if it is not there.")] = (
+        Path("decisions.yaml")
+    )
     report: Annotated[
         Path | None,
         typer.Option(
@@ -48,19 +50,29 @@ def decide(
             show_default=False,
             help="Of analyze --format json: ids are checked against it, and may be shortened.",
         ),
-    ] = None,
-    reason: Annotated[str | None, typer.Option(help="Why; an acceptance needs one.", show_default=False)] = None,
-    owner: Annotated[str | None, typer.Option(help="Who answers for it; the same.", show_default=False)] = None,
+    ] = None
+
+
+class DecisionFacts(NamedTuple):
+    """What is said of the decision."""
+
+    reason: Annotated[str | None, typer.Option(help="Why; an acceptance needs one.", show_default=False)] = None
+    owner: Annotated[str | None, typer.Option(help="Who answers for it; the same.", show_default=False)] = None
     legal_basis: Annotated[
         list[str] | None,
         typer.Option(
             metavar="ARTICLE", help="Such as 6(1)(f), 9(2)(h), 46(2)(c); may be repeated.", show_default=False
         ),
-    ] = None,
+    ] = None
     expires: Annotated[
         str | None, typer.Option(metavar="YYYY-MM-DD", help="The last day on which it is valid.", show_default=False)
-    ] = None,
-    ticket: Annotated[str | None, typer.Option(help="Where the work is tracked.", show_default=False)] = None,
+    ] = None
+    ticket: Annotated[str | None, typer.Option(help="Where the work is tracked.", show_default=False)] = None
+
+
+class FindingPattern(NamedTuple):
+    """Which findings are meant, where no id names them."""
+
     category: Annotated[
         str | None,
         typer.Option(
@@ -70,15 +82,15 @@ def decide(
             show_default=False,
             rich_help_panel=PATTERN,
         ),
-    ] = None,
+    ] = None
     source: Annotated[
         str | None,
         typer.Option(metavar="NAME", help="Of a pattern: name or glob.", show_default=False, rich_help_panel=PATTERN),
-    ] = None,
+    ] = None
     leak: Annotated[
         str | None,
         typer.Option(metavar="NAME", help="Of a pattern: name or glob.", show_default=False, rich_help_panel=PATTERN),
-    ] = None,
+    ] = None
     robot: Annotated[
         str | None,
         typer.Option(
@@ -87,7 +99,7 @@ def decide(
             show_default=False,
             rich_help_panel=PATTERN,
         ),
-    ] = None,
+    ] = None
     from_robot: Annotated[
         str | None,
         typer.Option(
@@ -96,7 +108,12 @@ def decide(
             show_default=False,
             rich_help_panel=PATTERN,
         ),
-    ] = None,
+    ] = None
+
+
+class DoubtPattern(NamedTuple):
+    """Which doubts are meant."""
+
     doubt: Annotated[
         str | None,
         typer.Option(
@@ -105,58 +122,77 @@ def decide(
             show_default=False,
             rich_help_panel=DOUBT,
         ),
-    ] = None,
+    ] = None
     element: Annotated[
         str | None,
         typer.Option(metavar="NAME", help="Of an element: name or glob.", show_default=False, rich_help_panel=DOUBT),
-    ] = None,
+    ] = None
     file: Annotated[
         str | None,
         typer.Option(metavar="NAME", help="Of a file: name or glob.", show_default=False, rich_help_panel=DOUBT),
-    ] = None,
+    ] = None
+
+
+@takes_groups
+def decide(
+    choice: Annotated[Decide, typer.Argument(metavar="DECISION", help="accept, mitigate, delegate or avoid.")],
+    about: DecisionTarget,
+    facts: DecisionFacts,
+    findings_meant: FindingPattern,
+    doubts_meant: DoubtPattern,
     ontology: Ontologies = None,
 ) -> None:
     """Decide about findings, a pattern of them, or doubts, in a file that analyze and mitigate take into account."""
-    from rosprivacy.clock import today
     from rosprivacy.ingest.decisions.decision_writer import DOUBTS, FINDINGS, text_in, with_decision
     from rosprivacy.ontology.vocabulary import load
     from rosprivacy.report.atomic import editing
     from rosprivacy.report.compare.earlier import read_earlier
 
-    names = {"category": category, "source": source, "leak": leak, "robot": robot, "from_robot": from_robot}
-    pattern = {key: value for key, value in names.items() if value}
-    in_doubt = {key: value for key, value in {"doubt": doubt, "element": element, "file": file}.items() if value}
+    ids, decisions, report = about.ids, about.decisions, about.report
+    pattern = _as_pattern(findings_meant)
+    in_doubt = _as_pattern(doubts_meant)
     if in_doubt:
         pattern = _doubt_pattern(choice, in_doubt, pattern)
     _check_target(ids, pattern)
-    _check_expiry(expires)
+    _check_expiry(facts.expires)
     document = read_earlier(str(report)).document if report else None
     findings = _findings(document) if document else None
     doubts = _doubts(document) if document else {}
     targets = _targets(ids, None if findings is None else findings | doubts, str(report)) if ids else [pattern]
-    entry = {
-        "decision": choice.value,
-        "reason": reason,
-        "owner": owner,
-        "legal_basis": list(legal_basis) if legal_basis else None,
-        "date": date.fromisoformat(today(os.environ)),
-        "expires": date.fromisoformat(expires) if expires else None,
-        "ticket": ticket,
-    }
-    said = {key: value for key, value in entry.items() if value is not None}
-    vocabulary = load(ontologies=tuple(ontology or ()))
-    about = "; ".join(", ".join(f"{key} {shown(str(value))}" for key, value in target.items()) for target in targets)
-    answer = f"{shown(str(decisions))}: {choice.value} {about}\n"
+    entry, vocabulary = _entry(choice, facts), load(ontologies=tuple(ontology or ()))
+    names = "; ".join(", ".join(f"{key} {shown(str(value))}" for key, value in target.items()) for target in targets)
+    answer = f"{shown(str(decisions))}: {choice.value} {names}\n"
     with editing(decisions):
         text = text_in(decisions)
         for target in targets:
-            whole = {**target, **said, **_made_about(findings, target)}
+            whole = {**target, **entry, **_made_about(findings, target)}
             section = DOUBTS if in_doubt or target.get("id") in doubts else FINDINGS
             remark = _remark(findings, target) or _doubt_remark(doubts.get(target.get("id", "")))
             text = with_decision(str(decisions), text, whole, remark, vocabulary, section)
         if ids and not report:
             print("the ids were not checked; --report FILE checks them against an analysis", file=sys.stderr)
         emit(answer, None, {decisions: text or ""}, edited=decisions)  # the one file that is read and written
+
+
+def _as_pattern(options: FindingPattern | DoubtPattern) -> dict[str, str]:
+    """Those of some options that a user gave."""
+    return {key: value for key, value in options._asdict().items() if value}
+
+
+def _entry(choice: Decide, facts: DecisionFacts) -> dict[str, Any]:
+    """What is written of a decision, whatever it is about."""
+    from rosprivacy.clock import today
+
+    entry = {
+        "decision": choice.value,
+        "reason": facts.reason,
+        "owner": facts.owner,
+        "legal_basis": list(facts.legal_basis) if facts.legal_basis else None,
+        "date": date.fromisoformat(today(os.environ)),
+        "expires": date.fromisoformat(facts.expires) if facts.expires else None,
+        "ticket": facts.ticket,
+    }
+    return {key: value for key, value in entry.items() if value is not None}
 
 
 def _doubt_pattern(choice: Decide, in_doubt: Mapping[str, str], pattern: Mapping[str, str]) -> dict[str, str]:

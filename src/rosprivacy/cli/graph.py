@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import sys
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
@@ -57,45 +57,32 @@ class Direction(StrEnum):
     down = "down"
 
 
-@dataclass(frozen=True, slots=True)
-class GraphPart:
-    """What is drawn of a view, as the options of these names say."""
-
-    finding: str | None
-    robot: str | None
-    around: list[str] | None
-    steps: int
-    bound: int | None
-    fold: bool
-    loose_ends: bool | None
-
-    @property
-    def chosen(self) -> bool:
-        """Whether a user chose any of it."""
-        return bool(self.finding or self.robot or self.around or self.bound or self.fold) or self.loose_ends is not None
-
-
 DRAWN = "What is drawn of it"  # panels of help
 LAYOUT = "How it is drawn"
 SUFFIXES = {".gv": PictureFormat.dot, ".mmd": PictureFormat.mermaid}
 
 
-@reads_system("policies, saved graphs or a fleet", without=("from_database", "neo4j", "decisions"))
-def graph(
-    inputs: Inputs,
-    view: ViewOrBothChosen = ViewOrBoth.declared,
+class PictureOptions(NamedTuple):
+    """Which picture, and where it goes."""
+
+    view: ViewOrBothChosen = ViewOrBoth.declared
     show: Annotated[
         Shown | None,
         typer.Option(
             show_default=False,
             help="The whole ROS graph, which is the default, or where personal data can go under the labels.",
         ),
-    ] = None,
-    format: Annotated[  # noqa: A002 - the option's name
+    ] = None
+    format: Annotated[
         PictureFormat | None,
         typer.Option("--format", "-f", show_default=False, help="Of the picture; by default what --output ends in."),
-    ] = None,
-    output: Output = None,
+    ] = None
+    output: Output = None
+
+
+class DrawnPart(NamedTuple):
+    """What is drawn of a view."""
+
     finding: Annotated[
         str | None,
         typer.Option(
@@ -104,13 +91,13 @@ def graph(
             help="Draw the paths of this finding only: a privacy view.",
             rich_help_panel=DRAWN,
         ),
-    ] = None,
+    ] = None
     robot: Annotated[
         str | None,
         typer.Option(
             metavar="NAME", show_default=False, help="Draw this robot and what it is joined to.", rich_help_panel=DRAWN
         ),
-    ] = None,
+    ] = None
     around: Annotated[
         list[str] | None,
         typer.Option(
@@ -119,22 +106,23 @@ def graph(
             help="Draw what is near this element; may be repeated.",
             rich_help_panel=DRAWN,
         ),
-    ] = None,
+    ] = None
     steps: Annotated[
         int, typer.Option(min=0, help="How near, in lines, whatever their direction.", rich_help_panel=DRAWN)
-    ] = 2,
-    most: Annotated[
+    ] = 2
+    largest: Annotated[
         int | None,
         typer.Option(
+            "--most",
             min=1,
             show_default=False,
             help="Draw the shorter paths to leaks only, up to so many elements.",
             rich_help_panel=DRAWN,
         ),
-    ] = None,
+    ] = None
     fold: Annotated[
         bool, typer.Option("--fold", help="Draw channels with the same ends as one.", rich_help_panel=DRAWN)
-    ] = False,
+    ] = False
     loose_ends: Annotated[
         bool | None,
         typer.Option(
@@ -143,7 +131,7 @@ def graph(
             help="Draw channels that only one node names.",
             rich_help_panel=DRAWN,
         ),
-    ] = None,
+    ] = None
     everything: Annotated[
         bool,
         typer.Option(
@@ -152,10 +140,21 @@ def graph(
             f"{LEGIBLE} elements is drawn smaller and says what it leaves out; GraphML always has all.",
             rich_help_panel=DRAWN,
         ),
-    ] = False,
-    cluster: Annotated[
-        Cluster, typer.Option(help="Draw together what belongs together.", rich_help_panel=LAYOUT)
-    ] = Cluster.none,
+    ] = False
+
+    @property
+    def is_chosen(self) -> bool:
+        """Whether a user chose any of it."""
+        chosen = self.finding or self.robot or self.around or self.largest or self.fold
+        return bool(chosen) or self.loose_ends is not None
+
+
+class LayoutOptions(NamedTuple):
+    """How it is drawn."""
+
+    cluster: Annotated[Cluster, typer.Option(help="Draw together what belongs together.", rich_help_panel=LAYOUT)] = (
+        Cluster.none
+    )
     direction: Annotated[
         Direction | None,
         typer.Option(
@@ -163,11 +162,19 @@ def graph(
             help="Where data goes on the paper. By default what can be drawn larger on a page; as text, right.",
             rich_help_panel=LAYOUT,
         ),
-    ] = None,
+    ] = None
     seconds: Annotated[
         float,
         typer.Option(min=0.1, help="For the layout; when time runs out, this is an error.", rich_help_panel=LAYOUT),
-    ] = 45.0,
+    ] = 45.0
+
+
+@reads_system("policies, saved graphs or a fleet", without=("from_database", "neo4j", "decisions"))
+def graph(
+    inputs: Inputs,
+    options: PictureOptions,
+    part: DrawnPart,
+    layout: LayoutOptions,
     draw_standard_channels: Annotated[
         bool,
         typer.Option("--draw-standard-channels", help="Draw the standard ROS channels too.", rich_help_panel=DRAWN),
@@ -175,34 +182,33 @@ def graph(
     lang: Annotated[Language, typer.Option(help="Language of titles, notes and legend.")] = Language.en,
 ) -> None:
     """Draw the ROS graph, or where personal data can go in it. Gives no verdict: exit code 0 once it is drawn."""
-    part = GraphPart(finding, robot, around, steps, most, fold=fold, loose_ends=loose_ends)
-    show = _shown(show, part, everything=everything)
-    form = _format(format, output)
+    show, output = _shown(options.show, part), options.output
+    form = _format(options.format, output)
     not_for_a_terminal(form.upper() if form is not PictureFormat.mermaid else "a drawing", output)
-    result, own = _drawn_of(inputs.viewed(view), both_views=view is ViewOrBoth.both)
+    result, own = _drawn_of(inputs.viewed(options.view), both_views=options.view is ViewOrBoth.both)
     picture = _view(result, show, part, lang, carried_only=bool(inputs.categories), standard=draw_standard_channels)
-    if result.fleet and not finding:
+    if result.fleet and not part.finding:
         from rosprivacy.report.pictures.narrow import label, represented
 
-        picture = represented(picture, result.fleet.likeness)
-        own = {label(name, result.fleet.likeness, picture.words): profiles for name, profiles in own.items()}
-        part = replace(part, robot=label(robot, result.fleet.likeness, picture.words) if robot else None)
+        picture, likeness = represented(picture, result.fleet.likeness), result.fleet.likeness
+        own = {label(name, likeness, picture.words): profiles for name, profiles in own.items()}
+        part = part._replace(robot=label(part.robot, likeness, picture.words) if part.robot else None)
     picture = _narrowed(picture, part)
-    if not everything and not part.chosen and form is not PictureFormat.graphml:
+    if not part.everything and not part.is_chosen and form is not PictureFormat.graphml:
         picture = _legible(picture)
-    if cluster is not Cluster.none:
+    if layout.cluster is not Cluster.none:
         from rosprivacy.report.pictures.narrow import grouped
 
-        picture = grouped(picture, cluster.value, result.analysis.graph.profiles, own)
-    _write(picture, form, output, direction, seconds)
+        picture = grouped(picture, layout.cluster.value, result.analysis.graph.profiles, own)
+    _write(picture, form, output, layout.direction, layout.seconds)
 
 
-def _shown(show: Shown | None, part: GraphPart, *, everything: bool) -> Shown:
+def _shown(show: Shown | None, part: DrawnPart) -> Shown:
     """The view that is asked for; some options are of one view only."""
-    of_privacy = bool(part.finding or part.bound)
+    of_privacy = bool(part.finding or part.largest)
     if show is Shown.ros and of_privacy:
         raise typer.BadParameter("--finding and --most are for --show privacy")
-    if everything and part.bound:
+    if part.everything and part.largest:
         raise typer.BadParameter("--all draws everything, --most does not: choose one of them")
     return show or (Shown.privacy if of_privacy else Shown.ros)
 
@@ -235,7 +241,7 @@ def _format(option: PictureFormat | None, output: Path | None) -> PictureFormat:
 
 
 def _view(
-    result: Result, show: Shown, part: GraphPart, language: Language, *, carried_only: bool, standard: bool
+    result: Result, show: Shown, part: DrawnPart, language: Language, *, carried_only: bool, standard: bool
 ) -> Picture:
     from rosprivacy.analysis.findings.flows_to_leaks import PathsToLeaks
     from rosprivacy.report.catalogs.words import Words
@@ -248,7 +254,7 @@ def _view(
     beside = result.fleet.likeness.second if result.fleet else ()
     if show is Shown.privacy:
         if part.finding:
-            return _finding(result, part.finding, views.PER_BOX * part.bound if part.bound else None, say)
+            return _finding(result, part.finding, views.PER_BOX * part.largest if part.largest else None, say)
         return _with_added(
             result, say, lambda also: views.privacy_view(PathsToLeaks(result.analysis), beside, say, also)
         )
@@ -285,7 +291,7 @@ def _finding(result: Result, id_prefix: str, about: int | None, say: Phrases) ->
     return views.finding_view(PathsToLeaks(result.analysis), narrow.the_finding(result.analysis, id_prefix), about, say)
 
 
-def _narrowed(picture: Picture, part: GraphPart) -> Picture:
+def _narrowed(picture: Picture, part: DrawnPart) -> Picture:
     from rosprivacy.report.pictures import narrow, views
 
     if part.robot:
@@ -296,7 +302,7 @@ def _narrowed(picture: Picture, part: GraphPart) -> Picture:
         picture = narrow.folded(picture)
     if part.loose_ends is False:
         picture = narrow.without_loose_ends(picture)
-    return views.bounded(picture, part.bound) if part.bound else picture
+    return views.bounded(picture, part.largest) if part.largest else picture
 
 
 def _legible(picture: Picture) -> Picture:

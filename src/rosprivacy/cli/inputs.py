@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import inspect
 import sys
+from collections.abc import Callable
 from copy import copy
 from functools import wraps
 from pathlib import Path
@@ -45,7 +46,7 @@ from rosprivacy.cli.options import (
 from rosprivacy.cli.output import progress_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Iterator
+    from collections.abc import Collection, Iterable, Iterator
 
     from rosprivacy.cli.project_file import Project
     from rosprivacy.result import Result
@@ -205,13 +206,11 @@ def refuse(command: str, takes: str, options: Iterable[str]) -> None:
         raise typer.BadParameter(f"{command} takes {takes}: no {refused}")
 
 
-def reads_system(
-    takes: str = "", *, without: Collection[str] = ()
-) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """Give a command the options of its parameters that are groups of options, such as ``inputs: Inputs``.
+Command = Callable[..., None]
 
-    A group is a named tuple; a field is an option, and its annotation is what typer needs. A parameter of the command
-    with the name of such an option is taken instead.
+
+def reads_system(takes: str = "", *, without: Collection[str] = ()) -> Callable[[Command], Command]:
+    """Give a command that reads a system the options of its groups, of ``inputs: Inputs`` among them.
 
     Parameters
     ----------
@@ -222,36 +221,56 @@ def reads_system(
         them.
     """
 
-    def decorated(command: Callable[..., None]) -> Callable[..., None]:
-        own = inspect.signature(command, eval_str=True).parameters
-        kinds = {name: each.annotation for name, each in own.items() if hasattr(each.annotation, "_field_defaults")}
-        others = {field for kind in kinds.values() if kind is not Inputs for field in kind._fields}
-        left_out = {*own, *others, *(["policies"] if "policies" in without else [])}
-        groups = {
-            name: [each for each in _parameters(kind, without) if kind is not Inputs or each.name not in left_out]
-            for name, kind in kinds.items()
-        }
+    def decorated(command: Command) -> Command:
+        has_language = "lang" in inspect.signature(command).parameters
 
-        @wraps(command)
-        def run(context: typer.Context, **values: Any) -> None:
-            for name, fields in groups.items():
-                values[name] = kinds[name](**{field.name: values.pop(field.name) for field in fields})
+        def checked(context: typer.Context, values: dict[str, Any]) -> None:
             inputs = values["inputs"]
             refuse(command.__name__.replace("_", "-"), takes, inputs.given_options(*without))
             inputs = values["inputs"] = inputs.completed(without)
             inputs.check()
-            if (stated := inputs.stated) and stated.lang and own.get("lang") and not _is_given(context, "lang"):
+            if has_language and (stated := inputs.stated) and stated.lang and not _is_given(context, "lang"):
                 values["lang"] = stated.lang
-            command(**values)
 
-        parameters = [inspect.Parameter("context", inspect.Parameter.KEYWORD_ONLY, annotation=typer.Context)]
-        for name, parameter in own.items():
-            parameters += groups.get(name) or [parameter.replace(kind=inspect.Parameter.KEYWORD_ONLY)]
-        vars(run)["__signature__"] = inspect.Signature(parameters)  # typer reads it
-        run.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
-        return run
+        return _with_groups(command, without, checked)
 
     return decorated
+
+
+def takes_groups(command: Command) -> Command:
+    """Give a command the options of its parameters that are groups of options.
+
+    A group is a named tuple; a field is an option, and its annotation is what typer needs.
+    """
+    return _with_groups(command, (), lambda _, __: None)
+
+
+def _with_groups(
+    command: Command, without: Collection[str], check: Callable[[typer.Context, dict[str, Any]], None]
+) -> Command:
+    """The command with options in the place of its groups; an option of its own stands for one of ``Inputs``."""
+    own = inspect.signature(command, eval_str=True).parameters
+    kinds = {name: each.annotation for name, each in own.items() if hasattr(each.annotation, "_field_defaults")}
+    others = {field for kind in kinds.values() if kind is not Inputs for field in kind._fields}
+    left_out = {*own, *others, *(["policies"] if "policies" in without else [])}
+    groups = {
+        name: [each for each in _parameters(kind, without) if kind is not Inputs or each.name not in left_out]
+        for name, kind in kinds.items()
+    }
+
+    @wraps(command)
+    def run(context: typer.Context, **values: Any) -> None:
+        for name, fields in groups.items():
+            values[name] = kinds[name](**{field.name: values.pop(field.name) for field in fields})
+        check(context, values)
+        command(**values)
+
+    parameters = [inspect.Parameter("context", inspect.Parameter.KEYWORD_ONLY, annotation=typer.Context)]
+    for name, parameter in own.items():
+        parameters += groups.get(name) or [parameter.replace(kind=inspect.Parameter.KEYWORD_ONLY)]
+    vars(run)["__signature__"] = inspect.Signature(parameters)  # typer reads it
+    run.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
+    return run
 
 
 def _as_option(name: str, value: Any) -> Any:

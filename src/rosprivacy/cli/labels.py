@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from contextlib import nullcontext
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 import typer
 
@@ -15,24 +15,21 @@ from rosprivacy.cli.options import PRINTED
 from rosprivacy.cli.output import emit
 
 
-@reads_system(
-    "the policies of one robot",
-    without=("from_database", "neo4j", "categories", "category", "decisions"),
-)
-def labels(
-    inputs: Inputs,
-    init: Annotated[bool, typer.Option("--init", help="Write a first label file for the policies.")] = False,
-    schema: Annotated[bool, typer.Option("--schema", help="Print the JSON Schema of label files.")] = False,
-    standard: Annotated[bool, typer.Option("--standard", help="Print the standard channels' file.")] = False,
+class LabelWork(NamedTuple):
+    """What is done; one of these."""
+
+    init: Annotated[bool, typer.Option("--init", help="Write a first label file for the policies.")] = False
+    schema: Annotated[bool, typer.Option("--schema", help="Print the JSON Schema of label files.")] = False
+    standard: Annotated[bool, typer.Option("--standard", help="Print the standard channels' file.")] = False
     infrastructure: Annotated[
         bool, typer.Option("--infrastructure", help="Print the proposal for more such channels.")
-    ] = False,
+    ] = False
     update: Annotated[
         bool, typer.Option("--update", help="Add lines for what is new in the policies to the file of --labels.")
-    ] = False,
+    ] = False
     next_round: Annotated[
         bool, typer.Option("--next", help="Add lines for what to review next to the file of --labels.")
-    ] = False,
+    ] = False
     pin: Annotated[
         bool,
         typer.Option(
@@ -40,7 +37,7 @@ def labels(
             help="Keep in the label files which kinds of data reach the elements that their globs decide: what else "
             "gets there is open then; of a robot or a --fleet.",
         ),
-    ] = False,
+    ] = False
     accept: Annotated[
         list[str] | None,
         typer.Option(
@@ -50,7 +47,16 @@ def labels(
             "surer; what takes data away only if policies are given too; may be repeated.",
             show_default=False,
         ),
-    ] = None,
+    ] = None
+
+
+@reads_system(
+    "the policies of one robot",
+    without=("from_database", "neo4j", "categories", "category", "decisions"),
+)
+def labels(
+    inputs: Inputs,
+    work: LabelWork,
     by: Annotated[
         str | None,
         typer.Option(metavar="NAME", help="Who accepts suggestions; by default the author of the file."),
@@ -67,26 +73,26 @@ def labels(
     ] = None,
 ) -> None:
     """Make a label file or add to one, or print the schema or the files that come with the program."""
-    if [init, schema, standard, infrastructure, update, next_round, pin, bool(accept)].count(True) != 1:
+    if sum(map(bool, work)) != 1:
         hint = "name one of --init, --update, --next, --pin, --accept, --schema, --standard, --infrastructure"
         raise typer.BadParameter(hint)
-    if pin:
+    if work.pin:
         refuse("labels --pin", "what it reads, and writes into it", ["--by"] if by else [])
         _pin(inputs, output)
         return
     refuse("labels", "the policies of one robot, but with --pin", inputs.given_options("fleet"))
-    if accept:
-        _accept(inputs, accept, by, output)
+    if work.accept:
+        _accept(inputs, work.accept, by, output)
         return
     refuse("labels", "--by with --accept only", ["--by"] if by else [])
-    if update or next_round:
-        _add(inputs, output, update=update)
+    if work.update or work.next_round:
+        _add(inputs, output, update=work.update)
         return
     refuse("labels", "label files with --update, --next, --pin and --accept only", inputs.given_options("labels"))
-    if init:
+    if work.init:
         _begin(inputs, output)
     else:
-        text = _schema(inputs) if schema else _shipped("standard" if standard else "infrastructure")
+        text = _schema(inputs) if work.schema else _shipped("standard" if work.standard else "infrastructure")
         emit(text, None if output == PRINTED else output)
 
 

@@ -63,15 +63,15 @@ Unencrypted = Annotated[
 class ModelOptions(NamedTuple):
     """What a user says of a language model."""
 
-    model: Model
-    url: ModelUrl
-    dry_run: DryRun
-    mask: MaskNames
-    record: Record
-    replay: Replay
-    requests: Requests
-    timeout: Timeout
-    unencrypted: Unencrypted
+    model: Model = None
+    url: ModelUrl = None
+    mask: MaskNames = False
+    dry_run: DryRun = False
+    record: Record = None
+    replay: Replay = None
+    requests: Requests = 20
+    timeout: Timeout = 300
+    unencrypted: Unencrypted = False
 
     def check(self, into: Path | None) -> None:
         """Refuse options that make no sense together, before anything is read."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
@@ -24,15 +24,9 @@ THROUGH = "Through which door"  # panel of help
 SHORTEST = "10s"  # what most middlewares need until all is found
 
 
-@reads_system(
-    "labels for --watch",
-    without=(
-        "policies", "fleet", "from_database", "neo4j", "add", "include_root", "decisions", "view",
-        "categories", "types", "project", "no_project",
-    ),
-)  # fmt: skip
-def observe(
-    inputs: Inputs,
+class DoorOptions(NamedTuple):
+    """Through what is looked, and how."""
+
     endpoint: Annotated[
         str,
         typer.Argument(
@@ -40,7 +34,7 @@ def observe(
             show_default=False,
             help="With --zenoh: where the router is; by default tcp/localhost:7447.",
         ),
-    ] = "",
+    ] = ""
     text: Annotated[
         list[str] | None,
         typer.Option(
@@ -49,7 +43,7 @@ def observe(
             help="What `ros2 node info` printed, for all nodes; - is standard input; may be repeated.",
             rich_help_panel=THROUGH,
         ),
-    ] = None,
+    ] = None
     earlier: Annotated[
         list[str] | None,
         typer.Option(
@@ -58,7 +52,7 @@ def observe(
             help="What an earlier run wrote, with the types beside it: adds up; may be repeated.",
             rich_help_panel=THROUGH,
         ),
-    ] = None,
+    ] = None
     at: Annotated[
         str | None,
         typer.Option(
@@ -67,14 +61,14 @@ def observe(
             help="When the texts were taken, as 2026-11-22T10:00:00Z; by default when each file was last written.",
             rich_help_panel=THROUGH,
         ),
-    ] = None,
+    ] = None
     ros2: Annotated[
         bool,
         typer.Option("--ros2", help="Run `ros2 node list` and `ros2 node info` here.", rich_help_panel=THROUGH),
-    ] = False,
+    ] = False
     dds: Annotated[
         bool, typer.Option("--dds", help="Join the DDS domain as a reader of discovery.", rich_help_panel=THROUGH)
-    ] = False,
+    ] = False
     zenoh: Annotated[
         bool,
         typer.Option(
@@ -82,13 +76,13 @@ def observe(
             help="Ask a Zenoh router for the tokens of ROS: --zenoh, or --zenoh ENDPOINT.",
             rich_help_panel=THROUGH,
         ),
-    ] = False,
+    ] = False
     domain: Annotated[
         int,
         typer.Option(
             metavar="N", min=0, max=232, envvar="ROS_DOMAIN_ID", help="The ROS domain.", rich_help_panel=THROUGH
         ),
-    ] = 0,
+    ] = 0
     peer: Annotated[
         list[str] | None,
         typer.Option(
@@ -97,7 +91,7 @@ def observe(
             help="With --dds: ask this host too, where there is no multicast; may be repeated.",
             rich_help_panel=THROUGH,
         ),
-    ] = None,
+    ] = None
     interface: Annotated[
         str,
         typer.Option(
@@ -106,7 +100,7 @@ def observe(
             help="With --dds: the network to look at; lo is this computer only.",
             rich_help_panel=THROUGH,
         ),
-    ] = "",
+    ] = ""
     router: Annotated[
         str,
         typer.Option(
@@ -115,7 +109,7 @@ def observe(
             help="The same as ENDPOINT.",
             rich_help_panel=THROUGH,
         ),
-    ] = "",
+    ] = ""
     session_file: Annotated[
         Path | None,
         typer.Option(
@@ -125,7 +119,19 @@ def observe(
             help="With --zenoh: your own session file (JSON5), such as one with TLS.",
             rich_help_panel=THROUGH,
         ),
-    ] = None,
+    ] = None
+
+
+@reads_system(
+    "labels for --watch",
+    without=(
+        "policies", "fleet", "from_database", "neo4j", "add", "include_root", "decisions", "view",
+        "categories", "types", "project", "no_project",
+    ),
+)  # fmt: skip
+def observe(
+    inputs: Inputs,
+    look: DoorOptions,
     duration: Annotated[
         str, typer.Option("--for", metavar="DURATION", help="How long to look, such as 30s, 10m or 1h.")
     ] = SHORTEST,
@@ -153,23 +159,8 @@ def observe(
     from rosprivacy.observing import observe as looked
 
     stop = Stop()
-    wait = stop.wait if watch else time.sleep
-    doors = _doors(text, earlier, at, wait, ros2=ros2)
-    if endpoint and not zenoh:
-        raise typer.BadParameter(f"{shown(endpoint)}: an endpoint is for --zenoh, and each FILE follows a --text")
-    if (router and not zenoh) or ((peer or interface) and not dds):
-        raise typer.BadParameter("--router is for --zenoh; --peer and --interface are for --dds")
-    if endpoint and router:
-        raise typer.BadParameter("say once where the router is: --zenoh ENDPOINT, or --zenoh --router ENDPOINT")
-    if zenoh:
-        doors.append(_zenoh_door(domain, endpoint or router, session_file, wait))
-    if dds:
-        doors.append(_dds_door(domain, tuple(peer or ()), interface, wait))
-    if not doors:
-        raise typer.BadParameter(
-            "name a door: --text FILE, --ros2, --zenoh, --dds, or what was seen by --earlier POLICY"
-        )
-    if watch and (text or earlier or len(doors) > 1):
+    doors = _doors(look, stop.wait if watch else time.sleep)
+    if watch and (look.text or look.earlier or len(doors) > 1):
         what = "--watch looks through one door to a running system: no --text, no --earlier, and no second door"
         raise typer.BadParameter(what)
     if output:
@@ -182,19 +173,38 @@ def observe(
     _write(seen, output)
 
 
-def _doors(text: list[str] | None, earlier: list[str] | None, at: str | None, wait: Wait, *, ros2: bool) -> list[Door]:
+def _doors(look: DoorOptions, wait: Wait) -> list[Door]:
     """The doors that a user named, those that have looked already first."""
+    doors = _doors_of_ros(look, wait)
+    if look.endpoint and not look.zenoh:
+        raise typer.BadParameter(f"{shown(look.endpoint)}: an endpoint is for --zenoh, and each FILE follows a --text")
+    if (look.router and not look.zenoh) or ((look.peer or look.interface) and not look.dds):
+        raise typer.BadParameter("--router is for --zenoh; --peer and --interface are for --dds")
+    if look.endpoint and look.router:
+        raise typer.BadParameter("say once where the router is: --zenoh ENDPOINT, or --zenoh --router ENDPOINT")
+    if look.zenoh:
+        doors.append(_zenoh_door(look.domain, look.endpoint or look.router, look.session_file, wait))
+    if look.dds:
+        doors.append(_dds_door(look.domain, tuple(look.peer or ()), look.interface, wait))
+    if not doors:
+        raise typer.BadParameter(
+            "name a door: --text FILE, --ros2, --zenoh, --dds, or what was seen by --earlier POLICY"
+        )
+    return doors
+
+
+def _doors_of_ros(look: DoorOptions, wait: Wait) -> list[Door]:
     from rosprivacy.ingest.running.node_info import Ros2Program, TextFiles
     from rosprivacy.ingest.running.observed_files import EarlierFiles
     from rosprivacy.ingest.types import types_path
     from rosprivacy.observing import now, time_of
 
     doors: list[Door] = []
-    if earlier:
-        doors.append(EarlierFiles(tuple((file, str(types_path(Path(file)))) for file in earlier)))
-    if text:
-        doors.append(TextFiles(tuple(text), now, time_of(at) if at else ""))
-    if ros2:
+    if look.earlier:
+        doors.append(EarlierFiles(tuple((file, str(types_path(Path(file)))) for file in look.earlier)))
+    if look.text:
+        doors.append(TextFiles(tuple(look.text), now, time_of(look.at) if look.at else ""))
+    if look.ros2:
         doors.append(Ros2Program(now, wait=wait))
     return doors
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
 from rosprivacy.analysis.errors import QueryError, reason, shown
 from rosprivacy.cli.driver import driver_of
 from rosprivacy.cli.exit_code import UNDETERMINED
-from rosprivacy.cli.inputs import refuse
+from rosprivacy.cli.inputs import refuse, takes_groups
 from rosprivacy.cli.options import Output, Server
 from rosprivacy.cli.output import emit, not_for_a_terminal
 from rosprivacy.cli.query_answer import RowFormat, answer, listing, not_drawn
@@ -30,7 +30,9 @@ def complete_query(incomplete: str) -> list[str]:
     return [name for name in pack() if name.startswith(incomplete)]
 
 
-def query(
+class QuestionOptions(NamedTuple):
+    """What is asked."""
+
     name: Annotated[
         str | None,
         typer.Argument(
@@ -39,28 +41,33 @@ def query(
             show_default=False,
             help="Question to ask; without it the questions are listed.",
         ),
-    ] = None,
+    ] = None
     values: Annotated[
         list[str] | None,
         typer.Argument(metavar="KEY=VALUE", show_default=False, help="Parameters of the question."),
-    ] = None,
-    cypher: Annotated[str | None, typer.Option(metavar="TEXT", show_default=False, help="Ask this instead.")] = None,
+    ] = None
+    cypher: Annotated[str | None, typer.Option(metavar="TEXT", show_default=False, help="Ask this instead.")] = None
     file: Annotated[
         Path | None, typer.Option("--file", metavar="FILE", show_default=False, help="Ask what stands in this file.")
-    ] = None,
-    show: Annotated[bool, typer.Option("--show", help="Print the question's Cypher instead of asking it.")] = False,
+    ] = None
+    show: Annotated[bool, typer.Option("--show", help="Print the question's Cypher instead of asking it.")] = False
     schema: Annotated[
         bool, typer.Option("--schema", help="Print the labels, relationship types and properties of the graph instead.")
-    ] = False,
-    format: Annotated[  # noqa: A002 - the option's name
+    ] = False
+
+
+class RowOptions(NamedTuple):
+    """How rows are written."""
+
+    format: Annotated[
         RowFormat,
         typer.Option(
             "--format",
             "-f",
             help="Of the rows; a table that is too wide becomes records. SVG draws nodes, relationships and paths.",
         ),
-    ] = RowFormat.table,
-    output: Output = None,
+    ] = RowFormat.table
+    output: Output = None
     limit: Annotated[
         int | None,
         typer.Option(
@@ -69,8 +76,14 @@ def query(
             help="Most rows to print; without it 1000 in a table or a picture, and all in JSON and CSV. JSON or CSV "
             "that a limit cuts ends with exit code 4.",
         ),
-    ] = None,
-    timeout: Annotated[float, typer.Option(min=0.1, help="Seconds that the server may take.")] = 60.0,
+    ] = None
+    timeout: Annotated[float, typer.Option(min=0.1, help="Seconds that the server may take.")] = 60.0
+
+
+@takes_groups
+def query(
+    question: QuestionOptions,
+    written: RowOptions,
     neo4j: Server = None,
 ) -> None:
     """Ask the database: one of the questions that come with the program, or Cypher of your own, which only reads."""
@@ -78,34 +91,32 @@ def query(
     from rosprivacy.queries.run import LIMIT
     from rosprivacy.systems.stored_system import rows_of
 
-    given = list(values or ())
+    name, cypher, file, output = question.name, question.cypher, question.file, written.output
+    given = list(question.values or ())
     if (cypher is not None) + (file is not None) + (name is not None and "=" not in name) > 1:
         raise typer.BadParameter("name a question, or give --cypher, or --file")
-    if schema:
-        beside = (("NAME", name), ("--cypher", cypher), ("--file", file))
-        refuse("--schema", "no question", [what for what, value in beside if value is not None])
+    if question.schema:
+        others = (("NAME", name), ("--cypher", cypher), ("--file", file))
+        refuse("--schema", "no question", [what for what, value in others if value is not None])
         emit(listing(), output)
         return
     asked = None
     if cypher is None and file is None:
-        if name is None:
-            emit(_listed(pack().values()), output)
-            return
-        asked = find(name)
-        if show:
-            emit(asked.text, output)
+        asked = find(name) if name is not None else None
+        if asked is None or question.show:
+            emit(asked.text if asked else _listed(pack().values()), output)
             return
         text, parameters = asked.text, asked.values(_pairs(given))
     else:
         text = cypher if cypher is not None else _read(file)
         parameters = dict(_pairs([*([name] if name else []), *given]))
-    if format is RowFormat.svg:
+    if written.format is RowFormat.svg:
         _check_drawing(asked, output)
-    read_by_programs = format in (RowFormat.json, RowFormat.csv)
-    most = limit or (None if read_by_programs else LIMIT)
+    read_by_programs = written.format in (RowFormat.json, RowFormat.csv)
+    most = written.limit or (None if read_by_programs else LIMIT)
     with driver_of(neo4j) as driver:
-        rows, warning = rows_of(driver, text, parameters, limit=most, timeout=timeout, query=asked)
-    emit(answer(rows, format, _title(asked, given, file, text), wide=output is not None), output)
+        rows, warning = rows_of(driver, text, parameters, limit=most, timeout=written.timeout, query=asked)
+    emit(answer(rows, written.format, _title(asked, given, file, text), wide=output is not None), output)
     if rows.truncated:
         print(f"only the first {most:,} rows are shown; --limit shows more", file=sys.stderr)
     if warning:

@@ -3,24 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
 from rosprivacy.analysis.text import counted, printable
 from rosprivacy.cli.inputs import Inputs, reads_system, refuse
-from rosprivacy.cli.model_options import (
-    DryRun,
-    MaskNames,
-    Model,
-    ModelOptions,
-    ModelUrl,
-    Record,
-    Replay,
-    Requests,
-    Timeout,
-    Unencrypted,
-)
+from rosprivacy.cli.model_options import ModelOptions
 from rosprivacy.cli.options import NOT_USED, Output, TextOrJson
 from rosprivacy.cli.output import emit
 
@@ -32,9 +21,9 @@ if TYPE_CHECKING:
     from rosprivacy.result import Result
 
 
-@reads_system("all kinds, types and findings", without=("categories", "decisions"))
-def suggest(
-    inputs: Inputs,
+class EvidenceFiles(NamedTuple):
+    """More that suggestions are made by."""
+
     rules: Annotated[
         list[str] | None,
         typer.Option(
@@ -42,7 +31,7 @@ def suggest(
             help="More rules about names, in the format of ontology/names.yaml; may be repeated.",
             show_default=False,
         ),
-    ] = None,
+    ] = None
     packages: Annotated[
         list[str] | None,
         typer.Option(
@@ -51,7 +40,7 @@ def suggest(
             "may be repeated.",
             show_default=False,
         ),
-    ] = None,
+    ] = None
     source: Annotated[
         list[str] | None,
         typer.Option(
@@ -60,7 +49,7 @@ def suggest(
             "evidence; may be repeated.",
             show_default=False,
         ),
-    ] = None,
+    ] = None
     libraries: Annotated[
         list[str] | None,
         typer.Option(
@@ -68,7 +57,12 @@ def suggest(
             help="More rules about libraries, in the format of ontology/libraries.yaml; may be repeated.",
             show_default=False,
         ),
-    ] = None,
+    ] = None
+
+
+class AnswerOptions(NamedTuple):
+    """Where answers go."""
+
     into: Annotated[
         Path | None,
         typer.Option(
@@ -76,7 +70,7 @@ def suggest(
             help="Write the suggestions into this label file, as comments that 'labels --accept' reads.",
             show_default=False,
         ),
-    ] = None,
+    ] = None
     ask: Annotated[
         bool,
         typer.Option(
@@ -84,20 +78,19 @@ def suggest(
             help="Ask one question at a time, answered by single keys, and write each answer into the file of --into. "
             "Keys come from the terminal, or from standard input if it is none.",
         ),
-    ] = False,
+    ] = False
     by: Annotated[
         str | None,
         typer.Option(metavar="NAME", help="Who answers with --ask; by default the author of the file."),
-    ] = None,
-    model: Model = None,
-    model_url: ModelUrl = None,
-    mask: MaskNames = False,
-    dry_run: DryRun = False,
-    record: Record = None,
-    replay: Replay = None,
-    model_requests: Requests = 20,
-    model_timeout: Timeout = 300,
-    model_unencrypted: Unencrypted = False,
+    ] = None
+
+
+@reads_system("all kinds, types and findings", without=("categories", "decisions"))
+def suggest(
+    inputs: Inputs,
+    evidence: EvidenceFiles,
+    answers: AnswerOptions,
+    model: ModelOptions,
     format: Annotated[TextOrJson, typer.Option("--format", "-f", help="Of the answer.")] = TextOrJson.text,  # noqa: A002 - the option's name
     output: Output = None,
 ) -> None:
@@ -108,28 +101,26 @@ def suggest(
     from rosprivacy.labelling.knowledge import UserFiles
     from rosprivacy.labelling.suggesting import suggested
 
-    options = ModelOptions(
-        model, model_url, dry_run, mask, record, replay, model_requests, model_timeout, model_unencrypted
-    )
-    options.check(into)
+    into, stored = answers.into, inputs.given_options("fleet", "from_database")
+    model.check(into)
     refuse("suggest", "the table of types", ["--type-limits none"] if inputs.type_limits == NOT_USED else [])
-    refuse("suggest", "--by with --ask only", ["--by"] if by and not ask else [])
-    if ask and (into is None or output or format is TextOrJson.json or model or replay or dry_run):
+    refuse("suggest", "--by with --ask only", ["--by"] if answers.by and not answers.ask else [])
+    unasked = into is None or output or format is TextOrJson.json or model.model or model.replay or model.dry_run
+    if answers.ask and unasked:
         raise typer.BadParameter("--ask needs --into FILE; it takes neither --output, --format json nor a model")
-    stored = inputs.given_options("fleet", "from_database")
-    if model or replay:
-        refuse("--model" if model else "--replay", "the policies of one robot", stored)
+    if model.model or model.replay:
+        refuse("--model" if model.model else "--replay", "the policies of one robot", stored)
     if into:
         refuse("--into", "the label file of one robot (what you accept of a fleet's, write into its own)", stored)
     labels = _with_own(tuple(inputs.labels or ()), into)
-    files = UserFiles(rules or (), packages or (), source or (), libraries or ())
-    if ask and into:
-        _ask(into, inputs, files, by)
+    files = UserFiles(evidence.rules or (), evidence.packages or (), evidence.source or (), evidence.libraries or ())
+    if answers.ask and into:
+        _ask(into, inputs, files, answers.by)
         return
-    if dry_run:
-        emit(_would_be_sent(inputs, labels, files.sources, options), output)
+    if model.dry_run:
+        emit(_would_be_sent(inputs, labels, files.sources, model), output)
         return
-    with options.interview(output) as interview:
+    with model.interview(output) as interview:
 
         def progress() -> Suggested:
             return suggested(_result(inputs._replace(labels=list(labels))), inputs.settings, files, interview)
