@@ -6,6 +6,7 @@ and what people added are not touched. If a robot was loaded since it was read, 
 
 from __future__ import annotations
 
+import json
 from collections import defaultdict
 from typing import TYPE_CHECKING, Any
 
@@ -50,7 +51,11 @@ WRITE_ELEMENTS = (
 WRITE_FLOWS = "UNWIND $rows AS row MATCH ()-[f]->() WHERE elementId(f) = row.key SET f += row.properties"
 # Flows, findings and what is carried end at elements that people added, also at those of a later transaction.
 NAME_ELEMENTS = "UNWIND $rows AS row MATCH (n) WHERE elementId(n) = row.key SET n:Element, n.id = row.properties.id"
-DELETE_ORIGINS = "MATCH ()-[d:DERIVES_FROM]->() WHERE d.robot IN $names DELETE d"
+READ_ORIGINS = (
+    "MATCH (a)-[d:DERIVES_FROM]->(b) WHERE d.robot IN $names "
+    "RETURN elementId(d) AS key, a.id AS source, b.id AS target, properties(d) AS properties"
+)
+DELETE_ORIGINS = "UNWIND $rows AS row MATCH ()-[d:DERIVES_FROM]->() WHERE elementId(d) = row.key DELETE d"
 VERDICTS = (
     "UNWIND $rows AS row MATCH (r:Robot {name: row.robot}) "
     "SET r.verdict = row.verdict, r.doubts = row.doubts, r.version = r.version + 1 REMOVE r.digest"
@@ -182,11 +187,10 @@ class _Changes:
         write(transaction, NAME_ELEMENTS, self._unnamed)
         write(transaction, WRITE_ELEMENTS, _rows(self._elements, robots))
         write(transaction, WRITE_FLOWS, _rows(self._flows, robots))
-        run(transaction, DELETE_ORIGINS, names=robots)
         run(transaction, cypher.DELETE_FINDINGS, names=robots)
         if self.changed:  # what is there is not what was loaded: what the enforced view adds to it is not known
             delete_beyond(transaction, robots)
-        write(transaction, cypher.create_relationships(DERIVES_FROM), _rows(self._origins, robots))
+        self._write_origins(transaction, robots)
         write(transaction, cypher.CREATE_FINDINGS, _rows(self._findings, robots))
         write(transaction, cypher.CREATE_ACROSS, _rows(self._across, robots))
         self._write_carried(transaction, robots)
@@ -196,6 +200,14 @@ class _Changes:
         domain = self._stored.robots[robot].get("part") == DOMAIN
         verdict = None if domain else str(self._verdicts[robot])
         return {"robot": robot, "verdict": verdict, "doubts": self._doubts.get(robot)}
+
+    def _write_origins(self, transaction: ManagedTransaction, robots: list[str]) -> None:
+        """What nodes of some robots make of data of which source, as far as it differs."""
+        new = {_origin(row): row for row in _rows(self._origins, robots)}
+        there = transaction.run(READ_ORIGINS, names=robots)
+        stale = [{"key": row["key"]} for row in there if new.pop(_origin(row), None) is None]  # or there twice
+        write(transaction, DELETE_ORIGINS, stale)
+        write(transaction, cypher.create_relationships(DERIVES_FROM), list(new.values()))
 
     def _write_carried(self, transaction: ManagedTransaction, robots: list[str]) -> None:
         """Where kinds of data go from elements of some robots, as far as it differs; intakes stand before."""
@@ -211,6 +223,12 @@ def _additions(present: Mapping[tuple[str, str], set[str]], former: Mapping[tupl
     """What goes between two ends in one and not in the other."""
     more = {ends: types - former.get(ends, set()) for ends, types in present.items()}
     return [{"source": a, "target": b, "types": sorted(types)} for (a, b), types in more.items() if types]
+
+
+def _origin(row: Mapping[str, Any]) -> tuple[str, str, str]:
+    """What a ``DERIVES_FROM`` says, to compare by."""
+    properties = {key: value for key, value in row["properties"].items() if value is not None}
+    return row["source"], row["target"], json.dumps(properties, sort_keys=True)
 
 
 def _rows(grouped: Mapping[str, list[Row]], robots: list[str]) -> list[Row]:

@@ -305,6 +305,45 @@ class TestWhatPeopleAdd:
         assert care.execute_query("MATCH (f:Finding) RETURN count(f)").records[0][0] == 3
 
 
+class TestOrigins:
+    """What nodes make of which source's data is written where it changed only."""
+
+    READ = (
+        "MATCH (a)-[d:DERIVES_FROM]->(b) "
+        "RETURN elementId(d) AS key, a.name AS made, b.name AS source, properties(d) AS said ORDER BY made, source"
+    )
+
+    def test_what_did_not_change_stays(self, care: Driver) -> None:
+        before = [record.data() for record in care.execute_query(self.READ).records]
+        assert before
+        answer_stored(care, Settings())
+        assert [record.data() for record in care.execute_query(self.READ).records] == before
+
+    @pytest.mark.parametrize(
+        "change",
+        [
+            "MATCH ()-[d:DERIVES_FROM]->() WITH d LIMIT 1 DELETE d",
+            "MATCH ()-[d:DERIVES_FROM]->() WITH d LIMIT 1 SET d.category = 'Voice'",
+            "MATCH (a)-[d:DERIVES_FROM]->(b) WITH a, d, b LIMIT 1 CREATE (a)-[e:DERIVES_FROM]->(b) SET e = properties(d)",
+        ],
+        ids=["gone", "another", "twice"],
+    )
+    def test_what_changed_is_as_it_was_loaded(self, care: Driver, change: str) -> None:
+        def rows() -> list[dict[str, object]]:
+            return [{**record.data(), "key": ""} for record in care.execute_query(self.READ).records]
+
+        before = rows()
+        care.execute_query(change)
+        assert rows() != before
+        answer_stored(care, Settings())
+        assert rows() == before
+
+    def test_of_a_label_that_is_gone_nothing_is_left(self, care: Driver) -> None:
+        care.execute_query("MATCH ()-[d:DERIVES]->() DELETE d")
+        answer_stored(care, Settings())
+        assert not care.execute_query(self.READ).records
+
+
 class TestProblems:
     @pytest.mark.parametrize(
         ("damage", "message"),
