@@ -324,7 +324,7 @@ class TestOrigins:
         [
             "MATCH ()-[d:DERIVES_FROM]->() WITH d LIMIT 1 DELETE d",
             "MATCH ()-[d:DERIVES_FROM]->() WITH d LIMIT 1 SET d.category = 'Voice'",
-            "MATCH (a)-[d:DERIVES_FROM]->(b) WITH a, d, b LIMIT 1 CREATE (a)-[e:DERIVES_FROM]->(b) SET e = properties(d)",
+            "MATCH (a)-[d:DERIVES_FROM]->(b) WITH * LIMIT 1 CREATE (a)-[e:DERIVES_FROM]->(b) SET e = properties(d)",
         ],
         ids=["gone", "another", "twice"],
     )
