@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from rosprivacy.analysis.suggesting.evidence import ROLES
 from tests.helpers.command import Cli, refused
 from tests.helpers.factory import BEFORE
 from tests.helpers.observed import node_info
@@ -100,3 +101,19 @@ def test_a_page_or_a_drawing_is_not_poured_into_a_terminal(words: tuple[str, ...
     os.close(here)
     assert done.returncode == 2
     assert re.search("is not for a terminal; name a file with --output, or pipe it", done.stderr)
+
+
+def test_the_words_of_the_program_stand_on_one_screen(cli: Cli) -> None:
+    done = cli("help", "words")
+    lines = done.stdout.splitlines()
+    assert done.returncode == 0
+    assert len(lines) <= 24
+    assert max(map(len, lines)) <= 80
+    assert cli("help").stdout == done.stdout
+    explained = {line.split("  ")[0] for line in lines}
+    assert {*ROLES} - {"derivation", "never"} | {"leg", "absent", "declared", "enforced", "open"} <= explained
+
+
+def test_a_command_is_explained_as_by_its_own_help(cli: Cli) -> None:
+    assert cli("help", "analyze").stdout == cli("analyze", "--help").stdout
+    assert "did you mean words?" in " ".join(cli("help", "wrods").stderr.replace("│", "").split())

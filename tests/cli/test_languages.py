@@ -15,6 +15,7 @@ STILL_ENGLISH = {
     "decide": "what was recorded",
     "diff": "what changed; 'report --since' tells it in a language",
     "fleet": "which robots are alike",
+    "help": "the words of label files, which are English",
     "init": "which files were written",
     "labels": "review lists and label files",
     "load": "counts",

@@ -23,6 +23,7 @@ from rosprivacy.version import __version__
 COMMANDS = {  # name -> its group in help; each stands in the module of its name
     "try": BEGIN,
     "init": BEGIN,
+    "help": BEGIN,
     "observe": OBSERVE,
     "labels": LABEL,
     "explore": LABEL,
@@ -47,7 +48,7 @@ COMMANDS = {  # name -> its group in help; each stands in the module of its name
     "query": MANY,
     "db": MANY,
 }
-FUNCTIONS = {"try": "try_out"}  # of commands whose name is none that Python allows
+FUNCTIONS = {"try": "try_out", "help": "help_topic"}  # of commands whose name Python or another module has
 
 
 @cache
