@@ -158,7 +158,7 @@ def test_it_states_nothing_that_decides_where_to_read_or_write() -> None:
 def test_the_search_ends(home: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert nearest_project(home / "below") == home / "rosprivacy.toml"
     own = home / "below" / "pyproject.toml"
-    own.write_text("[tool.other]\nx = 1\n")  # nothing is said here
+    own.write_text('[project]\ndependencies = ["rosprivacy"]\n[tool.other]\nx = 1\n')  # nothing is said here
     assert nearest_project(home / "below") == home / "rosprivacy.toml"
     own.write_text('[tool.rosprivacy]\nlang = "fr"\n')
     assert nearest_project(home / "below") == own
@@ -182,6 +182,11 @@ def test_another_file_system_ends_the_search(tmp_path: Path) -> None:
         assert nearest_project(folder) is None
     finally:
         folder.rmdir()
+
+
+def test_a_file_of_python_that_says_nothing_is_no_project_file(cli: Cli, home: Path) -> None:
+    (home / "pyproject.toml").write_text("[tool.other]\n")
+    assert "has no [tool.rosprivacy]" in "".join(refused(cli("analyze", "--project", "pyproject.toml", cwd=home)))
 
 
 def test_two_files_in_one_folder(cli: Cli, home: Path) -> None:

@@ -12,7 +12,7 @@ import os
 import re
 import stat
 import tomllib
-from functools import partial
+from functools import lru_cache, partial
 from glob import has_magic, iglob
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -117,9 +117,9 @@ def nearest_project(start: Path) -> Path | None:
     The search ends at the root of a repository, at another file system and below the home folder: what lies further up
     belongs to something else.
     """
-    home, device = Path.home(), start.stat().st_dev
+    home, device = _home(), start.stat().st_dev
     for folder in (start, *start.parents):
-        if (folder == home and folder != start) or folder.stat().st_dev != device:
+        if (folder == home and folder != start) or folder.stat().st_dev != device or not os.access(folder, os.X_OK):
             return None
         own, of_python = folder / OWN_FILE, folder / PYTHON_FILE
         files = [file for file in (own, of_python) if file.is_file() and (file == own or _has_table(file))]
@@ -141,8 +141,15 @@ def read_project(file: Path) -> Project:
     InputErrors
         With every problem of it, one line each.
     """
+    text, data = read_utf8(str(file), MAX_BYTES, partial(InputError, _near(file)))
+    return _parsed(file, Path.cwd(), text, hashlib.sha256(data).hexdigest())
+
+
+@lru_cache(maxsize=8)  # a command asks for it several times, and what it names may be a large folder
+def _parsed(file: Path, working_folder: Path, text: str, sha256: str) -> Project:
+    """What a text states; names are relative to the working folder."""
+    del working_folder
     name = _near(file)
-    text, data = read_utf8(str(file), MAX_BYTES, partial(InputError, name))
     try:
         whole = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
@@ -151,14 +158,16 @@ def read_project(file: Path) -> Project:
         raise InputErrors([InputError(name, line, SYNTAX.sub("", str(error)), "correct the TOML")]) from None
     table: Mapping[str, Any] = whole
     if file.name == PYTHON_FILE:
-        table = whole.get("tool", {}).get("rosprivacy", {})
+        table = whole.get("tool", {}).get("rosprivacy")
+        if not isinstance(table, dict):
+            raise InputErrors([InputError(name, 0, "has no [tool.rosprivacy]", "write one, or name another file")])
     reader = _Reader(name, text, file.parent)
     values = {key.replace("-", "_"): reader.value(key, value) for key, value in table.items()}
     if "policies" in table and "fleet" in table:
         reader.problem("fleet", "policies and a fleet", "a system is one or the other: keep one of them")
     if reader.problems:
         raise InputErrors(reader.problems)
-    return Project(name, hashlib.sha256(data).hexdigest(), **values)
+    return Project(name, sha256, **values)
 
 
 class _Reader:
@@ -254,9 +263,22 @@ def _check_trust(file: Path) -> None:
         raise InputErrors([InputError(name, 0, "the project file lies in a folder that all may write to", TRUST)])
 
 
+def _home() -> Path | None:
+    try:
+        return Path.home()
+    except RuntimeError:  # nobody knows where it is
+        return None
+
+
 def _has_table(file: Path) -> bool:
-    """Whether a ``pyproject.toml`` speaks of this program; one that is of others alone is not even parsed."""
-    return b"tool.rosprivacy" in beginning(str(file), MAX_BYTES, passed_over=True)
+    """Whether a ``pyproject.toml`` speaks of this program; one that does not is not even parsed."""
+    data = beginning(str(file), MAX_BYTES, passed_over=True)
+    if b"rosprivacy" not in data:
+        return False
+    try:
+        return "rosprivacy" in tomllib.loads(data.decode()).get("tool", {})
+    except (ValueError, TypeError):  # who reads it says what is wrong
+        return True
 
 
 def _all_of(name: str) -> Iterator[str]:
