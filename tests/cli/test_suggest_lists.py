@@ -398,3 +398,28 @@ def test_two_digits_that_come_at_once_confirm_no_list_without_enter(robot: Path)
     assert b"10 and Enter for none of it in all 10" in shown
     assert b"'10q' is no answer here; 10 rows left" in shown
     assert text_of(robot) == before
+
+
+@pytest.mark.slow
+def test_a_number_and_enter_may_come_at_once(robot: Path) -> None:
+    """As over a slow line, or pasted."""
+    names = [f"/joints_{number}" for number in range(10)]
+    nodes: Nodes = {"eye": (["/a"], []), "middle": (names, ["/a"]), "here": ([], names)}
+    robot_of(robot, nodes, labels_of({name[1:]: JOINTS for name in names}, "  /here: conduit\n"))
+    ours, theirs = pty.openpty()
+    with subprocess.Popen(COMMAND, cwd=robot, stdin=theirs, stdout=subprocess.PIPE, bufsize=0) as process:
+        assert process.stdout is not None
+        shown = b""
+        while not shown.endswith(b"> ") and (more := process.stdout.read(1)):
+            shown += more
+        wait_for_keys(theirs)
+        os.write(ours, b"10\r")
+        while (
+            (more := process.stdout.read(1)) and b"nothing is left" not in shown and not shown.endswith(b"? help\n> ")
+        ):
+            shown += more
+        os.close(ours)
+        shown += process.stdout.read()
+    os.close(theirs)
+    assert b"no answer here" not in shown
+    assert text_of(robot).count("never: ") >= 10

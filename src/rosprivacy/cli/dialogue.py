@@ -149,7 +149,10 @@ class _Terminal:
             return self._line(_typed_line(key) if at_terminal() else key + _rest_of_line(), question, picked)
         if not at_terminal():
             return self._piped(key, question, picked)
-        return _number(key) if question.about == LISTED and key and DIGITS.issuperset(key) else key
+        number = key.rstrip("\r\n")  # a slow line gives a number and Enter at once
+        if question.about != LISTED or not number or not DIGITS.issuperset(number):
+            return key
+        return number if number != key else _number(key)
 
     def _line(self, line: str, question: LabelQuestion, picked: frozenset[int]) -> str | WrittenLabel | None:
         """The keys that a line comes to, if the question offers what it says; or the label that it is."""

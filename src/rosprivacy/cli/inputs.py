@@ -113,7 +113,8 @@ class Inputs(NamedTuple):
     def required_policies(self) -> tuple[str, ...]:
         """The policies that are named; there has to be one, or a saved graph."""
         if not self.policies and not self.add:
-            raise typer.BadParameter("name at least one policy: a file, a folder or a glob", param_hint="POLICY")
+            what = "name at least one policy: a file, a folder or a glob; or have one named by a project file"
+            raise typer.BadParameter(f"{what} (rosprivacy init)", param_hint="POLICY")
         return tuple(self.policies or ())
 
     def given_options(self, *names: str) -> list[str]:
