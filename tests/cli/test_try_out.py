@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import os
+import pty
 import re
+import shutil
+import subprocess
+import sys
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -128,3 +133,21 @@ def test_init_asks_few_questions_and_only_on_a_terminal(cli: Cli, examples: Path
     )
     assert "POLICY" in cli("init", "--from-try", cwd=tmp_path).stderr
     assert not list(tmp_path.iterdir())
+
+
+def test_names_that_no_project_file_can_state_are_refused(cli: Cli, examples: Path, tmp_path: Path) -> None:
+    policy = tmp_path / "a\nb.policy.xml"
+    policy.write_bytes((examples / "factory" / "node.xml").read_bytes())
+    assert "such a name" in "".join(refused(cli("init", "--from-try", policy.name, cwd=tmp_path)))
+
+
+def test_who_ends_the_questions_has_found_no_leak(examples: Path, tmp_path: Path) -> None:
+    shutil.copytree(examples / "factory", tmp_path, dirs_exist_ok=True)
+    ours, theirs = pty.openpty()
+    command = [sys.executable, "-m", "rosprivacy", "init", "before.policy.xml"]
+    with subprocess.Popen(command, cwd=tmp_path, stdin=theirs, stdout=subprocess.PIPE) as process:
+        os.write(ours, b"\x04")
+        assert process.wait(60) == 130
+    os.close(ours)
+    os.close(theirs)
+    assert not (tmp_path / "rosprivacy.toml").exists()

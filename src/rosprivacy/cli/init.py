@@ -7,6 +7,7 @@ import os
 import sys
 from dataclasses import replace
 from pathlib import Path
+from signal import SIGINT
 from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
@@ -22,7 +23,7 @@ from rosprivacy.ingest.reading.bounded_file import leaves
 from rosprivacy.ingest.types import named_after, types_path
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Mapping, Sequence
 
     from rosprivacy.cli.what_runs import Read
     from rosprivacy.labelling.label_lines import LabelLines
@@ -97,10 +98,13 @@ def _answers_of_person(answers: ProjectAnswers) -> ProjectAnswers:
     """What a person answers; Enter takes what stands there."""
     if not sys.stdin.isatty():
         raise typer.BadParameter("it asks on a terminal: give --from-try to take what it proposes")
-    labels = typer.prompt("Label file", answers.labels)
-    author = typer.prompt("Who says what is in it (your name)", answers.author or None)
-    lang = typer.prompt("Language of reports", answers.lang.value, type=Language)
-    fail_on = typer.prompt("What `rosprivacy analyze` fails on", answers.fail_on.value, type=FailOn)
+    try:
+        labels = typer.prompt("Label file", answers.labels)
+        author = typer.prompt("Who says what is in it (your name)", answers.author or None)
+        lang = typer.prompt("Language of reports", answers.lang.value, type=Language)
+        fail_on = typer.prompt("What `rosprivacy analyze` fails on", answers.fail_on.value, type=FailOn)
+    except typer.Abort:  # it would end with 1, which says 'leak'
+        raise typer.Exit(128 + SIGINT) from None
     return answers._replace(labels=labels, author=author, lang=lang, fail_on=fail_on)
 
 
@@ -151,12 +155,19 @@ def _check_free(files: Mapping[str, str]) -> None:
         raise InputErrors([InputError(name, 0, "is there already, and is not written over", hint) for name in there])
 
 
-def _check_here(names: Iterable[str]) -> None:
-    """A project file names files below itself only."""
-    out = [name for name in names if not name.startswith(SHIPPED) and leaves(name, os.path.realpath(os.curdir))]
-    if out:
-        hint = "begin in the folder that has it"
-        raise InputErrors([InputError(name, 0, "lies outside of this folder", hint) for name in out])
+def _check_here(names: Sequence[str]) -> None:
+    """A project file names files below itself only, in printable UTF-8."""
+    root = os.path.realpath(os.curdir)
+    problems = [
+        InputError(name, 0, "lies outside of this folder", "begin in the folder that has it")
+        for name in names if not name.startswith(SHIPPED) and leaves(name, root)
+    ]  # fmt: skip
+    problems += [
+        InputError(name, 0, "a project file cannot have such a name in it", "rename the file")
+        for name in names if not name.isprintable()
+    ]  # fmt: skip
+    if problems:
+        raise InputErrors(problems)
 
 
 def _say_what_is_next(files: Mapping[str, str], answers: ProjectAnswers, suggestions: int) -> None:
