@@ -359,6 +359,23 @@ def test_the_readmes_commands_run_as_they_stand_there(cli: Cli, tmp_path: Path) 
     assert (tmp_path / "report.html").stat().st_size > 10_000
 
 
+@pytest.mark.slow
+def test_the_first_hour_goes_as_its_page_says(cli: Cli, tmp_path: Path) -> None:
+    page = ROOT / "docs" / "first-hour.md"
+    shutil.copy(ROOT / "examples" / "telepresence" / "graph.txt", tmp_path)
+    codes, answers = {}, []
+    for line in [line for block in blocks(page, "console") for line in block.splitlines()]:
+        program, *words = shlex.split(line)
+        done = cli(*words, cwd=tmp_path)
+        assert program == "rosprivacy"
+        codes[words[0]] = done.returncode
+        answers.append(done.stdout)
+    assert codes == {"try": 4, "init": 0, "labels": 0, "analyze": 1, "mitigate": 0, "report": 0, "diff": 0}
+    (shown,) = blocks(page, "text")
+    assert shown in answers[0]
+    assert {file.name for file in tmp_path.iterdir()} >= {"robot.types.yaml", "rosprivacy.toml", "report.html"}
+
+
 def test_every_id_in_the_readme_is_of_the_system_that_it_analyses() -> None:
     folder = ROOT / "examples" / "factory"
     document = rosprivacy.analyze(str(folder / "before.policy.xml"), str(folder / "run2.labels.yaml")).document()

@@ -39,6 +39,11 @@ def text_of(robot: dict[str, Any]) -> str:
     return "".join(parts)
 
 
+def test_the_example_is_one_of_these_robots() -> None:
+    text = (ROOT / "examples" / "telepresence" / "graph.txt").read_text("utf-8")
+    assert text == text_of(yaml.safe_load((ROOT / "tests" / "cases" / "try" / "telepresence.yaml").read_text()))
+
+
 @pytest.fixture
 def graph(tmp_path: Path) -> Any:
     def write(robot: dict[str, Any]) -> Path:
