@@ -38,7 +38,10 @@ class FileKind(NamedTuple):
 POLICY = FileKind("an SROS 2 policy", "name it by itself")
 PERMISSIONS = FileKind("permissions or governance", "name it by itself")
 ACCESS_LIST = FileKind("an access list of Zenoh", "name it by itself, as .json5")
-NODE_INFO = FileKind("the output of `ros2 node info`", "make a policy of it: rosprivacy observe --text FILE")
+NODE_INFO = FileKind(
+    "the output of `ros2 node info`",
+    "see what could get out: rosprivacy try FILE; or make a policy of it: rosprivacy observe --text FILE",
+)
 LAUNCH = FileKind("a launch file", "start it, and make a policy of what runs: rosprivacy observe --ros2")
 _BY_KEY = {
     "labels": FileKind("a label file", "give it with --labels (-l)"),
