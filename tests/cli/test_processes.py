@@ -61,6 +61,11 @@ ENDINGS = {
     f"graph {BEFORE} --format mermaid": 0,
     f"graph {BEFORE} --format nope": 2,
     "labels --init examples/factory/before.policy.xml": 0,
+    "try examples/factory/before.policy.xml": 4,
+    "try examples/factory/nope.xml": 2,
+    "init --from-try examples/factory/nope.xml": 2,  # an answer would write files
+    "help words": 0,
+    "help wrods": 2,
     "suggest examples/factory/before.policy.xml": 0,
     "suggest examples/factory/nope.xml": 2,
     "labels --init examples/factory/nope.xml": 2,
@@ -118,6 +123,6 @@ def test_every_command_is_there_with_an_answer_and_a_refusal() -> None:
     assert all(ends.values()), ends
     answers_only, needs_a_server = {"law", "db"}, {"unload"}
     assert {name for name, codes in ends.items() if not codes & {2, 3}} == answers_only
-    refused_only = {"decide", "explore", "load", "observe"}
+    refused_only = {"decide", "explore", "init", "load", "observe"}
     assert {name for name, codes in ends.items() if not codes & {0, 1, 4}} == needs_a_server | refused_only
     assert set().union(*ends.values()) == {0, 1, 2, 3, 4}, f"{OWN_ERROR} stands in test_own_errors.py"

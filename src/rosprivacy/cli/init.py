@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 import typer
 
 from rosprivacy.analysis.errors import InputError, InputErrors, shown
-from rosprivacy.analysis.text import counted
+from rosprivacy.analysis.text import blanked, counted
 from rosprivacy.cli.exit_code import FailOn
 from rosprivacy.cli.inputs import Inputs, reads_system
 from rosprivacy.cli.options import Language
@@ -127,7 +127,7 @@ def _label_file(read: Read, answers: ProjectAnswers) -> LabelLines:
     there = read.inputs
     suggestions = suggest_labels(there.required_policies, tuple(there.labels or ()), there.settings)
     lines = with_suggestions(answers.labels, suggestions)
-    author = f"author: {json.dumps(answers.author, ensure_ascii=False)}\n" if answers.author else ""
+    author = f"author: {json.dumps(blanked(answers.author, '?'), ensure_ascii=False)}\n" if answers.author else ""
     return replace(lines, text=lines.text.replace(NEW, NEW + author, 1))
 
 

@@ -179,8 +179,8 @@ class _Reader:
 
     def problem(self, key: str, problem: str, hint: str) -> None:
         """Note what is wrong at the line of a key."""
-        is_key = re.compile(rf"\s*[\"']?{re.escape(key)}[\"']?\s*=")
-        line = next((number for number, text in enumerate(self._lines, 1) if is_key.match(text)), 0)
+        keys = (text.partition("=")[0].strip().strip("\"'") for text in self._lines)
+        line = next((number for number, there in enumerate(keys, 1) if there == key), 0)
         self.problems.append(InputError(self._file, line, problem, hint))
 
     def value(self, key: str, value: Any) -> Any:

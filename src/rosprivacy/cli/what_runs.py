@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 Ros2 = Annotated[bool, typer.Option("--ros2", help="Ask the `ros2` program of this machine what runs.")]
 AS_OBSERVED = "as observed"  # in place of a file that is not written
+LINE_AS_OBSERVED = re.compile(r"as observed:\d+")
 
 
 class Read(NamedTuple):
@@ -44,8 +45,8 @@ class Read(NamedTuple):
         if self.observed is None or not self.inputs.policies or not self.inputs.types:
             return text
         for name, instead in ((self.inputs.policies[0], policy), (self.inputs.types[-1], types)):
-            text = text.replace(name, instead) if instead else re.sub(re.escape(name) + r"(:\d+)?", AS_OBSERVED, text)
-        return text
+            text = text.replace(name, instead or AS_OBSERVED)
+        return text if policy else LINE_AS_OBSERVED.sub(AS_OBSERVED, text)
 
 
 @contextmanager
