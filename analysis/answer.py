@@ -6,7 +6,8 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import TYPE_CHECKING, NamedTuple
 
-from rosprivacy.analysis.model import Rank
+from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.model import DISCLOSURE, Rank
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
@@ -26,7 +27,7 @@ class Step(NamedTuple):
     grants: tuple[Grant, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Finding:
     """A category reaches a place that it should not, rule S10.
 
@@ -83,6 +84,13 @@ class Finding:
     why: Reason | None = None
     accepted: bool = False
     plain_also: bool = False
+
+    def __repr__(self) -> str:
+        kind = "" if self.kind == DISCLOSURE else f"{self.kind} of "
+        data = f"{'pseudonymised ' if self.pseudonymised else ''}{self.category}"
+        ends = f"{shown(self.source.full_name)} -> {shown(self.leak.full_name)}"
+        states = [state for state in ("dismissed", "accepted") if getattr(self, state)]
+        return f"<Finding {', '.join([f'{self.id}: {kind}{data}: {ends}', *states])}>"
 
     @property
     def disjoint_paths(self) -> int:
@@ -206,6 +214,22 @@ class ClosedByShipped(NamedTuple):
         return (self.channel, self.end) if self.end else (self.channel,)
 
 
+class ClosedByLine(NamedTuple):
+    """A channel at which a line ``only: by-type`` alone closes a way on (rules S7, S11).
+
+    Attributes
+    ----------
+    categories
+        What would get there, and go on to a leak, an element outside ROS or a node that nobody reviewed, and does not.
+    place
+        The line.
+    """
+
+    channel: Element
+    categories: tuple[str, ...]
+    place: Place
+
+
 class ByGlobs(NamedTuple):
     """An element, or a flow, that only globs answer for (rule S11).
 
@@ -265,6 +289,9 @@ class Analysis:
         Names of the message types of each channel, sorted (rule S15).
     closed
         What only the types of channels close; None where no limits of types apply (rule S15).
+    closed_by_lines
+        Channels at which only a line ``only: by-type`` keeps data from a leak, an element outside ROS or a node that
+        nobody reviewed.
     lacking
         What 'no leak found' needs and is missing, as the code of a diagnostic; empty if nothing is (rules S11, S12).
     """
@@ -288,6 +315,7 @@ class Analysis:
     lacking: str = ""
     closed: ClosedByTypes | None = None
     types: Mapping[Element, tuple[str, ...]] = field(default_factory=dict)
+    closed_by_lines: tuple[ClosedByLine, ...] = ()
 
 
 def writers_and_readers(graph: FlowGraph, elements: Iterable[Element]) -> Iterator[tuple[Element, Element]]:

@@ -6,17 +6,28 @@ reveal there, with the provision that says so. A context never weakens what is s
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from types import MappingProxyType
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
-from rosprivacy.analysis.model import ARTICLE_9_VERDICTS, MAY_REVEAL, SPECIAL
+from rosprivacy.analysis.model import (
+    ARTICLE_9_VERDICTS,
+    GDPR_APPLIES,
+    GDPR_DENIED,
+    GDPR_OPEN,
+    MAY_REVEAL,
+    SPECIAL,
+    Surroundings,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.answer import Finding
     from rosprivacy.analysis.hierarchy import Hierarchy
-    from rosprivacy.analysis.model import Bound, Category, FlowGraph, Legal
+    from rosprivacy.analysis.model import Bound, Category, FlowGraph, Legal, Statement
 
+UNSTATED_PLACE = Surroundings()
+At = TypeVar("At")
 _WEAKER = ARTICLE_9_VERDICTS[ARTICLE_9_VERDICTS.index(MAY_REVEAL) :]
 
 
@@ -87,6 +98,37 @@ def article9_in(category: Category, contexts: Collection[str]) -> str:
     return category.article9
 
 
+def _scopes(graph: FlowGraph, bound: Bound, *, together: bool) -> dict[tuple[str, str, str], str]:
+    """Return whether the GDPR applies at each source where that is not plain; of one name in a fleet, the plainest."""
+    if not any(where.abroad for where in bound.surroundings.values()):
+        return {}
+    plainest = (GDPR_APPLIES, GDPR_OPEN, GDPR_DENIED)
+    own = {
+        graph.elements[vertex].identity: scope
+        for vertex, scope in scopes_of_sources(bound.elements, bound.surroundings)
+    }
+    of_name = {name: {*scopes} for name, scopes in bound.scopes.items()}
+    for (_, *name), scope in own.items() if together else ():
+        of_name.setdefault((name[0], name[1]), set()).add(scope)
+    scopes = {at: min({scope, *of_name.get(at[1:], ())}, key=plainest.index) for at, scope in own.items()}
+    return {at: scope for at, scope in scopes.items() if scope != GDPR_APPLIES}
+
+
+def scopes_of_sources(
+    stated: Mapping[At, Iterable[Statement]], surroundings: Mapping[At, Surroundings]
+) -> Iterator[tuple[At, str]]:
+    """Yield whether the GDPR applies where each source works, as far as it is stated (Article 3).
+
+    >>> from rosprivacy.analysis.example import factory
+    >>> _, bound = factory()[:2]
+    >>> {scope for _, scope in scopes_of_sources(bound.elements, bound.surroundings)}
+    {'applies'}
+    """
+    for at, statements in stated.items():
+        if any(statement.role == "source" for statement in statements):
+            yield at, surroundings.get(at, UNSTATED_PLACE).gdpr
+
+
 class Contexts(NamedTuple):
     """The contexts of a system's sources.
 
@@ -96,11 +138,14 @@ class Contexts(NamedTuple):
         (robot, kind, name) -> contexts.
     everywhere
         Those of all sources.
+    gdpr
+        (robot, kind, name) of a source -> whether the GDPR applies (Article 3), where that is not plain.
     """
 
     by_source: Mapping[tuple[str, str, str], frozenset[str]]
     categories: Mapping[str, Category]
     everywhere: frozenset[str] = frozenset()
+    gdpr: Mapping[tuple[str, str, str], str] = MappingProxyType({})
 
     @classmethod
     def of(
@@ -129,7 +174,9 @@ class Contexts(NamedTuple):
             of_name["", *of_kind] = of_name.get(("", *of_kind), frozenset()).union(more)
         elements = (element.identity for element in graph.elements if not element.is_channel) if of_name else ()
         keys = {one: of_name.get(("" if together else one[0], *one[1:]), frozenset()) for one in elements}
-        return cls(keys, categories, frozenset[str]().union(*of_name.values()))
+        return cls(
+            keys, categories, frozenset[str]().union(*of_name.values()), _scopes(graph, bound, together=together)
+        )
 
     def revealed(self, finding: Finding) -> tuple[Legal, ...]:
         """Return what the data of a finding may reveal where they are brought in, beside what holds everywhere.
@@ -141,6 +188,17 @@ class Contexts(NamedTuple):
         0
         """
         return revealed(self.categories[finding.category], self._at(finding))
+
+    def scope(self, finding: Finding) -> str:
+        """Return whether the GDPR applies where the data of a finding are brought in, as far as it is stated.
+
+        >>> from rosprivacy.analysis.example import CATEGORIES, factory
+        >>> from rosprivacy.analysis.findings.findings import analyse
+        >>> faces, *_ = analyse(*factory()).findings
+        >>> Contexts({}, CATEGORIES).scope(faces)
+        'applies'
+        """
+        return self.gdpr.get(finding.source.identity, GDPR_APPLIES)
 
     def article9(self, finding: Finding) -> str:
         """Return the strongest verdict under Article 9(1) on the data of a finding, where they are brought in.

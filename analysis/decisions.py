@@ -10,12 +10,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.case import Case
 from rosprivacy.analysis.errors import DecisionError
 from rosprivacy.analysis.expressions import regex
-from rosprivacy.analysis.legal import gaps
+from rosprivacy.analysis.legal import acceptance_gaps
 from rosprivacy.analysis.model import Diagnostic, Place, Severity
 from rosprivacy.analysis.remembered import change_text, changes
 from rosprivacy.analysis.written_names import bare_name, is_glob
@@ -36,6 +36,7 @@ class Choice(StrEnum):
     """What is decided. All but the first leave something to do."""
 
     ACCEPT = "accept"
+    CONDITIONAL = "accept-on-condition"  # open until a person confirms that the condition is met
     MITIGATE = "mitigate"
     DELEGATE = "delegate"
     AVOID = "avoid"
@@ -47,6 +48,31 @@ class State(StrEnum):
     VALID = "valid"
     EXPIRED = "expired"
     ORPHANED = "orphaned"  # no finding is as it says
+
+
+class LoggedStep(NamedTuple):
+    """One entry of a log about the target of a decision.
+
+    Attributes
+    ----------
+    hash
+        Of the entry.
+    when
+        When it was written, in UTC.
+    account
+        Who wrote it, as the system and git know them; the owner is who answers for it, as they stated.
+    decision
+        A ``Choice``, ``confirm`` or ``withdraw``.
+    """
+
+    hash: str
+    when: str
+    account: str
+    decision: str
+    owner: str = ""
+    reason: str = ""
+    condition: str = ""
+    expires: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,6 +103,10 @@ class Decision:
         ISO dates, or empty; it is valid to the end of the day on which it expires.
     made_about
         What was there when it was made; None where nobody wrote it down. It is about no robot that was not there.
+    condition
+        What has to be so before an acceptance counts, or had to be.
+    history
+        Of a log: what was decided about the same target, this decision last, or its confirmation.
     """
 
     choice: Choice
@@ -98,6 +128,8 @@ class Decision:
     expires: str = ""
     ticket: str = ""
     made_about: About | None = None
+    condition: str = ""
+    history: tuple[LoggedStep, ...] = ()
 
     def about(self, case: Case, hierarchy: Hierarchy) -> bool:
         """Whether it is about a case.
@@ -178,6 +210,8 @@ class Decisions:
         An earlier date that was asked for, by which fewer decisions have expired; empty if there is none.
     doubts
         What people accepted of the list of doubts.
+    head
+        Of a log: the hash of its last entry, which stands for all of it; empty for a file that has no chain.
     """
 
     file: str
@@ -187,6 +221,7 @@ class Decisions:
     hierarchy: Hierarchy = field(repr=False)
     instead_of: str = ""
     doubts: tuple[Acceptance, ...] = ()
+    head: str = ""
 
     def on_doubts(
         self, doubts: Iterable[Doubt], *, everything: bool
@@ -392,5 +427,6 @@ def _diagnostics(
         if entry.choice is Choice.ACCEPT and state is State.VALID:
             held = [(f.kind, f.category) for f in (findings[one] for one in ids if joined.on.get(one) is entry)]
             yield from (
-                Diagnostic(entry.place, Severity.WARNING, f"{what} {gap}") for gap in gaps(entry.legal_basis, held, law)
+                Diagnostic(entry.place, Severity.WARNING, f"{what} {gap}")
+                for gap in acceptance_gaps(entry.legal_basis, entry.expires, held, law)
             )

@@ -200,9 +200,13 @@ class Lack(StrEnum):
     SECRECY = "rests on Article 9(2)(h) and does not state that 9(3) is met, professional secrecy"
     ARTICLE_10 = "names no law that authorises data of Article 10 (10), and {category} can be such data"
     OCCASIONAL = "rests on a derogation (Article 49) for a transfer out of the EEA: is it occasional?"
+    NO_END = "states no day on which it ends: nobody will be asked to look again"
     CHAPTER_V = (
         "is about a transfer out of the EEA and states no basis of chapter V (45, 46, 47 or 49), which Article 6 is not"
     )
+
+
+UNFOUNDED = (Lack.ARTICLE_9, Lack.ARTICLE_10, Lack.CHAPTER_V, Lack.NO_END)  # a person is asked twice about these
 
 
 class Gap(NamedTuple):
@@ -259,6 +263,20 @@ def gaps(stated: Sequence[str], accepted: Iterable[tuple[str, str]], law: Mappin
             yield Gap(Lack.CHAPTER_V)
         elif not _matches(stated, *(article for article in CHAPTER_V if article != "49")):
             yield Gap(Lack.OCCASIONAL)
+
+
+def acceptance_gaps(
+    stated: Sequence[str], expires: str, accepted: Iterable[tuple[str, str]], law: Mapping[str, Verdicts]
+) -> Iterator[Gap]:
+    """Yield what an acceptance lacks: a legal basis, see ``gaps``, and an end.
+
+    >>> [gap] = acceptance_gaps(["6(1)(f)"], "", [("disclosure", "Video")], {})
+    >>> gap.lack.name
+    'NO_END'
+    """
+    yield from gaps(stated, accepted, law)
+    if not expires:
+        yield Gap(Lack.NO_END)
 
 
 def transfer_of(basis: str) -> str:

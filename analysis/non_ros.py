@@ -43,6 +43,7 @@ DEFAULT_ROLES = {  # what each kind does with every category unless a label says
     "display": "leak",
     "person": "leak",
 }
+RESTING = ("storage", "external-system", "display", "participant", "person", "device")  # data are there for others
 PLACED = ("external-system", "storage")  # kinds whose country has to be known; others are where the robot is
 EVERY = ""  # in place of a category
 

@@ -49,14 +49,14 @@ def literal(name: str) -> str:
     return name if name.startswith("/") and GLOB_SIGNS.isdisjoint(name) else LITERAL + name
 
 
-def listed(names: Sequence[str]) -> str:
-    """Return some names for a message, the first ``LISTED`` of them.
+def listed(names: Sequence[str], at_most: int = LISTED) -> str:
+    """Return some names for a message, the first of them.
 
-    >>> listed(["a", "b"]), listed(["a"] * 12)[-10:]
-    ('a, b', 'and 2 more')
+    >>> listed(["a", "b"]), listed(["a"] * 12)[-10:], listed(["a", "b", "c"], 1)
+    ('a, b', 'and 2 more', 'a and 2 more')
     """
-    more = f" and {len(names) - LISTED:,} more" if len(names) > LISTED else ""
-    return ", ".join(map(shown, names[:LISTED])) + more
+    more = f" and {len(names) - at_most:,} more" if len(names) > at_most else ""
+    return ", ".join(map(shown, names[:at_most])) + more
 
 
 def nearest(name: str, candidates: Iterable[str], bound: int = 1, like: float = ALIKE) -> list[str]:

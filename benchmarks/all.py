@@ -38,6 +38,7 @@ BENCHMARKS = (
     "reliance",
     "suggestions",
     "source_code",
+    "scanning",
     "wildcards",
     "views",
     "fleet_flows",

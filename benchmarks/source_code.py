@@ -19,7 +19,7 @@ from rosprivacy.ingest.code.source_files import read_sources
 from rosprivacy.labelling.knowledge import code_said
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from measure import Measured
 
@@ -77,11 +77,16 @@ def grown(many: str, few: str, rounds: int, *, quick: bool) -> Measured:
 
 def beside_parsing(many: str, rounds: int) -> Measured:
     """Time a workspace against what parses it."""
+    return timed(rounds, lambda: told(many), parsing(many))
+
+
+def parsing(folder: str) -> Callable[[], None]:
+    """Return what parses all Python and C++ of a folder, and does nothing else."""
     import tree_sitter
     import tree_sitter_cpp
 
     parser = tree_sitter.Parser(tree_sitter.Language(tree_sitter_cpp.language()))
-    files = [file for file in sorted(Path(many).rglob("*")) if file.is_file()]
+    files = [file for file in sorted(Path(folder).rglob("*")) if file.suffix in (".py", ".cpp", ".hpp")]
 
     def parse() -> None:
         for file in files:
@@ -91,7 +96,7 @@ def beside_parsing(many: str, rounds: int) -> Measured:
             else:
                 parser.parse(data)
 
-    return timed(rounds, lambda: told(many), parse)
+    return parse
 
 
 def told(folder: str) -> object:

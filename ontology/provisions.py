@@ -36,8 +36,9 @@ class Provision:
         The day on which the entry was last looked at, ``YYYY-MM-DD``; no word that the law was read in force then.
     address
         Where EUR-Lex has it; empty where nothing is known.
-    adopted
-        The day on which it was adopted, where we did not find it published; else empty.
+    confirmed, adopted
+        Whether we found it published; if not, the day on which an amendment was adopted, or nothing where all that we
+        know of it is what others write.
     """
 
     name: str
@@ -45,6 +46,7 @@ class Provision:
     meaning: str
     as_of: str
     address: str
+    confirmed: bool = True
     adopted: str = ""
 
 
@@ -70,7 +72,8 @@ def provisions(language: str = ENGLISH) -> tuple[Provision, ...]:
             _text(graph, subject, SKOS.definition, language),
             str(graph.value(subject, RP.asOf)),
             str(graph.value(subject, RDFS.seeAlso) or ""),
-            str(graph.value(subject, RP.adopted) or "") if graph.value(subject, RP.confirmed) is not None else "",
+            graph.value(subject, RP.confirmed) is None,
+            str(graph.value(subject, RP.adopted) or ""),
         )
         for subject in sorted(subjects, key=lambda subject: str(graph.value(subject, RP.identifier)))
     )

@@ -24,9 +24,9 @@ from rosprivacy.analysis.errors import InputError, InputErrors, reason, shown
 from rosprivacy.analysis.files_read import changed_since, read_as
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
 
-Text: TypeAlias = "str | bytes | Iterable[str]"  # in one piece or in several
+Text: TypeAlias = "str | bytes | Iterable[str] | Iterable[bytes]"  # in one piece or in several
 STANDARD_OUTPUT = Path("/dev/stdout")
 
 
@@ -53,7 +53,12 @@ class _Output(NamedTuple):
         return self.status is not None and not (stat.S_ISREG(self.status.st_mode) or stat.S_ISDIR(self.status.st_mode))
 
 
-def write_texts(texts: Iterable[tuple[Path, Text | None]], *, edited: Path | None = None) -> None:
+def write_texts(
+    texts: Iterable[tuple[Path, Text | None]],
+    *,
+    edited: Path | None = None,
+    check: Callable[[Path], None] | None = None,
+) -> None:
     """Write UTF-8 texts, or bytes, to files, all of them or none.
 
     Parameters
@@ -62,6 +67,8 @@ def write_texts(texts: Iterable[tuple[Path, Text | None]], *, edited: Path | Non
         File and text; None for a file that is left as it is this time, and refused as if it were written.
     edited
         The one input that is meant to be replaced by what was made of it, unless it was changed since it was read.
+    check
+        Looks at each file before it gets its name; what it raises leaves all files as they were.
 
     Raises
     ------
@@ -85,6 +92,9 @@ def write_texts(texts: Iterable[tuple[Path, Text | None]], *, edited: Path | Non
                 with writing(at.written_path), at.written_path.open("wb") as file:
                     file.writelines(_pieces(text))
         _check_edited(outputs, edited)
+        if check:
+            for temporary, _ in staged:
+                check(temporary)
         for temporary, at in staged:
             with writing(at.written_path):
                 temporary.replace(at.file)

@@ -73,7 +73,7 @@ def _topic(judged: TopicKinds) -> BagTopicEntry:
         "type_hashes": list(topic.hashes),
         "messages": topic.messages,
         "kinds": list(judged.kinds),
-        "suggested": [_suggested(rule) for rule in judged.suggested],
+        "suggested": [suggestion_entry(rule) for rule in judged.suggested],
     }
     if judged.unknown:
         entry["unknown"] = judged.unknown
@@ -82,7 +82,8 @@ def _topic(judged: TopicKinds) -> BagTopicEntry:
     return entry
 
 
-def _suggested(rule: Suggestion) -> SuggestionEntry:
+def suggestion_entry(rule: Suggestion) -> SuggestionEntry:
+    """Return what a rule about a type suggests."""
     return {
         "kinds": list(rule.kinds),
         "confidence": str(rule.confidence),

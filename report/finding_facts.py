@@ -13,16 +13,19 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from rosprivacy.analysis.model import MAY_REVEAL, PARTICIPANT, SPECIAL, weight
+from rosprivacy.analysis.legal import acceptance_gaps
+from rosprivacy.analysis.model import GDPR_DENIED, GDPR_OPEN, MAY_REVEAL, PARTICIPANT, SPECIAL, weight
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.answer import Finding
+    from rosprivacy.analysis.legal import Gap
     from rosprivacy.analysis.model import Element as GraphElement
     from rosprivacy.analysis.model import Weight
     from rosprivacy.report.catalogs.words import Words
 
+Row = TypeVar("Row")
 REVEALS = (MAY_REVEAL, "unknown")
 STRENGTHS: tuple[tuple[str, ...], ...] = (SPECIAL, REVEALS, ())
 OTHERS_GET, KEPT = ("external-system", PARTICIPANT, "person"), ("storage",)  # kinds of elements
@@ -50,6 +53,18 @@ def in_order(findings: Iterable[Mapping[str, Any]], document: Mapping[str, Any])
             place_of(f["leak"]["kind"]),
         ),
     )
+
+
+def grouped(rows: Iterable[Row], pattern: Callable[[Row], Hashable]) -> list[list[Row]]:
+    """Return rows of one pattern together, in the order of the first of each.
+
+    >>> grouped(["/up", "/disk", "/upper"], lambda name: name[:3])
+    [['/up', '/upper'], ['/disk']]
+    """
+    groups: dict[Hashable, list[Row]] = {}
+    for row in rows:
+        groups.setdefault(pattern(row), []).append(row)
+    return list(groups.values())
 
 
 def place_of(kind: str) -> int:
@@ -149,12 +164,19 @@ def data_made(
     return words("entry.made", data=data, of=title(kind), makers=words.row(map(name, by))) if by else data
 
 
-LANGUAGE_COUNTRIES = ("DE", "FR")  # countries of which the ontology knows some provisions
-
-
 def countries_of_use(document: Mapping[str, Any]) -> list[str]:
     """Return the countries where the system works, as people state them."""
     return sorted({row["country"] for row in document.get("surroundings", ()) if row.get("country")})
+
+
+def scope_sentences(document: Mapping[str, Any], words: Words) -> list[str]:
+    """Return what is asked, or denied, of whether the GDPR applies to systems outside the EEA (Article 3)."""
+    places = [row for row in document.get("surroundings", ()) if "gdpr" in row]
+    return [
+        words(f"law.gdpr.{scope}", countries=words.row(sorted(countries)))
+        for scope in (GDPR_OPEN, GDPR_DENIED)
+        if (countries := {row["country"] for row in places if row["gdpr"] == scope})
+    ]
 
 
 def looked_at(document: Mapping[str, Any]) -> list[Mapping[str, Any]]:
@@ -175,3 +197,16 @@ def of_every_system(rows: list[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
     [{'provision': 'AI Act', 'categories': [], 'contexts': []}]
     """
     return [row for row in rows if not row["categories"] and not row["contexts"]]
+
+
+def gaps_of(decision: Mapping[str, Any], findings: Sequence[Mapping[str, Any]]) -> list[Gap]:
+    """Return what an acceptance of findings lacks, as rows of a document tell what the law says of their data."""
+    law = {f["category"]: tuple(_provisions(f["category"], findings)) for f in findings}
+    held = [(f["kind"], f["category"]) for f in findings]
+    return list(acceptance_gaps(decision["legal_basis"], decision["expires"] or "", held, law))
+
+
+def _provisions(category: str, findings: Iterable[Mapping[str, Any]]) -> Iterator[tuple[str, str]]:
+    """What can apply to data of a category, where their sources work too."""
+    rows = (row for f in findings if f["category"] == category for row in (*f["law"], *f.get("in_context", ())))
+    yield from dict.fromkeys((row["provision"], row["verdict"]) for row in rows)

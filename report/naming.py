@@ -14,7 +14,7 @@ from rosprivacy.analysis.text import counted, fit, printable
 from rosprivacy.report.catalogs.words import spaced
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Mapping, Sequence
 
     from rosprivacy.analysis.model import Element
     from rosprivacy.report.catalogs.words import Words
@@ -155,6 +155,22 @@ def names_shown(names: Iterable[str], words: Words) -> str:
     everything = list(names)
     more = words("terminal.more", n=len(everything) - SHOWN_AT_MOST) if len(everything) > SHOWN_AT_MOST else ""
     return shown(", ".join(everything[:SHOWN_AT_MOST])) + more
+
+
+FEW_KINDS = 3  # kinds of data that are named one by one, though they are all
+
+
+def all_kinds(kinds: Collection[str], everywhere: Collection[str], words: Words) -> str:
+    """Return that some kinds of data are all that there are; empty where they are not all, or few.
+
+    >>> from rosprivacy.report.catalogs.words import IN_ENGLISH
+    >>> all_kinds(["Gait", "Gesture", "Video", "Voice"], ["Gait", "Gesture", "Video", "Voice"], IN_ENGLISH)
+    'all 4 kinds of data'
+    >>> all_kinds(["Gait", "Gesture", "Video"], ["Gait", "Gesture", "Video"], IN_ENGLISH)
+    ''
+    """
+    whole = len(everywhere) > FEW_KINDS and set(everywhere) <= set(kinds)
+    return words("exit.kinds.all", n=len(kinds)) if whole else ""
 
 
 def joined_by_and(parts: Sequence[str], words: Words) -> str:

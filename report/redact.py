@@ -18,14 +18,15 @@ OURS = "rosprivacy:"  # files that come with the program
 PATHS = ("node", "topic", "service", "action")
 AS_IT_IS = ("categories", "contexts", "look_at")  # of the ontology: kinds of data and the law
 SAFE_KEYS = {
-    "because", "area", "article9", "backups", "beside", "by", "carries", "cause", "categories", "categories_asked",
-    "category", "condition", "context", "contexts", "countries_as_of", "country", "data_types_asked", "decision",
-    "doubt", "expires",
+    "bases", "because", "area", "article9", "backups", "beside", "by", "carries", "cause", "categories",
+    "categories_asked", "category", "condition", "context", "contexts", "countries", "countries_as_of", "country",
+    "criminal_bases", "data_types_asked", "decision", "doubt", "expires",
     "finding", "findings", "format", "from", "holds", "id", "identity_factors_asked", "kind", "law_as_of", "leaves",
-    "leaves_pseudonymised", "legal_bases", "legal_basis", "method", "missing", "paths", "pattern", "provision",
-    "pseudonymised", "rank", "recipient", "retention", "role", "roles", "rosprivacy", "severity", "sha256",
-    "special_basis", "state", "taken_as", "taken_by_kind", "to", "transfer", "unlabelled_channel", "unknown",
-    "unlabelled_node",    "verdict", "verdict_then", "view", "what", "without_limit",
+    "leaves_pseudonymised", "legal_bases", "legal_basis", "look_at", "method", "missing", "paths", "pattern",
+    "provision", "pseudonymised", "rank", "recipient", "retention", "role", "roles", "rosprivacy", "safeguards",
+    "severity", "sha256", "special_bases", "special_basis", "state", "taken_as", "taken_by_kind", "to", "to_complete",
+    "transfer", "unlabelled_channel", "unknown", "unlabelled_node", "verdict", "verdict_then", "view", "what",
+    "without_limit",
 }  # fmt: skip
 MAPS = ("because", "legal_bases", "purposes", "retention", "taken_away_by", "taken_by_kind")  # keys are no names
 FILES = ("file", "joining_file")  # also among the values of a reason

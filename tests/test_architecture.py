@@ -107,6 +107,7 @@ OF_ITS_OWN = {  # modules that touch files in another way, and why none of these
     "src/rosprivacy/explorer/journal.py": "journals of sessions, in the user's state folder",
     "src/rosprivacy/cli/own_error.py": "the report of an error, a new file",
     "ontology/cache.py": "the cache of categories",
+    "src/rosprivacy/cli/base_tree.py": "files of a revision in a folder of its own, gone at once",
     "src/rosprivacy/cli/what_runs.py": "a policy in a folder of its own, gone at once",
     "src/rosprivacy/watching.py": "a policy in a folder of its own, gone at once",
     "report/pictures/graphviz_worker.py": "a process that draws, with pipes only",

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from rosprivacy.analysis.legal import Lack
 from tests.helpers.command import Cli, refused
 from tests.helpers.paths import ROOT, TESTS
 
@@ -102,6 +103,7 @@ class TestDecisions:
                 f"the decision to accept {VIDEO} states no legal basis under Article 6(1)",
                 f"the decision to accept {VIDEO} {reveals.format('Video')}",
                 f"the decision to accept {VOICE} {reveals.format('Voice')}",
+                f"the decision to accept {VIDEO} {Lack.NO_END}",
             ]
         )
 

@@ -51,7 +51,7 @@ def carried(result: Result) -> dict[str, set[str]]:
 def test_each_block_has_a_test() -> None:
     assert set(BLOCKS) == {
         "Label files", "Where the system works", "Outside ROS", "Who, why, on which basis",
-        "A glob answers for what you have seen",
+        "A glob answers for what you have seen", "By type",
     }  # fmt: skip
     assert len(ROWS) == PAGE.count("| no-leak-found |") + PAGE.count("| leak |\n") + PAGE.count("| error |")
 
@@ -100,6 +100,22 @@ def test_where_the_system_works() -> None:
     (where,) = [row for row in result.document()["surroundings"] if row["element"]["name"] == "/camera"]
     assert set(where["contexts"]) == {"care", "school", "workplace"}
     assert where["country"] == "DE"
+
+
+def test_what_a_type_is_made_for() -> None:
+    nodes = {
+        "/camera": {"source": ["Video"]},
+        "/planner": "conduit",
+        "/base": "conduit",
+        "/uplink": {"leak": ["Video"]},
+    }
+    stated = {"/cmd_vel": {"types": ["geometry_msgs/msg/Twist"]}, "/image": "sensitive"}
+    profiles = ["/camera>/image", "/planner>/cmd_vel</image", "/base>/odom</cmd_vel", "/uplink</odom"]
+    result = run("By type", *profiles, more={"nodes": nodes, "channels": stated})
+    assert "/cmd_vel" not in carried(result)
+    assert ("by-type-closes", "/cmd_vel") in [(one.name, one.element and one.element.name) for one in result.doubts]
+    result = run("By type", *profiles, "/joystick>/cmd_vel", more={"nodes": nodes, "channels": stated})
+    assert "by-type-lapsed" in {one.name for one in result.doubts}  # another writer than when it was pinned
 
 
 def test_what_lies_outside_ros() -> None:

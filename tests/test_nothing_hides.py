@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from tests.helpers.command import Cli
 
 __all__ = ["cli"]
-REPORTS = ("html", "markdown", "article30", "works-council", "cnil-pia", "turtle")
+REPORTS = ("html", "markdown", "article30", "works-council", "notice", "cnil-pia", "turtle")
 
 
 def answer(hidden: Hidden) -> Result:

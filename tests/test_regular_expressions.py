@@ -15,6 +15,8 @@ import pytest
 from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.ingest.deployed.access_file import MAX_BYTES
 from rosprivacy.ingest.policies.names import matcher
+from rosprivacy.ingest.scan.cpp.cpp_units import LONGEST_LOOP
+from rosprivacy.ingest.scan.packages import LONGEST_ENTRY
 from tests.helpers.regular_expressions import LINTER, Expression, asked, expressions
 
 pytestmark = [
@@ -24,12 +26,16 @@ pytestmark = [
         reason=f"no linter of regular expressions: npm ci --ignore-scripts --prefix {LINTER.name}",
     ),
 ]
-ARGUMENT, MESSAGE, OURS = 131_072, 20_000, 5_000
+ARGUMENT, MESSAGE, OURS, NAME = 131_072, 20_000, 5_000, 255
 # Where the steps grow with the square of a text: how long it can be, and whose it is.
 SQUARE = {
     "cli/wrong_values.py:LISTED": (ARGUMENT, "an argument of the user's own"),
     "ingest/policies/joint_policies.py:_WILDCARD": (BOUNDS.name, "a name in a policy"),
     "ingest/deployed/access_file.py:_TOKEN": (MAX_BYTES, "a file that json5 has read before"),
+    "ingest/scan/outside/bridge_configs.py:MOSQUITTO": (NAME, "the name of a file"),
+    "ingest/scan/outside/compose_files.py:NAMED_COMPOSE": (NAME, "the name of a file"),
+    "ingest/scan/cpp/cpp_units.py:COUNTING_LOOP": (LONGEST_LOOP, "the head of a loop"),
+    "ingest/scan/packages.py:ENTRY": (LONGEST_ENTRY, "an entry point"),
     "queries/library.py:TEXT": (OURS, "a question that comes with the program"),
     "queries/run.py:_EARLIER": (MESSAGE, "a message of the server"),
     "queries/run.py:_MISSING_NAME": (MESSAGE, "a message of the server"),

@@ -12,11 +12,13 @@ import rosprivacy
 from rosprivacy.analysis.findings.flows_to_leaks import PathsToLeaks
 from rosprivacy.formats import FORMATS
 from rosprivacy.ingest.neo4j_graph.loading import load as load_rows
+from rosprivacy.ingest.policies.saved_graph import as_dict
 from rosprivacy.ingest.types import TABLE
 from rosprivacy.ingest.types.type_table import excluded, read_table
 from rosprivacy.ontology.iris import STORED
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.private_neo4j import connection
+from rosprivacy.report.json_text import as_text
 from rosprivacy.report.pictures import views
 from rosprivacy.report.pictures.dot import dot
 from rosprivacy.report.text.taken_away import lines as why_not_lines
@@ -339,3 +341,45 @@ def test_the_database_gives_the_same_answer_and_keeps_no_limit_as_a_label(neo4j_
             assert stored == result.document()
             open_there = answer_stored(driver, Settings(type_limits=None))
             assert open_there.findings
+
+
+DEFINED = """types: 1
+topics:
+  /a:
+    - {{type: own_msgs/msg/Level, writers: [/cam], definition: own_msgs/msg/Level.msg, fields: [{fields}]}}
+"""
+NUMBERS = "std_msgs/msg/Float32, geometry_msgs/msg/PoseArray"
+
+
+@pytest.mark.parametrize(
+    ("fields", "more", "a", "closes"),
+    [
+        (NUMBERS, "", "", True),
+        (NUMBERS, "", "{types: [own_msgs/msg/Level]}", True),  # a person states what was read
+        (NUMBERS, "", "{types: [own_msgs/msg/Other]}", False),
+        ("", "", "", False),  # a field that can be anything
+        (NUMBERS + ", other_msgs/msg/Unknown", "", "", False),
+        (NUMBERS + ", std_msgs/msg/String", "", "", False),
+        (NUMBERS, "  /x: [{type: own_msgs/msg/Level, hash: RIHS01_ab}]\n", "", False),  # of this definition?
+        (NUMBERS, f"  /x: [{{type: std_msgs/msg/Float32, hash: {OTHER}}}]\n", "", False),  # a field is another type
+        (NUMBERS, "    - {type: own_msgs/msg/Level, writers: [/cam]}\n", "", False),  # of another checkout
+    ],
+)
+def test_a_type_of_ones_own_is_limited_by_its_definition(fields: str, more: str, a: str, *, closes: bool) -> None:
+    """S15: its fields are as several types of the channel, which exclude only what all of them exclude."""
+    Path("t.yaml").write_text(DEFINED.format(fields=fields) + more, "utf-8")
+    result = told(a, types="t.yaml")
+    assert bool(result.findings) != closes
+    if closes:
+        (why,) = result.why_not("/cam", "/sink", "Video")
+        assert [str(place) for stop in why.obstacles for place in stop.places] == ["own_msgs/msg/Level.msg:1"]
+        assert told(a, types="t.yaml", type_limits=None).findings
+
+
+def test_a_definition_is_in_the_document_and_in_a_saved_graph() -> None:
+    Path("t.yaml").write_text(DEFINED.format(fields=NUMBERS), "utf-8")
+    result = told("", types="t.yaml")
+    (entry,) = result.document()["types"][0]["types"]
+    assert entry["definition"] == "own_msgs/msg/Level.msg"
+    Path("g.json").write_text(as_text(as_dict(result.policies, result.diagnostics, result.types)), "utf-8")
+    assert rosprivacy.analyze(labels="l.yaml", add="g.json").document() == result.document()

@@ -29,8 +29,14 @@ SAME_PART = {
     "findings": {"analysis/findings", "report/rdf"},  # findings, and findings as RDF
     "fleet": {"cli", "report/text"},  # what is told of a fleet
     "lint": {"cli", "ingest", "report"},  # the command, the rules, and what it prints
+    "packages": {"analysis/suggesting", "ingest/scan"},  # those that are known, and those of a checkout
     "records": {"report/schemas", "report/document"},  # the rows of a document: their keys, and how they are made
     "stated": {"report/schemas", "report/document"},  # what is stated: its keys, and how they are made
+    "register": {
+        "analysis/findings",
+        "report/schemas",
+        "report/document",
+    },  # how rows are made, their keys, and how they are told
     "review": {"report/page", "report/text"},  # what nobody has reviewed, for each kind of reader
     "ledger": {"analysis/whatif", "report/document"},  # what was taken away, and how it is told
     "mitigation": {"", "report/schemas", "report/document", "report/text"},  # what is told of proposals

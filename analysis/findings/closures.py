@@ -8,14 +8,16 @@ one search back from all places (``Nearest``), then a walk down its levels, from
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, NamedTuple
 
-from rosprivacy.analysis.answer import ClosedByShipped
+from rosprivacy.analysis.answer import ClosedByLine, ClosedByShipped
 from rosprivacy.analysis.kernel.backward import NOTHING_OPENED, Opened, backward
+from rosprivacy.analysis.kernel.labelled_graph import LabelledGraph
+from rosprivacy.analysis.kernel.least_solution import least_solution
 from rosprivacy.analysis.kernel.states import back, back_from, onward
 from rosprivacy.analysis.many_flows import leaving, parted
-from rosprivacy.analysis.model import CANNOT, NON_ROS, STANDARD, Method, Place, Rank, Statement
+from rosprivacy.analysis.model import BY_TYPE, CANNOT, NON_ROS, STANDARD, Method, Place, Rank, Statement
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
@@ -101,9 +103,9 @@ def _by_lines(
 
 
 def _role(lines: tuple[Statement, ...]) -> str:
-    statements = [line for line in lines if line.role != CANNOT]
+    statements = [line for line in lines if line.role not in (CANNOT, BY_TYPE)]
     if not statements:
-        return TYPE
+        return "only" if any(line.role == BY_TYPE for line in lines) else TYPE
     if all(line.shipped for line in statements):
         return STANDARD_CHANNEL
     return ABSENT if statements[0].method is Method.ABSENT else statements[0].role
@@ -275,6 +277,78 @@ def closed_by_shipped(
         )
         rows[channel.identity].append(row)
     return tuple(_joined(rows[key]) for key in sorted(rows))
+
+
+def closed_by_lines(spread: Spread, mask: int, *, unreviewed: bool = True) -> tuple[ClosedByLine, ...]:
+    """Return at which channels only a line ``only: by-type`` closes a way on, one for both legs and sides of a channel.
+
+    A way goes on to a leak, to an element outside ROS, or to a node that nobody reviewed. All such lines are opened
+    together, and with them what only a type or a shipped file closes: a way that two of them close is none that a
+    person closes. So each line on such a way is told.
+
+    Parameters
+    ----------
+    mask
+        Bits of the categories that the answer is about.
+    unreviewed
+        Whether a way that goes on to a node that nobody reviewed counts.
+
+    Examples
+    --------
+    >>> from dataclasses import replace
+    >>> from rosprivacy.analysis.example import FACES, factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> graph, bound, hierarchy = factory()
+    >>> line = Statement("by-type", ("FaceTemplate", "Video"), (-3, 0), Place("labels.yaml", 7))
+    >>> carried = spread(graph, replace(bound, elements={**bound.elements, FACES: (line,)}), hierarchy)
+    >>> [(row.channel.name, row.categories, str(row.place)) for row in closed_by_lines(carried, carried.all_bits)]
+    [('/faces', ('FaceTemplate', 'Video'), 'labels.yaml:7')]
+    """
+    distinct = {id(decided): decided for decided in spread.facts.values()}.values()
+    if not any(line.role == BY_TYPE for decided in distinct for fact in decided.values() for line in fact.closers):
+        return ()
+    elements, opened = spread.graph.elements, _not_by_persons(spread)
+    keeps = spread.keeps | {v: spread.keeps.get(v, spread.all_bits) | bits for v, bits in opened.items()}
+    arrives, _ = least_solution(LabelledGraph.of(replace(spread, keeps=keeps)))
+    stopped: dict[int, int] = defaultdict(int)
+    places: dict[int, Place] = {}
+    for vertex, bits in opened.items():
+        for category in spread.names(bits & arrives.get(vertex, 0)):
+            lines = [line.place for line in spread.facts[vertex][category].closers if line.role == BY_TYPE]
+            if lines:
+                places.setdefault(vertex, lines[0])
+                stopped[vertex] |= spread.forms_of(category) & arrives[vertex]
+    ends = {v: bits & mask for v, bits in spread.leaks.items()}
+    for v, element in enumerate(elements):
+        if not element.is_channel and v not in spread.absent:
+            uncovered = ~spread.covered.get(v, 0) if unreviewed else 0
+            ends[v] = ends.get(v, 0) | (mask if element.kind in NON_ROS else mask & uncovered)
+    leaving = backward(spread, ends, Opened(opened)).leaving
+    rows: dict[tuple[str, str, str], ClosedByLine] = {}
+    for vertex, bits in sorted(stopped.items()):
+        if names := {*spread.names(bits & leaving.get(vertex, 0))}:
+            key = elements[vertex].identity
+            row = rows.get(key, ClosedByLine(elements[vertex], (), places[vertex]))
+            rows[key] = row._replace(categories=tuple(sorted({*row.categories, *names})))
+    return tuple(rows[key] for key in sorted(rows))
+
+
+def _not_by_persons(spread: Spread) -> dict[int, int]:
+    """Vertex -> bits that only types close, lines about these, or shipped files but for standard channels in place."""
+    elements = spread.graph.elements
+    nodes = {e.name for v, e in enumerate(elements) if e.is_node and v not in spread.absent}
+    opened: dict[int, int] = defaultdict(int)
+
+    def weak(line: Statement, channel: Element) -> bool:
+        if line.role in (BY_TYPE, CANNOT):
+            return True
+        return line.shipped and (line.rank[0] < STANDARD or not in_its_place(channel, nodes))
+
+    for vertex, decided in spread.facts.items():
+        for category, fact in decided.items():
+            if fact.closers and all(weak(line, elements[vertex]) for line in fact.closers):
+                opened[vertex] |= spread.forms_of(category)
+    return opened
 
 
 def in_its_place(channel: Element, nodes: Collection[str]) -> bool:

@@ -13,6 +13,7 @@ from rosprivacy.analysis.answer import Verdict
 from rosprivacy.analysis.model import (
     BACKUPS_NOT_STATED,
     BY_GLOBS,
+    BY_TYPE_CLOSES,
     GAPS,
     INFRASTRUCTURE_CLOSES,
     NO_FLOW,
@@ -23,6 +24,7 @@ from rosprivacy.analysis.model import (
     TYPE_CLOSES,
     Doubt,
     Rank,
+    unresolved_rank,
 )
 from rosprivacy.analysis.policy_lines import first_lines, in_a_file
 
@@ -76,6 +78,7 @@ def doubts(
         *_ends(analysis),
         *_closed(analysis),
         *_shipped(analysis),
+        *_by_type(analysis),
         *_backups(analysis),
         *_by_globs(by_globs, {*analysis.emitted}),
     ]
@@ -110,7 +113,8 @@ def _counted(doubt: Doubt, lines: Mapping[tuple[str, ...], Place], weight: Calla
 
 def _order(doubt: Doubt) -> tuple[object, ...]:
     about = doubt.element.sort_key() if doubt.element else ()
-    return doubt.rank, doubt.name, about, doubt.place.file, doubt.place.line, doubt.message
+    worst = unresolved_rank(doubt.message)  # of a scan's gaps
+    return doubt.rank, doubt.name, about, worst, doubt.place.file, doubt.place.line, doubt.message
 
 
 def _of_files(diagnostics: Iterable[Diagnostic]) -> Iterator[Doubt]:
@@ -144,6 +148,12 @@ def _shipped(analysis: Analysis) -> Iterator[Doubt]:
                 row.channel,
                 categories=row.categories,
             )
+
+
+def _by_type(analysis: Analysis) -> Iterator[Doubt]:
+    """Channels at which only a line ``only: by-type`` closes a way on."""
+    for row in analysis.closed_by_lines:
+        yield Doubt(BY_TYPE_CLOSES, row.channel, row.place, row.categories)
 
 
 def _backups(analysis: Analysis) -> Iterator[Doubt]:

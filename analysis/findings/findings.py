@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from rosprivacy.analysis.answer import Analysis, CarriedData, Finding, Verdict
 from rosprivacy.analysis.bounds import BOUNDS, Tally
 from rosprivacy.analysis.case import Case
-from rosprivacy.analysis.findings.closures import closed_by_shipped
+from rosprivacy.analysis.findings.closures import closed_by_lines, closed_by_shipped
 from rosprivacy.analysis.findings.concerns import concerns, shown_arrivals
 from rosprivacy.analysis.findings.near_robots import Units
 from rosprivacy.analysis.findings.open_questions import grounds, lacking, open_questions, unknown_ends
@@ -148,6 +148,7 @@ def analyse(
         standard_channels=_standard_channels(spread),
         standard_reached=standard_channels.reached(spread, mask),
         closed_by_shipped=closed_by_shipped(spread, mask),
+        closed_by_lines=closed_by_lines(spread, mask),
         standard_unchanged=standard_channels.unchanged(spread, bound),
         spread=spread,
         unstated=tuple(_unstated(spread)),

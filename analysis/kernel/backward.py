@@ -13,7 +13,7 @@ from collections import defaultdict
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.kernel.labelled_graph import LabelledGraph, ends, nodes_of
-from rosprivacy.analysis.kernel.least_solution import least_solution
+from rosprivacy.analysis.kernel.least_solution import least_solution, propagated
 from rosprivacy.analysis.kernel.states import back_from
 
 if TYPE_CHECKING:
@@ -99,9 +99,9 @@ def backward(spread: Spread, places: Mapping[int, int], opened: Opened = NOTHING
     graph, count = spread.graph, len(spread.graph.elements)
     keeps = {v: bits | opened.elements.get(v, 0) for v, bits in spread.keeps.items()}
     restricted = sorted(spread.flow_keeps)
-    sources, targets, meetings = ends(graph, restricted)
-    sources += [source for source, _ in opened.added_flows]
-    targets += [target for _, target in opened.added_flows]
+    sources, targets, meetings = spread.shape.memoised("ends", restricted, lambda: ends(graph, restricted))
+    sources = [*sources, *(source for source, _ in opened.added_flows)]
+    targets = [*targets, *(target for _, target in opened.added_flows)]
     passing = {n: spread.flow_keeps[i] | opened.flows.get(i, 0) for n, i in enumerate(restricted, count)}
     turned = LabelledGraph(
         count,
@@ -117,3 +117,56 @@ def backward(spread: Spread, places: Mapping[int, int], opened: Opened = NOTHING
     )
     leaving, entering = least_solution(turned)
     return Backward(entering, leaving)
+
+
+class Turned(NamedTuple):
+    """The flows of a spread, turned around once for many questions about a few places each.
+
+    Attributes
+    ----------
+    ahead
+        Vertex -> those from which data comes to it; flows that not all passes, and meetings, are vertices, too.
+    derived, keep
+        Vertex -> what it makes, turned around, and what passes it.
+    """
+
+    spread: Spread
+    ahead: Mapping[int, list[int]]
+    derived: Mapping[int, list[tuple[int, int]]]
+    keep: Mapping[int, int]
+
+    @classmethod
+    def of(cls, spread: Spread) -> Turned:
+        """Turn the flows of a spread around; O(flows)."""
+        graph, count, restricted = spread.graph, len(spread.graph.elements), sorted(spread.flow_keeps)
+        sources, targets, _ = spread.shape.memoised("ends", restricted, lambda: ends(graph, restricted))
+        ahead: dict[int, list[int]] = defaultdict(list)
+        for source, target in zip(sources, targets, strict=True):
+            ahead[target].append(source)
+        derived = {v: [(after, before) for before, after in pairs] for v, pairs in spread.derives.items()}
+        return cls(
+            spread, ahead, derived, spread.keeps | {n: spread.flow_keeps[i] for n, i in enumerate(restricted, count)}
+        )
+
+    def backward(self, places: Mapping[int, int], closed: Mapping[int, int] | None = None) -> Backward:
+        """Return from where data would get to some places; O(flows that lead there).
+
+        Parameters
+        ----------
+        closed
+            Vertex -> bits that, if they arrive there, get no further and count for nothing.
+
+        Examples
+        --------
+        >>> from rosprivacy.analysis.example import ARCHIVE, factory
+        >>> from rosprivacy.analysis.kernel.spreading import spread
+        >>> carried = spread(*factory())
+        >>> places = {ARCHIVE: carried.forms_of("FaceTemplate")}
+        >>> Turned.of(carried).backward(places) == backward(carried, places)
+        True
+        """
+        spread, count = self.spread, len(self.spread.graph.elements)
+        begun = {vertex: back_from(spread, vertex, bits) for vertex, bits in places.items()}
+        found = propagated(self.ahead, self.derived, self.keep, begun, spread.all_bits, closed or {})
+        leaving, entering = ({v: bits for v, bits in some.items() if v < count} for some in found)
+        return Backward(entering, leaving)

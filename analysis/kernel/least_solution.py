@@ -9,6 +9,8 @@ from collections import OrderedDict, defaultdict
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
     from rosprivacy.analysis.kernel.labelled_graph import LabelledGraph
 
 
@@ -58,9 +60,31 @@ def worklist(graph: LabelledGraph) -> tuple[dict[int, int], dict[int, int]]:
     derived: dict[int, list[tuple[int, int]]] = defaultdict(list)
     for vertex, before, after in graph.derivations:
         derived[vertex].append((before, after))
-    keep, everything = graph.keep, graph.all_bits
+    return propagated(ahead, derived, graph.keep, graph.emitted, graph.all_bits, {})
+
+
+def propagated(
+    ahead: Mapping[int, Iterable[int]],
+    derived: Mapping[int, Iterable[tuple[int, int]]],
+    keep: Mapping[int, int],
+    emitted: Mapping[int, int],
+    everything: int,
+    closed: Mapping[int, int],
+) -> tuple[dict[int, int], dict[int, int]]:
+    """Return the same of edges by their source; O(edges of the vertices that anything gets to).
+
+    Parameters
+    ----------
+    closed
+        Vertex -> bits that do not leave it, whatever else it does.
+
+    Examples
+    --------
+    >>> propagated({0: [1], 1: [2]}, {}, {}, {0: 0b11}, 0b11, {1: 0b01})
+    ({1: 3, 2: 2}, {0: 3, 1: 2, 2: 2})
+    """
     arrives: dict[int, int] = {}
-    leaves = {vertex: bits for vertex, bits in graph.emitted.items() if bits}
+    leaves = {vertex: some for vertex, bits in emitted.items() if (some := bits & ~closed.get(vertex, 0))}
     waiting = OrderedDict(leaves)  # the first key of a dict is found past all that were taken out
     while waiting:
         vertex, bits = waiting.popitem(last=False)
@@ -73,6 +97,8 @@ def worklist(graph: LabelledGraph) -> tuple[dict[int, int], dict[int, int]]:
             onward = new & keep.get(target, everything)
             for before, after in derived.get(target, ()):
                 onward |= (new >> before & 1) << after
+            if target in closed:
+                onward &= ~closed[target]
             left = leaves.get(target, 0)
             if more := onward & ~left:
                 leaves[target] = left | more

@@ -14,7 +14,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import LabelError, shown
-from rosprivacy.analysis.model import CANNOT, GLOB, STANDARD, Method
+from rosprivacy.analysis.model import BY_TYPE, CANNOT, GLOB, STANDARD, TYPE_LINE, Method
 from rosprivacy.analysis.text import printable
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 MAY = frozenset({"leak", "derivation", "only"})
 LETS_THROUGH = frozenset({"conduit", "sensitive", "only"})
 FARTHEST = 1_000_000  # the distance of a statement about every category
-OF_CHANNELS = frozenset({"mundane", "sensitive", "only", "never", CANNOT})
+OF_CHANNELS = frozenset({"mundane", "sensitive", "only", "never", CANNOT, BY_TYPE})
 OF_EVERY_KIND = frozenset({"mundane", "sensitive", "only"})  # two of these at one rank contradict for every category
 OPPOSED = frozenset(
     frozenset(pair)
@@ -78,7 +78,7 @@ def decided(name: str, statements: Sequence[Statement], category: str, hierarchy
         ((*statement.rank, -distance), statement)
         for statement in statements
         if (distance := _distance(statement, category, hierarchy)) is not None
-        and (statement.counts_for(category) or _lets_through(statement, category, hierarchy))
+        and (statement.counts_for(category) or statement.adds or _lets_through(statement, category, hierarchy))
     ]
     if len(ranked) < 2:  # noqa: PLR2004 - nothing to weigh
         return RankedStatements(_observed((statement for _, statement in ranked), category), ())
@@ -100,8 +100,12 @@ def decided(name: str, statements: Sequence[Statement], category: str, hierarchy
 
 
 def _observed(accepted: Iterable[Statement], category: str) -> tuple[Statement, ...]:
-    """What holds, but for what nobody has seen: that reviews nothing, and only let through what lower ranks close."""
-    return tuple(statement.line for statement in accepted if statement.counts_for(category))
+    """What holds, but for what nobody has seen: that reviews nothing, and only let through what lower ranks close.
+
+    What adds data holds all the same, and reviews nothing either.
+    """
+    seen = ((statement, statement.counts_for(category)) for statement in accepted)
+    return tuple(statement.line if counts else statement for statement, counts in seen if counts or statement.adds)
 
 
 def _lets_through(statement: Statement, category: str, hierarchy: Hierarchy) -> bool:
@@ -119,7 +123,9 @@ def applies(statement: Statement, category: str, hierarchy: Hierarchy) -> bool:
     """
     if statement.role in ("source", CANNOT):
         return not statement.categories or category in statement.categories
-    if statement.role == "only" or not statement.categories:
+    if statement.role == TYPE_LINE:
+        return False
+    if statement.role in ("only", BY_TYPE) or not statement.categories:
         return True
     near = hierarchy.overlaps if statement.role in MAY else hierarchy.ancestors
     return not near[category].keys().isdisjoint(statement.categories)
@@ -136,7 +142,7 @@ def closes(statement: Statement, category: str, hierarchy: Hierarchy) -> bool:
     """
     if statement.role == "only":
         return _named_distance(statement, category, hierarchy) is None
-    if statement.role == CANNOT:
+    if statement.role in (CANNOT, BY_TYPE):
         return category in statement.categories
     return statement.role in ("mundane", "never") and _distance(statement, category, hierarchy) is not None
 
@@ -164,6 +170,8 @@ def in_words(statement: Statement) -> str:
     if statement.role in NONE_OF.values():
         kinds = f"{{none: [{', '.join(statement.categories)}]}}" if statement.categories else "none"
         return f"{statement.role.removeprefix('no-')}: {kinds}"
+    if statement.role in (BY_TYPE, TYPE_LINE):
+        return "only: by-type"
     if statement.role == "sanitizer":
         return "absent" if statement.method is Method.ABSENT else f"sanitizer ({statement.method})"
     if statement.role in ("only", "never", CANNOT):
@@ -175,6 +183,10 @@ def in_words(statement: Statement) -> str:
 
 def _distance(statement: Statement, category: str, hierarchy: Hierarchy) -> int | None:
     """How far the statement's category is; None if it does not apply; negative if it is narrower or overlaps."""
+    if statement.role == TYPE_LINE:
+        return None
+    if statement.role == BY_TYPE:
+        return 0 if category in statement.categories else FARTHEST
     if not statement.categories:
         return FARTHEST
     if statement.role in ("source", CANNOT):

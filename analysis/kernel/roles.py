@@ -13,7 +13,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.kernel.ranks import by_line, closes, decided
-from rosprivacy.analysis.model import CANNOT, Method
+from rosprivacy.analysis.model import BY_TYPE, CANNOT, Method
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -32,7 +32,8 @@ class Facts(NamedTuple):
     Attributes
     ----------
     emits
-        Whether it is a source; ``through`` are then name expressions of the channels, empty for all.
+        Whether it is a source; ``through`` are then name expressions of the channels, empty for all. They are empty too
+        where the code of a source has changed: it may send the category anywhere now.
     leaks
         Whether it lets the category out.
     passes
@@ -122,16 +123,17 @@ def _sum_up(decided: RankedStatements, category: str, hierarchy: Hierarchy) -> F
     closers = [*sanitizers, *(s for s in accepted if closes(s, category, hierarchy))]
     sources = by_role.get("source", [])
     method = str(sanitizers[0].method) if sanitizers else ""
+    counting = [s for s in accepted if s.counts_for(category)]
     none = {*TAKE_BACK, CANNOT, *(["sanitizer"] if method == Method.ABSENT else [])}  # what is not there cleans nothing
-    roles = sorted(role for role in by_role if role not in none)
+    roles = sorted({"only" if role == BY_TYPE else role for role in by_role if role not in none})
     return Facts(
         emits=bool(sources),
-        through=sources[0].through if sources else (),
+        through=sources[0].through if sources and sources[0].counts_for(category) else (),
         leaks="leak" in by_role,
         passes=not closers,
         pseudonymises=any(s.method is Method.PSEUDONYMISE for s in sanitizers),
         derives=tuple(sorted({s.to for s in by_role.get("derivation", [])})),
-        covered=bool(roles or sanitizers),
+        covered=bool(sanitizers) or any(s.role not in none for s in counting),
         unstated=bool(sanitizers) and not sanitizers[0].stated,
         standard=bool(mundane) and all(s.shipped for s in mundane),
         limited=bool(closers) and all(s.role == CANNOT for s in closers),
@@ -140,5 +142,5 @@ def _sum_up(decided: RankedStatements, category: str, hierarchy: Hierarchy) -> F
         accepted=accepted,
         closers=tuple(sorted(closers, key=by_line)),
         outdone=decided.outdone,
-        reviewers=tuple(sorted((s for s in accepted if s not in closers and s.role not in ADDS), key=by_line)),
+        reviewers=tuple(sorted((s for s in counting if s not in closers and s.role not in ADDS), key=by_line)),
     )

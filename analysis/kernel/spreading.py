@@ -223,7 +223,8 @@ class _Does(NamedTuple):
             leaks |= both if fact.leaks else 0
             limited |= both if fact.limited else 0
             gone |= both if fact.method == Method.ABSENT else 0
-            covered |= sum(map(spread.forms_of, fact.derives))  # who makes it knows of it
+            for made_here in (s.to for s in fact.reviewers if s.role == "derivation"):
+                covered |= spread.forms_of(made_here)  # who makes it knows of it
             if both and (fact.emits or fact.pseudonymises or category in closed):
                 i = spread.categories.index(category)
                 plain, pseudonymised = spread.bits.forms(i)
@@ -396,8 +397,8 @@ def channels_of_sources(
             legs[element.identity].append(vertex)
     for vertex, decided in elements.items():
         for category, fact in decided.items():
-            for source in fact.by_role("source")[:1] if fact.through else ():
-                indices = bound.through.get((vertex, fact.through), ())
+            for source in fact.by_role("source")[:1]:
+                indices = bound.through.get((vertex, source.through), ())
                 ends = {graph.flows[i].target: i for i in _with_matches(indices, graph, matches, met)}
                 both = {leg: -1 for end in ends for leg in legs.get(graph.elements[end].identity, ())}
                 rows += [(category, source, end, index) for end, index in {**both, **ends}.items()]

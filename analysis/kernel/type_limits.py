@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.kernel.ranks import closes
 from rosprivacy.analysis.kernel.spreading import emitted
-from rosprivacy.analysis.model import CANNOT, OF_TYPES, STATED, Statement
+from rosprivacy.analysis.model import CANNOT, OF_TYPES, STATED, Place, Statement
 from rosprivacy.analysis.modes import View
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.kernel.spread import Spread
-    from rosprivacy.analysis.model import Bound, Element, FlowGraph, MessageType, Place
+    from rosprivacy.analysis.model import Bound, Element, FlowGraph, MessageType
 
 
 class TypeLimit(NamedTuple):
@@ -32,21 +32,32 @@ class TypeLimit(NamedTuple):
 
 
 class TypeLimits(NamedTuple):
-    """A table of limits, by (name of a type, leg), and the hashes of the definitions that it speaks of, by name."""
+    """A table of limits, by (name of a type, leg), and the hashes of the definitions that it speaks of, by name.
+
+    Attributes
+    ----------
+    made_for
+        (name of a type, leg) -> the kinds that it is made for, some or none; of types that somebody looked at.
+    by_purpose
+        Whether the limits are what types are not made for: that says nothing of the fields of other types.
+    """
 
     file: str
     sha256: str
     of: Mapping[tuple[str, str], TypeLimit]
     hashes: Mapping[str, frozenset[str]] = MappingProxyType({})
+    made_for: Mapping[tuple[str, str], frozenset[str]] = MappingProxyType({})
+    by_purpose: bool = False
 
 
 def under_limits(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, limits: TypeLimits | None) -> Bound:
     """Return what is bound to a graph with what the types of its channels cannot carry.
 
-    Several types exclude what all of them exclude; one that was seen with two hashes, or with one that is not that of
-    the definition in the table, excludes nothing. A channel is limited only where what each of its writers sends is
-    known, and only in the declared view. What a derivation makes, and what a label says that a flow there may carry,
-    is not taken away; what labels of the channel and sources say of it outranks these statements by itself.
+    Several types exclude what all of them exclude, and so do the fields of a type that is not in the table and whose
+    definition was read: each is as a type of its own. A type that was seen with two hashes, or with one that is not
+    that of the definition in the table, excludes nothing. A channel is limited only where what each of its writers
+    sends is known, and only in the declared view. What a derivation makes, and what a label says that a flow there may
+    carry, is not taken away; what labels of the channel and sources say of it outranks these statements by itself.
 
     Examples
     --------
@@ -62,13 +73,10 @@ def under_limits(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, limits: T
     """
     if limits is None or not bound.types or graph.view != View.declared:
         return bound
-    kept, said = _KeptByWriters(graph, bound, hierarchy), dict[int, Statement]()
-    begun, other = emitted(bound.elements.values()), _otherwise_defined(bound, limits)
+    kept, said = KeptByWriters(graph, bound, hierarchy), dict[int, Statement]()
+    begun, of_types = emitted(bound.elements.values()), _LimitsOfTypes(bound, limits)
     for vertex, types in bound.types.items():
-        found = [
-            None if (one.robot, one.name) in other else limits.of.get((one.name, graph.elements[vertex].leg))
-            for one in types
-        ]
+        found = [of_types.of(one, graph.elements[vertex].leg, types) for one in types]
         some = [one for one in found if one]
         if not some or len(some) < len(found) or not kept.types_known(vertex, types):
             continue
@@ -82,8 +90,48 @@ def under_limits(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, limits: T
     return replace(bound, elements=dict(sorted(both.items())))
 
 
-def _otherwise_defined(bound: Bound, limits: TypeLimits) -> set[tuple[str, str]]:
-    """(robot, name) of types of which what is there called so is not, or not everywhere, what the table speaks of."""
+class _LimitsOfTypes:
+    """What the types of channels cannot carry: by their names, or else by their definitions."""
+
+    def __init__(self, bound: Bound, limits: TypeLimits) -> None:
+        self._limits, self._other = limits, otherwise_defined(bound, limits)
+        self._hashed = {(each.robot, each.name) for types in bound.types.values() for each in types if each.hash}
+
+    def of(self, type_: MessageType, leg: str, types: tuple[MessageType, ...]) -> TypeLimit | None:
+        """Return the limit of one of the types of a channel."""
+        if (type_.robot, type_.name) in self._other:
+            return None
+        if (type_.name, leg) in self._limits.of or self._limits.by_purpose:
+            return self._limits.of.get((type_.name, leg))
+        return self._of_fields(type_, types)
+
+    def _of_fields(self, type_: MessageType, types: tuple[MessageType, ...]) -> TypeLimit | None:
+        """What none of the fields can carry; what is stated is defined as what was read.
+
+        Of a type that was seen with a hash nobody knows whether it is that of the definition.
+        """
+        robot, name = type_.robot, type_.name
+        read = [each for each in types if (each.robot, each.name) == (robot, name) and not each.stated]
+        defined = read if type_.stated else [type_]
+        fields = sorted({field for each in defined for field in each.fields or ("",)})
+        limits = [self._limits.of.get((field, "")) for field in fields if (robot, field) not in self._other]
+        if not fields or len(limits) < len(fields) or not all(limits) or (robot, name) in self._hashed:
+            return None
+        kinds = frozenset.intersection(*(limit.kinds for limit in limits if limit))
+        return TypeLimit(kinds, Place(defined[0].definition, 1))
+
+
+def otherwise_defined(bound: Bound, limits: TypeLimits) -> set[tuple[str, str]]:
+    """Return (robot, name) of types that are not, or not everywhere, the definition of which the table speaks.
+
+    >>> from dataclasses import replace
+    >>> from rosprivacy.analysis.example import VIDEO, factory
+    >>> from rosprivacy.analysis.model import MessageType, Place
+    >>> _, bound, _ = factory()
+    >>> bound = replace(bound, types={VIDEO: (MessageType("a/msg/A", Place("t.yaml", 1), hash="1"),)})
+    >>> otherwise_defined(bound, TypeLimits("types.yaml", "", {}, {"a/msg/A": frozenset(["2"])}))
+    {('', 'a/msg/A')}
+    """
     seen: dict[tuple[str, str], set[str]] = defaultdict(set)
     for types in bound.types.values():
         of_channel: dict[str, set[str]] = defaultdict(set)  # robots may share it
@@ -94,7 +142,7 @@ def _otherwise_defined(bound: Bound, limits: TypeLimits) -> set[tuple[str, str]]
     return {key for key, hashes in seen.items() if len(hashes) > 1 or not hashes <= limits.hashes.get(key[1], hashes)}
 
 
-class _KeptByWriters:
+class KeptByWriters:
     """Who writes the channels of a graph, and what is not taken away from them."""
 
     def __init__(self, graph: FlowGraph, bound: Bound, hierarchy: Hierarchy) -> None:
@@ -108,10 +156,17 @@ class _KeptByWriters:
                 self._stated_flows[vertex].append((stated, said))
         self._made_kinds = _made_kinds(graph, bound)
 
+    def writers_of(self, vertex: int) -> list[Element]:
+        """Return the elements from which a flow leads to a channel, sorted; a wildcard that matches it is one."""
+        return sorted((self._elements[writer] for writer in self._writers[vertex]), key=lambda one: one.sort_key())
+
     def types_known(self, vertex: int, types: tuple[MessageType, ...]) -> bool:
         """Whether the type of all that comes to a channel is known; what comes through a wildcard only if stated."""
-        writers = (self._elements[writer] for writer in self._writers[vertex])
-        return all(any(one.written_by(writer) for one in types) for writer in writers)
+        return not self.unknown_writers(vertex, types)
+
+    def unknown_writers(self, vertex: int, types: tuple[MessageType, ...]) -> list[Element]:
+        """Return the elements from which something of an unknown type comes to a channel, sorted."""
+        return [one for one in self.writers_of(vertex) if not any(known.written_by(one) for known in types)]
 
     def keeps(self, vertex: int, kind: str) -> bool:
         """Whether a node that writes a channel makes a kind of others, or a label says that a flow there carries it."""

@@ -117,7 +117,8 @@ class Pointer(NamedTuple):
     applies
         The day from which it applies, or will; empty where it simply applies.
     confirmed, adopted
-        Whether we found that law to be published; if not, the day on which it was adopted.
+        Whether we found that law to be published; if not, the day on which it was adopted, or nothing where all that
+        we know of it is what others write.
     country
         ISO 3166-1 code of the country whose law it is; empty for law of the Union.
     address

@@ -27,6 +27,8 @@ MISTAKEN_TILDE = "mistaken-tilde"
 REFUSED_NAME = "refused-name"
 LEGAL_BASIS = "legal-basis"  # one that is stated lacks something that the law asks for
 OBSERVED = "observed"  # from when to when, by which doors: what was not seen proves nothing (rule S16)
+SCANNED = "scanned"  # a policy that was made of source code: what the code does beside is not in it (rule S16)
+SCAN_GAP = "scan-gap"  # what a scan could not resolve, at its line: the verdict is undetermined at best (S16)
 ENCLAVES_MADE_UP = "enclaves-made-up"
 FOLDED_NAMES = "folded-names"
 OBSERVATION_GAP = "observation-gap"  # what an observation is known to miss: the verdict is undetermined at best (S16)
@@ -43,15 +45,22 @@ RECORDING = "recording"  # a bag that is a storage: its size, its time, its topi
 SEEN_ALTHOUGH_DENIED = "seen-although-denied"
 SIGNED_BY = "signed-by"  # the CA of a keystore, and whether a user has pinned it
 WITHOUT_WARNINGS = "made-without-warnings"  # a text of what runs, without what the tool warned of (rule S16)
+BY_TYPE_OPEN = "by-type-open"  # a line 'only: by-type' of a channel whose type is not certain: it closes nothing
+BY_TYPE_LAPSED = "by-type-lapsed"  # types or writers are others than those with which a person took it
+BY_TYPE_UNPINNED = "by-type-unpinned"  # nobody has kept with which types and writers it was taken
+CODE_CHANGED = "code-changed"  # a node was reviewed at another version of its code
+CODE_NOT_READ = "code-not-read"  # … and whether it was is not known
 GAPS = (  # doubts that break the verdict (rule S11)
-    UNREAD_FILE, OBSERVATION_GAP, BAG_GAP, ACCESS_GAP, LEAK_JOINS_NOTHING,
+    UNREAD_FILE, OBSERVATION_GAP, SCAN_GAP, BAG_GAP, ACCESS_GAP, LEAK_JOINS_NOTHING,
 )  # fmt: skip
 RIDES = (  # doubts that ride on it
     NOTHING_ENFORCED, FALLBACK_TAKEN, EMPTY_GROUP, PATHS_NOT_COUNTED, EMPTY_INCLUDE, WITHOUT_WARNINGS, JOINS_NOTHING,
     NO_ROBOT, REFUSED_NAME, ODD_NAMESPACE, MISTAKEN_TILDE, CAREFUL_DENY, TYPES_OF_NOTHING, IN_PARTS,
+    BY_TYPE_OPEN, BY_TYPE_LAPSED, BY_TYPE_UNPINNED, CODE_CHANGED, CODE_NOT_READ,
 )  # fmt: skip
 ASSUMED = (
     OBSERVED,
+    SCANNED,
     ENCLAVES_MADE_UP,
     FOLDED_NAMES,
     RECORDING,
@@ -62,6 +71,11 @@ NO_SOURCE = "no-source"  # what 'no leak found' lacks, so that it says nothing (
 GOES_NOWHERE = "goes-nowhere"
 NO_LEAK_NAMED = "no-leak-named"
 NOTHING_FOLLOWED = (NO_SOURCE, GOES_NOWHERE)
+SCAN_SORTS = (  # of what a scan could not resolve: what could hide most first
+    "name", "node-of", "system", "node", "wrapper", "remap", "started", "include", "parameter", "outside",
+    "description", "file", "package",
+)  # fmt: skip
+_UNRESOLVED = re.compile(r"not resolved \(([a-z-]+)\)")
 _WHEN = r"observed from (\S+) to (\S+) by (.+); what was not seen proves nothing"
 
 
@@ -82,6 +96,25 @@ def observed_when(message: str) -> tuple[str, str, tuple[str, ...]] | None:
     """
     match = re.fullmatch(_WHEN, message)
     return (match[1], match[2], tuple(match[3].split(", "))) if match else None
+
+
+def unresolved(sort: str, text: str) -> str:
+    """Return the message that a scan could not resolve something (rule S16).
+
+    >>> unresolved("name", "it depends on the robot")
+    'not resolved (name): it depends on the robot'
+    """
+    return f"not resolved ({sort}): {text}"
+
+
+def unresolved_rank(message: str) -> int:
+    """Return a number that is the smaller the more a gap of a scan could hide; of another message the greatest.
+
+    >>> unresolved_rank(unresolved("name", "")), unresolved_rank("something else") == len(SCAN_SORTS)
+    (0, True)
+    """
+    match = _UNRESOLVED.match(message)
+    return SCAN_SORTS.index(match[1]) if match and match[1] in SCAN_SORTS else len(SCAN_SORTS)
 
 
 class Place(NamedTuple):

@@ -29,12 +29,13 @@ RESTRICTED = "restricted"  # the answer is about some kinds of data only
 BY_GLOBS = "by-globs"  # only a glob answers for what gets to an element, in a file without pins
 STANDARD_CLOSES = "standard-closes"  # only the standard file does, of a channel that is not in its standard place (S13)
 INFRASTRUCTURE_CLOSES = "infrastructure-closes"  # only the file of infrastructure does
+BY_TYPE_CLOSES = "by-type-closes"  # only a line 'only: by-type' does, of a way to a leak or to what nobody reviewed
 TYPE_CLOSES = "type-closes"  # only what a message type cannot carry closes a path to a leak
 
 RANKS = {  # each sort of doubts, what breaks first (rule S11)
     **dict.fromkeys((*GAPS, STANDARD_CLOSES), Rank.BREAKS),
     **dict.fromkeys((*RIDES, NO_READER, NO_FLOW, BACKUPS_NOT_STATED, RESTRICTED), Rank.RIDES),
-    **dict.fromkeys((BY_GLOBS, INFRASTRUCTURE_CLOSES, TYPE_CLOSES), Rank.RIDES),
+    **dict.fromkeys((BY_GLOBS, INFRASTRUCTURE_CLOSES, TYPE_CLOSES, BY_TYPE_CLOSES), Rank.RIDES),
 }
 
 

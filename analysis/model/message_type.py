@@ -6,10 +6,22 @@ import re
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from rosprivacy.analysis.model.diagnostic import Place
     from rosprivacy.analysis.model.element import Element
 
 OF_KIND = {"topic": "msg", "service": "srv", "action": "action"}  # the middle of the name of a type, by kind of channel
+TYPE, HASH = "type", "hash"  # first words of the texts that a pin keeps
+WRITERS = {"": "writer", "request": "client", "response": "server"}  # who writes a topic, or a leg
+PARAMETER_SERVICES = {  # that each node of ROS 2 has: the last part of the name -> the type
+    "describe_parameters": "rcl_interfaces/srv/DescribeParameters",
+    "get_parameter_types": "rcl_interfaces/srv/GetParameterTypes",
+    "get_parameters": "rcl_interfaces/srv/GetParameters",
+    "list_parameters": "rcl_interfaces/srv/ListParameters",
+    "set_parameters": "rcl_interfaces/srv/SetParameters",
+    "set_parameters_atomically": "rcl_interfaces/srv/SetParametersAtomically",
+}
 _NAME = re.compile(rf"[A-Za-z][A-Za-z0-9_]*/({'|'.join(OF_KIND.values())})/[A-Za-z][A-Za-z0-9_]*")
 
 
@@ -32,6 +44,10 @@ class MessageType(NamedTuple):
         When it was seen; empty where it is not known.
     robot
         Whose writers and readers these are.
+    definition
+        The file that defines it, where one was read.
+    fields
+        The known types that the fields of that definition are; none where a field can be anything.
     """
 
     name: str
@@ -43,6 +59,8 @@ class MessageType(NamedTuple):
     first: str = ""
     last: str = ""
     robot: str = ""
+    definition: str = ""
+    fields: tuple[str, ...] = ()
 
     def written_by(self, element: Element) -> bool:
         """Whether what an element of the graph sends to the channel is known to be of this type."""
@@ -59,3 +77,15 @@ def kind_of_type(name: str) -> str:
     """
     match = _NAME.fullmatch(name)
     return next(kind for kind, part in OF_KIND.items() if part == match[1]) if match else ""
+
+
+def taken_with(types: Iterable[MessageType], writers: Iterable[str], leg: str) -> tuple[str, ...]:
+    """Return types and writers of a channel, or of a leg of one, as the texts that a pin keeps, sorted.
+
+    >>> from rosprivacy.analysis.model import Place
+    >>> taken_with([MessageType("a/srv/A", Place("", 0), hash="RIHS01_1")], ["/a"], "request")
+    ('client /a', 'hash a/srv/A RIHS01_1', 'type a/srv/A')
+    """
+    known = list(types)
+    texts = {f"{TYPE} {one.name}" for one in known} | {f"{HASH} {one.name} {one.hash}" for one in known if one.hash}
+    return tuple(sorted(texts | {f"{WRITERS[leg]} {name}" for name in writers}))

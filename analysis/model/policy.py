@@ -64,6 +64,9 @@ class Grant(NamedTuple):
     rank
         Of permissions, the place of its rule, from 1: the first rule that matches decides, so a DENY takes away only
         from what comes after it. 0 in a policy, where DENY wins wherever it stands (rule S5).
+    basis
+        How source code fixes the name, of a scanned policy: ``literal``, ``default``, ``launch`` and others; the place
+        is then the line of the code (rule S16).
     """
 
     allow: bool
@@ -78,10 +81,14 @@ class Grant(NamedTuple):
     absolute: bool = False
     observation: Seen | None = None
     rank: int = 0
+    basis: str = ""
 
     def __hash__(self) -> int:
         """Of what tells nearly all apart: a file that many profiles include has the same lines in each."""
         return hash((self.node, self.name, self.role, self.place.line))
+
+
+SourceRoot = tuple[tuple[str, ...], str]  # folders of sources, and the launch file that was named, if any
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,6 +103,8 @@ class Policy:
         Whether it was read from a saved graph: then its files are names that anybody may have written.
     protections
         Of permissions with a governance beside them: what holds in each domain that they are about.
+    checkout
+        The sources that it was made of; None for others.
     """
 
     file: str
@@ -105,3 +114,4 @@ class Policy:
     diagnostics: tuple[Diagnostic, ...] = ()
     saved: bool = field(default=False, compare=False)
     protections: tuple[Protection, ...] = ()
+    checkout: SourceRoot | None = None

@@ -171,6 +171,12 @@ class TopicKinds:
         What that rests on, in a few words.
     suggested
         What its types suggest, the surest first: questions, of which nothing follows but that they are open.
+    bound
+        The kinds that can be in it and no others, sorted; None where nobody says that there are no others.
+    doubt
+        Why others can be in it, where that has a name.
+    labelled
+        Whether a person's label says of the topic itself what is in it.
     """
 
     topic: BagTopic
@@ -178,6 +184,9 @@ class TopicKinds:
     unknown: str = ""
     why: str = ""
     suggested: tuple[Suggestion, ...] = ()
+    bound: tuple[str, ...] | None = None
+    doubt: str = ""
+    labelled: bool = False
 
     @property
     def surest(self) -> dict[str, Confidence]:
@@ -219,3 +228,49 @@ class JudgedBag:
             return BagVerdict.PERSONAL_DATA
         known = self.bag.complete and not self.open_topics and not self.bag.extras
         return BagVerdict.NOTHING_FOUND if known else BagVerdict.UNDETERMINED
+
+
+@dataclass(frozen=True, slots=True)
+class SharedTopic:
+    """A topic of a bag, as it is kept in a copy that may be shared, or left out of it.
+
+    Attributes
+    ----------
+    messages
+        How many were copied, or left out; None where nobody counted them.
+    reason
+        Why it is kept, or left out, in a few words.
+    """
+
+    judged: TopicKinds
+    messages: int | None
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class SharedBag:
+    """A bag with its copy that may be shared.
+
+    Attributes
+    ----------
+    copy
+        Where the copy is; empty where no topic could be copied, so that there is none.
+    without
+        Names of the categories that it is to be without; empty for all.
+    topics, omitted
+        What was copied, and what was left out; sorted by name.
+    extras
+        What was left out beside messages, such as attachments.
+    """
+
+    bag: str
+    copy: str
+    without: tuple[str, ...]
+    topics: tuple[SharedTopic, ...]
+    omitted: tuple[SharedTopic, ...]
+    extras: tuple[str, ...]
+
+    @property
+    def messages(self) -> int:
+        """How many messages are in the copy."""
+        return sum(topic.messages or 0 for topic in self.topics)

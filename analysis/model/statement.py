@@ -38,6 +38,8 @@ NAME, SEGMENT, GLOB = "name", "segment", "glob"  # how a label names an element
 STANDARD = 0  # the tier of the file of standard channels (rule S13); users' files are above it
 CHANGED = 3  # the tier of what a proposal changes: above all that is said now, in files and in a database
 CANNOT, OF_TYPES = "cannot", (-2, 0)  # role and rank of what a type cannot carry: below all that anybody says (S15)
+BY_TYPE, OF_LINES = "by-type", (-3, 0)  # role and rank of what 'only: by-type' closes: below what types cannot carry
+TYPE_LINE = "type-line"  # the role of that line as it is written: by itself it closes nothing and reviews nothing
 STATED = "flow"  # the role of a flow that a person states (rule S9)
 
 
@@ -49,7 +51,8 @@ class Statement(NamedTuple):
     role
         Of a node: ``source``, ``leak``, ``sanitizer``, ``conduit``, ``derivation``, and ``no-source`` and ``no-leak``,
         which take back what is said by lower ranks. Of a channel: ``mundane``, ``sensitive``, ``only``, ``never``. Of a
-        flow: ``only``, ``never``. Of the type of a channel: ``CANNOT``, of exactly the kinds that it names.
+        flow: ``only``, ``never``. Of the type of a channel: ``CANNOT``, of exactly the kinds that it names. Of
+        ``only: by-type``: ``TYPE_LINE`` for the line, and ``BY_TYPE``, which closes exactly the kinds that it names.
     categories
         Names; empty means every category. One name for the roles of a node.
     rank
@@ -75,7 +78,9 @@ class Statement(NamedTuple):
         Who says it, and answers for it; empty where nobody is named.
     pinned
         Of what has to be ``seen``, in a file with pins: the kinds, as they are emitted, that a person has seen at this
-        element or flow; None in a file without.
+        element or flow; None in a file without. Of what was said of other code than there is now none: then what
+        ``adds`` data holds, and reviews nothing. Of a ``TYPE_LINE``: the types and writers with which a person took
+        it, as texts (``by_type.py``); none of a channel that is not pinned, None in a file without such pins.
     """
 
     role: str
@@ -105,7 +110,12 @@ class Statement(NamedTuple):
     @property
     def to_be_seen(self) -> bool:
         """Whether a glob takes away or reviews: a person has to have seen what gets there (rule S11)."""
-        return self.glob and self.role not in ("source", "leak", "derivation")
+        return self.glob and not self.adds
+
+    @property
+    def adds(self) -> bool:
+        """Whether it brings data in, lets it out or makes it of other: that holds whether or not it was seen."""
+        return self.role in ("source", "leak", "derivation")
 
     def counts_for(self, category: str) -> bool:
         """Return whether it holds for a kind that gets there, as far as pins say (rule S11)."""
@@ -186,6 +196,7 @@ class NonRosFacts(NamedTuple):
 
 
 CONTEXTS = ("care", "public-space", "school", "union", "workplace", "worship")  # those of ontology/contexts.ttl
+GDPR_APPLIES, GDPR_OPEN, GDPR_DENIED = "applies", "open", "denied"  # whether it does, Article 3
 
 
 class Surroundings(NamedTuple):
@@ -197,14 +208,38 @@ class Surroundings(NamedTuple):
         Some of ``CONTEXTS``, sorted.
     country
         ISO 3166-1 alpha-2 code of the country where it runs; empty where nobody states it.
+    abroad
+        Whether that country is outside the EEA.
+    established
+        Whether the processing belongs to an establishment of the controller or a processor in the Union (GDPR, Article
+        3(1)); None where nobody states it.
+    targeted
+        Whether persons in the Union are offered goods or services, or monitored there (Article 3(2)); as before.
     """
 
     contexts: tuple[str, ...] = ()
     country: str = ""
+    abroad: bool = False
+    established: bool | None = None
+    targeted: bool | None = None
 
     def __bool__(self) -> bool:
         """Whether anything is stated."""
-        return bool(self.contexts or self.country)
+        return self != Surroundings()
+
+    @property
+    def gdpr(self) -> str:
+        """Whether the GDPR applies (Article 3), as far as it is stated.
+
+        Outside the EEA that is a question until one of its two grounds is affirmed or both are denied.
+
+        >>> robot = Surroundings(country="US", abroad=True)
+        >>> robot.gdpr, robot._replace(established=False).gdpr, robot._replace(established=False, targeted=False).gdpr
+        ('open', 'open', 'denied')
+        """
+        if not self.abroad or self.established or self.targeted:
+            return GDPR_APPLIES
+        return GDPR_DENIED if self.established is False and self.targeted is False else GDPR_OPEN
 
 
 ByCategory = tuple[tuple[str, tuple[str, ...]], ...]  # (category, or ``EVERY``; what is stated of it), sorted
@@ -261,6 +296,8 @@ class Bound:
         By vertex: where an element works, its own with those of its system. It changes no flow.
     elsewhere
         (kind, name) -> contexts of elements on robots for which those of the graph stand, and which are not in it.
+    scopes
+        (kind, name) -> whether the GDPR applies where sources of such robots work.
     processing
         By vertex: what the data there are processed for, and on which basis.
     of_robots
@@ -280,6 +317,7 @@ class Bound:
     processing: Mapping[int, Processing] = field(default_factory=dict)
     of_robots: Mapping[str, Processing] = field(default_factory=dict)
     elsewhere: Mapping[tuple[str, str], frozenset[str]] = field(default_factory=dict)
+    scopes: Mapping[tuple[str, str], frozenset[str]] = field(default_factory=dict)
     types: Mapping[int, tuple[MessageType, ...]] = field(default_factory=dict)
     exposed: Mapping[int, tuple[Exposure, ...]] = field(default_factory=dict)
 

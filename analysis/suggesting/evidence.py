@@ -7,10 +7,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from rosprivacy.analysis.model import Confidence
 from rosprivacy.analysis.written_names import literal
 
 if TYPE_CHECKING:
-    from rosprivacy.analysis.model import Confidence, Element, Method, Place
+    from rosprivacy.analysis.model import Element, Method, Place
 
 SOURCE, LEAK, DERIVATION, SENSITIVE = "source", "leak", "derivation", "sensitive"
 SANITIZER, CONDUIT, MUNDANE, NEVER = "sanitizer", "conduit", "mundane", "never"
@@ -20,7 +21,12 @@ HIDING = TAKING_AWAY | {CONDUIT}  # or that nobody looked
 CODE, PACKAGE, TYPE, NAMED, DATA_FLOW, NEIGHBOUR = "code", "package", "type", "name", "data-flow", "neighbour"
 MODEL = "model"  # a language model, which read names and types; it makes nothing surer than may
 GLOBBED = "glob"  # a label that says otherwise, and names no element
+SURE = (Confidence.CERTAIN, Confidence.LIKELY)
 GROUNDS = (GLOBBED, CODE, PACKAGE, TYPE, NAMED, DATA_FLOW, NEIGHBOUR, MODEL)  # in the order of reasons
+SORTS = (  # of what lies outside ROS
+    "cloud", "language-model", "speech", "vision", "broker", "database", "file", "socket", "web-server", "http",
+    "screen", "loudspeaker", "process",
+)  # fmt: skip
 WHERE = ("network", "display", "file", "loudspeaker", "device", "domain")  # to which a node sends what leaves ROS
 ANYTHING = "PersonalData"  # the broadest category: a type that can carry it can carry anything
 

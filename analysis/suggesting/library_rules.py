@@ -71,24 +71,35 @@ class RulesByName:
     rules: Mapping[str, NameRule]
 
     @cached_property
-    def _starred(self) -> list[str]:
-        return sorted((name[:-1] for name in self.rules if name.endswith("*")), key=len, reverse=True)
+    def _starred(self) -> tuple[str, ...]:
+        return tuple(sorted((name[:-1] for name in self.rules if name.endswith("*")), key=len, reverse=True))
 
     @cached_property
     def _parts(self) -> list[str]:
         parts = (name.removeprefix(ADDRESS) for name in self.rules if name.startswith(ADDRESS))
         return sorted(parts, key=len, reverse=True)
 
+    @cached_property
+    def _matches(self) -> dict[str, tuple[str, NameRule] | None]:
+        return {}  # code uses the same names again and again
+
     def of(self, name: str) -> tuple[str, NameRule] | None:
         """Return the longest name that is this one, or above it, with its rule; of an address the longest part."""
+        if name not in self._matches:
+            self._matches[name] = self._longest(name)
+        return self._matches[name]
+
+    def _longest(self, name: str) -> tuple[str, NameRule] | None:
         if name.startswith(ADDRESS):
             part = next((one for one in self._parts if one in name), None)
             return (part, self.rules[ADDRESS + part]) if part else None
         for above in _above(name):
             if above in self.rules:
                 return above, self.rules[above]
-        start = next((one for one in self._starred if name.startswith(one)), None)
-        return (start, self.rules[f"{start}*"]) if start else None
+        if not name.startswith(self._starred):  # of most; asked for all at once
+            return None
+        start = next(one for one in self._starred if name.startswith(one))
+        return start, self.rules[f"{start}*"]
 
 
 class LibraryRules(NamedTuple):

@@ -41,6 +41,8 @@ class NameRule(NamedTuple):
         Whether it agrees with nothing, as a window does with a node that is called gui.
     by_itself
         Of what makes something: whether it reads ROS by itself, as a listener of transforms does.
+    sort
+        Of what lies outside ROS, for a scan of sources: one of ``SORTS``; empty where ``where`` says it.
     """
 
     kinds: tuple[str, ...]
@@ -53,6 +55,7 @@ class NameRule(NamedTuple):
     any_type: bool = False
     alone: bool = False
     by_itself: bool = False
+    sort: str = ""
 
 
 @dataclass(frozen=True)

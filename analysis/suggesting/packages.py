@@ -36,6 +36,7 @@ USES = {  # what a node does with its interfaces, in the file -> (kind of channe
     "executes": ("action", "execute"),
     "calls": ("action", "call"),
 }
+NOTHING = "nothing"  # besides the interfaces that a file states
 MAKERS = {"topic": "publish", "service": "reply", "action": "execute"}  # whose type is that of the channel
 
 
@@ -47,14 +48,18 @@ class Interface(NamedTuple):
     use
         One of ``USES``.
     name
-        Relative, private (``~/x``) or absolute; ``*`` stands for one segment, or for a part of one.
+        Relative, private (``~/x``), from the namespace above (``../x``) or absolute; ``*`` stands for one segment, or
+        for a part of one; where a parameter names it, for its value.
     type
         Such as ``sensor_msgs/msg/Image``; empty if the node takes any.
+    parameter
+        Whose value is the name where it is set, or the ``*`` in it; there a pattern of parameters, each names one.
     """
 
     use: str
     name: str
     type: str = ""
+    parameter: str = ""
 
 
 class Claim(NamedTuple):
@@ -83,11 +88,31 @@ class Claim(NamedTuple):
 
 
 class PackageNode(NamedTuple):
-    """A node of a package: its default names without namespace, which may end in ``*``, its interfaces, its claims."""
+    """A node of a package.
+
+    Attributes
+    ----------
+    names
+        By default, without namespace, which may end in ``*``; then its executables.
+    interfaces
+        By which it is recognised.
+    further
+        Further interfaces, such as those that only some versions or settings have.
+    rest
+        What its channels besides these depend on; ``NOTHING`` if there are none, empty if that is not known.
+    makes
+        Further nodes in its process, which the same file describes: their names, from its namespace.
+    components
+        Its classes, where it can be loaded into a container.
+    """
 
     names: tuple[str, ...]
     interfaces: tuple[Interface, ...]
     claims: tuple[Claim, ...]
+    further: tuple[Interface, ...] = ()
+    rest: str = ""
+    makes: tuple[str, ...] = ()
+    components: tuple[str, ...] = ()
 
 
 class Source(NamedTuple):
@@ -101,7 +126,15 @@ class Source(NamedTuple):
 
 
 class Package(NamedTuple):
-    """What one file says of one package; ``place`` and ``sha256`` are of the file."""
+    """What one file says of one package, or of a stack of them.
+
+    Attributes
+    ----------
+    place, sha256
+        Of the file.
+    packages
+        Those whose executables its nodes are, as launch files call them.
+    """
 
     name: str
     about: str
@@ -109,6 +142,7 @@ class Package(NamedTuple):
     nodes: tuple[PackageNode, ...]
     place: Place
     sha256: str = ""
+    packages: tuple[str, ...] = ()
 
     @property
     def version(self) -> str:
@@ -139,6 +173,16 @@ class NodeOfPackage(NamedTuple):
     def is_recognised(self) -> bool:
         """Whether it has at least half of the interfaces."""
         return bool(self.node.interfaces) and 2 * self.confirmed >= len(self.node.interfaces)
+
+    @property
+    def agrees(self) -> str:
+        """What of it agrees with the package."""
+        some = f"{self.confirmed} of {len(self.node.interfaces)} of its interfaces"
+        return f"its name, {some}" if self.confirmed else "its name alone"
+
+    def is_exit(self, name: str) -> bool:
+        """Whether it is ``likely`` what lets data out: by its interfaces, or called as a package that lists none."""
+        return self.is_recognised or (not self.node.interfaces and name.rpartition("/")[2] == self.package.name)
 
 
 def nodes_of_packages(
@@ -236,7 +280,7 @@ def _is_called(interface: Interface, base: str, channel: str) -> bool:
 
 @lru_cache(maxsize=2**14)
 def _parts(name: str, base: str) -> tuple[str, ...]:
-    name = name.removeprefix("/")
+    name = name.removeprefix("../").removeprefix("/")
     return tuple((f"{base}/{name[2:]}" if name.startswith("~/") else name).split("/"))
 
 
@@ -257,17 +301,15 @@ def package_evidence(graph: FlowGraph, of_packages: Iterable[NodeOfPackage]) -> 
     """
     for one in of_packages:
         element, interfaces, package = whole(graph.elements[one.vertex]), len(one.node.interfaces), one.package
-        by = f"its name, {one.confirmed} of {interfaces} of its interfaces" if one.confirmed else "its name alone"
         another = interfaces and not one.confirmed and one.all_typed
-        bare = not interfaces and element.name.rpartition("/")[2] == package.name
         own = {claim.kind for claim in one.node.claims if claim.role == SOURCE}
         for claim in one.node.claims:
             if another and (claim.role != LEAK or claim.kind in own):
                 continue
             label = SuggestedLabel(element, claim.role, claim.kind, claim.method, claim.to)
-            matched = one.is_recognised or (bare and claim.role == LEAK)
+            matched = one.is_exit(element.name) if claim.role == LEAK else one.is_recognised
             where = f", to a {claim.where}" if claim.where else ""
-            reason = f"package {package.name} {package.version}{where}: {claim.why} ({by})"
+            reason = f"package {package.name} {package.version}{where}: {claim.why} ({one.agrees})"
             ground, sure = (PACKAGE, claim.confidence) if matched else (NAMED, Confidence.MAY)
             yield Evidence(label, ground, sure, reason, claim.place, where=claim.where)
 

@@ -1,7 +1,8 @@
 """The ways out that a system has if suggestions are right, those that weigh most first.
 
 In: proposals, and the findings of an analysis in which they count as labels. Out: ``WayOut`` for each place where data
-gets out. No proposal that closes a way is among them, so a wrong one shows a way too many, and hides none.
+gets out. Ways along channels whose types are made for the data come before others, which are there all the same. No
+proposal that closes a way is among them, so a wrong one shows a way too many, and hides none.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.model import Confidence
-from rosprivacy.analysis.suggesting.evidence import DERIVATION, LEAK, SOURCE, LabelProposal, whole
+from rosprivacy.analysis.suggesting.evidence import DERIVATION, LEAK, SOURCE, SURE, LabelProposal, whole
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence
@@ -18,10 +19,9 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Category, Element, Weight
     from rosprivacy.analysis.suggesting.evidence import Identity
 
-FARTHEST_FIRST = ("network", "domain", "", "device", "loudspeaker", "display", "file")  # '' where it is not known
+FARTHEST_FIRST = ("network", "domain", "file", "", "device", "loudspeaker", "display")  # '' where it is not known
 OUTSIDE = {"external-system": "network", "storage": "file"}  # what the kind of an element says
 MAKING = (SOURCE, DERIVATION)  # data that were not there before
-SURE = (Confidence.CERTAIN, Confidence.LIKELY)
 LEAST_SURE_FIRST = (Confidence.MAY, Confidence.LIKELY, Confidence.CERTAIN)
 
 
@@ -34,6 +34,8 @@ class WayOut(NamedTuple):
         Where the data goes from there: one of ``WHERE``, or empty.
     findings
         One for each kind of data and source, what weighs most first.
+    likely
+        How many of these come along channels whose types are made for them; they are the first.
     proposals
         On which the first finding hangs, the least sure first; none if it is stated.
     """
@@ -41,12 +43,19 @@ class WayOut(NamedTuple):
     exit: Element
     where: str
     findings: tuple[Finding, ...]
+    likely: int
     proposals: tuple[LabelProposal, ...]
 
     @property
     def kinds(self) -> tuple[str, ...]:
-        """The kinds of data that get out there, what weighs most first."""
-        return tuple(dict.fromkeys(finding.category for finding in self.findings))
+        """The kinds of data that get out there, what weighs most first; only if there are no others, unlikely ones."""
+        return tuple(dict.fromkeys(finding.category for finding in self.findings[: self.likely or None]))
+
+    @property
+    def unlikely_kinds(self) -> tuple[str, ...]:
+        """Further kinds that get out there only along channels whose types are made for others."""
+        kinds = dict.fromkeys(finding.category for finding in self.findings)
+        return tuple(kind for kind in kinds if kind not in self.kinds)
 
 
 def opening(proposals: Sequence[LabelProposal], *, sourced: bool = False) -> tuple[LabelProposal, ...]:
@@ -86,11 +95,12 @@ def ways_out(
     proposals: Iterable[LabelProposal],
     categories: Mapping[str, Category],
     stated: Collection[str] = (),
+    likely: Mapping[str, Finding] | None = None,
 ) -> tuple[WayOut, ...]:
     """Return the places where data gets out.
 
-    The first are those from which it goes farthest; of these those of the heaviest kind (``Weight``), what is stated
-    before what is suggested, and the surest.
+    The first are those which data gets to along channels that are made for it; of these those from which it goes
+    farthest; of these those of the heaviest kind (``Weight``), what is stated before what is suggested, and the surest.
 
     Parameters
     ----------
@@ -99,6 +109,8 @@ def ways_out(
         one may be none.
     stated
         Ids of findings that there are without the proposals.
+    likely
+        By id, the findings that there are if channels carry what their types are made for; by default all.
 
     Examples
     --------
@@ -106,36 +118,85 @@ def ways_out(
     >>> from rosprivacy.analysis.findings.findings import analyse
     >>> findings = analyse(*factory()).findings
     >>> [(way.exit.name, way.where, way.kinds) for way in ways_out(findings, (), CATEGORIES)]
-    [('/archive', '', ('FaceTemplate', 'Video')), ('disk', 'file', ('FaceTemplate', 'Video'))]
+    [('disk', 'file', ('FaceTemplate', 'Video')), ('/archive', '', ('FaceTemplate', 'Video'))]
     """
-    known: dict[Identity, list[LabelProposal]] = {}
+    of_element: dict[Identity, list[LabelProposal]] = {}
     for one in proposals:
-        known.setdefault(one.label.element.identity, []).append(one)
+        of_element.setdefault(one.label.element.identity, []).append(one)
     exits: dict[Element, list[Finding]] = {}
-    for finding in findings:
+    for finding in findings if likely is None else (likely.get(one.id, one) for one in findings):
         if not finding.accepted and (finding.through or not finding.dismissed):
             exits.setdefault(whole(finding.leak), []).append(finding)
+    order = _Order(of_element, categories, stated, likely)
+    return tuple(sorted((order.way(element, here) for element, here in exits.items()), key=order.of_way))
 
-    def hanging_on(finding: Finding) -> list[LabelProposal]:
-        return [] if finding.id in stated else _proposals_of(finding, known)
 
-    def weight(finding: Finding) -> tuple[bool, Weight, int, tuple[int, int], str]:
-        on = [LEAST_SURE_FIRST.index(one.confidence) for one in hanging_on(finding)]
+def weightiest(
+    ways: Sequence[WayOut], ends: Sequence[WayOut], categories: Mapping[str, Category], at_most: int
+) -> tuple[WayOut, ...]:
+    """Return the places that weigh most: where data gets out, then where it ends.
+
+    Where data ends that weighs more than what the lightest of them lets out, it is in its stead.
+
+    Parameters
+    ----------
+    ways, ends
+        In the order of ``ways_out``.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import CATEGORIES, factory
+    >>> from rosprivacy.analysis.findings.findings import analyse
+    >>> ways = ways_out(analyse(*factory()).findings, (), CATEGORIES)
+    >>> [way.exit.name for way in weightiest(ways[:1], ways[1:], CATEGORIES, 1)]
+    ['disk']
+    """
+
+    def weight(way: WayOut) -> Weight:
+        return categories[way.kinds[0]].weight
+
+    places = [*ways, *ends][:at_most]
+    for end in ends[max(at_most - len(ways), 0) :]:
+        lightest = max(places, key=weight)
+        if weight(end) < weight(lightest):
+            places.remove(lightest)
+            places.append(end)
+    return tuple(places)
+
+
+class _Order(NamedTuple):
+    """What comes first; the attributes are those of ``ways_out``, with the proposals by the element that they label."""
+
+    of_element: Mapping[Identity, Sequence[LabelProposal]]
+    categories: Mapping[str, Category]
+    stated: Collection[str]
+    likely: Mapping[str, Finding] | None
+
+    def way(self, element: Element, findings: Iterable[Finding]) -> WayOut:
+        """Return a place, with its findings in order."""
+        here = sorted(findings, key=self.of_finding)
+        where = _where(element, self.of_element.get(element.identity, ()))
+        proposals = sorted(self._hanging_on(here[0]), key=_least_sure)
+        return WayOut(element, where, tuple(here), sum(map(self._is_likely, here)), tuple(proposals))
+
+    def of_way(self, way: WayOut) -> tuple[bool, int, bool, Weight, tuple[int, int], int, int, str]:
+        """Return what places are sorted by."""
+        unlikely, pseudonymised, heaviest, hops, sureness, _ = self.of_finding(way.findings[0])
+        where = FARTHEST_FIRST.index(way.where)
+        return unlikely, where, pseudonymised, heaviest, sureness, hops, -len(way.kinds), way.exit.full_name
+
+    def of_finding(self, finding: Finding) -> tuple[bool, bool, Weight, int, tuple[int, int], str]:
+        """Return what the findings of a place are sorted by."""
+        on = [LEAST_SURE_FIRST.index(one.confidence) for one in self._hanging_on(finding)]
         sureness = (1, -min(on)) if on else (0, 0)
-        return finding.pseudonymised, categories[finding.category].weight, len(finding.witness), sureness, finding.id
+        kind = self.categories[finding.category].weight
+        return not self._is_likely(finding), finding.pseudonymised, kind, len(finding.witness), sureness, finding.id
 
-    ways = []
-    for element, here in exits.items():
-        here.sort(key=weight)
-        on = sorted(hanging_on(here[0]), key=_least_sure)
-        ways.append(WayOut(element, _where(element, known.get(element.identity, ())), tuple(here), tuple(on)))
+    def _is_likely(self, finding: Finding) -> bool:
+        return self.likely is None or finding.id in self.likely
 
-    def place(way: WayOut) -> tuple[int, bool, Weight, tuple[int, int], int, str]:
-        first = way.findings[0]
-        pseudonymised, heaviest, _, sureness, _ = weight(first)
-        return FARTHEST_FIRST.index(way.where), pseudonymised, heaviest, sureness, -len(way.kinds), way.exit.full_name
-
-    return tuple(sorted(ways, key=place))
+    def _hanging_on(self, finding: Finding) -> list[LabelProposal]:
+        return [] if finding.id in self.stated else _proposals_of(finding, self.of_element)
 
 
 def _proposals_of(finding: Finding, of_element: Mapping[Identity, Iterable[LabelProposal]]) -> list[LabelProposal]:

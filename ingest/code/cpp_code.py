@@ -30,6 +30,7 @@ from rosprivacy.ingest.code.cpp_tree import (
     text_of,
 )
 from rosprivacy.ingest.code.source_code import (
+    FLEET_CONTROL,
     INTERFACES,
     LONGEST_USE,
     NODE,
@@ -45,15 +46,16 @@ from rosprivacy.ingest.code.source_code import (
     class_owner,
     clock,
     in_time,
+    is_fleet_topic,
     program,
     variable,
     walk,
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
 
-    from tree_sitter import Node
+    from tree_sitter import Node, Tree
 
 STEPS = 5  # of names that stand for names
 STARTERS = ("system", "std::system", "popen", "execl", "execlp")
@@ -84,34 +86,44 @@ NO_COMMENT = "an annotation stands in a macro or in code that cannot be read"
 ALONE = "put it on a line of its own above the call or class, or correct the code"
 
 
-class _CppNames:
+class CppNames:
     """What the names of a file stand for, as far as it says so itself, and where each is used.
 
     Attributes
     ----------
     namespaces
         Of ``using namespace``.
+    aliases
+        A name -> what it stands for.
     """
 
     def __init__(self) -> None:
         self.namespaces: list[str] = []
-        self._aliases: dict[str, str] = {}
+        self.aliases: dict[str, str] = {}
         self._used: dict[tuple[str, str], int] = {}
+
+    def declaration(self, node: Node) -> None:
+        """Note one declaration of a name that stands for another."""
+        names = [text_of(child) for child in node.named_children]
+        if any(child.type == "namespace" for child in node.children) and node.type == "using_declaration":
+            self.namespaces += names
+        else:
+            self.using(node.type, names)
 
     def using(self, kind: str, names: list[str]) -> None:
         """Note one ``using A::B;``, ``using B = A::C;`` or ``namespace b = a::c;``."""
         if kind == "using_declaration" and len(names) == 1:
-            self._aliases[names[0].rpartition("::")[2].strip()] = names[0]
+            self.aliases[names[0].rpartition("::")[2].strip()] = names[0]
         elif kind != "using_declaration" and len(names) > 1:
-            self._aliases[names[0]] = names[-1]
+            self.aliases[names[0]] = names[-1]
 
     def meaning(self, name: str) -> str:
         """What a name stands for, by what ``using`` says of its first part."""
         for _ in range(STEPS):
             head, colons, rest = name.partition("::")
-            if head not in self._aliases or self._aliases[head] == name:
+            if head not in self.aliases or self.aliases[head] == name:
                 break
-            name = self._aliases[head] + colons + rest
+            name = self.aliases[head] + colons + rest
         return name
 
     def message(self, written: str) -> str:
@@ -140,7 +152,6 @@ class _CppNames:
 def read_cpp(file: str, data: bytes) -> Code:
     """Read a file.
 
-
     Raises
     ------
     ImportError
@@ -150,15 +161,33 @@ def read_cpp(file: str, data: bytes) -> Code:
     OutOfTime
         If it takes too long.
     """
+    late = clock()
+    return cpp_code(file, data, walk(syntax_tree(data, late).root_node, Where(), parts, late), late)
+
+
+def cpp_code(file: str, data: bytes, pieces: Iterable[tuple[Node, Where]], late: Callable[[], bool]) -> Code:
+    """Return what the pieces of a file say, in the order of the text; raises what ``read_cpp`` raises."""
+    return _CppReader(file, data).read(in_time(pieces, late))
+
+
+def syntax_tree(data: bytes, late: Callable[[], bool]) -> Tree:
+    """Return what the grammar makes of a file.
+
+    Raises
+    ------
+    ImportError
+        If there is no library to read it with.
+    OutOfTime
+        If it takes too long.
+    """
     import tree_sitter  # noqa: PLC0415 - an extra, imported where it is used
     import tree_sitter_cpp  # noqa: PLC0415
 
-    parser, late = tree_sitter.Parser(tree_sitter.Language(tree_sitter_cpp.language())), clock()
+    parser = tree_sitter.Parser(tree_sitter.Language(tree_sitter_cpp.language()))
     try:  # piece by piece: the library can be stopped only so
-        tree = parser.parse(lambda at, _: data[at : at + PIECE], progress_callback=lambda _at, _broken: late())
+        return parser.parse(lambda at, _: data[at : at + PIECE], progress_callback=lambda _at, _broken: late())
     except ValueError:
         raise OutOfTime from None
-    return _CppReader(file, data).read(in_time(walk(tree.root_node, parts), late))
 
 
 class _CppReader:
@@ -167,7 +196,7 @@ class _CppReader:
     def __init__(self, file: str, data: bytes) -> None:
         self.file = file
         self.data = data
-        self.names = _CppNames()
+        self.names = CppNames()
         self.parts_of_names: set[int] = set()
         self.comments: list[SourceComment] = []
         self.classes: list[NodeClass] = []
@@ -177,16 +206,12 @@ class _CppReader:
     def read(self, nodes: Iterable[tuple[Node, Where]]) -> Code:
         for node, where in nodes:
             kind = node.type
-            if kind in TEXTS and not (where.broken and kind != "comment"):
-                self.understood.append((node.start_byte, node.end_byte))
+            if kind in TEXTS:
+                self._written(node, where)
             if kind == "comment":
                 self.comments += self._comment(node)
             elif kind in ("using_declaration", "alias_declaration", "namespace_alias_definition"):
-                names = [text_of(child) for child in node.named_children]
-                if any(child.type == "namespace" for child in node.children) and kind == "using_declaration":
-                    self.names.namespaces += names
-                else:
-                    self.names.using(kind, names)
+                self.names.declaration(node)
             elif kind in CLASSES and node.child_by_field_name("body"):
                 self._class(node, where)
             elif kind == "field_initializer":
@@ -203,6 +228,13 @@ class _CppReader:
         sites = tuple(site._replace(type=self.names.message(site.type)) for site in self.sites)
         classes, lost = tuple(self.classes), tuple(self._lost())
         return Code(self.file, "c++", tuple(self.comments), classes, sites, lost, self.names.uses())
+
+    def _written(self, node: Node, where: Where) -> None:
+        """A comment or a text; what is in broken code is no text for sure."""
+        if node.type == "comment" or not where.broken:
+            self.understood.append((node.start_byte, node.end_byte))
+        if node.type == "string_literal" and is_fleet_topic(literal_of(node) or ""):
+            self.names.use(FLEET_CONTROL, line_of(node), where.of_class)
 
     def _comment(self, node: Node) -> Iterator[SourceComment]:
         before = self.data[self.data.rfind(b"\n", 0, node.start_byte) + 1 : node.start_byte]

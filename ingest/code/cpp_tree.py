@@ -16,6 +16,10 @@ STATEMENTS = ("expression_statement", "declaration", "field_declaration", "retur
 CLASSES = ("class_specifier", "struct_specifier")
 LONGEST = 1000  # bytes of a variable or type
 FUNCTIONS = ("function_definition", "lambda_expression")
+PLACES = frozenset(  # what says where its parts stand
+    ["ERROR", "template_declaration", "init_declarator", "assignment_expression", "argument_list", "compound_statement",
+     *STATEMENTS, *CLASSES, *FUNCTIONS]
+)  # fmt: skip
 
 
 def text_of(node: Node) -> str:
@@ -29,14 +33,19 @@ def brief(node: Node) -> str:
 
 
 def parts(node: Node, where: Where) -> list[tuple[Node, Where]]:
-    """Return the parts of a node, each with where it stands; the library's own ``parent`` goes down from the root."""
+    """Return the parts of a node with a name, each with where it stands; asking each for its parent takes long."""
+    children = node.named_children
+    if not children:
+        return []
     inside = _inside(node, where)
-    return [(child, inside) for child in node.children]
+    return [(child, inside) for child in children]
 
 
 def _inside(node: Node, where: Where) -> Where:
     """Where the parts of a node stand."""
     kind, templated = node.type, where.templated
+    if kind not in PLACES and not templated:
+        return where
     if templated:
         where = where._replace(templated=False)
     if kind == "ERROR":
@@ -45,7 +54,7 @@ def _inside(node: Node, where: Where) -> Where:
         where = Where(of_class=last_of(name), broken=where.broken)
     elif kind in FUNCTIONS:
         first = where.first if templated else line_of(node)
-        of_class = _scope(node) or where.of_class
+        of_class = scope_of(node) or where.of_class
         where = Where(of_class, str(node.start_byte), first, broken=where.broken)
     elif kind == "template_declaration":
         where = where._replace(first=line_of(node), templated=True)
@@ -59,8 +68,8 @@ def _inside(node: Node, where: Where) -> Where:
     return where
 
 
-def _scope(function: Node) -> str:
-    """The class of ``void Camera::start() {…}`` outside of it."""
+def scope_of(function: Node) -> str:
+    """Return the class of ``void Camera::start() {…}`` outside of it; empty for none."""
     declarator = function.child_by_field_name("declarator")
     while declarator is not None and declarator.type != "qualified_identifier":
         declarator = declarator.child_by_field_name("declarator") or next(

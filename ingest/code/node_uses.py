@@ -66,7 +66,47 @@ class Local(NamedTuple):
     of: str
 
 
-class CodeUnits:
+class CodeModules:
+    """The modules of some files of Python, by the names that they are imported by."""
+
+    def __init__(self, codes: Sequence[Code]) -> None:
+        self._python = {code.file: code for code in codes if code.language == PYTHON}
+        self._modules = {part for file in self._python for part in (PurePath(file).stem, *PurePath(file).parent.parts)}
+        self._packages: dict[str, set[PurePath]] = defaultdict(set)  # where each could be imported from
+        for file in self._python:
+            if PurePath(file).name == INIT:
+                self._packages[PurePath(file).parent.name].add(PurePath(file).parent.parent)
+
+    def module(self, folder: str, name: str) -> str:
+        """Return the file of a module as code in a folder would import it; empty if it is not there."""
+        found = self.begin_of(folder, name)
+        return found[0] if found and not found[1] else ""
+
+    def begin_of(self, folder: str, name: str) -> tuple[str, list[str]] | None:
+        """Return a file, and what is left of a name that begins with a module: ``.helper.Camera``, ``demo.a.B``."""
+        level = len(name) - len(name.lstrip("."))
+        parts = name[level:].split(".")
+        if parts[0] not in self._modules:
+            return None
+        found = self._longest(_bases(PurePath(folder), level), parts)
+        if found or level:
+            return found
+        elsewhere = [self._longest([base], parts) for base in sorted(self._packages.get(parts[0], ()))]
+        modules = [one for one in elsewhere if one and not one[0].endswith(INIT)] or [one for one in elsewhere if one]
+        return modules[0] if len(modules) == 1 else None
+
+    def _longest(self, bases: Sequence[PurePath], parts: list[str]) -> tuple[str, list[str]] | None:
+        """The module with the longest name: a node is often called as the package that it stands in."""
+        for count in range(len(parts), 0, -1):
+            for base in bases:
+                path = base.joinpath(*parts[:count])
+                for file in (f"{path}.py", str(path / INIT)):
+                    if file in self._python:
+                        return file, parts[count:]
+        return None
+
+
+class CodeUnits(CodeModules):
     """The pieces of some files.
 
     Attributes
@@ -76,13 +116,8 @@ class CodeUnits:
     """
 
     def __init__(self, codes: Sequence[Code]) -> None:
-        self._python = {code.file: code for code in codes if code.language == PYTHON}
-        self._modules = {part for file in self._python for part in (PurePath(file).stem, *PurePath(file).parent.parts)}
+        super().__init__(codes)
         self._classes: dict[str, set[str]] = defaultdict(set)  # by package of C++
-        self._packages: dict[str, set[PurePath]] = defaultdict(set)  # of Python: where each could be imported from
-        for file in self._python:
-            if PurePath(file).name == INIT:
-                self._packages[PurePath(file).parent.name].add(PurePath(file).parent.parent)
         self.bases: dict[CodePiece, set[str]] = defaultdict(set)
         for code in codes:
             for one in code.classes:
@@ -128,11 +163,6 @@ class CodeUnits:
             return tuple(self.piece(code, name) for name in sorted(names))
         return tuple(self.piece(code, name) for name in ("", *(one.name for one in code.units)))
 
-    def module(self, folder: str, name: str) -> str:
-        """Return the file of a module as code in a folder would import it; empty if it is not there."""
-        found = self._module(folder, name)
-        return found[0] if found and not found[1] else ""
-
     def _link(self, code: Code, name: str) -> CodePiece | None:
         key = (str(PurePath(code.file).parent), name)
         if key not in self._code_units:
@@ -147,7 +177,7 @@ class CodeUnits:
         return CodePiece(package, last if last in self._classes[package] else name.split("::")[-2])
 
     def _python_link(self, code: Code, name: str) -> CodePiece | None:
-        found = self._module(str(PurePath(code.file).parent), name)
+        found = self.begin_of(str(PurePath(code.file).parent), name)
         if found is None:
             return None
         file, rest = found
@@ -164,34 +194,11 @@ class CodeUnits:
         """Where a name comes from that a module imports; of all that it imports, the one module that has it."""
         folder, pairs = str(PurePath(file).parent), self._python[file].imports
         named = [".".join([meant, *rest[1:]]) for name, meant in pairs if name == rest[0]]
-        found = [self._module(folder, name) for name in named]
-        whole = [self._module(folder, meant.removesuffix(ALL) + rest[0]) for name, meant in pairs if name == ALL]
+        found = [self.begin_of(folder, name) for name in named]
+        whole = [self.begin_of(folder, meant.removesuffix(ALL) + rest[0]) for name, meant in pairs if name == ALL]
         found += [one for one in whole if one and one[1][:1] == rest[:1] and rest[0] in self._units(one[0])]
         known = [one for one in found if one and one[0] != file]
         return known[0] if len({one[0] for one in known}) == 1 else None
-
-    def _module(self, folder: str, name: str) -> tuple[str, list[str]] | None:
-        """A file, and what is left of a name that begins with a module: ``.helper.Camera``, ``demo.helper.Camera``."""
-        level = len(name) - len(name.lstrip("."))
-        parts = name[level:].split(".")
-        if parts[0] not in self._modules:
-            return None
-        found = self._longest(_bases(PurePath(folder), level), parts)
-        if found or level:
-            return found
-        elsewhere = [self._longest([base], parts) for base in sorted(self._packages.get(parts[0], ()))]
-        modules = [one for one in elsewhere if one and not one[0].endswith(INIT)] or [one for one in elsewhere if one]
-        return modules[0] if len(modules) == 1 else None
-
-    def _longest(self, bases: Sequence[PurePath], parts: list[str]) -> tuple[str, list[str]] | None:
-        """The module with the longest name: a node is often called as the package that it stands in."""
-        for count in range(len(parts), 0, -1):
-            for base in bases:
-                path = base.joinpath(*parts[:count])
-                for file in (f"{path}.py", str(path / INIT)):
-                    if file in self._python:
-                        return file, parts[count:]
-        return None
 
 
 @cache

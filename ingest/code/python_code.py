@@ -14,11 +14,11 @@ import io
 import re
 import sys
 import tokenize
-import warnings
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.errors import LabelError, shown
-from rosprivacy.ingest.code.python_uses import PythonUses, imported
+from rosprivacy.ingest.code.python_tree import FAILURES, parse_python, pieces_of
+from rosprivacy.ingest.code.python_uses import read_uses
 from rosprivacy.ingest.code.source_code import (
     INTERFACES,
     NODE,
@@ -41,9 +41,9 @@ from rosprivacy.ingest.code.source_code import (
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-FAILURES = (SyntaxError, ValueError, RecursionError, MemoryError, tokenize.TokenError)
 VERSION = ".".join(map(str, sys.version_info[:2]))
 CORRECT = "correct it, or name the other files; newer syntax needs a newer Python"
+BLOCKS = ("body", "orelse", "finalbody", "handlers", "cases")  # of statements: where further statements stand
 LAUNCHED = ("Node", "LifecycleNode", "ComposableNode")
 ENTRY = re.compile(r"\s*([\w.-]+)\s*=\s*([\w.]+)\s*:\s*\w+\s*")
 
@@ -73,7 +73,6 @@ ACTIONS = {
 def read_python(file: str, data: bytes) -> Code:
     """Read a file.
 
-
     Raises
     ------
     OutOfTime
@@ -81,30 +80,32 @@ def read_python(file: str, data: bytes) -> Code:
     """
     late = clock()
     try:
-        encoding, _ = tokenize.detect_encoding(io.BytesIO(data).readline)
-        text = data.decode(encoding).replace("\r\n", "\n").replace("\r", "\n")
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # what Python thinks of the code is its author's business
-            tree = ast.parse(text)
+        text, tree = parse_python(data)
         comments = tuple(in_time(_comments(text), late))
     except FAILURES as error:
-        line = (isinstance(error, SyntaxError) and error.lineno) or 1
-        what = error.msg if isinstance(error, SyntaxError) else str(error) or type(error).__name__
-        return Code(file, "python", problems=(LabelError(file, line, f"not Python {VERSION}: {shown(what)}", CORRECT),))
-    pairs = tuple(imported(tree))
-    imports = dict(pairs)
-    used = PythonUses(tree, file)
+        return not_python(file, error)
+    code = read_uses(file, tree, late)
+    imports = dict(code.imports)
     classes, sites = [], []
     root: ast.AST = tree
-    for node, where in in_time(walk(root, _parts), late):
+    for node, where in in_time(walk(root, Where(), _parts, late), late):
         if isinstance(node, ast.ClassDef):
             classes.append(_class(node, imports))
             lines = classes[-1].lines
             sites.append(CallSite(NODE, None, lines, lines, class_owner(node.name), head=True))
         elif isinstance(node, ast.Call) and (site := _site(node, where, imports)):
             sites.append(site)
-    own = comments, tuple(classes), tuple(sites)
-    return Code(file, "python", *own, (), used.uses(late), used.units, *launched(tree), pairs)
+    launches, scripts = launched(tree)
+    return code._replace(
+        comments=comments, classes=tuple(classes), sites=tuple(sites), launches=launches, scripts=scripts
+    )
+
+
+def not_python(file: str, error: Exception) -> Code:
+    """Return what is known of a file that the parser refuses."""
+    line = (isinstance(error, SyntaxError) and error.lineno) or 1
+    what = error.msg if isinstance(error, SyntaxError) else str(error) or type(error).__name__
+    return Code(file, "python", problems=(LabelError(file, line, f"not Python {VERSION}: {shown(what)}", CORRECT),))
 
 
 def _comments(text: str) -> Iterator[SourceComment]:
@@ -127,7 +128,7 @@ def _inside(node: ast.AST, child: ast.AST, where: Where) -> Where:
         whole = None if hasattr(child, "body") or isinstance(child, ast.Match) else _lines(child)
         return where._replace(statement=whole, target="")
     targets = node.targets if isinstance(node, ast.Assign) else [node.target] if isinstance(node, ast.AnnAssign) else []
-    named = _dotted(targets[0]) if len(targets) == 1 and child is getattr(node, "value", None) else ""
+    named = dotted(targets[0]) if len(targets) == 1 and child is getattr(node, "value", None) else ""
     return where._replace(target=named)
 
 
@@ -136,18 +137,30 @@ def _lines(node: ast.AST) -> SourceLines:
     return SourceLines(first, int(getattr(node, "end_lineno", None) or first))
 
 
+def classes_of(tree: ast.Module, imports: Mapping[str, str]) -> tuple[NodeClass, ...]:
+    """Return the classes of a file, from the first to the last; expressions, which hold none, are not gone through."""
+    found: list[ast.ClassDef] = []
+    waiting: list[Any] = [tree]
+    while waiting:
+        piece = waiting.pop()
+        if isinstance(piece, ast.ClassDef):
+            found.append(piece)
+        waiting += (inner for block in BLOCKS for inner in getattr(piece, block, ()) if isinstance(inner, ast.AST))
+    return tuple(_class(node, imports) for node in sorted(found, key=lambda node: (node.lineno, node.col_offset)))
+
+
 def _class(node: ast.ClassDef, imports: Mapping[str, str]) -> NodeClass:
     """A class with its bases, by the names that they were imported from (``Node as RclNode``)."""
     head = [*node.bases, *node.keywords]
     first = min([node.lineno, *(_lines(one).first for one in node.decorator_list)])
     last = max([node.lineno, *(_lines(one).last for one in head)])
-    named = [name for name in map(_dotted, node.bases) if name]
+    named = [name for name in map(dotted, node.bases) if name]
     bases = tuple((_whole(name, imports) or name).rpartition(".")[2] for name in named)
     return NodeClass(node.name, bases, SourceLines(first, last))
 
 
-def _dotted(node: ast.AST) -> str:
-    """A name as it is written, ``self.node``; empty for what is none."""
+def dotted(node: ast.AST) -> str:
+    """Return a name as it is written, ``self.node``; empty for what is none."""
     parts = []
     while isinstance(node, ast.Attribute):
         parts.append(node.attr)
@@ -156,7 +169,7 @@ def _dotted(node: ast.AST) -> str:
 
 
 def _site(call: ast.Call, where: Where, imports: Mapping[str, str]) -> CallSite | None:
-    function = _dotted(call.func)
+    function = dotted(call.func)
     last = call.func.attr if isinstance(call.func, ast.Attribute) else function
     lines = _lines(call)
     at = lines, where.statement or lines
@@ -171,18 +184,18 @@ def _site(call: ast.Call, where: Where, imports: Mapping[str, str]) -> CallSite 
     if how is None:
         return None
     node = _argument(call, *how.node) if how.node else getattr(call.func, "value", None)
-    owner = _variable(_dotted(node), where) if node is not None else ""
-    found = _message_type(_dotted(_argument(call, *how.type) or ast.Constant(None)), imports)
+    owner = _variable(dotted(node), where) if node is not None else ""
+    found = _message_type(dotted(_argument(call, *how.type) or ast.Constant(None)), imports)
     return CallSite(how.kind, _text(_argument(call, *how.name)), *at, owner, how.role, found)
 
 
 def _own_constructor(call: ast.Call, where: Where, at: tuple[SourceLines, SourceLines]) -> CallSite | None:
     """``super().__init__('camera')`` or ``Node.__init__(self, 'camera')``."""
     before = call.func.value if isinstance(call.func, ast.Attribute) else None
-    if isinstance(before, ast.Call) and _dotted(before.func) == "super":
+    if isinstance(before, ast.Call) and dotted(before.func) == "super":
         place, base = 0, ""
-    elif before is not None and call.args and _dotted(call.args[0]) == "self":
-        place, base = 1, _dotted(before).rpartition(".")[2]
+    elif before is not None and call.args and dotted(call.args[0]) == "self":
+        place, base = 1, dotted(before).rpartition(".")[2]
     else:
         return None
     name = _text(_argument(call, place, "node_name"))
@@ -230,7 +243,7 @@ def _message_type(name: str, imports: Mapping[str, str]) -> str:
 
 def launched(tree: ast.Module) -> tuple[tuple[Launch, ...], tuple[Script, ...]]:
     """Return what a file says of executables; nothing unless it is a launch file or sets a package up."""
-    calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call)]
+    calls = [node for node in pieces_of(tree) if isinstance(node, ast.Call)]
     return tuple(one for call in calls for one in _launch(call)), tuple(one for call in calls for one in _scripts(call))
 
 

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
     Item = TypeVar("Item")
     Piece = TypeVar("Piece")
+    Place = TypeVar("Place")
 
 NODE = "node"
 INTERFACES = ("msg", "srv", "action")
@@ -32,6 +33,11 @@ WRITES = ("publish", "reply", "request", "execute", "call")  # roles of what sen
 BEFORE = ("sudo", "exec", "nohup", "env")  # words before the program itself
 WITH_COMMANDS = ("ros2", "rosbag", "git")  # programs of which the next words say what they do
 LONGEST = 3  # words that are kept of these: ros2 bag record
+FLEET_CONTROL = "vda5050"  # what code uses that names its topics
+_FLEET_TOPIC = re.compile(  # interface/v2/manufacturer/serial number/order; instantActions is called so nowhere else
+    r"(?:^|/)v[23](?:[._]\d+)*/[^/\s]+/[^/\s]+/"
+    r"(?:order|instantActions|state|visualization|connection|factsheet|responses|zoneSet)$|^(?:\S*/)?instantActions$"
+)
 WORD = re.compile(r"[A-Za-z_][\w.-]*", re.ASCII)
 
 
@@ -217,24 +223,46 @@ class Where(NamedTuple):
     templated: bool = False
 
 
-def walk(root: Piece, parts: Callable[[Piece, Where], Sequence[tuple[Piece, Where]]]) -> Iterator[tuple[Piece, Where]]:
-    """Yield all pieces of code in the order of the text, each with where it stands; no recursion over code.
+def walk(
+    root: Piece, where: Place, parts: Callable[[Piece, Place], Sequence[tuple[Piece, Place]]], late: Callable[[], bool]
+) -> list[tuple[Piece, Place]]:
+    """Return all pieces of code in the order of the text, each with where it stands; no recursion over code.
 
     Parameters
     ----------
+    where
+        What is to be known of the root.
     parts
-        What a piece is made of, from the first to the last.
+        What a piece is made of, from the first to the last; it is asked in the order of the text.
+
+    Raises
+    ------
+    OutOfTime
+        When it is late.
     """
-    waiting = [(root, Where())]
+    pieces: list[tuple[Piece, Place]] = []
+    waiting = [(root, where)]
     while waiting:
-        piece, where = waiting.pop()
-        yield piece, where
-        waiting += reversed(parts(piece, where))
+        if len(pieces) % OFTEN == 0 and late():
+            raise OutOfTime
+        placed = waiting.pop()
+        pieces.append(placed)
+        waiting += reversed(parts(*placed))
+    return pieces
 
 
 def variable(name: str, where: Where) -> str:
     """Return what tells a variable from others of its name: its class and function."""
     return f"{where.of_class}/{where.function}:{name}"
+
+
+def is_fleet_topic(text: str) -> bool:
+    """Return whether a text is a topic by which VDA 5050, version 2 or 3, joins a robot to a fleet control.
+
+    >>> is_fleet_topic("uagv/v2/maker/{}/order"), is_fleet_topic("/instantActions"), is_fleet_topic("robot/state")
+    (True, True, False)
+    """
+    return len(text) <= LONGEST_USE and bool(_FLEET_TOPIC.search(text))
 
 
 class OutOfTime(Exception):  # noqa: N818 - of the field

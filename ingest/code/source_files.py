@@ -21,7 +21,7 @@ from rosprivacy.ingest.policies.policy_files import contents
 from rosprivacy.ingest.reading.bounded_file import beginning, read_regular
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable
 
     from rosprivacy.analysis.errors import InputError
 
@@ -33,6 +33,7 @@ OF_OTHERS = frozenset(
 )
 MAX_BYTES = 4 * 2**20
 FIRST_LINE = 200
+BINARY = "name the source of it, or save it as UTF-8"
 LATE = "split it, or put a file COLCON_IGNORE into its folder to leave it out"
 MISSING = "install the extra [code] from where rosprivacy came from"
 
@@ -55,8 +56,19 @@ class Sources(NamedTuple):
     unread: tuple[tuple[str, str], ...] = ()
 
 
-def read_sources(sources: Iterable[str]) -> Sources:
-    """Read all source code that some files and folders hold."""
+def read_code(file: str, data: bytes) -> Code:
+    """Read a file by its language; raises what ``read_cpp`` raises."""
+    return (read_cpp if is_cpp(file) else read_python)(file, data)
+
+
+def read_sources(sources: Iterable[str], read: Callable[[str, bytes], Code] = read_code) -> Sources:
+    """Read all source code that some files and folders hold.
+
+    Parameters
+    ----------
+    read
+        Reads one file.
+    """
     problems: list[InputError] = []
     files: set[str] = set()
     left_out: dict[str, str] = {}
@@ -69,8 +81,7 @@ def read_sources(sources: Iterable[str]) -> Sources:
     lacking = False  # said once
     for file in sorted(files):
         try:
-            data = read_regular(file, MAX_BYTES, partial(LabelError, file))
-            codes.append((read_cpp if _language(file) == "c++" else read_python)(file, data))
+            codes.append(read(file, _text(file)))
         except LabelError as error:
             codes.append(Code(file, "", problems=(error,)))
         except OutOfTime:
@@ -103,6 +114,18 @@ def _files(source: str, problems: list[InputError], left_out: dict[str, str]) ->
         problems.append(LabelError(source, 0, what, "name such a folder by itself to have it read"))
     left_out.update((file, folder) for file, folder in folders.items() if folder)
     return {file for file, folder in folders.items() if not folder}
+
+
+def _text(file: str) -> bytes:
+    data = read_regular(file, MAX_BYTES, partial(LabelError, file))
+    if b"\0" in data:
+        raise LabelError(file, 1, "no text in UTF-8: it has bytes that are zero", BINARY)
+    return data
+
+
+def is_cpp(file: str) -> bool:
+    """Return whether a file is read as C++."""
+    return Path(file).suffix.lower() in CPP
 
 
 def _language(file: str) -> str:

@@ -42,7 +42,7 @@ def with_decision(
 ) -> str:
     """Return the text of a decisions file with an entry added, or changed where there is one with the same target.
 
-    Of an entry that is there, what the new one does not say stays; what it says otherwise goes into its history.
+    Of an entry that is there, only its history and note stay: what it said goes into the history.
 
     Parameters
     ----------
@@ -145,10 +145,13 @@ def _in_brackets(names: Iterable[str]) -> CommentedSeq:
 
 
 def _change(previous: Any, entry: Mapping[str, Any]) -> None:
-    """Say it anew; what was said before stays in the ``history`` of the entry, the latest last."""
-    before = {key: previous[key] for key in previous if key not in (*TARGET, *OF_DOUBTS, "history", "note")}
-    if any(before.get(key) != value for key, value in entry.items() if key not in (*TARGET, *OF_DOUBTS, "date")):
+    """Say it anew and whole, so that no end is inherited; what it said before goes into ``history``, latest last."""
+    same = (*TARGET, *OF_DOUBTS, "history", "note")
+    before, after = ({key: each[key] for key in each if key not in same} for each in (previous, entry))
+    if {**before, "date": ""} != {**after, "date": ""}:
         previous.setdefault("history", CommentedSeq()).append(CommentedMap(deepcopy(before)))  # no alias
+        for key in before.keys() - entry.keys():
+            del previous[key]
     previous.update(entry)
 
 

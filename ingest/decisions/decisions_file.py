@@ -24,7 +24,7 @@ from rosprivacy.ingest.reading.format_reader import FileReader, read_values
 from rosprivacy.ingest.reading.legal_basis import read_bases
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from rosprivacy.analysis.bounds import Bounds
     from rosprivacy.ingest.reading.yaml_values import Value
@@ -35,10 +35,15 @@ NAMES = ("id", "category", "source", "leak", "robot", "from_robot", "kind")
 LISTS = ("robots", "from_robots")  # of robots, by their full names
 TARGET = (*NAMES, *LISTS, "pseudonymised")
 TEXTS = ("reason", "owner", "ticket")
+CONDITION = "condition"
 OF_DOUBTS = ("id", "doubt", "element", "robot", "file")
 DOUBT_KEYS = (*OF_DOUBTS, "decision", *TEXTS, "date", "expires", "note", "history")
-KEYS = (*TARGET, "decision", *TEXTS, "legal_basis", "date", "expires", "note", "history", "made_about")
+KEYS = (*TARGET, "decision", *TEXTS, CONDITION, "legal_basis", "date", "expires", "note", "history", "made_about")
 REMEMBERED = ("view", "path", "disjoint_paths", "robots")
+REQUIRED: Mapping[str, tuple[str, ...]] = {  # what a person signs
+    Choice.ACCEPT: ("reason", "owner"),
+    Choice.CONDITIONAL: ("reason", "owner", CONDITION),
+}
 LONGEST = 10_000  # characters of a text
 _ID = re.compile(r"[0-9a-f]{16}")
 _DATE = re.compile(r"\d{4}-\d\d-\d\d", re.ASCII)
@@ -73,7 +78,7 @@ def parse_decisions(file: str, text: str, vocabulary: Vocabulary, day: str) -> D
 
 
 def _decisions(file: str, top: Value, data: bytes, vocabulary: Vocabulary, day: str) -> Decisions:
-    reader = _DecisionsReader(file, vocabulary)
+    reader = DecisionsReader(file, vocabulary)
     entries, doubts = tuple(reader.document(top)), tuple(reader.doubts(top))
     digest = hashlib.sha256(data).hexdigest()
     return reader.whole(Decisions(file, digest, day, entries, vocabulary.hierarchy, doubts=doubts))
@@ -93,14 +98,15 @@ def is_date(written: str) -> bool:
 
 
 @dataclass
-class _DecisionsReader(FileReader):
-    """One decisions file."""
+class DecisionsReader(FileReader):
+    """Reads one decisions file, or what a log says in the same words."""
 
     vocabulary: Vocabulary
     error: type[InputError] = field(default=DecisionError, kw_only=True)
     ids: dict[tuple[object, ...], int] = field(default_factory=dict)
 
     def document(self, top: Value) -> Iterator[Decision]:
+        """The decisions about findings."""
         if not self.is_format(top, "decisions", "a decisions file"):
             return
         findings = self.values_of(top, TOP).get("findings")
@@ -140,7 +146,7 @@ class _DecisionsReader(FileReader):
     def _decision(self, item: Value) -> Decision:
         before = len(self.problems)
         said = self.values_of(item, KEYS)
-        texts: dict[str, Any] = {key: self._text(said[key], key) for key in (*NAMES, *TEXTS) if key in said}
+        texts: dict[str, Any] = {key: self._text(said[key], key) for key in (*NAMES, *TEXTS, CONDITION) if key in said}
         texts |= {key: tuple(self._names(said[key], key)) for key in LISTS if key in said}
         choice = self._choice(item, said.get("decision"))
         self._target(item, said, texts)
@@ -149,8 +155,8 @@ class _DecisionsReader(FileReader):
                 texts[key] = self._date(said[key], key)
         if "pseudonymised" in said:
             texts["pseudonymised"] = self._flag(said["pseudonymised"])
-        if choice is Choice.ACCEPT and len(self.problems) == before:
-            for key in ("reason", "owner"):
+        if len(self.problems) == before:
+            for key in REQUIRED.get(choice, ()):
                 if not texts.get(key, "").strip():
                     self.problem(item.line, f"an acceptance without {key}", f"add {key}: it is what a person signs")
         for earlier in said["history"].items if "history" in said else ():

@@ -22,7 +22,7 @@ from rosprivacy.ingest.reading import yaml_values
 from rosprivacy.ingest.reading.format_reader import FileReader
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from rosprivacy.analysis.bounds import Bounds
     from rosprivacy.ingest.reading.yaml_values import Value
@@ -34,11 +34,14 @@ CONFIDENCES = (Confidence.LIKELY, Confidence.MAY)
 METHODS = tuple(method for method in Method if method is not Method.ABSENT)
 LONGEST = 500  # characters of a text
 KEYS = ("package", "name", "about", "sources", "nodes")
-NODE_KEYS = ("names", "executables", *USES, "says")
+NODE_KEYS = ("names", "executables", "components", *USES, "further", "parameters", "rest", "makes", "says")
 SOURCE_KEYS = ("at", "version", "commit", "files", "read")
 PACKAGE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
 NODE_NAME = re.compile(r"\*?[A-Za-z_][A-Za-z0-9_.]*\*?")
-CHANNEL_NAME = re.compile(r"(~/|/)?[A-Za-z0-9_*]+(/[A-Za-z0-9_*]+)*")
+CLASS = re.compile(r"[A-Za-z_]\w*(::[A-Za-z_]\w*)*", re.ASCII)
+INNER_NAME = re.compile(r"[A-Za-z_]\w*(/[A-Za-z_]\w*)*", re.ASCII)
+PARAMETER = re.compile(r"[A-Za-z0-9_.*?-]+")  # or an option of the command line: -topic
+CHANNEL_NAME = re.compile(r"(~/|/|\.\./)?[A-Za-z0-9_*]+(/[A-Za-z0-9_*]+)*")
 DAY = re.compile(r"\d{4}-\d\d-\d\d")
 
 
@@ -81,7 +84,7 @@ class _PackageReader(FileReader):
             self.problem(top.line, f"a file of a package is a map, not a {top.kind}", "begin with 'package: 1'")
             return None
         self.version(top, "package", "package")
-        said = {key: value for key, _, value in self.entries_of(top, KEYS)}
+        said = {key: value for key, _, value in self.entries_of(top, (*KEYS, "packages"))}
         for key in KEYS:
             if key not in said:
                 self.problem(top.line, f"no {key!r}", f"a file of a package has {', '.join(KEYS)}")
@@ -90,7 +93,12 @@ class _PackageReader(FileReader):
         name, about = self._plain(said["name"], "name", PACKAGE_NAME), self._text(said["about"], "about")
         sources = tuple(self._sources(said["sources"]))
         nodes = tuple(self._nodes(said["nodes"]))
-        return Package(name, about, sources, nodes, Place(self.file, top.line))
+        listed = self.list_of(said["packages"], "packages") if "packages" in said else ()
+        packages = tuple(self._plain(one, "packages", PACKAGE_NAME) for one in listed)
+        described = {name for node in nodes for name in node.names}
+        for made in (made for node in nodes for made in node.makes if made.rpartition("/")[2] not in described):
+            self.problem(said["nodes"].line, f"{made} is made and not described", "describe a node of this name")
+        return Package(name, about, sources, nodes, Place(self.file, top.line), packages=packages)
 
     def _sources(self, value: Value) -> Iterator[Source]:
         items = self._filled(value, "sources", "name at least one document or repository that was read")
@@ -114,12 +122,50 @@ class _PackageReader(FileReader):
             if "names" not in said or "says" not in said:
                 self.problem(item.line, "a node without names or without what it says", "write names: […], says: […]")
                 continue
-            named = self._filled(said["names"], "names", "write its default name")
-            named += self.list_of(said["executables"], "executables") if "executables" in said else ()
+            listed = {
+                key: self.list_of(said[key], key) for key in ("executables", "components", "makes") if key in said
+            }
             hint = "write a plain name without namespace, which may begin or end with *"
-            names = tuple(dict.fromkeys(self._plain(one, "a node's name", NODE_NAME, hint) for one in named))
-            interfaces = tuple(one for use in USES if use in said for one in self._interfaces(use, said[use]))
-            yield PackageNode(names, interfaces, tuple(self._claims(said["says"])))
+            named = self._filled(said["names"], "names", "write its default name")
+            named += listed.get("executables", ())
+            names = (self._plain(one, "a node's name", NODE_NAME, hint) for one in named)
+            interfaces = self._of_uses(said)
+            further = self._of_uses(self.values_of(said["further"], tuple(USES))) if "further" in said else []
+            if "parameters" in said:
+                interfaces, further = self._by_parameters(said["parameters"], interfaces, further)
+            yield PackageNode(
+                tuple(dict.fromkeys(names)),
+                tuple(interfaces),
+                tuple(self._claims(said["says"])),
+                tuple(further),
+                self._text(said["rest"], "rest") if "rest" in said else "",
+                tuple(self._plain(one, "makes", INNER_NAME) for one in listed.get("makes", ())),
+                tuple(self._plain(one, "a component", CLASS) for one in listed.get("components", ())),
+            )
+
+    def _of_uses(self, values: Mapping[str, Value]) -> list[Interface]:
+        return [one for use in USES if use in values for one in self._interfaces(use, values[use])]
+
+    def _by_parameters(
+        self, value: Value, interfaces: list[Interface], further: list[Interface]
+    ) -> tuple[list[Interface], list[Interface]]:
+        """Interfaces with the parameters that name them; further ones where their values stand for *."""
+        if value.kind != "map":
+            self.problem(value.line, f"parameters takes a map, not a {value.kind}", "write {scan_topic: scan}")
+        for key, line, child in value.entries:
+            if len(key) > self.bounds.name or not PARAMETER.fullmatch(key):
+                self.problem(line, f"{shown(key)!r} is not the name of a parameter", "write it as the package does")
+            elif child.kind == "map":
+                named = self._of_uses(self.values_of(child, tuple(USES)))
+                further = [*further, *(one._replace(parameter=key) for one in named)]
+            elif child.text not in {one.name for one in (*interfaces, *further)}:
+                self.problem(child.line, f"{shown(child.text)!r} is no channel of the node", "name one that it has")
+            else:
+                interfaces, further = (
+                    [one._replace(parameter=key) if one.name == child.text else one for one in group]
+                    for group in (interfaces, further)
+                )
+        return interfaces, further
 
     def _interfaces(self, use: str, value: Value) -> Iterator[Interface]:
         if value.kind != "map":

@@ -13,7 +13,16 @@ from rosprivacy.analysis.bounds import BOUNDS, Tally
 from rosprivacy.analysis.durations import ordered
 from rosprivacy.analysis.errors import InputError, InputErrors, LabelError, shown
 from rosprivacy.analysis.many_flows import at_most, leaving, parted
-from rosprivacy.analysis.model import NOWHERE, PARTICIPANT, Bound, Diagnostic, NonRosFacts, Severity, Surroundings
+from rosprivacy.analysis.model import (
+    NOWHERE,
+    PARTICIPANT,
+    TYPE_LINE,
+    Bound,
+    Diagnostic,
+    NonRosFacts,
+    Severity,
+    Surroundings,
+)
 from rosprivacy.analysis.non_ros import by_kind
 from rosprivacy.analysis.text import counted
 from rosprivacy.analysis.written_names import A_LITTLE, FEW, bare_name, did_you_mean, is_glob, literal, nearest
@@ -29,6 +38,7 @@ from rosprivacy.ingest.labels.stated_facts import (
     two_of_one,
     united,
 )
+from rosprivacy.ingest.labels.strange_file import strange_files
 from rosprivacy.ingest.policies.names import covered
 
 if TYPE_CHECKING:
@@ -110,6 +120,14 @@ class Unmatched:
         return [literal(close) for close in nearest(bare_name(name), known, FEW, A_LITTLE)]
 
 
+def misnamed(names: GraphNames, labels: Iterable[Labels]) -> list[LabelError]:
+    """Return the errors for names of elements that match nothing, in files that could not be read whole."""
+    unmatched = Unmatched(names)
+    entries = (entry for file in labels if not file.shipped for entry in file.entries)
+    of_ros = (entry for entry in entries if not names.by_kind.keys().isdisjoint(entry.kinds))
+    return [unmatched.of_entry(entry) for entry in of_ros if not names.matching(entry.name, entry.kinds)]
+
+
 def bind(
     graph: FlowGraph, labels: Sequence[Labels], bounds: Bounds = BOUNDS, system: Surroundings = NOT_STATED,
     names: GraphNames | None = None,
@@ -128,9 +146,10 @@ def bind(
     InputErrors
         With every name that matches nothing, but for shipped files; above a bound.
     """
+    names = names or GraphNames(graph)
     bound, problems = join(graph, labels, bounds, system, names)
     if problems:
-        raise InputErrors(problems)
+        raise InputErrors([*strange_files(labels, names.matching, names.by_kind), *problems])
     return bound
 
 
@@ -152,7 +171,7 @@ def join(
     flows_of = leaving(graph.flows)
     problems: list[InputError] = []
     for file in labels:
-        pinned = Pinned(file.pins)
+        pinned = Pinned(file.pins, file.type_pins)
         for entry in file.entries:
             vertices = names.matching(entry.name, entry.kinds)
             if not vertices and not file.shipped:
@@ -232,6 +251,10 @@ def remarks(graph: FlowGraph, labels: Iterable[Labels], names: GraphNames | None
         elif not file.shipped:
             yield from _like_a_wildcard(names, graph, file)
             yield from of_nothing(file.pins or (), _decided_by_globs(names, graph, file) if file.pins else ())
+            lines = _taken_by_types(names, graph, file) if file.type_pins else ()
+            yield from of_nothing(file.type_pins or (), lines, "a line only: by-type")
+            nodes = _labelled_nodes(names, file) if file.code_pins else ()
+            yield from of_nothing(file.code_pins, nodes, "a label", "--pin-code")
 
 
 def _unused(names: GraphNames, file: Labels) -> Iterator[Diagnostic]:
@@ -253,6 +276,20 @@ def _decided_by_globs(names: GraphNames, graph: FlowGraph, file: Labels) -> Iter
         if any(said.to_be_seen for said in flow.statements):
             for index in _flows(graph, flows_of, names, flow):
                 yield spots[graph.flows[index].source], spots[graph.flows[index].target]
+
+
+def _labelled_nodes(names: GraphNames, file: Labels) -> Iterator[tuple[tuple[str, str], ...]]:
+    """Nodes of which a label says what they do."""
+    for entry in file.entries:
+        if entry.statements and "node" in entry.kinds:
+            yield from ((spot(names.graph.elements[vertex]),) for vertex in names.matching(entry.name, entry.kinds))
+
+
+def _taken_by_types(names: GraphNames, graph: FlowGraph, file: Labels) -> Iterator[tuple[tuple[str, str], ...]]:
+    """Channels of which a line says that they carry only what their types are made for."""
+    for entry in file.entries:
+        if any(said.role == TYPE_LINE for said in entry.statements):
+            yield from ((spot(graph.elements[vertex]),) for vertex in names.matching(entry.name, entry.kinds))
 
 
 def _like_a_wildcard(names: GraphNames, graph: FlowGraph, file: Labels) -> Iterator[Diagnostic]:

@@ -50,6 +50,14 @@ class Countries(NamedTuple):
         more = {"adequacy": self.partly.get(code, ""), "until": self.until.get(code, "")}
         return {"country": code, "area": self.areas[code], **more}
 
+    def is_abroad(self, code: str) -> bool:
+        """Whether a country is outside the EEA, where the GDPR applies on the grounds of Article 3 only.
+
+        >>> [countries().is_abroad(code) for code in ("NO", "CH", "")]
+        [False, True, False]
+        """
+        return bool(code) and self.areas[code] != INSIDE
+
     def hint(self, text: str) -> str:
         """Return what to write instead of a code that is none."""
         meant = MISTAKEN.get(text.upper(), text.upper())

@@ -19,7 +19,7 @@ from rosprivacy.analysis.model import NON_ROS
 from rosprivacy.analysis.text import counted
 from rosprivacy.analysis.written_names import bare_name, is_glob
 from rosprivacy.ingest.labels.entries import OWN, ROBOT, SECTIONS
-from rosprivacy.ingest.labels.label_file import Labels, parse_labels
+from rosprivacy.ingest.labels.label_file import LabelErrors, Labels, parse_labels
 from rosprivacy.ingest.labels.label_reader import LabelReader
 from rosprivacy.ingest.reading.yaml_values import Value
 
@@ -99,8 +99,8 @@ def edited(labels: Labels, edits: Sequence[SaidOfElement], how: WrittenEntries) 
 
     Raises
     ------
-    InputErrors
-        With every problem of the new entries.
+    LabelErrors
+        With every problem of the new entries, and what could be read of them.
     """
     if not edits:
         return labels
@@ -119,11 +119,8 @@ def edited(labels: Labels, edits: Sequence[SaidOfElement], how: WrittenEntries) 
             continue
         line = entries[there[0]][0].place.line if there else below
         below += not there
-        try:
-            reader = read_entry(one, line, how)
-        except InputErrors as error:
-            problems += (LabelError(e.file, e.line, e.problem, e.hint) for e in error.errors)
-            continue
+        reader = read_entry(one, line, how)
+        problems += (LabelError(e.file, e.line, e.problem, e.hint) for e in reader.problems)
         gone = {entry.place for at in there for entry in entries[at]}
         diagnostics = [told for told in diagnostics if told.place not in gone]
         diagnostics += reader.diagnostics
@@ -132,14 +129,15 @@ def edited(labels: Labels, edits: Sequence[SaidOfElement], how: WrittenEntries) 
             spot.append(len(entries))
         entries[there[0] if there else len(entries)] = reader.entries
         elements = _elements(elements, one, reader.elements)
+    read = tuple(entry for some in entries.values() for entry in some)
     if problems:
-        raise InputErrors(problems)
+        raise LabelErrors(problems, (replace(labels, entries=read),))
     digest = hashlib.sha256(json.dumps([labels.sha256, edits], sort_keys=True, default=str).encode()).hexdigest()
     return replace(
         labels,
         file=f"{labels.file} with {counted(len(edits), 'edit')} that {'is' if len(edits) == 1 else 'are'} not saved",
         sha256=digest,
-        entries=tuple(entry for some in entries.values() for entry in some),
+        entries=read,
         elements=tuple(elements),
         diagnostics=tuple(diagnostics),
     )
@@ -158,13 +156,7 @@ def _elements(elements: Iterable[Stated], entry: SaidOfElement, new: Iterable[St
 
 
 def read_entry(entry: SaidOfElement, line: int, how: WrittenEntries) -> LabelReader:
-    """Read one entry as if it stood in a file.
-
-    Raises
-    ------
-    InputErrors
-        With every problem of it.
-    """
+    """Read one entry as if it stood in a file; the reader has every problem of it."""
     reader = LabelReader(how.file, how.vocabulary, "", OWN, ROBOT if how.own else 0, bounds=how.bounds, root=how.root)
     if entry.value is None and entry.section == "elements":
         return reader
@@ -173,7 +165,7 @@ def read_entry(entry: SaidOfElement, line: int, how: WrittenEntries) -> LabelRea
     if how.author:
         top.insert(1, ("author", line, Value(line, "text", how.author)))
     reader.document(Value(line, "map", entries=tuple(top)))
-    return reader.whole(reader)
+    return reader
 
 
 def value_of(value: Any, line: int) -> Value:

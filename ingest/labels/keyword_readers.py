@@ -12,11 +12,17 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.durations import ordered
 from rosprivacy.analysis.durations import parse as parse_duration
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.model import CLEANS, NO_BASIS, Method
+from rosprivacy.analysis.model import BY_TYPE, CLEANS, NO_BASIS, TYPE_LINE, Method
 from rosprivacy.analysis.non_ros import EVERY, RECIPIENTS, TRANSFERS
 from rosprivacy.ingest.labels.countries import countries
 from rosprivacy.ingest.labels.entries import is_non_ros
-from rosprivacy.ingest.labels.stated_facts import read_context_names, read_country_code, read_type_names, written
+from rosprivacy.ingest.labels.stated_facts import (
+    flag_of,
+    read_context_names,
+    read_country_code,
+    read_type_names,
+    written,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -29,7 +35,6 @@ if TYPE_CHECKING:
     Item = tuple[str, int, Value]  # of a map: key, its line, value
 
 LONGEST_GROUP = 100  # characters of a group of persons, or of the name of an author
-TRUE, FALSE = ("true", "yes", "on"), ("false", "no", "off")
 
 
 def read_each_kind(reader: NameReader, value: Value, blank: Statement) -> Iterator[Statement]:
@@ -39,10 +44,18 @@ def read_each_kind(reader: NameReader, value: Value, blank: Statement) -> Iterat
 
 
 def read_all_kinds(reader: NameReader, value: Value, blank: Statement) -> Iterator[Statement]:
-    """Say it of all of these kinds at once: ``sensitive``, ``only`` and ``never``."""
+    """Say it of all of these kinds at once: ``sensitive`` and ``never``."""
     names = tuple(reader.categories_of(value, blank.role))
     if names:
         yield blank._replace(categories=names)
+
+
+def read_only(reader: NameReader, value: Value, blank: Statement) -> Iterator[Statement]:
+    """Read the kinds that a channel or a flow carries at most, or that its type says what these are."""
+    if value.kind == "text" and value.text == BY_TYPE:
+        yield blank._replace(role=TYPE_LINE)
+    else:
+        yield from read_all_kinds(reader, value, blank)
 
 
 def read_source(reader: NameReader, value: Value, blank: Statement) -> Iterator[Statement]:
@@ -161,16 +174,16 @@ def read_retention(reader: NameReader, item: Item) -> Mapping[str, Any]:
 def read_backups(reader: NameReader, item: Item) -> Mapping[str, Any]:
     """Read how much longer backups keep data; true where nobody knows."""
     _, line, value = item
-    flag = _flag(value)
+    flag = flag_of(value)
     return {"backups": read_duration(reader, line, value, ", or true or false") if flag is None else flag}
 
 
 def read_encrypted(reader: NameReader, item: Item) -> Mapping[str, Any]:
     """Read whether data is encrypted at rest."""
     _, line, value = item
-    if _flag(value) is None:
+    if flag_of(value) is None:
         reader.problem(line, f"encrypted: {written(value)}", "write true or false")
-    return {"encrypted": _flag(value)}
+    return {"encrypted": flag_of(value)}
 
 
 def read_bag(reader: NameReader, item: Item) -> Mapping[str, Any]:
@@ -191,11 +204,6 @@ def read_between(reader: NameReader, item: Item) -> Mapping[str, Any]:
         reader.problem(line, "between names at least two nodes", "write [/one, /another]")
         return {}
     return {"between": ends}
-
-
-def _flag(value: Value) -> bool | None:
-    text = value.text.casefold() if value.kind == "number" else ""
-    return True if text in TRUE else False if text in FALSE else None
 
 
 def read_duration(reader: NameReader, line: int, value: Value, example: str = "") -> Duration | None:

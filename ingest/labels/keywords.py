@@ -11,7 +11,7 @@ from __future__ import annotations
 from functools import cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rosprivacy.analysis.model import CLEANS, CONTEXTS, NO_BASIS, NON_ROS
+from rosprivacy.analysis.model import BY_TYPE, CLEANS, CONTEXTS, NO_BASIS, NON_ROS
 from rosprivacy.analysis.non_ros import RECIPIENTS, TRANSFERS
 from rosprivacy.ingest.labels.entries import BAG, END_KINDS
 from rosprivacy.ingest.labels.keyword_readers import (
@@ -26,6 +26,7 @@ from rosprivacy.ingest.labels.keyword_readers import (
     read_derives,
     read_each_kind,
     read_encrypted,
+    read_only,
     read_retention,
     read_sanitizer,
     read_source,
@@ -280,9 +281,15 @@ KEYWORDS: tuple[Keyword, ...] = (
     Keyword(
         "only",
         (CHANNEL, FLOW),
-        {**CATEGORIES, "description": "Carries these at most."},
-        read_all_kinds,
-        docs="`only: [HomeMap]` | the channel carries these at most",
+        {
+            "description": "Carries these at most; by-type of a channel by its full name: what its type is made for.",
+            "anyOf": [CATEGORIES, {"const": BY_TYPE}],
+        },
+        read_only,
+        docs="""
+`only: [HomeMap]` | the channel carries these at most
+`only: by-type` | it carries only what its message type is made for, of a full name: [below](#by-type)
+""",
         init="{only: [HomeMap]}  or  {never: [Location]} |",
     ),
     Keyword(

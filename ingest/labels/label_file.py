@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.bounds import Bounds
     from rosprivacy.analysis.model import Diagnostic, Element, Processing
     from rosprivacy.ingest.labels.entries import Entry, FlowEntry, Limit, Stated
-    from rosprivacy.ingest.labels.pins import Pin
+    from rosprivacy.ingest.labels.pins import CodePin, Pin, TypePin
     from rosprivacy.ingest.reading.yaml_values import Value
     from rosprivacy.ontology.vocabulary import Vocabulary
 
@@ -60,6 +60,10 @@ class Labels:
         Who is responsible for the whole system, what it is for, on which basis.
     pins
         What a person has seen where globs decide (rule S11); None of a file without.
+    type_pins
+        With what a person took lines ``only: by-type``; None of a file without.
+    code_pins
+        Of which code labels of nodes speak.
     """
 
     file: str
@@ -74,6 +78,22 @@ class Labels:
     surroundings: Surroundings = Surroundings()  # noqa: RUF009 - it is frozen
     processing: Processing = UNSTATED
     pins: tuple[Pin, ...] | None = None
+    type_pins: tuple[TypePin, ...] | None = None
+    code_pins: tuple[CodePin, ...] = ()
+
+
+class LabelErrors(InputErrors):
+    """All problems of label files, with what could be read of them.
+
+    Attributes
+    ----------
+    labels
+        What was read all the same: names that match nothing can be told in the same run.
+    """
+
+    def __init__(self, errors: Iterable[InputError], labels: tuple[Labels, ...] = ()) -> None:
+        super().__init__(errors)
+        self.labels = labels
 
 
 def read_labels(
@@ -147,22 +167,25 @@ def _labels(reader: LabelReader, top: Value, data: bytes, *, shipped: bool = Fal
     reader.document(top)
     if shipped:
         check_mundane(reader, top)
-    return reader.whole(
-        Labels(
-            reader.file,
-            hashlib.sha256(data).hexdigest(),
-            tuple(reader.entries),
-            tuple(reader.flows),
-            tuple(reader.diagnostics),
-            shipped,
-            tuple(reader.elements),
-            tuple(reader.limits),
-            own,
-            reader.surroundings,
-            reader.processing,
-            reader.pins,
-        )
+    labels = Labels(
+        reader.file,
+        hashlib.sha256(data).hexdigest(),
+        tuple(reader.entries),
+        tuple(reader.flows),
+        tuple(reader.diagnostics),
+        shipped,
+        tuple(reader.elements),
+        tuple(reader.limits),
+        own,
+        reader.surroundings,
+        reader.processing,
+        reader.pins,
+        reader.type_pins,
+        reader.code_pins,
     )
+    if reader.problems:
+        raise LabelErrors(reader.problems, (labels,))
+    return labels
 
 
 def unknown_categories(labels: Labels, vocabulary: Vocabulary) -> Iterator[LabelError]:

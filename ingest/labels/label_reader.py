@@ -15,6 +15,7 @@ from rosprivacy.analysis.model import (
     GLOB,
     NAME,
     NON_ROS,
+    TYPE_LINE,
     UNSTATED,
     Diagnostic,
     Method,
@@ -25,6 +26,7 @@ from rosprivacy.analysis.model import (
     Statement,
     Surroundings,
 )
+from rosprivacy.ingest.labels.countries import countries
 from rosprivacy.ingest.labels.entries import (
     EXACT,
     LONGEST_NAME,
@@ -51,7 +53,18 @@ from rosprivacy.ingest.labels.keywords import (
     words_of,
 )
 from rosprivacy.ingest.labels.name_reader import NameReader
-from rosprivacy.ingest.labels.pins import PINS, Pin, read_pins
+from rosprivacy.ingest.labels.pins import (
+    CODE,
+    LINES,
+    OF_OTHERS,
+    PINS,
+    CodePin,
+    Pin,
+    TypePin,
+    read_code_pins,
+    read_pins,
+    read_type_pins,
+)
 from rosprivacy.ingest.labels.stated_facts import (
     OF_SYSTEM,
     SURROUNDINGS,
@@ -59,6 +72,7 @@ from rosprivacy.ingest.labels.stated_facts import (
     processing_at,
     read_context_names,
     read_country_code,
+    read_grounds,
     read_system,
     with_transfer,
 )
@@ -104,6 +118,8 @@ class LabelReader(NameReader):
     surroundings: Surroundings = field(default_factory=Surroundings)
     processing: Processing = UNSTATED
     pins: tuple[Pin, ...] | None = None
+    type_pins: tuple[TypePin, ...] | None = None
+    code_pins: tuple[CodePin, ...] = ()
 
     def document(self, top: Value) -> None:
         """Read a label file."""
@@ -126,13 +142,22 @@ class LabelReader(NameReader):
             elif key in SECTIONS:
                 self._section(key, line, value)
             elif key == PINS:
-                self.pins = read_pins(self, value)
+                lines, code = ((value.get(part) if value.kind == "map" else None) for part in (LINES, CODE))
+                self.type_pins = None if lines is None else read_type_pins(self, lines)
+                self.code_pins = () if code is None else read_code_pins(self, code)
+                pins = read_pins(self, value)
+                others_only = value.entries and {part for part, *_ in value.entries} <= {*OF_OTHERS}
+                self.pins = None if others_only else pins
 
     def surrounded(self, surroundings: Surroundings, key: str, value: Value) -> Surroundings:
         """Return where a system works with what one more key says of it."""
         if key == "context":
             return surroundings._replace(contexts=read_context_names(self, value))
-        return surroundings._replace(country=read_country_code(self, value))
+        if key == "gdpr":
+            grounds = read_grounds(self, value)
+            return surroundings._replace(established=grounds.get("established"), targeted=grounds.get("targeted"))
+        code = read_country_code(self, value)
+        return surroundings._replace(country=code, abroad=countries().is_abroad(code))
 
     def system(self, top: Value) -> None:
         """Read what the top says of the whole system; fleet files say it too."""
@@ -235,6 +260,10 @@ class LabelReader(NameReader):
         statements = tuple(self._read(label, where, place, rank))
         named: set[str] = set()
         for statement in statements:
+            if statement.role == TYPE_LINE and (where == FLOW or named_by != NAME or self.tier <= SHIPPED):
+                of = "a flow" if where == FLOW else "a glob" if named_by != NAME else "a shipped file"
+                hint = "write it of one channel by its full name, or write only: [Kinds]"
+                self.problem(statement.place.line, f"only: by-type of {of}", hint)
             if statement.role in ("only", "never"):
                 for name in sorted(named.intersection(statement.categories)):
                     what = f"{name} is under only and under never"

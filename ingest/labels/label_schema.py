@@ -26,7 +26,7 @@ from rosprivacy.ingest.labels.keywords import (
     moves_data,
     words_of,
 )
-from rosprivacy.ingest.labels.pins import PINS, SECTION_OF
+from rosprivacy.ingest.labels.pins import CHANNEL_KINDS, CODE, KEYS, LINES, PINS, SECTION_OF, VERSION_DIGITS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -36,6 +36,22 @@ if TYPE_CHECKING:
 SURROUNDINGS = {
     "context": {**CONTEXT, "description": "Where the system works: what its data may reveal depends on it."},
     "country": {"type": "string", "pattern": "^[A-Z]{2}$", "description": "Where it runs, ISO 3166-1; quote NO."},
+    "gdpr": {
+        "type": "object",
+        "description": "Outside the EEA: whether the GDPR applies (Article 3).",
+        "additionalProperties": False,
+        "minProperties": 1,
+        "properties": {
+            "established": {
+                "type": "boolean",
+                "description": "It belongs to an establishment of the controller or a processor in the Union (3(1)).",
+            },
+            "targeted": {
+                "type": "boolean",
+                "description": "Persons in the Union are offered goods or services, or monitored there (3(2)).",
+            },
+        },
+    },
 }
 OUTSIDE_NAME = {"type": "string", "pattern": r"^[^/=*?\[:][^:]*$", "maxLength": LONGEST_NAME}
 FULL_NAME = {"type": "string", "pattern": r"^(=|/[^*?\[]*$)", "description": "A name in full; = before glob signs."}
@@ -156,6 +172,11 @@ def _pins() -> dict[str, Any]:
     end = {"anyOf": [OUTSIDE_NAME, {**END_OF_KIND, "properties": dict.fromkeys(END_KINDS, FULL_NAME)}]}
     ends = {"from": end, "to": end, "kinds": CATEGORIES}
     of_kind = {"type": ["object", "null"], "propertyNames": FULL_NAME, "additionalProperties": CATEGORIES}
+    texts = {"type": "array", "items": {"type": "string"}}
+    taken = map_of(dict.fromkeys(KEYS, texts))
+    version = {"type": "string", "pattern": f"^[0-9a-f]{{{VERSION_DIGITS}}}$"}
+    units = {"type": "object", "minProperties": 1, "additionalProperties": version}
+    by_line = {"type": ["object", "null"], "propertyNames": FULL_NAME, "additionalProperties": taken}
     return {
         "type": ["object", "null"],
         "description": "Written by 'labels --pin': which kinds reached the elements that globs of this file decide.",
@@ -163,6 +184,18 @@ def _pins() -> dict[str, Any]:
         "properties": {
             **dict.fromkeys(SECTION_OF.values(), of_kind),
             "flows": {"type": ["array", "null"], "items": {**map_of(ends), "required": [*ends]}},
+            CODE: {
+                "type": ["object", "null"],
+                "description": "Written by 'labels --pin-code': node -> its class or file -> hash of its version.",
+                "propertyNames": FULL_NAME,
+                "additionalProperties": units,
+            },
+            LINES: {
+                "type": ["object", "null"],
+                "description": "With which types and writers a person took the lines 'only: by-type'.",
+                "additionalProperties": False,
+                "properties": dict.fromkeys(map(SECTION_OF.__getitem__, CHANNEL_KINDS), by_line),
+            },
         },
     }
 

@@ -37,7 +37,9 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.reading.yaml_values import Value
 
 OF_SYSTEM = ("controller", "dpo", "purpose", "legal_basis")  # at the top of a file
-SURROUNDINGS = ("context", "country")  # there too
+SURROUNDINGS = ("context", "country", "gdpr")  # there too
+GROUNDS = ("established", "targeted")  # on which the GDPR applies outside the EEA, Article 3(1) and (2)
+TRUE, FALSE = ("true", "yes", "on"), ("false", "no", "off")
 LONGEST_TEXT = 200  # characters
 LONGEST_TYPE = 500  # characters; what was observed is anybody's
 Rank = tuple[int, int]
@@ -224,6 +226,21 @@ def read_country_code(reader: FileReader, value: Value) -> str:
     return ""
 
 
+def read_grounds(reader: FileReader, value: Value) -> dict[str, bool]:
+    """Return which grounds for the GDPR (Article 3) a value affirms or denies."""
+    found = {}
+    for key, line, said in value.entries if value.kind == "map" else ():
+        flag = flag_of(said)
+        if key in GROUNDS and flag is not None:
+            found[key] = flag
+        else:
+            what = f"{key}: {written(said)}" if key in GROUNDS else f"unknown key {shown(key)!r}"
+            reader.problem(line, f"{what} in gdpr", "write established: true or false, targeted: true or false")
+    if not value.entries:
+        reader.problem(value.line, f"gdpr is {written(value)}", "write {established: false, targeted: false}")
+    return found
+
+
 def surroundings_of(properties: Mapping[str, Any], *, ros: bool) -> Surroundings:
     """Return what properties of an element in the database state.
 
@@ -240,7 +257,7 @@ def surroundings_of(properties: Mapping[str, Any], *, ros: bool) -> Surroundings
     Examples
     --------
     >>> surroundings_of({"context": ["care"], "country": "DE"}, ros=True)
-    Surroundings(contexts=('care',), country='DE')
+    Surroundings(contexts=('care',), country='DE', abroad=False, established=None, targeted=None)
     """
     contexts = properties.get("context") or []
     if not isinstance(contexts, list) or not all(isinstance(name, str) for name in contexts):
@@ -251,18 +268,27 @@ def surroundings_of(properties: Mapping[str, Any], *, ros: bool) -> Surroundings
     country = properties.get("country") or "" if ros else ""
     if country and country not in countries().areas:
         raise TypeError(f"country {shown(str(country))!r} is not an ISO 3166-1 code")
-    return Surroundings(tuple(sorted(set(contexts))), country)
+    grounds = [properties.get(f"gdpr_{ground}") for ground in GROUNDS]
+    if not all(ground is None or isinstance(ground, bool) for ground in grounds):
+        raise TypeError("gdpr_established or gdpr_targeted is not true or false")
+    return Surroundings(tuple(sorted(set(contexts))), country, countries().is_abroad(country), *grounds)
 
 
 def joined(several: Iterable[Surroundings]) -> Surroundings:
-    """Put together what several say of one thing: every context holds; the last country that is stated does.
+    """Put together what several say of one thing: every context holds; of a country and a ground, what is stated last.
 
-    >>> joined([Surroundings(("care",)), Surroundings(("school",), "FR")])
-    Surroundings(contexts=('care', 'school'), country='FR')
+    >>> both = joined([Surroundings(("care",), targeted=False), Surroundings(("school",), "FR")])
+    >>> both.contexts, both.country, both.targeted
+    (('care', 'school'), 'FR', False)
     """
-    found = list(several)
-    contexts = {name for one in found for name in one.contexts}
-    return Surroundings(tuple(sorted(contexts)), next((one.country for one in reversed(found) if one.country), ""))
+    contexts: set[str] = set()
+    found = Surroundings()
+    for one in several:
+        contexts.update(one.contexts)
+        place = (one if one.country else found)[1:3]
+        grounds = (getattr(found if getattr(one, of) is None else one, of) for of in GROUNDS)
+        found = Surroundings((), *place, *grounds)
+    return found._replace(contexts=tuple(sorted(contexts)))
 
 
 def everywhere(graph: FlowGraph, own: Mapping[int, Surroundings], system: Surroundings) -> dict[int, Surroundings]:
@@ -271,11 +297,17 @@ def everywhere(graph: FlowGraph, own: Mapping[int, Surroundings], system: Surrou
     for vertex, element in enumerate(graph.elements) if own or system else ():
         if element.is_channel:
             continue
-        of_system = system if element.is_node else Surroundings(system.contexts)
+        of_system = system if element.is_node else Surroundings(system.contexts)  # its country is a fact of its own
         both = joined((of_system, own.get(vertex, Surroundings())))
         if both:
             found[vertex] = both
     return found
+
+
+def flag_of(value: Value) -> bool | None:
+    """Return whether a value is true or false; None where it is neither."""
+    text = value.text.casefold() if value.kind == "number" else ""
+    return True if text in TRUE else False if text in FALSE else None
 
 
 def written(value: Value) -> str:
@@ -330,5 +362,17 @@ def of_no_channel(graph: FlowGraph, entry: Entry, vertices: Collection[int]) -> 
 
 def in_order(types: Mapping[int, Iterable[MessageType]]) -> dict[int, tuple[MessageType, ...]]:
     """Return the types of each element once and sorted (rule S14)."""
-    order = attrgetter("name", "hash", "robot", "place.file", "place.line", "writers", "readers", "first", "last")
+    order = attrgetter(
+        "name",
+        "hash",
+        "robot",
+        "place.file",
+        "place.line",
+        "writers",
+        "readers",
+        "first",
+        "last",
+        "definition",
+        "fields",
+    )
     return {vertex: tuple(sorted(set(some), key=order)) for vertex, some in sorted(types.items()) if some}

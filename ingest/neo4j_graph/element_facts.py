@@ -26,7 +26,7 @@ from rosprivacy.analysis.model.reason import NOT_ENCRYPTED, STRANGERS
 from rosprivacy.analysis.model.recording import Recording
 from rosprivacy.analysis.non_ros import EVERY, RECIPIENTS, TRANSFERS
 from rosprivacy.ingest.labels.countries import countries
-from rosprivacy.ingest.labels.stated_facts import surroundings_of
+from rosprivacy.ingest.labels.stated_facts import GROUNDS, surroundings_of
 from rosprivacy.ingest.neo4j_graph.schema import DATABASE
 from rosprivacy.ingest.reading.legal_basis import HINT, legal_basis
 
@@ -93,13 +93,14 @@ def _place(properties: Properties, file: str = "file", line: str = "line") -> Pl
 def _surroundings_properties(where: Surroundings | None, element: Element) -> Row:
     """Where it works; the country of an element outside ROS is a fact of its own."""
     of_system = {"country": where.country} if where and where.country and element.is_node else {}
-    return {"context": list(where.contexts) or None if where else None, **of_system}
+    grounds = {f"gdpr_{ground}": getattr(where, ground) if where else None for ground in GROUNDS}
+    return {"context": list(where.contexts) or None if where else None, **of_system, **grounds}
 
 
 def types_properties(types: Iterable[MessageType], robot: str) -> Row:
     """Return the properties of a channel of a robot with these message types; null where it has none.
 
-    >>> seen = MessageType("std_msgs/msg/Bool", Place("t.yaml", 4), writers=("/door",))
+    >>> seen = MessageType("a/msg/A", Place("t.yaml", 4), writers=("/a",), definition="A.msg", fields=("b/msg/B",))
     >>> types_of(types_properties([seen], ""), "") == (seen,)
     True
     """
@@ -121,6 +122,8 @@ def _type_as_json(message_type: MessageType, robot: str) -> Row:
         "file": message_type.place.file,
         "line": message_type.place.line,
         "robot": message_type.robot if message_type.robot != robot else "",
+        "definition": message_type.definition,
+        "fields": list(message_type.fields),
     }
     return {"type": message_type.name, **{key: value for key, value in facts.items() if value}}
 
@@ -156,6 +159,8 @@ def _type_of_json(properties: Properties, robot: str) -> MessageType:
         first=str(properties.get("first") or ""),
         last=str(properties.get("last") or ""),
         robot=str(properties.get("robot") or robot),
+        definition=str(properties.get("definition") or ""),
+        fields=tuple(map(str, properties.get("fields") or ())),
     )
 
 
@@ -246,7 +251,7 @@ ELEMENT_FACTS = (
         "surroundings",
         _surroundings_properties,
         lambda properties, element, _: surroundings_of(properties, ros=element.is_node),
-        "SET n.context = ['care'], n.country = 'DE'",
+        "SET n.context = ['care'], n.country = 'DE', n.gdpr_targeted = false",
     ),
     ElementFact(
         "types",

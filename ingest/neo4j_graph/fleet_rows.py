@@ -15,7 +15,7 @@ from rosprivacy.analysis.answer import robot_verdicts
 from rosprivacy.analysis.contexts import Contexts
 from rosprivacy.analysis.findings.derived_from import origins, pairs_at_most
 from rosprivacy.analysis.fleet.likeness import Likeness, pattern_id
-from rosprivacy.analysis.model import UNSTATED
+from rosprivacy.analysis.model import STANDARD, UNSTATED
 from rosprivacy.ingest.fleet.dds_domains import is_domain
 from rosprivacy.ingest.fleet.fleet_graph import Placed
 from rosprivacy.ingest.neo4j_graph.carrying import Carrying
@@ -57,6 +57,8 @@ def robot_rows(
     vocabulary: Vocabulary,
     extra: Mapping[str, Any] | None = None,
     beyond: Beyond | None = None,
+    *,
+    without_standard: bool = False,
 ) -> RobotRows:
     """Return the rows of one robot.
 
@@ -64,14 +66,15 @@ def robot_rows(
     ----------
     robot
         Name in the database.
-    analysis, more, beyond
+    analysis, more, beyond, without_standard
         As of ``FleetRows``.
     bound
         The statements that it rests on.
     """
     placed = Placed(analysis.graph, bound, Likeness({"": (robot,)}), {"": analysis.graph.profiles})
     known = {"verdict": str(analysis.verdict), **(extra or {})}
-    properties, parts = FleetRows(placed, analysis, vocabulary, {"": known}, beyond=beyond).parts("", robot)
+    fleet = FleetRows(placed, analysis, vocabulary, {"": known}, beyond=beyond, without_standard=without_standard)
+    properties, parts = fleet.parts("", robot)
     del parts["foreign"]  # there is no other robot
     return rows_of(robot, properties, parts)
 
@@ -94,6 +97,8 @@ class FleetRows:
         Robots of the graph of which a doubt breaks the verdict, such as a file that was not read (rule S11).
     beyond
         What the enforced view adds; None where nobody asked for both views.
+    without_standard
+        Whether ``standard_only`` channels are left out.
 
     Attributes
     ----------
@@ -115,7 +120,11 @@ class FleetRows:
         not_read: Iterable[str] = (),
         beyond: Beyond | None = None,
         counts: Mapping[str, int] | None = None,
+        *,
+        without_standard: bool = False,
     ) -> None:
+        self._hidden = standard_only(analysis, placed.bound) if without_standard else frozenset()
+        self._without_standard = {"without_standard": True} if without_standard else {}
         most_across = MOST_ACROSS if most_across is None else most_across
         self._extra, self._beyond = extra, beyond
         self._not_read = frozenset(not_read)
@@ -208,6 +217,7 @@ class FleetRows:
             **processing_properties(stated),
             **self._extra.get(owner, {}),
             **({"beyond": len(parts["beyond"].findings)} if self._beyond else {}),
+            **self._without_standard,
         }
         if "verdict" not in properties and part != DOMAIN:
             properties["verdict"] = str(self._verdicts[owner])
@@ -218,7 +228,7 @@ class FleetRows:
         """Vertices by robot."""
         owned: dict[str, list[int]] = defaultdict(list)
         for vertex, element in enumerate(self._graph.elements):
-            owned[element.robot].append(vertex)
+            owned[element.robot] += [vertex] if self._shows(vertex) else []
         return dict(owned)
 
     @cached_property
@@ -235,7 +245,8 @@ class FleetRows:
         """Where kinds of data go, by the robot that they leave."""
         leaving: dict[str, list[tuple[End, End, list[str]]]] = defaultdict(list)
         for step in self._carrying.steps:
-            leaving[self._graph.elements[step[0][0]].robot].append(step)
+            if self._shows(step[0][0], step[1][0]):
+                leaving[self._graph.elements[step[0][0]].robot].append(step)
         return dict(leaving)
 
     @cached_property
@@ -244,11 +255,17 @@ class FleetRows:
         leaving: dict[str, list[tuple[Flow, Row]]] = defaultdict(list)
         results = flow_results(self._analysis, self._names)
         for index, (flow, result) in enumerate(zip(self._graph.flows, results, strict=True)):
-            properties = allowed(result, self._placed.bound.flows.get(index, ()), self._vocabulary.hierarchy)
-            leaving[self._graph.elements[flow.source].robot].append((flow, properties))
+            if self._shows(flow.source, flow.target):
+                properties = allowed(result, self._placed.bound.flows.get(index, ()), self._vocabulary.hierarchy)
+                leaving[self._graph.elements[flow.source].robot].append((flow, properties))
         for flow in self._graph.taken_back:
-            leaving[self._graph.elements[flow.source].robot].append((flow, denied(flow)))
+            if self._shows(flow.source, flow.target):
+                leaving[self._graph.elements[flow.source].robot].append((flow, denied(flow)))
         return dict(leaving)
+
+    def _shows(self, *vertices: int) -> bool:
+        """Whether none of some elements is left out."""
+        return self._hidden.isdisjoint(vertices)
 
     def _flows(self, owner: str, name: str, ids: _Ids) -> Iterator[Row]:
         elements = self._graph.elements
@@ -343,6 +360,24 @@ class FleetRows:
         return robot_verdicts(
             self._analysis, self._owned, lambda element: first.get(element.robot, element.robot), self._not_read
         )
+
+
+def standard_only(analysis: Analysis, bound: Bound) -> frozenset[int]:
+    """Return the channels that the standard file closes and of which nobody else says anything (rule S13).
+
+    Nothing comes out of them, so an answer without them is the same. Those of which it is in doubt whether they are
+    what their name says stay.
+    """
+    spread = analysis.spread
+    elements = spread.graph.elements
+    doubtful = {row.channel.identity for row in analysis.closed_by_shipped}
+    doubtful |= {finding.leak.identity for finding in analysis.findings}
+    doubtful |= {
+        elements[vertex].identity
+        for vertex, statements in bound.elements.items()
+        if any(statement.rank[0] != STANDARD for statement in statements)
+    }
+    return frozenset(vertex for vertex in spread.standard if elements[vertex].identity not in doubtful)
 
 
 class _Ids:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.kernel.ranks import decided
 from rosprivacy.analysis.model import (
+    BY_TYPE,
     CANNOT,
     GLOB,
     NAME,
@@ -81,6 +82,8 @@ def _grant_as_json(grant: Grant) -> Row:
             "first_seen": grant.observation.first,
             "last_seen": grant.observation.last,
         }
+    if grant.basis:
+        row["basis"] = grant.basis
     return row
 
 
@@ -122,6 +125,7 @@ def _grants(lines: Iterable[Properties], role: str, channel: Element, *, allow: 
             node=str(line.get("profile") or ""),
             place=Place(str(line["file"]), int(line.get("line") or 0)),
             observation=_seen_in_use(line),
+            basis=str(line.get("basis") or ""),
         )
         for line in lines
     )
@@ -214,8 +218,8 @@ def add_roles(
     """Add one relationship per category that a statement names; one about every category goes to those at the top."""
     top = [category.name for category in vocabulary.categories.values() if not category.broader]
     for statement in statements:
-        if statement.rank == BY_KIND or statement.role == CANNOT:  # nobody said it; who reads the graph takes it so too
-            continue
+        if statement.rank == BY_KIND or statement.role in (CANNOT, BY_TYPE):
+            continue  # nobody said it; who reads the graph takes it so too
         properties: Row = {
             "file": statement.place.file,
             "line": statement.place.line,

@@ -16,6 +16,7 @@ from rosprivacy.analysis.errors import LabelError
 from rosprivacy.analysis.findings.beyond import beyond
 from rosprivacy.analysis.kernel.roles import facts
 from rosprivacy.analysis.legal import turned_special
+from rosprivacy.analysis.model import GDPR_APPLIES
 from rosprivacy.analysis.non_ros import BY_KIND
 from rosprivacy.ingest.neo4j_graph.by_hand import seal_of
 from rosprivacy.ingest.neo4j_graph.carrying import moving
@@ -348,6 +349,7 @@ def finding_row(
             "disjoint_paths": None if across else finding.number_of_paths,
             "article9": contexts.article9(finding),
             "in_context": [f"{legal.context}: {legal.name}" for legal in contexts.revealed(finding)] or None,
+            "gdpr": None if (scope := contexts.scope(finding)) == GDPR_APPLIES else scope,
             "special_from": turned.name if (turned := turned_special(finding, vocabulary.categories)) else None,
         },
     }

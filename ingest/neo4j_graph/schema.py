@@ -11,7 +11,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.model import CONTEXTS
+from rosprivacy.analysis.model import CONTEXTS, TYPE_LINE
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -94,7 +94,7 @@ _LABEL = f"""\
     every BOOLEAN the label names no category: it holds for every one
     why STRING the label's note; of method absent: why the node is not on the robot
     author STRING who says it, as the label file names them
-    pinned STRINGS of a glob in a file with pins: kinds that a person has seen here, for which it holds
+    pinned STRINGS of a glob: kinds that a person has seen; none of other code; of HAS_BY_TYPE: types, writers
 {_OURS}"""
 _PROCESSING = """\
     purposes STRINGS what data are processed for, as stated; `Video: …` of one kind
@@ -117,6 +117,7 @@ _WAY = """\
         between; absent from one robot to another
     article9 STRING strongest verdict under Art. 9(1) where its source works
     in_context STRINGS what it may reveal, or what concerns it, where its source works, `care: GDPR Art. 9(1) …`
+    gdpr STRING whether the GDPR applies there (Art. 3), where that is not plain: open or denied
     special_from STRING element that makes a special category of other data; absent if none does"""
 _KINDS_IN_BAGS = """\
     kinds STRINGS kinds of data that can be in it, as labels and policies say
@@ -158,6 +159,8 @@ _NODES = f"""\
     bag_end INTEGER to when
     bag_oldest INTEGER the earliest time that any of its bags says
     country STRING ISO 3166-1 code; of a node that of its system, where it is stated
+    gdpr_established BOOLEAN of a node outside the EEA: an establishment in the Union is concerned, Art. 3(1), as stated
+    gdpr_targeted BOOLEAN the same: persons in the Union are offered something or monitored there, Art. 3(2), as stated
     operator STRING outside ROS: who runs it
     recipient STRING outside ROS: controller, joint-controller, processor or third-party
     contract STRING outside ROS: on what it is operated, such as a contract under Article 28
@@ -178,6 +181,7 @@ _NODES = f"""\
     flows INTEGER how many were loaded
     roles INTEGER how many relationships of labels were loaded
     carried INTEGER how many `CARRIES_…` were loaded
+    without_standard BOOLEAN channels that only the standard file speaks of were left out; else absent
     beyond INTEGER how many `AddedFinding` it has; absent where nobody loaded it with `--view both`
     controller STRING who is responsible, as stated
     dpo STRING the data-protection officer, as stated
@@ -298,6 +302,7 @@ _RELATIONSHIPS = f"""\
     seen_by STRINGS of an observed policy: through which doors it was seen in use
     first_seen STRING of an observed policy: when it was first seen in use
     last_seen STRING of an observed policy: when it was last seen in use
+    basis STRING of a scanned policy: how the line of the code fixes the name
     further STRINGS JSON: file, line, enclave and profile of further policy lines behind it
     denied_by STRINGS of a denied flow: file:line of the DENY
     denials STRINGS JSON: file, line, enclave and profile of each DENY
@@ -345,6 +350,8 @@ _RELATIONSHIPS = f"""\
 (:Element)-[:MAY_HAVE]->(:DataCategory) A channel, reviewed.
 {_LABEL}
 (:Element)-[:HAS_ONLY]->(:DataCategory) A channel carries what is named so at most.
+{_LABEL}
+(:Element)-[:HAS_BY_TYPE]->(:DataCategory) A channel carries only what its message type is made for.
 {_LABEL}
 (:Element)-[:HAS_NOT]->(:DataCategory) A channel does not carry the category.
 {_LABEL}
@@ -425,6 +432,7 @@ ROLES = {
     "sensitive": _BY_TYPE["MAY_HAVE"],
     "only": _BY_TYPE["HAS_ONLY"],
     "never": _BY_TYPE["HAS_NOT"],
+    TYPE_LINE: _BY_TYPE["HAS_BY_TYPE"],
 }
 SUFFIXES = ("", "Source", "Leak", "Sanitizer")
 INDEXED = (

@@ -34,24 +34,29 @@ if TYPE_CHECKING:
 
 SHOWN_AT_MOST = 3  # of nodes, files, parts and enclaves
 EVERYBODY = ("rosout", "parameter_events", "clock")  # channels of every node: they join no two systems
+FEWEST_ALIKE = 3  # nodes of a robot whose names tell it from a part of one
 COMPARED_PARTS = 1_000_000  # wildcards with names; beyond that nothing is said of parts
 ALONE = "--per-policy analyses each alone"
 OF_ONE_ROBOT = "name for a robot of the fleet only what runs on it"
 
 
 def merging_notices(policies: Iterable[Policy], instead: str = ALONE) -> tuple[Diagnostic, ...]:
-    """Return a notice for files that state one node differently, and one for files that have nothing in common.
+    """Return notices for files that state one node differently, that have nothing in common, or the same nodes.
+
+    The same but for the namespace in which they stand. Observations of one robot may differ, since they were made at
+    different times.
 
     Parameters
     ----------
     instead
         What to do if they were not meant to make one graph.
     """
-    of_files = (policy for policy in deployed(policies) if policy.profiles and policy.file in dict(policy.sources))
+    of_files = (policy for policy in policies if policy.profiles and policy.file in dict(policy.sources))
     policies = sorted(of_files, key=lambda policy: policy.file)
     if len(policies) < 2:  # noqa: PLR2004 - two make one
         return ()
-    return (*_stated_differently(policies, instead), *_without_common_names(policies, instead))
+    apart = (*_without_common_names(policies, instead),)
+    return (*_stated_differently(deployed(policies), instead), *(apart or _alike_below(policies, instead)))
 
 
 def _stated_differently(policies: Sequence[Policy], instead: str) -> Iterator[Diagnostic]:
@@ -82,6 +87,24 @@ def _without_common_names(policies: Sequence[Policy], instead: str) -> Iterator[
         what = f"{len(policies):,} policies make one graph of {len(parts):,} parts that share no node and no channel"
         message = f"{what}: {named}; if these are several systems, {instead}"
         yield Diagnostic(parts[0][0].profiles[0].place, Severity.NOTICE, message, MERGED)
+
+
+def _alike_below(policies: Sequence[Policy], instead: str) -> Iterator[Diagnostic]:
+    """Files of the same nodes, but for the namespace: as of two robots of one model that share a channel."""
+    alike: dict[frozenset[str], dict[str, Policy]] = defaultdict(dict)
+    for policy in policies:
+        nodes = {profile.node for profile in policy.profiles}
+        first = {node.split("/")[1] for node in nodes}
+        below = f"/{first.pop()}" if len(first) == 1 else ""
+        if len(nodes) >= FEWEST_ALIKE:
+            alike[frozenset(node.removeprefix(below) for node in nodes)].setdefault(below, policy)
+    for same in alike.values():
+        if len(same) > 1:
+            files = sorted(policy.file for policy in same.values())
+            below = ", ".join(shown(namespace or "/") for namespace in sorted(same))
+            what = f"{len(policies):,} policies make one graph; {_files(files)} have the same nodes below {below}"
+            place = min(same.values(), key=lambda policy: policy.file).profiles[0].place
+            yield Diagnostic(place, Severity.NOTICE, f"{what}; if these are several robots, {instead}", MERGED)
 
 
 def _parts(policies: Sequence[Policy]) -> list[list[Policy]]:

@@ -113,7 +113,25 @@ def unreadable(why: str, place: Place) -> Diagnostic:
 
 def observed_in(metadata: etree._Element) -> etree._Element | None:
     """Return what an observation says in a ``<metadata>``, if there is such a thing."""
-    return next((child for child in metadata if child.tag == TAG and child.get("version") is not None), None)
+    return ours_in(metadata, TAG)
+
+
+def ours_in(metadata: etree._Element, tag: str) -> etree._Element | None:
+    """Return the first element of a name in a ``<metadata>`` that says which version of ours it is."""
+    return next((child for child in metadata if child.tag == tag and child.get("version") is not None), None)
+
+
+def attribute(element: etree._Element, name: str) -> str:
+    """Return what an attribute says; ``ValueError`` if it is not there."""
+    value = element.get(name)
+    if value is None:
+        raise ValueError(f"<{shown(str(element.tag))}> without {name}")
+    return str(value)
+
+
+def grant_key(grant: etree._Element) -> Key:
+    """Return which grant of the policy an element is about; ``ValueError`` if it does not say."""
+    return attribute(grant, "node"), attribute(grant, "kind"), attribute(grant, "role"), attribute(grant, "name")
 
 
 def observed_of(element: etree._Element) -> ObservedMetadata:
@@ -126,7 +144,7 @@ def observed_of(element: etree._Element) -> ObservedMetadata:
     """
     if element.get("version") != VERSION:
         raise ValueError(f"version {shown(repr(element.get('version')))} of an observation is not known")
-    folded = [(_text(child, "name"), _text(child, "rule")) for child in element if child.tag == FOLDED]
+    folded = [(attribute(child, "name"), attribute(child, "rule")) for child in element if child.tag == FOLDED]
     return ObservedMetadata(
         _doors(element),
         _time(element, "from"),
@@ -146,9 +164,7 @@ def seen_of(element: etree._Element) -> Mapping[Key, Seen]:
         If it cannot be read.
     """
     return {
-        (_text(grant, "node"), _text(grant, "kind"), _text(grant, "role"), _text(grant, "name")): Seen(
-            _doors(grant), _time(grant, "first"), _time(grant, "last")
-        )
+        grant_key(grant): Seen(_doors(grant), _time(grant, "first"), _time(grant, "last"))
         for grant in element
         if grant.tag == GRANT
     }
@@ -165,7 +181,7 @@ def participants_of(element: etree._Element) -> Mapping[str, str]:
     found = {}
     for child in element:
         if child.tag == OF_NO_NODE:
-            match = _PARTICIPANT.fullmatch(_text(child, "node"))
+            match = _PARTICIPANT.fullmatch(attribute(child, "node"))
             if match is None:
                 raise ValueError(f"{shown(repr(child.get('node')))} names no participant")
             found[match[0]] = match[1]
@@ -193,22 +209,15 @@ def together(several: list[ObservedMetadata]) -> ObservedMetadata:
     )
 
 
-def _text(element: etree._Element, name: str) -> str:
-    value = element.get(name)
-    if value is None:
-        raise ValueError(f"<{shown(str(element.tag))}> without {name}")
-    return str(value)
-
-
 def _time(element: etree._Element, name: str) -> str:
-    value = _text(element, name)
+    value = attribute(element, name)
     if not _TIME.fullmatch(value):
         raise ValueError(f"{name}={shown(repr(value))} is no time such as 2026-11-22T10:00:00Z")
     return value
 
 
 def _doors(element: etree._Element) -> tuple[str, ...]:
-    doors = _text(element, "by").split()
+    doors = attribute(element, "by").split()
     if not doors or not all(map(_DOOR.fullmatch, doors)):
         raise ValueError(f"by={shown(repr(element.get('by')))} names no door")
     return tuple(sorted(doors))

@@ -33,6 +33,7 @@ KEYS = (".pem", ".key")  # never opened
 UNREADABLE = FileKind("a file that cannot be read", "check its permissions")
 GRANTING = (POLICY, ACCESS_LIST, PERMISSIONS, UNREADABLE)  # or it may be
 SHOWN_AT_MOST = 3  # of the files that are passed over
+FEWEST_WRONG = 3  # files of a folder that cannot be read: then it may be the wrong folder
 
 
 @dataclass(slots=True, eq=False, repr=False)
@@ -282,7 +283,9 @@ def read_policies(
     if not arguments:
         problems.append(PolicyError("nothing", 0, "no SROS 2 policy found", "name a file or folder that has one"))
     if problems:
-        raise InputErrors(problems)
+        good = {policy.file for policy in policies}
+        whole = [one for folder in found for one in _mixed(folder, found[folder], good, problems)]
+        raise InputErrors([*whole, *problems])
     if not expanded.contents:
         return tuple(policies), ()
     included = _included(policies)
@@ -291,6 +294,20 @@ def read_policies(
         one for argument, held in expanded.contents.items() for one in held.diagnostics(argument, read, bounds)
     )
     return tuple(policies), (*(_not_read(error, included) for error in skipped), *passed_over)
+
+
+def _mixed(
+    folder: str, files: Collection[str], read: Iterable[str], problems: Iterable[InputError]
+) -> Iterator[PolicyError]:
+    """Say of a folder of many files that cannot be read first what is in it: it may be the wrong one."""
+    wrong = {problem.file for problem in problems} & {*files}
+    if len(wrong) < FEWEST_WRONG:
+        return
+    good = sorted({*read} & {*files})
+    policies = "1 is a policy" if len(good) == 1 else f"{len(good) or 'none'} are policies"
+    what = f"of its {len(files):,} files that are looked at {policies}, and {len(wrong):,} cannot be read"
+    named = f": {_names_shown(good, folder)}" if good else ""
+    yield PolicyError(folder, 0, what, f"name the policies{named}" if good else "name a folder that has policies")
 
 
 def _of_another_kind(file: str) -> list[InputError]:

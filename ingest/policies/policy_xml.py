@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.bounds import Bounds
     from rosprivacy.analysis.model import Seen
     from rosprivacy.ingest.policies.observed_metadata import Key, ObservedMetadata
+    from rosprivacy.ingest.policies.scanned_metadata import CodeLine, ScannedMetadata
 
     Read = tuple[Mapping[Key, Seen], Mapping[str, str]]  # when grants were seen; which profiles are of no node
 
@@ -130,6 +131,8 @@ class _PolicyReader:
     old: bool = False
     namespace: str = ""
     observations: list[tuple[Place, ObservedMetadata]] = field(default_factory=list)
+    scans: list[tuple[Place, ScannedMetadata]] = field(default_factory=list)
+    code_by_key: Mapping[Key, tuple[CodeLine, ...]] = field(default_factory=dict)  # of these profiles, too
     seen_by_key: Mapping[Key, Seen] = field(default_factory=dict)  # of the profiles that are being read (rule S16)
     participants: Mapping[str, str] = field(default_factory=dict)  # those of them that are of no node
     first: Place | None = None  # where sros2 has read its fill of this enclave: what follows is dead (rule S5)
@@ -211,9 +214,15 @@ class _PolicyReader:
 
             whole = together([observed for _, observed in self.observations])
             self.diagnostics.extend(diagnostics_of(whole, self.observations[0][0]))
+        if self.scans:
+            from rosprivacy.ingest.policies import scanned_metadata  # noqa: PLC0415 - light start
+
+            place = self.scans[0][0]
+            self.diagnostics.extend(scanned_metadata.diagnostics_of([scan for _, scan in self.scans], place))
 
     def _profiles(self, group: Item, enclave: str | None) -> None:
         self.seen_by_key, self.participants = self._observation(group)
+        self.code_by_key = self._scan(group)
         profiles = list(self._elements(group, {"profile"}))
         if not profiles:
             self._problem(group.place, "<profiles> is empty", "add a <profile>")
@@ -227,6 +236,23 @@ class _PolicyReader:
             if read is not None:
                 return read
         return {}, {}
+
+    def _scan(self, group: Item) -> Mapping[Key, tuple[CodeLine, ...]]:
+        """The lines of code that make the grants of some profiles, if a scan says so."""
+        for child in group.element:
+            if child.tag == "metadata":
+                from rosprivacy.ingest.policies import scanned_metadata  # noqa: PLC0415 - light start
+
+                scanned = scanned_metadata.scanned_in(child)
+                if scanned is None:
+                    continue
+                place = Place(group.file, scanned.sourceline or 0)
+                try:
+                    self.scans.append((place, scanned_metadata.scan_of(scanned)))
+                    return scanned_metadata.code_of(scanned)
+                except ValueError as error:
+                    self.diagnostics.append(scanned_metadata.unreadable(str(error), place))
+        return {}
 
     def _seen_in(self, metadata: etree._Element, file: str) -> Read | None:
         """What some metadata says of an observation, if it can be read."""
@@ -276,9 +302,11 @@ class _PolicyReader:
             for role, allow in granted:
                 dead = self.first is not None
                 seen = self.seen_by_key.get((owned, kind, role, name)) if allow and self.seen_by_key else None
-                self.grants.append(
-                    Grant(allow, role, kind, name, enclave, owned, place, self.file, dead, absolute, seen)
-                )
+                lines = self.code_by_key.get((owned, kind, role, name), ()) if allow and self.code_by_key else ()
+                for at, basis in lines or ((place, ""),):
+                    self.grants.append(
+                        Grant(allow, role, kind, name, enclave, owned, at, self.file, dead, absolute, seen, basis=basis)
+                    )
                 if dead and not allow:
                     message = f"dead DENY: {role} {name} is not taken away, since sros2 uses the first <profiles> of"
                     message += f" enclave {enclave} only ({self.first}); move it there"

@@ -34,6 +34,7 @@ from rosprivacy.analysis.model import (
 from rosprivacy.ingest.policies.names import DDS
 from rosprivacy.ingest.policies.policy_xml import ROLES
 from rosprivacy.ingest.reading.bounded_file import read_regular
+from rosprivacy.ingest.reading.file_kinds import SAVED_GRAPH, kind_of_file
 from rosprivacy.ingest.types import types_file
 
 if TYPE_CHECKING:
@@ -106,7 +107,16 @@ def read_saved(file: str) -> Saved:
     try:
         return _read(file, fail)
     except GraphError as error:
-        raise InputErrors([error]) from None
+        raise InputErrors([_of_another_kind(file) or error]) from None
+
+
+def _of_another_kind(file: str) -> GraphError | None:
+    """What is wrong with a file that is something else by its content; None of any other."""
+    try:
+        kind = kind_of_file(file)
+    except (OSError, ValueError):
+        return None  # who reads it says why not
+    return None if kind in (None, SAVED_GRAPH) else GraphError(file, 1, *kind.refused(SAVED_GRAPH.name, file))
 
 
 def _read(file: str, fail: Callable[[int, str, str], GraphError]) -> Saved:
@@ -144,7 +154,7 @@ def _unowned(policies: Iterable[dict[str, Any]]) -> Iterator[str]:
             at = f"policies[{number}].grants[{index}]"
             if (grant["enclave"], grant["node"]) not in owners:
                 yield f"{at} is of a node that has no profile in its enclave"
-            if grant["file"] not in policy["sources"]:
+            if grant["file"] not in policy["sources"] and "basis" not in grant:  # a line of code is in no source
                 yield f"{at}.file is not in the sources of its policy"
 
 
@@ -175,6 +185,7 @@ def _policy(policy: Policy) -> dict[str, Any]:
                 "line": grant.place.line,
                 **({} if grant.allow and not grant.dead else {"dead": grant.dead}),
                 **({"seen": _observation(grant.observation)} if grant.observation else {}),
+                **({"basis": grant.basis} if grant.basis else {}),
             }
             for grant in policy.grants
         ],
@@ -244,6 +255,7 @@ def _read_policy(saved: dict[str, Any]) -> Policy:
             absolute=g.get("absolute", True),
             observation=_read_seen(g["seen"]) if "seen" in g else None,
             rank=g.get("rank", 0),
+            basis=g.get("basis", ""),
         )
         for g in saved["grants"]
     ]

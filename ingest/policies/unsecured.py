@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.model import NETWORK, NOTHING_ENFORCED, OBSERVED, Diagnostic, Profile, Severity
+from rosprivacy.analysis.model import NETWORK, NOTHING_ENFORCED, OBSERVED, SCANNED, Diagnostic, Profile, Severity
 from rosprivacy.ingest.policies.names import DDS, endpoints
 
 if TYPE_CHECKING:
@@ -24,8 +24,8 @@ SHOWN_AT_MOST = 3
 
 
 def is_observed(policy: Policy) -> bool:
-    """Whether a policy was made of what was seen running: no middleware is held to it (rule S16)."""
-    return any(diagnostic.code == OBSERVED for diagnostic in policy.diagnostics)
+    """Whether a policy was made of what was seen running, or of source code: no middleware is held to it (rule S16)."""
+    return any(diagnostic.code in (OBSERVED, SCANNED) for diagnostic in policy.diagnostics)
 
 
 def unsecured(policies: Sequence[Policy]) -> frozenset[str]:
@@ -43,7 +43,8 @@ def unsecured_notices(policies: Sequence[Policy]) -> Iterator[Diagnostic]:
         if nodes and is_observed(policy):
             first = min(p.place for p in policy.profiles)
             named = ", ".join([*map(shown, nodes[:SHOWN_AT_MOST]), *(["…"] if len(nodes) > SHOWN_AT_MOST else [])])
-            what = f"nothing is enforced for what was observed here ({named}): any program on the network may do it"
+            how = "scanned" if any(said.code == SCANNED for said in policy.diagnostics) else "observed"
+            what = f"nothing is enforced for what was {how} here ({named}): any program on the network may do it"
             yield Diagnostic(first, Severity.WARNING, f"{what}; see --view both", NOTHING_ENFORCED, len(nodes))
 
 

@@ -13,6 +13,7 @@ from rosprivacy.analysis.bounds import BOUNDS, Bounds
 from rosprivacy.analysis.errors import InputError, InputErrors, shown
 from rosprivacy.analysis.written_names import did_you_mean, nearest
 from rosprivacy.ingest.reading import yaml_values
+from rosprivacy.ingest.reading.file_kinds import FileKind, kind_of_map, of_key
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
     from rosprivacy.ontology.vocabulary import Vocabulary
 
     Read = TypeVar("Read")
+
+LEVELS = 3  # of maps below the outermost, in which a file of others shows what it is
 
 
 def read_values(file: str, fail: Callable[[int, str, str], InputError], bounds: Bounds = BOUNDS) -> tuple[Value, bytes]:
@@ -35,6 +38,18 @@ def read_values(file: str, fail: Callable[[int, str, str], InputError], bounds: 
         return yaml_values.read(file, fail, bounds)
     except InputError as error:
         raise InputErrors([error]) from None
+
+
+def _kind_of(top: Value) -> FileKind | None:
+    """What a map is by its keys, and by those that stand a few levels below."""
+    inner: set[str] = set()
+    level = [value for _, _, value in top.entries]
+    for _ in range(LEVELS):
+        entries = [entry for value in level for each in (value, *value.items) for entry in each.entries]
+        inner.update(key for key, _, _ in entries)
+        level = [value for _, _, value in entries]
+    form = top.get("format")
+    return kind_of_map([key for key, _, _ in top.entries], inner, form.text if form else "")
 
 
 @dataclass(kw_only=True, eq=False, repr=False)
@@ -86,7 +101,11 @@ class FileReader:
         """
         version = top.get(key)
         if version is None:
-            self.problem(top.line, f"no '{key}: 1'", "say so on the first line: it is the format's version")
+            kind = _kind_of(top)
+            if kind is not None and kind.key != key:
+                self.problem(1, *kind.refused(of_key(key), self.file))
+            else:
+                self.problem(top.line, f"no '{key}: 1'", "say so on the first line: it is the format's version")
             raise InputErrors(self.problems)
         if (version.kind, version.text) != ("number", "1"):
             found = f"{name} format {shown(version.text or version.kind)!r}"

@@ -16,14 +16,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import yaml
 
 from rosprivacy.analysis.bounds import BOUNDS
-from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.errors import InputError, shown
 from rosprivacy.ingest.reading.bounded_file import read_utf8
+from rosprivacy.ingest.reading.file_kinds import ACCESS_LIST, PERMISSIONS, POLICY, FileKind, kind_of_file
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from rosprivacy.analysis.bounds import Bounds
-    from rosprivacy.analysis.errors import InputError
 
 MAX_BYTES = 64 * 2**20
 _LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
@@ -31,6 +31,7 @@ _RESOLVER: Any = yaml.resolver.Resolver()
 _KINDS = {"tag:yaml.org,2002:str": "text", "tag:yaml.org,2002:null": "empty"}
 _JSON_TOKEN = re.compile(r'[{}\[\]]|"(?:[^"\\]|\\.)*"|[^\s{}\[\]",:]+')
 _XML = re.compile(r"\s*<[?!A-Za-z]")
+OURS = "what is read here"
 _EMPTY = ("the file is empty", "write at least 'labels: 1'")
 
 
@@ -80,8 +81,27 @@ def read(file: str, fail: Callable[[int, str, str], InputError], bounds: Bounds 
     InputError
         Of the caller's kind.
     """
-    text, data = read_utf8(file, MAX_BYTES, fail)
-    return parse(text, fail, bounds), data
+    try:
+        text, data = read_utf8(file, MAX_BYTES, fail)
+        top = parse(text, fail, bounds)
+    except InputError:
+        kind = _kind_of_others(file)
+        if kind is None:
+            raise
+        raise fail(1, *kind.refused(OURS, file)) from None
+    kind = None if top.kind == "map" else _kind_of_others(file)
+    if kind is not None:
+        raise fail(1, *kind.refused(OURS, file))
+    return top, data
+
+
+def _kind_of_others(file: str) -> FileKind | None:
+    """What a file is that no reader of this program takes as YAML; None of any other."""
+    try:
+        kind = kind_of_file(file)
+    except (OSError, ValueError):
+        return None  # who reads it says why not
+    return None if kind is None or kind.key or kind in (POLICY, PERMISSIONS, ACCESS_LIST) else kind
 
 
 @lru_cache(maxsize=256)

@@ -20,6 +20,7 @@ from rosprivacy.analysis.errors import BagError, InputError, InputErrors, reason
 from rosprivacy.analysis.model.recording import Bag, BagTopic
 from rosprivacy.ingest.reading import yaml_values
 from rosprivacy.ingest.reading.bounded_file import leaves, nearest_file
+from rosprivacy.ingest.reading.file_kinds import RECORDED, kind_of_file
 from rosprivacy.ingest.running.recorded_file import Recorded, moment, united
 from rosprivacy.ingest.running.sqlite_file import read_sqlite
 
@@ -129,12 +130,23 @@ def read_bag(path: str) -> Bag:
     return _bag(path, _file(path), [path])
 
 
+def _no_bag(file: str) -> BagError:
+    """What is wrong with a file that is not called as a bag: it may be something else by its content."""
+    try:
+        kind = kind_of_file(file)
+    except (OSError, ValueError):
+        kind = None
+    if kind in (None, RECORDED):
+        return BagError(file, 0, "not called as a bag", "name a file .mcap or .db3, or the folder of a recording")
+    return BagError(file, 1, *kind.refused("a bag", file))
+
+
 def _file(file: str) -> Recorded:
     ending = _ending(file)
     if ending == ROS1:
         raise BagError(file, 0, "a bag of ROS 1, which is not read", "convert it to rosbag2")
     if ending not in (MCAP, SQLITE):
-        raise BagError(file, 0, "not called as a bag", "name a file .mcap or .db3, or the folder of a recording")
+        raise _no_bag(file)
     if file.lower().endswith(PACKED):
         hint = f"unpack it, or name its folder if there is a {NAME}"
         raise BagError(file, 0, "compressed as a whole, which hides its topics", hint)

@@ -178,7 +178,7 @@ def _chunk(stream: BoundedStream, length: int, content: _Found) -> None:
     if chunk.compression:
         content.compression.add(shown(chunk.compression))
     try:
-        data = _unpacked(chunk.compression, chunk.data, MOST_UNPACKED - content.unpacked)
+        data = unpacked(chunk.compression, chunk.data, MOST_UNPACKED - content.unpacked)
         content.unpacked += len(data)
         for code, record in _records(data, content):
             _keep(code, record, content)
@@ -206,21 +206,21 @@ def _records(data: bytes, content: _Found) -> Iterator[tuple[int, bytes]]:
         at += length
 
 
-def _unpacked(compression: str, data: bytes, limit: int) -> bytes:
-    """A chunk's records, no more than so many bytes whatever the chunk says of itself."""
-    unpacked: Any
+def unpacked(compression: str, data: bytes, limit: int) -> bytes:
+    """Return a chunk's records, no more than so many bytes whatever the chunk says of itself."""
+    content: Any
     if not compression:
-        unpacked = data
+        content = data
     elif compression == "zstd":
         import zstandard  # noqa: PLC0415 - an extra
 
-        unpacked = zstandard.ZstdDecompressor().stream_reader(data).read(limit + 1)
+        content = zstandard.ZstdDecompressor().stream_reader(data).read(limit + 1)
     elif compression == "lz4":
         import lz4.frame  # noqa: PLC0415 - an extra
 
-        unpacked = lz4.frame.LZ4FrameDecompressor().decompress(data, max_length=limit + 1)
+        content = lz4.frame.LZ4FrameDecompressor().decompress(data, max_length=limit + 1)
     else:
         raise ImportError(compression)
-    if len(unpacked) > limit:
+    if len(content) > limit:
         raise TooMuchError("a chunk that is too large")
-    return bytes(unpacked)
+    return bytes(content)

@@ -31,9 +31,10 @@ from rosprivacy.ingest.running.observation import Observation, ObservedEndpoint,
 from rosprivacy.ingest.running.observed_names import is_name
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from rosprivacy.analysis.errors import InputError
+    from rosprivacy.ingest.reading.file_kinds import FileKind
     from rosprivacy.ingest.running.doors import Wait
 
 DOOR = "text"
@@ -208,37 +209,68 @@ class TextFiles:
 
     def looks(self, seconds: float | None = None) -> Iterator[Observation]:  # noqa: ARG002 - files have looked already
         """Read all files; ``InputErrors`` has every problem."""
-        seen: list[Observation] = []
-        problems: list[InputError] = []
-        for file in self.files:
-            with noting(problems):
-                seen.append(self._read(file))
-        if problems:
-            raise InputErrors(problems)
-        yield added_up(seen)
+        yield observed_in(self.files, self._read)
 
-    def _read(self, file: str) -> Observation:
-        def fail(line: int, problem: str, hint: str) -> ObservationError:
-            return ObservationError(name, line, problem, hint)
+    def _read(self, file: str) -> Iterator[Observation]:
+        text, at, name = text_of_what_runs(file, self.at, self.clock)
+        yield read_node_info(text, at, name)
 
-        name = "standard input" if file == STANDARD_INPUT else file
-        if file == STANDARD_INPUT:
-            data = sys.stdin.buffer.read(LONGEST + 1)
-            if len(data) > LONGEST:
-                raise fail(0, f"more than {LONGEST} bytes", "give it in several files")
-            at = self.at or self.clock()
-        else:
-            data = read_regular(file, LONGEST, fail)
-            at = self.at or moment(datetime.fromtimestamp(Path(file).stat().st_mtime, UTC))
-        kind = kind_of(data)
-        if kind not in (None, NODE_INFO):
-            instead = ANALYSE if kind in (POLICY, PERMISSIONS) else kind.instead
-            raise fail(1, *kind._replace(instead=instead).refused(NODE_INFO.name, name))
-        try:
-            text = data.decode("utf-8")
-        except UnicodeDecodeError as error:
-            raise fail(data.count(b"\n", 0, error.start) + 1, "not UTF-8", HINT) from None
-        return read_node_info(text, at, name)
+
+def observed_in(files: Iterable[str], read: Callable[[str], Iterable[Observation]]) -> Observation:
+    """Return what several files say together; ``InputErrors`` has every problem of all of them."""
+    seen: list[Observation] = []
+    problems: list[InputError] = []
+    for file in files:
+        with noting(problems):
+            seen += read(file)
+    if problems:
+        raise InputErrors(problems)
+    return added_up(seen)
+
+
+def text_of_what_runs(
+    file: str, at: str, clock: Callable[[], str], purpose: FileKind = NODE_INFO
+) -> tuple[str, str, str]:
+    """Read a text of what runs.
+
+    Parameters
+    ----------
+    at, clock
+        See ``TextFiles``.
+    purpose
+        What it has to be.
+
+    Returns
+    -------
+    text, at, name
+        When it was taken, and what the file is called in messages.
+
+    Raises
+    ------
+    ObservationError
+        If it cannot be read, or is something else.
+    """
+
+    def fail(line: int, problem: str, hint: str) -> ObservationError:
+        return ObservationError(name, line, problem, hint)
+
+    name = "standard input" if file == STANDARD_INPUT else file
+    if file == STANDARD_INPUT:
+        data = sys.stdin.buffer.read(LONGEST + 1)
+        if len(data) > LONGEST:
+            raise fail(0, f"more than {LONGEST} bytes", "give it in several files")
+        at = at or clock()
+    else:
+        data = read_regular(file, LONGEST, fail)
+        at = at or moment(datetime.fromtimestamp(Path(file).stat().st_mtime, UTC))
+    kind = kind_of(data)
+    if kind not in (None, purpose):
+        instead = ANALYSE if kind in (POLICY, PERMISSIONS) else kind.instead
+        raise fail(1, *kind._replace(instead=instead).refused(purpose.name, name))
+    try:
+        return data.decode("utf-8-sig"), at, name
+    except UnicodeDecodeError as error:
+        raise fail(data.count(b"\n", 0, error.start) + 1, "not UTF-8", HINT) from None
 
 
 @dataclass(frozen=True, slots=True)

@@ -97,6 +97,22 @@ def user_data(data: bytes) -> dict[str, str]:
     return {key: value for key, sign, value in pairs if sign}
 
 
+def whole_type(name: str, sort: str) -> str:
+    """Return a type with ``msg``, ``srv`` or ``action`` in it; empty of what is none.
+
+    >>> whole_type("std_msgs/String", "msg"), whole_type("std_msgs/msg/String", "msg"), whole_type("x", "msg")
+    ('std_msgs/msg/String', 'std_msgs/msg/String', '')
+    """
+    package, *rest = name.split("/")
+    parts = [package, *rest] if len(rest) > 1 else [package, sort, *rest]
+    is_type = (
+        len(parts) == len(("package", "msg", "Name"))
+        and parts[1] == sort
+        and all(part.isidentifier() for part in parts)
+    )
+    return "/".join(parts) if is_type and name.isascii() else ""
+
+
 def is_name(name: str) -> bool:
     """Return whether a node or channel can have a name.
 

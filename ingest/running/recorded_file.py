@@ -1,7 +1,8 @@
 """One file of a bag: opened so that only so much of it is read, and what it says, put together with what others say.
 
 In: a path; parts. Out: ``BoundedStream``, which no length in a stranger's file gets past; topics with all that is said
-of each. What a reader skips is not read: a bag of a terabyte costs what its summary costs.
+of each; ``RecordedMessage``, for the copy of a bag. What a reader skips is not read: a bag of a terabyte costs what its
+summary costs.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from collections import defaultdict
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 from rosprivacy.analysis.errors import BagError, reason
 from rosprivacy.analysis.files_read import noted
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
     from typing import BinaryIO
 
 LAST_TIME = 253_402_300_799 * 10**9  # of the year 9999, in nanoseconds
+LARGEST = 256 * 2**20  # bytes of one chunk or message that is copied
+T = TypeVar("T")
 MOST_READ = 32 * 2**20  # bytes of one bag: the summary of an MCAP file of about 300 GB
 
 
@@ -93,6 +96,45 @@ def bounded_stream(file: str, limit: int = MOST_READ) -> Iterator[BoundedStream]
             yield BoundedStream(noted(opened, file), limit)
     except OSError as error:
         raise BagError(file, 0, f"cannot be read: {reason(error)}", "check the path and its permissions") from None
+
+
+class RecordedSchema(NamedTuple):
+    """What the messages of a channel look like, as the recorder wrote it down."""
+
+    name: str
+    encoding: str = ""
+    data: bytes = b""
+
+
+class RecordedChannel(NamedTuple):
+    """A channel of a bag: its topic, its type, and what the recorder noted of it, such as its QoS."""
+
+    topic: str
+    encoding: str
+    schema: RecordedSchema | None
+    metadata: tuple[tuple[str, str], ...] = ()
+
+
+class RecordedMessage(NamedTuple):
+    """A message as it lies in a bag, with times in nanoseconds."""
+
+    channel: RecordedChannel
+    sequence: int
+    log_time: int
+    publish_time: int
+    data: bytes
+
+
+def state(stated: dict[int, T], number: int, content: T) -> None:
+    """Note what a number of a file stands for; a second meaning would let one channel pass for another.
+
+    >>> channels = {1: "/odom"}
+    >>> state(channels, 1, "/camera")
+    Traceback (most recent call last):
+    rosprivacy.ingest.running.recorded_file.EndedError: a channel or a schema is stated twice, and differently
+    """
+    if stated.setdefault(number, content) != content:
+        raise EndedError("a channel or a schema is stated twice, and differently")
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,7 +17,7 @@ from rosprivacy.analysis.model.recording import BagTopic
 from rosprivacy.ingest.running.recorded_file import Recorded, bounded_stream, moment, united
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Collection, Iterable, Mapping
 
 MAGIC = b"SQLite format 3\0"
 HEADER = 100  # bytes
@@ -36,12 +36,11 @@ DAMAGED = "the database is damaged; topics may be missing"
 def read_sqlite(file: str) -> Recorded:
     """Read what a ``.db3`` file says of itself; ``BagError`` if it is no database of rosbag2."""
     gaps = list(_gaps(file))
-    uri = f"file:{quote(str(Path(file).absolute()))}?mode=ro&immutable=1"
     topics: tuple[BagTopic, ...] = ()
     span: tuple[int | None, int | None] = (None, None)
     try:
-        with closing(sqlite3.connect(uri, uri=True)) as database:
-            _guard(database)
+        with closing(connection(file)) as database:
+            guard(database)
             columns = _columns(database, file)
             topics = _topics(database, columns)
             span = _span(database)
@@ -69,13 +68,18 @@ def _gaps(file: str) -> Iterable[str]:
             yield f"{what}; topics may be missing"
 
 
-def _guard(database: sqlite3.Connection) -> None:
+def connection(file: str) -> sqlite3.Connection:
+    """Open a database read-only, as one that does not change."""
+    return sqlite3.connect(f"file:{quote(str(Path(file).absolute()))}?mode=ro&immutable=1", uri=True)
+
+
+def guard(database: sqlite3.Connection, readable: Mapping[str, Collection[str]] = READABLE) -> None:
     """Allow to read a few columns, and nothing else; no question without end."""
 
     def allowed(action: int, table: str | None, column: str | None, *_: object) -> int:
         if action == sqlite3.SQLITE_SELECT:
             return sqlite3.SQLITE_OK
-        known = action == sqlite3.SQLITE_READ and column in READABLE.get(table or "", ())
+        known = action == sqlite3.SQLITE_READ and column in readable.get(table or "", ())
         return sqlite3.SQLITE_OK if known else sqlite3.SQLITE_DENY
 
     database.text_factory = lambda data: data.decode("utf-8", "replace")

@@ -11,7 +11,6 @@ id>/<kind>/<enclave>/<namespace>/<node>`` and, for endpoints, ``/<name>/<type>/<
 from __future__ import annotations
 
 import json
-import struct
 import time
 from collections import deque
 from contextlib import suppress
@@ -21,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.errors import MiddlewareError, ObservationError, shown
 from rosprivacy.ingest.policies.observed_metadata import HIDDEN, REFUSED
 from rosprivacy.ingest.reading.bounded_file import read_regular
+from rosprivacy.ingest.running.cdr import Message
 from rosprivacy.ingest.running.doors import Pace, polled
 from rosprivacy.ingest.running.observation import (
     DDS_TYPE,
@@ -258,20 +258,7 @@ def declared(topic: str, payload: bytes) -> Declared:
     >>> declared("/p", b"\0\1\0\0" + b"\3\0\0\0/a\0\0" + 3 * b"\1\0\0\0\0\0\0\0").node
     '/a'
     """
-    order = {b"\0\0": ">", b"\0\1": "<"}.get(payload[:2])
-    if order is None:
-        raise ValueError("an encoding that is not plain CDR")
-    body, at, texts = payload[4:], 0, []
-    for _ in range(FIELDS):
-        at += -at % 4
-        if at + 4 > len(body):
-            raise ValueError("cut off")
-        (length,) = struct.unpack_from(f"{order}I", body, at)
-        text = body[at + 4 : at + 4 + length]
-        if length == 0 or len(text) < length or not text.endswith(b"\0"):
-            raise ValueError("no text where one has to be")
-        texts.append(text[:-1].decode(errors="replace"))
-        at += 4 + length
-    if len(body) - at >= FIELDS:
-        raise ValueError("more than four texts")
+    message = Message(payload)
+    texts = [message.text() for _ in range(FIELDS)]
+    message.ended()
     return Declared(topic, *texts)

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import InputError, InputErrors, shown
 from rosprivacy.analysis.model import Confidence, Place
-from rosprivacy.analysis.suggesting.evidence import ANYTHING, WHERE
+from rosprivacy.analysis.suggesting.evidence import ANYTHING, SORTS, WHERE
 from rosprivacy.analysis.suggesting.library_rules import ADDRESS, CPP, PROGRAM, PYTHON, LibraryRules, RulesByName
 from rosprivacy.analysis.suggesting.name_rules import LONGEST_PHRASE, NameRule, NameRules, words
 from rosprivacy.ingest.reading import yaml_values
@@ -88,8 +88,8 @@ LIBRARIES = RuleFormat(
     tuple(LANGUAGES),
     {
         "brings_in": Section(("kinds", "confidence", "why"), ("any_type", "alone")),
-        "lets_out": Section(("where", "confidence", "why"), ("kinds",)),
-        "makes": Section(("kinds", "to", "confidence", "why"), ("any_type", "by_itself")),
+        "lets_out": Section(("where", "confidence", "why"), ("kinds", "sort")),
+        "makes": Section(("kinds", "to", "confidence", "why"), ("any_type", "by_itself", "sort")),
         SILENT: Section((), ("why",)),
     },
 )
@@ -277,6 +277,7 @@ class _RuleReader(FileReader):
             self._kinds(entry, "instead_of"),
             self._one_of(entry, "where", WHERE),
             **{mark: self._is_true(entry, mark) for mark in MARKS},
+            sort=self._one_of(entry, "sort", SORTS),
         )
 
     def _items(self, entries: Mapping[str, Value], key: str) -> tuple[Value, ...]:

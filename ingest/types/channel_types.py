@@ -96,4 +96,8 @@ def _at_leg(seen_type: SeenType, element: Element, file: str, names: _Called) ->
     first, second = map(names.names, seen_type.ends)  # writers and readers, or servers and clients
     writers, readers = (second, first) if element.leg == "request" else (first, second)
     place = Place(file, seen_type.line)
-    return MessageType(seen_type.type, place, False, seen_type.hash, writers, readers, seen_type.first, seen_type.last)
+    fields = seen_type.fields[element.leg == "response"] if seen_type.fields else ()
+    return MessageType(
+        seen_type.type, place, False, seen_type.hash, writers, readers, seen_type.first, seen_type.last,
+        definition=seen_type.definition, fields=fields,
+    )  # fmt: skip

@@ -115,7 +115,8 @@ def _shipped(vocabulary: Vocabulary, bounds: Bounds) -> TypeTable:
 def _table(file: str, top: Value, data: bytes, vocabulary: Vocabulary, bounds: Bounds) -> TypeTable:
     reader = _TypeTableReader(file, vocabulary, error=TypesError, bounds=bounds)
     limits, hashes, suggestions = reader.whole(reader.document(top))
-    return TypeTable(TypeLimits(file, hashlib.sha256(data).hexdigest(), limits, hashes), suggestions)
+    made_for = {key: frozenset(kind for rule in rules for kind in rule.kinds) for key, rules in suggestions.items()}
+    return TypeTable(TypeLimits(file, hashlib.sha256(data).hexdigest(), limits, hashes, made_for), suggestions)
 
 
 def excluded(vocabulary: Vocabulary, kinds: frozenset[str]) -> frozenset[str]:

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 TIME = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d+)?(Z|[+-]\d\d:\d\d)")
 LONGEST = 500  # characters of a type, a hash or a door
 ENDS = {"topics": ("writers", "readers"), "services": ("servers", "clients"), "actions": ("servers", "clients")}
+PARTS = {"topics": ("fields",), "services": ("request", "response"), "actions": ("request", "response")}
 KINDS = {"topics": "topic", "services": "service", "actions": "action"}
 
 
@@ -40,6 +41,10 @@ class SeenType:
         Names of nodes: the writers and readers of a topic, the servers and clients of a service or an action.
     line
         Of the file; 0 where there is none.
+    definition
+        The file that defines it, where one was read.
+    fields
+        The known types that the fields of that definition are: of a message, or of request and response.
     """
 
     type: str
@@ -48,6 +53,8 @@ class SeenType:
     first: str = ""
     last: str = ""
     line: int = 0
+    definition: str = ""
+    fields: tuple[tuple[str, ...], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,13 +134,25 @@ def from_dict(saved: Mapping[str, Any]) -> TypesFile:
 def _span(seen_type: SeenType, section: str) -> dict[str, Any]:
     ends = {name: list(nodes) for name, nodes in zip(ENDS[section], seen_type.ends, strict=True)}
     more = _filled({"hash": seen_type.hash, "first": seen_type.first, "last": seen_type.last, **ends})
+    more |= written_definition(seen_type, section)
     return {"type": seen_type.type, "line": seen_type.line, **more}
+
+
+def written_definition(seen_type: SeenType, section: str) -> dict[str, Any]:
+    """Return what a file of types says of a definition.
+
+    >>> written_definition(SeenType("a/srv/A", definition="srv/A.srv", fields=(("std_msgs/msg/Bool",), ())), "services")
+    {'definition': 'srv/A.srv', 'request': ['std_msgs/msg/Bool']}
+    """
+    parts = zip(PARTS[section], map(list, seen_type.fields), strict=False)  # no parts where nothing is defined
+    return _filled({"definition": seen_type.definition, **dict(parts)})
 
 
 def _of_saved(saved: Mapping[str, Any], section: str) -> SeenType:
     first, second = (tuple(saved.get(name, ())) for name in ENDS[section])
     texts = (saved.get("hash", ""), (first, second), saved.get("first", ""), saved.get("last", ""))
-    return SeenType(saved["type"], *texts, saved["line"])
+    fields = tuple(tuple(saved.get(part, ())) for part in PARTS[section]) if "definition" in saved else ()
+    return SeenType(saved["type"], *texts, saved["line"], saved.get("definition", ""), fields)
 
 
 def _filled(values: dict[str, Any]) -> dict[str, Any]:
@@ -180,23 +199,27 @@ class _TypesReader(FileReader):
 
     def _type(self, item: Value, section: str) -> SeenType | None:
         ends = ENDS[section]
-        said = self.values_of(item, ("type", "hash", *ends, "first", "last"))
+        parts = PARTS[section]
+        said = self.values_of(item, ("type", "hash", *ends, "first", "last", "definition", *parts))
         if item.kind != "map" or "type" not in said:
             self.problem(item.line, "what was seen needs a type", "write {type: sensor_msgs/msg/Image}")
             return None
-        first, second = (self._nodes(said[end], end) if end in said else () for end in ends)
+        first, second = (self._texts(said[end], end) if end in said else () for end in ends)
         begun, ended = (self._time(said[key], key) if key in said else "" for key in ("first", "last"))
         text = self._text(said["type"], "type")
-        return SeenType(text, self._hash(said), (first, second), begun, ended, item.line) if text else None
+        definition = self._text(said["definition"], "definition") if "definition" in said else ""
+        fields = tuple(self._texts(said[part], part) if part in said else () for part in parts) if definition else ()
+        seen = SeenType(text, self._hash(said), (first, second), begun, ended, item.line, definition, fields)
+        return seen if text else None
 
     def _hash(self, entries: Mapping[str, Value]) -> str:
         return self._text(entries["hash"], "hash") if "hash" in entries else ""
 
-    def _nodes(self, value: Value, key: str) -> tuple[str, ...]:
+    def _texts(self, value: Value, key: str) -> tuple[str, ...]:
         return tuple(sorted({name for item in self.list_of(value, key) if (name := self._text(item, key))}))
 
     def _text(self, value: Value, key: str) -> str:
-        longest = self.bounds.name if key in ("writers", "readers", "servers", "clients") else LONGEST
+        longest = self.bounds.name if key in ("writers", "readers", "servers", "clients", "definition") else LONGEST
         if value.kind != "text" or not value.text or len(value.text) > longest:
             problem = f"{key} takes text of at most {longest} characters, not {shown(value.text[:40]) or value.kind!r}"
             self.problem(value.line, problem, "observe again, or correct it")

@@ -9,11 +9,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.model import KINDS, MAY_REVEAL, NO_BASIS, NonRosFacts
-from rosprivacy.analysis.non_ros import ADEQUATE, INSIDE, retention_of
+from rosprivacy.analysis.model import KINDS, MAY_REVEAL
+from rosprivacy.analysis.model.register_row import Cell
+from rosprivacy.analysis.non_ros import INSIDE
+from rosprivacy.report import row_texts
 from rosprivacy.report.catalogs.words import plain, reason_text
 from rosprivacy.report.cnil.inventory import purposes_of
 from rosprivacy.report.cnil.told import NAMES, Html, bullets, escaped, harmless, joined, paragraph, prose, strong
+from rosprivacy.report.document.register import register_entry
 from rosprivacy.report.finding_facts import making
 from rosprivacy.report.naming import count_elements
 
@@ -23,9 +26,8 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Analysis, CarriedData, Finding
     from rosprivacy.analysis.findings.processed import Processed
     from rosprivacy.analysis.findings.sanitizing import Cleaning
-    from rosprivacy.analysis.findings.witness import Ways
-    from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.model import Element
+    from rosprivacy.analysis.model.register_row import RegisterRow
     from rosprivacy.report.cnil.inventory import Kind
     from rosprivacy.report.cnil.told import Told
 
@@ -44,14 +46,10 @@ class AnswerFacts:
     ----------
     analysis
         Of one robot of those that are alike.
-    outside
-        What people stated of storages and recipients.
     accepted
         Id of a finding -> why a person accepted it.
-    ways
-        Whose data of each kind get where, and are there at all.
-    hierarchy
-        Of the categories.
+    register
+        What is known of each kind of data at each place.
     words
         The words of the reader.
     processed
@@ -60,47 +58,22 @@ class AnswerFacts:
 
     analysis: Analysis
     kinds: tuple[Kind, ...]
-    outside: Mapping[Element, NonRosFacts]
     accepted: Mapping[str, str]
-    ways: tuple[Ways, ...]
-    hierarchy: Hierarchy
+    register: tuple[RegisterRow, ...]
     words: Told
     processed: tuple[Processed, ...] = ()
 
-    def of(self, element: Element) -> NonRosFacts:
-        """Return what was stated of an element."""
-        return self.outside.get(element, NonRosFacts())
+    def leaving(self) -> list[RegisterRow]:
+        """Return the rows whose data leave or rest somewhere."""
+        return [row for row in self.register if row.places]
 
-    def storages_of(self, category: str) -> list[Element]:
-        """Return the storages that data of the category itself get to."""
-        here = (c for c in self.analysis.carried if category in (*c.categories, *c.pseudonymised))
-        return _storages(carried.element for carried in here)
+    def stored(self) -> list[RegisterRow]:
+        """Return the rows whose data rest in a storage."""
+        return [row for row in self.leaving() if row.places[0].kind == "storage"]
 
-    def storages(self) -> list[Element]:
-        """Return the storages that personal data get to."""
-        return _storages(carried.element for carried in self.analysis.carried)
-
-    def retention_of(self, element: Element, category: str) -> str:
-        """Return how long an element keeps a category, with its backups; empty where nobody states it (rule S9)."""
-        facts = self.analysis.outside.get(element)
-        stated = retention_of(facts, category, self.hierarchy) if facts else []
-        return self._retention(", ".join(self.words.words.duration(str(one)) for one in stated), element)
-
-    def kept_in_all(self, element: Element) -> str:
-        """Return how long an element keeps what, as stated; empty where nobody states it."""
-        facts = self.analysis.outside.get(element)
-        words, stated = self.words.words, facts.retention if facts else ()
-        said = [(category, words.duration(str(one))) for category, one in stated]
-        rows = [words.pair(self.words.data(category), one) if category else one for category, one in said]
-        return self._retention(", ".join(rows), element)
-
-    def _retention(self, duration: str, element: Element) -> str:
-        facts, words = self.analysis.outside.get(element), self.words.words
-        if not duration or not facts or not facts.backups:
-            return plain(duration)
-        if facts.backups is True:
-            return plain(words("outside.kept.backups.unknown", duration=duration))
-        return plain(words("outside.kept.backups", duration=duration, more=words.duration(str(facts.backups))))
+    def retention(self, row: RegisterRow) -> str:
+        """Return how long a place keeps the kind, with its backups; empty where nobody states it (rule S9)."""
+        return plain(row_texts.retention(register_entry(row), self.words.words))
 
     def findings(self) -> list[Finding]:
         """Return what is to be assessed, by kind of data."""
@@ -121,13 +94,14 @@ def _data_of(kind: Kind, facts: AnswerFacts) -> Iterator[Html]:
     category, told = kind.category, facts.words
     name = joined(_title(kind, told), Html(" ("), escaped(category.name), Html(")"))
     yield paragraph(told.pair(strong(name), told.prose(category.text("definition", told.words.language))))
+    of_kind = [row for row in facts.register if row.category == category.name]
     stored = [
-        f"{told.name(element)} ({facts.retention_of(element, category.name) or told('cnil.kept.unstated')})"
-        for element in facts.storages_of(category.name)
+        f"{told.name(place)} ({facts.retention(row) or told('cnil.kept.unstated')})"
+        for row in facts.stored()
+        for place in row.places
+        if row in of_kind
     ]
-    of_kind = [way for way in facts.ways if way.element is None and way.category == category.name]
-    persons = [group for way in of_kind for group in way.persons]
-    unnamed = not of_kind or any(way.unnamed for way in of_kind)
+    unnamed = not of_kind or any(Cell.SUBJECTS in row.to_complete for row in of_kind)
     yield bullets(
         [
             *told.lines("cnil.brought", kind.sources),
@@ -135,11 +109,23 @@ def _data_of(kind: Kind, facts: AnswerFacts) -> Iterator[Html]:
             *_law(kind, told),
             told.line("cnil.recipients", _recipients(kind, told)),
             told.line("cnil.kept", told.names_shown(stored) or told("cnil.kept.none")),
-            *([told.line("cnil.persons", told.names_shown(persons))] if persons else []),
+            *_persons(of_kind, told),
             *purposes_of(facts.processed, category.name, told),
             told(_open_of(list(purposes_of(facts.processed, category.name, told)), unnamed=unnamed)),
         ]
     )
+
+
+def _persons(rows: Iterable[RegisterRow], words: Told) -> Iterator[Html]:
+    """Whose data: of places that get data of others, apart."""
+    groups: dict[tuple[str, ...], list[Element]] = {}
+    for row in rows:
+        if row.subjects:
+            groups.setdefault(row.subjects, []).extend(row.places)
+    for persons, places in groups.items():
+        names = words.names_shown(persons)
+        at = words("cnil.persons.at", persons=names, places=words.names(places))
+        yield words.line("cnil.persons", at if places and len(groups) > 1 else names)
 
 
 def _open_of(purposes: list[Html], *, unnamed: bool) -> str:
@@ -222,69 +208,48 @@ def minimisation(facts: AnswerFacts) -> Html:
 def retention(facts: AnswerFacts) -> Html:
     """Return the answer to 215: how long each storage keeps what gets there."""
     told = facts.words
-    stored = [carried for carried in facts.analysis.carried if carried.element.kind == "storage"]
+    alike: dict[tuple[Html, str], list[str]] = {}
+    for row in facts.stored():
+        data = told.data(row.category, pseudonymised=row.pseudonymised)
+        alike.setdefault((told.names(row.places), facts.retention(row)), []).append(data)
     rows = [
-        told.pair(
-            escaped(told.name(carried.element)),
-            joined(
-                _storages_of(carried, told),
-                Html("; "),
-                _stated("cnil.retention", facts.kept_in_all(carried.element), told),
-            ),
-        )
-        for carried in stored[:SHOWN]
+        told.pair(place, joined(told.names_shown(some), Html("; "), _stated("cnil.retention", period, told)))
+        for (place, period), some in alike.items()
     ]
     why = paragraph(told("cnil.why.duration"))
-    return joined(told.rows(rows, len(stored)), why) if rows else paragraph(told("cnil.no.storage"))
+    return joined(told.rows(rows[:SHOWN], len(rows)), why) if rows else paragraph(told("cnil.no.storage"))
 
 
 def processors(facts: AnswerFacts) -> Html:
     """Return the answer to 226: who processes on behalf of the controller, as people stated it; empty if nobody did."""
-    reached = [carried.element for carried in facts.analysis.carried]
-    named = [element for element in reached if facts.of(element).recipient == PROCESSOR]
-    told = facts.words
-    rows = [told.pair(escaped(told.name(element)), _named_processor(element, facts)) for element in named[:SHOWN]]
-    return told.rows(rows, len(named)) if rows else Html("")
+    told, named = facts.words, [row for row in facts.leaving() if row.recipient == PROCESSOR]
+    rows = list(dict.fromkeys(told.pair(told.names(row.places), _named_processor(row, told)) for row in named))
+    return told.rows(rows[:SHOWN], len(rows))
 
 
-def _named_processor(element: Element, facts: AnswerFacts) -> Html:
-    told = facts.words
-    who = facts.of(element).operator or told("cnil.processor.unnamed")
-    country = facts.of(element).country
-    where = f" ({country})" if country else ""
-    contract = facts.of(element).contract
-    on = told.line("cnil.contract.stated", escaped(contract)) if contract else told("cnil.contract")
-    return joined(told("cnil.processor", who=escaped(f"{who}{where}")), Html("; "), on)
+def _named_processor(row: RegisterRow, words: Told) -> Html:
+    who = row.operator or words("cnil.processor.unnamed")
+    where = f" ({row.country})" if row.country else ""
+    on = words.line("cnil.contract.stated", escaped(row.contract)) if row.contract else words("cnil.contract")
+    return joined(words("cnil.processor", who=escaped(f"{who}{where}")), Html("; "), on)
 
 
 def transfers(facts: AnswerFacts) -> Html:
-    """Return the answer to 227: where each recipient is, and on which basis data goes there."""
+    """Return the answer to 227: where each place is, and on which basis data goes there."""
     told = facts.words
-    leaks = [finding.leak for finding in facts.findings()]
-    outside = [c.element for c in facts.analysis.carried if c.element.kind in ("external-system", "storage")]
-    recipients = {element.identity: element for element in (*leaks, *outside)}
-    rows = [
-        told.pair(
-            escaped(told.name(element)),
-            joined(_stated("cnil.country", facts.of(element).country, told), _basis(element, facts)),
-        )
-        for element in list(recipients.values())[:SHOWN]
-    ]
-    return told.rows(rows, len(recipients)) if rows else paragraph(told("cnil.no.recipient"))
+    rows = list(dict.fromkeys(told.pair(told.names(row.places), _transfer(row, told)) for row in facts.leaving()))
+    return told.rows(rows[:SHOWN], len(rows)) if rows else paragraph(told("cnil.no.recipient"))
 
 
-def _basis(element: Element, about: AnswerFacts) -> Html:
-    """On what data leaves the EEA there; that it does not leave it is no transfer of chapter V."""
-    facts, told = about.analysis.outside.get(element), about.words
-    if facts and facts.area == INSIDE:
-        return joined(Html(", "), told("cnil.inside"))
-    if facts and facts.area == ADEQUATE and not facts.basis:
-        return joined(Html(", "), told("cnil.adequate"))
-    basis = facts.transfer if facts else ""
-    in_words = (
-        basis if told.words.language == "en" and basis != NO_BASIS else told.words.of_value(f"transfer.{basis}", basis)
-    )
-    return joined(Html("; "), _stated("cnil.basis", in_words, told))
+def _transfer(row: RegisterRow, words: Told) -> Html:
+    """Where a place is, and on what data get there; inside the EEA none is stated: nobody knows who reads there."""
+    country = _stated("cnil.country", row.country, words)
+    if row.area == INSIDE:
+        return joined(country, Html(", "), words("cnil.inside"))
+    basis = _stated("cnil.basis", plain("; ".join(row_texts.transfer(register_entry(row), words.words))), words)
+    said = [] if row.area else [country]  # with an area the basis names it
+    said += [basis, *([words("record.open")] if Cell.SAFEGUARDS in row.to_complete else [])]
+    return Html("; ".join(said))
 
 
 def threats(about: AnswerFacts) -> list[str]:
@@ -296,8 +261,10 @@ def threats(about: AnswerFacts) -> list[str]:
     if about.analysis.open:
         unreviewed = count_elements(question.element for question in about.analysis.open).elements
         said.append(told.bare("cnil.threat.open", elements=told.count(unreviewed, "element")))
-    open_to_all = [element for element in about.storages() if about.of(element).encrypted is False]
-    said += [told.bare("cnil.threat.unencrypted", element=told.name(element)) for element in open_to_all[:THREATS]]
+    open_to_all = list(
+        dict.fromkeys(told.name(e) for row in about.leaving() if row.encrypted is False for e in row.places)
+    )
+    said += [told.bare("cnil.threat.unencrypted", element=element) for element in open_to_all[:THREATS]]
     return said
 
 

@@ -34,7 +34,6 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.decisions import Decision
-    from rosprivacy.analysis.findings.sanitizing import Cleaning
     from rosprivacy.analysis.fleet.patterns import FleetView
     from rosprivacy.analysis.model import FlowGraph
     from rosprivacy.report.document.contents import Document
@@ -58,8 +57,8 @@ def cnil_pia(document: Document, created: str, language: str = "en") -> dict[str
     kinds = kinds_of(document)
     told = Told(Words(language), vocabulary.categories)
     accepted = _accepted(document, told.words)
-    ways, processed = required(document.ways), required(document.processing).by_kind
-    known = AnswerFacts(analysis, kinds, document.outside, accepted, ways, vocabulary.hierarchy, told, processed)
+    register, processed = required(document.register), required(document.processing).by_kind
+    known = AnswerFacts(analysis, kinds, accepted, register, told, processed)
     measures = list(_measures(known))
     sentence = verdict_sentence(verdict_facts(analysis, document.doubts, assumptions), told.words)
     note = _note(analysis, assumptions, _fleet(view, told) if view else "", sentence, told)
@@ -179,16 +178,33 @@ def _measures(facts: AnswerFacts) -> Iterator[tuple[str, Html]]:
         pairs = sorted({(graph.elements[f.source].name, graph.elements[f.target].name) for f in graph.denied})
         ends = [told("entry.from.to", source=escaped(source), leak=escaped(target)) for source, target in pairs]
         yield told.bare("cnil.title.denied"), _rows(ends, told)
-    cleaned = [cleaning for kind in facts.kinds for cleaning in kind.cleaned]
     for method in METHODS:
-        done = [_measures_stated(cleaning, told) for cleaning in cleaned if cleaning.method == method]
+        done = _cleanings(facts, method)
         if done:
             still = [] if method.ends else [paragraph(told("cnil.recital26"))]
             yield told.bare(f"cnil.title.{method}"), joined(_rows(done, told), *still)
-    encrypted = [element.name for element in facts.storages() if facts.of(element).encrypted]
+    encrypted = dict.fromkeys(place for row in facts.leaving() if row.encrypted for place in row.places)
     if encrypted:
-        rows = [told.pair(escaped(name), told("cnil.encrypted")) for name in encrypted]
+        rows = [told.pair(escaped(place.full_name), told("cnil.encrypted")) for place in encrypted]
         yield told.bare("cnil.title.encrypted"), _rows(rows, told)
+
+
+def _cleanings(facts: AnswerFacts, method: Method) -> list[Html]:
+    """Who cleans data of the rows in one way, and for which places: on every path there, or on some."""
+    told = facts.words
+    places: dict[Html, dict[str, dict[str, None]]] = {}
+    for row in facts.register:
+        for one in row.measures:
+            if one.method == method:
+                how = Html("" if one.stated else f" ({told('cnil.no.method')})")
+                cleans = joined(told.pair(escaped(one.element.name), escaped(told.data(one.category))), how)
+                ways = "cnil.measure.all" if one.everywhere else "cnil.measure.some"
+                there = places.setdefault(cleans, {}).setdefault(ways, {})
+                there |= dict.fromkeys(map(told.name, row.places))
+    return [
+        joined(cleans, *(joined(Html("; "), told.line(ways, told.names_shown(to))) for ways, to in where.items() if to))
+        for cleans, where in places.items()
+    ]
 
 
 def _access(graph: FlowGraph, words: Told) -> Html:
@@ -198,11 +214,6 @@ def _access(graph: FlowGraph, words: Told) -> Html:
         profiles=words.count(len({(profile.enclave, profile.node) for profile in graph.profiles}), "cnil.profile"),
         flows=words.count(len(graph.flows), "cnil.connection"),
     )
-
-
-def _measures_stated(cleaning: Cleaning, words: Told) -> Html:
-    how = Html("" if cleaning.stated else f" ({words('cnil.no.method')})")
-    return joined(words.pair(escaped(cleaning.element.name), escaped(words.data(cleaning.category))), how)
 
 
 def _rows(rows: list[Html], words: Told) -> Html:

@@ -46,7 +46,7 @@ def harmless(text: str) -> str:
     >>> harmless("<b>")
     '‹b›'
     """
-    return shown(text).translate(_LOOK_ALIKES)
+    return one_line(text).translate(_LOOK_ALIKES)
 
 
 def joined(*parts: Html) -> Html:
@@ -86,7 +86,7 @@ class Told:
 
     def bare(self, key: str, **values: str | int) -> str:
         """Return a sentence that says the same whether it is taken as HTML or not."""
-        said = {place: harmless(value) if isinstance(value, str) else value for place, value in values.items()}
+        said = {place: harmless(shown(value)) if isinstance(value, str) else value for place, value in values.items()}
         return harmless(plain(self.words(key, **said)))
 
     def count(self, number: int, noun: str) -> Html:

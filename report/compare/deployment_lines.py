@@ -17,12 +17,19 @@ SAME, NOT_KNOWN = (
     "what is deployed is what the policy says",
     "undetermined: no right differs, but more may be allowed than is compared here; the warnings say where",
 )
-SIDE_TEXTS = {"policy": "only the policy says", "deployed": "only what is deployed says"}
+SIDE_TEXTS = {
+    "deployment": {"policy": "only the policy says", "deployed": "only what is deployed says"},
+    "description": {"policy": "only the description says", "deployed": "only the code does"},
+}
+TOTALS = {
+    "deployment": "{} of the policy not deployed, {} deployed and not in the policy",
+    "description": "{} described and not in the code, {} of the code not described",
+}
 
 
 def deployment_lines(document: CheckDocument) -> Iterator[str]:
     """Yield the lines of an answer."""
-    found = document["differences"]
+    found, compared = document["differences"], document.get("compared", "deployment")
     if not found:
         yield NOT_KNOWN if document["undetermined"] else SAME
     if exposed := document["exposed"]:
@@ -33,7 +40,7 @@ def deployment_lines(document: CheckDocument) -> Iterator[str]:
     for enclave, of_enclave in groupby(found, key=lambda entry: entry["enclave"]):
         yield f"enclave {shown(enclave)}"
         for side, entries in groupby(of_enclave, key=lambda entry: entry["only_in"]):
-            yield f"   {SIDE_TEXTS[side]}"
+            yield f"   {SIDE_TEXTS[compared][side]}"
             yield from (f"      {_line(entry)}" for entry in entries)
     yield from (one["message"] for one in document["losses"])
     for said in document["diagnostics"]:
@@ -43,7 +50,7 @@ def deployment_lines(document: CheckDocument) -> Iterator[str]:
         sides = [entry["only_in"] for entry in found]
         yield ""
         missing, more = counted(sides.count("policy"), "right"), counted(sides.count("deployed"), "right")
-        yield f"{missing} of the policy not deployed, {more} deployed and not in the policy"
+        yield TOTALS[compared].format(missing, more)
 
 
 def _line(entry: DifferenceEntry) -> str:

@@ -20,24 +20,30 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from rosprivacy.report.compare.matching import ElementChange, StateChanges
-    from rosprivacy.report.compare.snapshot import Snapshot
+    from rosprivacy.report.compare.snapshot import CodeState, Snapshot
 
 FORMAT = "rosprivacy.diff/1"
-SECTIONS = ("findings", "doubts", "robots", "grants", "elements")
+OF_CODE = ("ways_out", "gaps")
+SECTIONS = ("findings", *OF_CODE, "doubts", "robots", "grants", "elements")
 BETTER_FIRST = ("no-leak-found", "undetermined", "leak")
 SIDES = (("before", "before"), ("now", "after"))
 RANKS = (Rank.RIDES, Rank.BREAKS)
 NAMES = {
     "findings": ("kind", "category", "source", "leak", "across", "beside"),
+    "ways_out": ("sort", "node", "name", "channel"),
+    "gaps": ("sort", "file", "about"),
     "doubts": ("doubt", "robot", "kind", "name", "leg", "file", "message"),
     "robots": ("robot",),
     "grants": ("policy", "enclave", "node", "role", "kind", "name"),
     "elements": ("robot", "kind", "name", "leg"),
 }
 NOT_COMPARED = {
+    "ways_out": "one side is no source code",
+    "gaps": "one side is no source code",
     "grants": "the policies of one side are not at hand",
     "doubts": "one side was saved by a version that has no list of them",
 }
+NEVER = {"times": 0}
 SIGNS = {"new": "+", "gone": "-", "changed": "~"}  # by key of a section
 
 
@@ -48,7 +54,8 @@ def difference(before: Snapshot, after: Snapshot) -> dict[str, Any]:
     """
     found: dict[str, Any] = {"format": FORMAT, "verdict": {"before": before.verdict, "after": after.verdict}}
     found["sentence"] = {"before": before.sentence, "after": after.sentence}
-    for section in SECTIONS:
+    found |= _code_sections(before.code, after.code)
+    for section in (name for name in SECTIONS if name not in OF_CODE):
         ours, theirs = getattr(before, section), getattr(after, section)
         found[section] = None if ours is None or theirs is None else _section(compare(ours, theirs), NAMES[section])
     for row in [*found["findings"]["new"], *found["findings"]["changed"]]:
@@ -61,6 +68,23 @@ def difference(before: Snapshot, after: Snapshot) -> dict[str, Any]:
     return found
 
 
+def _code_sections(before: CodeState | None, after: CodeState | None) -> dict[str, Any]:
+    """What differs in source code, with its lines; no section of one side only, and empty ones of no code."""
+    sections: dict[str, Any] = {"source_code": bool(before and after)}
+    for section in OF_CODE:
+        if not (before and after):
+            alike = before is after
+            sections[section] = {what: [] for what in SIGNS} if alike else None
+            continue
+        changes = compare(getattr(before, section), getattr(after, section), made_up=False)
+        sections[section] = _section(changes, NAMES[section])
+        for what, rows in sections[section].items():
+            places = (before if what == "gone" else after).places
+            for row in rows:
+                row["at"] = places[tuple(row.get(name, "") for name in NAMES[section])]
+    return sections
+
+
 def _section(changes: StateChanges, names: tuple[str, ...]) -> dict[str, Any]:
     def row(change: ElementChange) -> dict[str, Any]:
         key = {name: part for name, part in zip(names, change.key, strict=True) if part}
@@ -71,7 +95,9 @@ def _section(changes: StateChanges, names: tuple[str, ...]) -> dict[str, Any]:
 
 
 def worse(document: Mapping[str, Any]) -> bool:
-    """Return whether the verdict is worse, or a finding is new, in a worse form, or on more robots.
+    """Return whether the verdict is worse, a finding is new, in a worse form, or on more robots, or code has more.
+
+    More ways out, or more gaps: what code could not be read for may be a way out too (rule S16).
 
     A finding that is dismissed is none here, since another one stands for it; nor is one that is accepted. Verdicts are
     compared only where data was followed on both sides (rule S12).
@@ -80,6 +106,8 @@ def worse(document: Mapping[str, Any]) -> bool:
     if all(document["followed"].values()) and _later(BETTER_FIRST, verdict["before"], verdict["after"]):
         return True
     if any(not (row["after"]["dismissed"] or row["after"]["accepted"]) for row in findings["new"]):
+        return True
+    if any(_increased(row) for section in OF_CODE for rows in (document[section] or {}).values() for row in rows):
         return True
     return any(_worse(row["before"], row["after"]) for row in findings["changed"])
 
@@ -102,6 +130,11 @@ def _doubts_worse(doubts: Mapping[str, Any] | None, before: Snapshot) -> bool:
 
 def _later(order: tuple[str, ...], before: str, after: str) -> bool:
     return order.index(after) > order.index(before)
+
+
+def _increased(row: Mapping[str, Any]) -> bool:
+    """Whether a way out or a gap of code is there more often than before."""
+    return bool((row["after"] or NEVER)["times"] > (row["before"] or NEVER)["times"])
 
 
 def _worse(before: Mapping[str, Any], after: Mapping[str, Any]) -> bool:
@@ -133,11 +166,11 @@ def difference_lines(document: Mapping[str, Any]) -> Iterator[str]:
     for section in SECTIONS:
         changes = document[section]
         if changes is None:
-            yield f"{section}: not compared, {NOT_COMPARED[section]}"
+            yield f"{_words(section)}: not compared, {NOT_COMPARED[section]}"
             continue
         if any(changes.values()):
             yield ""
-            yield f"{section}: " + ", ".join(f"{len(rows):,} {what}" for what, rows in changes.items() if rows)
+            yield f"{_words(section)}: " + ", ".join(f"{len(rows):,} {what}" for what, rows in changes.items() if rows)
         for what, sign in SIGNS.items():
             for row in changes[what]:
                 yield f"  {sign} {shown(title(section, row))}"
@@ -149,7 +182,8 @@ def difference_lines(document: Mapping[str, Any]) -> Iterator[str]:
 def remarks(document: Mapping[str, Any]) -> Iterator[str]:
     """Return what has to be known before anything is read out of a comparison (rule S12)."""
     if not document["labelled"]:
-        yield "no label is given, so no data was followed: grants are compared, and nothing else"
+        compared = "grants, ways out and gaps" if document["source_code"] else "grants"
+        yield f"no label is given, so no data was followed: {compared} are compared, and nothing else"
     elif incomparable(document):
         sides = [when for when, side in SIDES if not document["followed"][side]]
         yield f"no data was followed {' and '.join(sides)}: no label names a source there, so findings are not compared"
@@ -161,6 +195,8 @@ def title(section: str, row: Mapping[str, Any]) -> str:
         across = " from one robot to another" if row.get("across") else ""
         kind = "" if row["kind"] == "disclosure" else f"{row['kind']}, "
         return f"{kind}{row['category']}: {row['source']} -> {row['leak']}{across}"
+    if section in OF_CODE:
+        return _code_title(section, row)
     if section == "doubts":
         robot = f"{row['robot']}:" if row.get("robot") else ""
         about = (
@@ -176,15 +212,24 @@ def title(section: str, row: Mapping[str, Any]) -> str:
     return " ".join(part for part in (row["kind"], robot + row["name"], row.get("leg", "")) if part)
 
 
+def _code_title(section: str, row: Mapping[str, Any]) -> str:
+    if section == "gaps":
+        return f"{row['file']}: {row['sort']}: {row['about']}"
+    channel = f", {row['channel']}" if row.get("channel") else ""
+    return f"{row.get('node', 'a file')} -> {row['name']} ({row['sort']}){channel}"
+
+
 def _details(row: Mapping[str, Any], sort: str) -> Iterator[str]:
     """What is said of something new, and what of something that changed is not the same."""
     before, after = row["before"] or {}, row["after"] or {}
+    if "at" in row:
+        yield f"at {', '.join(row['at'])}"
     if sort == "gone":
         return
     for key in sorted({*before, *after}):
         ours, theirs = before.get(key), after.get(key)
         if sort == "new":
-            if theirs:
+            if theirs and theirs != 1:
                 yield f"{key}: {_text(theirs)}"
         elif isinstance(ours, list) and isinstance(theirs, list) and key != "way":
             added, lost = sorted(set(theirs) - set(ours)), sorted(set(ours) - set(theirs))
@@ -193,6 +238,10 @@ def _details(row: Mapping[str, Any], sort: str) -> Iterator[str]:
                 yield f"{key}: {'; '.join(signs)}"
         elif ours != theirs:
             yield f"{key}: {_text(ours)} before, {_text(theirs)} now"
+
+
+def _words(section: str) -> str:
+    return section.replace("_", " ")
 
 
 def _text(value: Any) -> str:
@@ -205,7 +254,15 @@ SHOWN = 20  # of a list; a comment has a limit
 SENTENCE = 2_000  # characters of the verdict with its doubts
 LONGEST = 120  # characters of a name
 LISTS = (("New paths to assess", "new", "after"), ("Gone", "gone", "before"), ("Changed", "changed", "after"))
-COUNTED = ("doubts", "robots", "grants", "elements")
+OF_CODE_LISTS = (
+    ("New ways out of the code", "ways_out", "new"),
+    ("Ways out at other lines too, or at fewer", "ways_out", "changed"),
+    ("Ways out that are gone", "ways_out", "gone"),
+    ("Newly not resolved", "gaps", "new"),
+    ("Not resolved in another way", "gaps", "changed"),
+    ("Resolved, or gone", "gaps", "gone"),
+)
+COUNTED = (*OF_CODE, "doubts", "robots", "grants", "elements")
 KINDS = {
     "storage-limitation": "kept too long: ", "third-country-transfer": "leaves the EEA: ",
     "unprotected-channel": "can be read on the network: ",
@@ -233,6 +290,9 @@ def _lines(document: Mapping[str, Any]) -> Iterator[str]:
         yield from _listed(heading, rows, state)
     if not any(findings.values()):
         yield "\nNo path to assess is new, gone or changed."
+    for heading, section, what in OF_CODE_LISTS:
+        rows = (document[section] or {}).get(what, ())
+        yield from _name(heading, [f"{title(section, row)}, at {', '.join(row['at'])}" for row in rows])
     yield from _name("Newly in doubt", [title("doubts", row) for row in (document["doubts"] or {}).get("new", ())])
     yield from _name("Newly not reviewed", [title("elements", row) for row in _opened(document)])
     yield ""
@@ -280,10 +340,10 @@ def _counted(document: Mapping[str, Any]) -> Iterator[str]:
     for section in COUNTED:
         rows = document[section]
         if rows is None:
-            yield f"{section.capitalize()} are not compared: {NOT_COMPARED[section]}."
+            yield f"{_words(section).capitalize()} are not compared: {NOT_COMPARED[section]}."
         elif any(rows.values()):
             counts = ", ".join(f"{len(found)} {what}" for what, found in rows.items() if found)
-            yield f"{section.capitalize()}: {counts}."
+            yield f"{_words(section).capitalize()}: {counts}."
 
 
 def code(text: str, limit: int = LONGEST) -> str:

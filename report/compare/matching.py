@@ -79,8 +79,14 @@ class MatchedPairs(NamedTuple):
     new: tuple[Key, ...]
 
 
-def paired(before: Collection[Key], after: Collection[Key]) -> MatchedPairs:
-    """Return what is the same before and after: of the same name, or else of one that differs in what is made up."""
+def paired(before: Collection[Key], after: Collection[Key], *, made_up: bool = True) -> MatchedPairs:
+    """Return what is the same before and after: of the same name, or else of one that differs in what is made up.
+
+    Parameters
+    ----------
+    made_up
+        Whether programs can have made up parts of names; in source code none is.
+    """
     both = set(before) & set(after)
     pairs = [(key, key) for key in both]
     waiting: dict[Key, list[Key]] = defaultdict(list)
@@ -88,7 +94,7 @@ def paired(before: Collection[Key], after: Collection[Key]) -> MatchedPairs:
         waiting[_plain(key)].append(key)
     new = []
     for key in sorted(set(after) - both):
-        known = waiting.get(_plain(key))
+        known = waiting.get(_plain(key)) if made_up else None
         if known:
             pairs.append((known.pop(0), key))
         else:
@@ -97,9 +103,9 @@ def paired(before: Collection[Key], after: Collection[Key]) -> MatchedPairs:
     return MatchedPairs(tuple(sorted(pairs, key=lambda pair: pair[1])), tuple(gone), tuple(new))
 
 
-def compare(before: Mapping[Key, Record], after: Mapping[Key, Record]) -> StateChanges:
+def compare(before: Mapping[Key, Record], after: Mapping[Key, Record], *, made_up: bool = True) -> StateChanges:
     """Return what differs between two states; linear in their size, but for sorting."""
-    pairs = paired(before.keys(), after.keys())
+    pairs = paired(before.keys(), after.keys(), made_up=made_up)
     changed = [
         ElementChange(theirs, before[ours], after[theirs])
         for ours, theirs in pairs.common

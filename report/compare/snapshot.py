@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
+from rosprivacy.analysis.model import NOTHING_ENFORCED, SCAN_GAP
 from rosprivacy.report.compare.matching import Identity
 
 if TYPE_CHECKING:
@@ -19,6 +20,25 @@ if TYPE_CHECKING:
     from rosprivacy.report.compare.matching import Key, Record
 
 Facts = dict["Key", "Record"]
+OF_SOURCES = (SCAN_GAP, NOTHING_ENFORCED)  # of source code each of these holds once; its gaps are compared themselves
+
+
+class CodeState(NamedTuple):
+    """What source code says beyond its policy, by what it is about and not by its lines.
+
+    Attributes
+    ----------
+    ways_out
+        (sort, node, name, channel) -> at how many lines data can get out of ROS that way.
+    gaps
+        (sort, file, what is not known) -> how often, and what it depends on.
+    places
+        Key of one of these -> its lines, as ``file:line``; they may move, and are not compared.
+    """
+
+    ways_out: Facts
+    gaps: Facts
+    places: Mapping[Key, list[str]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +71,8 @@ class Snapshot:
         Whether any data was followed.
     sentence
         Of the verdict, with its doubts; the verdict alone of a document of an earlier version.
+    code
+        What source code says beyond its policy; None of what is no source code.
     """
 
     verdict: str
@@ -63,9 +85,10 @@ class Snapshot:
     doubts: Facts | None
     followed: bool
     sentence: str
+    code: CodeState | None
 
 
-def snapshot(document: Mapping[str, Any], policies: Iterable[Policy] | None) -> Snapshot:
+def snapshot(document: Mapping[str, Any], policies: Iterable[Policy] | None, code: CodeState | None = None) -> Snapshot:
     """Take the facts out of a document."""
     fleet = document.get("fleet")
     identity = Identity.of(document)
@@ -77,9 +100,10 @@ def snapshot(document: Mapping[str, Any], policies: Iterable[Policy] | None) -> 
         _findings(document, identity),
         dict(_lines(document, identity)),
         document["assumptions"],
-        _doubts(document, identity) if "doubts" in document else None,
+        _doubts(document, identity, of_code=code is not None) if "doubts" in document else None,
         bool(document["carries"]),
         document.get("sentence", document["verdict"]),
+        code,
     )
 
 
@@ -92,12 +116,16 @@ def _grants(policies: Iterable[Policy], *, by_name: bool) -> Facts:
     return {key: {"rule": " and ".join(sorted(found))} for key, found in rules.items()}
 
 
-def _doubts(document: Mapping[str, Any], identity: Identity) -> Facts:
+def _doubts(document: Mapping[str, Any], identity: Identity, *, of_code: bool) -> Facts:
     """A line may move, nor is the name of the only policy compared; what is wrong with a file is."""
     rows = (row for row in document["doubts"] if not row["accepted"])
     policies = {row["file"] for row in document["assumptions"]["policies"]}
     alone = policies if len(policies) == 1 and "fleet" not in document else set()
-    return {(row["doubt"], *_about(row, identity, alone)): {"rank": row["rank"]} for row in rows}
+    once = OF_SOURCES if of_code else ()
+    return {
+        (row["doubt"], *(("",) * 6 if row["doubt"] in once else _about(row, identity, alone))): {"rank": row["rank"]}
+        for row in rows
+    }
 
 
 def _about(row: Mapping[str, Any], identity: Identity, unnamed: Collection[str]) -> Key:

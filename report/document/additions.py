@@ -17,7 +17,7 @@ from rosprivacy.report.robots import form_rows
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from rosprivacy.analysis.decisions import Decided, Decision, State
+    from rosprivacy.analysis.decisions import Decided, Decision, LoggedStep, State
     from rosprivacy.analysis.findings.beyond import Added, DenyLine, Right
     from rosprivacy.analysis.fleet.counts import Counts
     from rosprivacy.analysis.fleet.likeness import Likeness
@@ -35,7 +35,14 @@ if TYPE_CHECKING:
         ShareEntry,
         StandardFile,
     )
-    from rosprivacy.report.schemas.records import ChangedSince, DecisionEntry, FindingEntry, ListedDecision, Target
+    from rosprivacy.report.schemas.records import (
+        ChangedSince,
+        DecisionEntry,
+        FindingEntry,
+        ListedDecision,
+        LoggedEntry,
+        Target,
+    )
 
 
 def with_decisions(document: AnalysisDocument, decided: Decided) -> AnalysisDocument:
@@ -71,7 +78,23 @@ def _decision(entry: Decision, state: State, decided: Decided) -> DecisionEntry:
         "file": entry.place.file,
         "line": entry.place.line,
     }
+    if entry.condition:
+        decision["condition"] = entry.condition
+    if entry.history:
+        decision["history"] = list(map(_logged, entry.history))
     return {**decision, "changed": changed} if changed else decision
+
+
+def _logged(step: LoggedStep) -> LoggedEntry:
+    return {
+        "hash": step.hash,
+        "when": step.when,
+        "account": step.account,
+        "decision": step.decision,
+        "owner": step.owner,
+        "reason": step.reason,
+        "expires": step.expires or None,
+    }
 
 
 def _target(entry: Decision) -> Target:

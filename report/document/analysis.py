@@ -22,6 +22,7 @@ from rosprivacy.report.document.records import (
     grant_entry,
     place_entries,
 )
+from rosprivacy.report.document.register import register_entry
 from rosprivacy.report.document.stated import (
     category_entry,
     inventory,
@@ -39,7 +40,6 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import Analysis, OpenQuestion
     from rosprivacy.analysis.findings.sanitizing import Making
-    from rosprivacy.analysis.findings.witness import Ways
     from rosprivacy.analysis.kernel.overruled import Overruled
     from rosprivacy.analysis.model import Diagnostic, Doubt, Element, Flow, FlowGraph
     from rosprivacy.analysis.whatif.ledger import GlobUse, TakenAway
@@ -54,7 +54,7 @@ if TYPE_CHECKING:
         OpenEntry,
         Stopped,
     )
-    from rosprivacy.report.schemas.stated import DerivationEntry, OverruledEntry, SanitizerEntry, WaysEntry
+    from rosprivacy.report.schemas.stated import DerivationEntry, OverruledEntry, SanitizerEntry
 
 FORMAT = "rosprivacy.analysis/1"
 SHORT = "rosprivacy.analysis/2"
@@ -128,7 +128,7 @@ def _analysis(document: Document) -> AnalysisDocument:
         "subjects": [
             {"element": element_dict(element), "subjects": list(groups)} for element, groups in document.subjects
         ],
-        "ways": _ways(document.ways or ()),
+        "register": [register_entry(row) for row in document.register or ()],
         "surroundings": surroundings(document),
         "contexts": situations(vocabulary, contexts),
         "look_at": pointers(vocabulary, analysis.emitted, contexts),
@@ -144,8 +144,8 @@ def _analysis(document: Document) -> AnalysisDocument:
         "diagnostics": [_diagnostic(d) for d in (*document.diagnostics, *analysis.diagnostics)],
         "assumptions": _assumptions(document, taken_away, globs),
     }
-    if document.ways is None:
-        del entries["ways"]
+    if document.register is None:
+        del entries["register"]
     if document.hangs_on is None:  # so that nobody takes it for 'hangs on nothing'
         entries["not_asked"] = [{"key": "hangs_on", "option": HANGS_ON}]
     else:
@@ -204,32 +204,6 @@ def _overruled(overruled: Overruled, by: str) -> OverruledEntry:
         "line": overruled.lost.place.line,
         "by": {"says": by, "file": overruled.by.place.file, "line": overruled.by.place.line},
     }
-
-
-def _ways(ways: Iterable[Ways]) -> list[WaysEntry]:
-    """What lies on the ways of each kind of data to each place."""
-    rows: list[WaysEntry] = []
-    for row in ways:
-        rows.append(
-            {
-                "category": row.category,
-                "subjects": list(row.persons),
-                "subjects_missing": row.unnamed,
-                "protections": [
-                    {
-                        "element": element_dict(protection.element),
-                        "category": protection.category,
-                        "method": protection.method,
-                        "stated": protection.stated,
-                        "everywhere": protection.everywhere,
-                    }
-                    for protection in row.protections
-                ],
-            }
-        )
-        if row.element:
-            rows[-1]["element"] = element_dict(row.element)
-    return rows
 
 
 def _sanitizers(document: Document) -> list[SanitizerEntry]:

@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.findings.processed import Processed
     from rosprivacy.analysis.findings.review_order import Behind
     from rosprivacy.analysis.findings.sanitizing import Cleaning, Making
-    from rosprivacy.analysis.findings.witness import Ways
     from rosprivacy.analysis.fleet.counts import Counts
     from rosprivacy.analysis.fleet.patterns import FleetView
     from rosprivacy.analysis.kernel.overruled import Overruled
@@ -33,6 +32,7 @@ if TYPE_CHECKING:
         Processing,
         Surroundings,
     )
+    from rosprivacy.analysis.model.register_row import RegisterRow
     from rosprivacy.analysis.whatif.ledger import GlobUse, TakenAway
     from rosprivacy.analysis.whatif.reliance import Reliance
     from rosprivacy.ontology.vocabulary import Vocabulary
@@ -43,11 +43,11 @@ if TYPE_CHECKING:
 LEDGER = "ledger"  # fields of ``Document`` that an output asks for
 RELIANCE = "hangs_on"
 PROPOSALS = "proposals"
-WAYS = "ways"
+REGISTER = "register"
 PROCESSING = "processing"
 POSITIONS = "positions"
 PATHS = "paths_to_leaks"
-IN_JSON = (LEDGER, WAYS, PROCESSING)
+IN_JSON = (LEDGER, REGISTER, PROCESSING)
 
 T = TypeVar("T")
 
@@ -184,8 +184,8 @@ class Document:
         What the answer hangs on, statement by statement; None where nobody asked.
     proposals
         What closes the open findings, a mitigation document; or why there is none, a word; None where nobody asked.
-    ways
-        What lies on the ways of each kind of data to each place; None where nobody asked.
+    register
+        Each kind of data at each place where it leaves or rests, with what lies on its ways; None where nobody asked.
     processing
         What is stated of purposes, legal bases and responsible persons; None where nobody asked.
     positions
@@ -222,7 +222,7 @@ class Document:
     ledger: Ledger | None = None
     hangs_on: tuple[Reliance, ...] | None = None
     proposals: Mapping[str, Any] | str | None = None
-    ways: tuple[Ways, ...] | None = None
+    register: tuple[RegisterRow, ...] | None = None
     processing: StatedProcessing | None = None
     positions: Positions | None = None
     paths_to_leaks: PathsToLeaks | None = None

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.answer import Verdict
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.findings.closures import ABSENT
-from rosprivacy.analysis.model import STANDARD
+from rosprivacy.analysis.model import BY_TYPE, STANDARD
 from rosprivacy.analysis.whatif.ledger import BY, REVIEW
 from rosprivacy.report.document.records import element_dict, element_or_none, place_entries
 
@@ -134,7 +134,7 @@ def reliance_rows(statements: Iterable[Reliance]) -> list[RelianceEntry]:
 
 def _shipped(row: Reliance) -> bool:
     """Whether it stands in a file that is not the user's, such as that of standard channels."""
-    return row.statement.rank[0] <= STANDARD
+    return row.statement.rank[0] <= STANDARD and row.statement.role != BY_TYPE
 
 
 def _order(row: Reliance) -> tuple[object, ...]:

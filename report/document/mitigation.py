@@ -13,10 +13,11 @@ from rosprivacy.report.document.analysis import label_key
 from rosprivacy.report.document.records import element_dict
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Sequence
 
     from rosprivacy.analysis.answer import Analysis, Finding
     from rosprivacy.analysis.mitigation.affected import Affected, Shown
+    from rosprivacy.analysis.mitigation.channel_settings import LeftOut
     from rosprivacy.analysis.mitigation.limits import Limits
     from rosprivacy.analysis.mitigation.proposals import Proposal, ProposedStep, Protect
     from rosprivacy.analysis.model import Element, Grant
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from rosprivacy.report.schemas.mitigation import (
         AffectedEntry,
         ChangedGrant,
+        LeftOutEntry,
         MarkedElement,
         Marks,
         MitigationDocument,
@@ -46,6 +48,7 @@ def mitigation_document(
     why_no_patch: str,
     unmatched: Iterable[str],
     notes: Iterable[str] = (),
+    settings: Sequence[Sequence[LeftOut]] = (),
 ) -> MitigationDocument:
     """Return the proposals as one JSON object.
 
@@ -55,7 +58,10 @@ def mitigation_document(
         The document of the analysis that they start from.
     unmatched
         Labels that name nothing any more once the patch is applied.
+    settings
+        By proposal, of bridges and recorders; none where there are none.
     """
+    proposals = list(proposals)
     weights = limits.weights
     critical = {analysis.graph.elements[vertex] for vertex in limits.critical}
     return {
@@ -63,7 +69,10 @@ def mitigation_document(
         "verdict": report["verdict"],
         "doubts": report["doubts"],
         "view": report["view"],
-        "proposals": [_proposal(proposal, critical) for proposal in proposals],
+        "proposals": [
+            _proposal(proposal, rows, critical)
+            for proposal, rows in zip(proposals, settings or [()] * len(proposals), strict=True)
+        ],
         "patch": patch,
         "why_no_patch": why_no_patch,
         "labels_without_element": list(unmatched),
@@ -83,7 +92,7 @@ def mitigation_document(
     }
 
 
-def _proposal(proposal: Proposal, critical: set[Element]) -> ProposalEntry:
+def _proposal(proposal: Proposal, settings: Iterable[LeftOut], critical: set[Element]) -> ProposalEntry:
     leaks = {finding.leak for finding in proposal.removed}
 
     def element(shown: Element) -> MarkedElement:
@@ -104,6 +113,7 @@ def _proposal(proposal: Proposal, critical: set[Element]) -> ProposalEntry:
             }
             for kept in proposal.remaining
         ],
+        "settings": [_left_out(row, element) for row in settings],
         "steps": [_step(step, element) for step in proposal.steps],
         "statements": [_statement(f) for f in _findings(proposal) if f.kind != DISCLOSURE],
         "protect": [_protect(one) for one in proposal.protect],
@@ -113,6 +123,33 @@ def _proposal(proposal: Proposal, critical: set[Element]) -> ProposalEntry:
         "proven": proposal.proven,
         "verdict_then": str(proposal.verdict),
         "affected": [_affected(less, element) for less in proposal.affected],
+    }
+
+
+def _left_out(row: LeftOut, element: Callable[[Element], MarkedElement]) -> LeftOutEntry:
+    """What a person would write so that a program leaves channels out."""
+    program = row.recognised.program
+    return {
+        "node": element(row.element),
+        "program": program.kind,
+        "package": program.package,
+        "confidence": str(row.recognised.confidence),
+        "agrees": row.recognised.agrees,
+        "channels": [element_dict(channel) for channel in row.channels],
+        "write": [
+            {
+                "channels": one.setting.channels,
+                "in": one.setting.where,
+                "do": one.setting.action,
+                "text": one.text,
+                "note": one.setting.note,
+            }
+            for one in row.settings
+        ],
+        "sources": [
+            {"at": source.at, "commit": source.commit, "files": list(source.files), "read": source.read}
+            for source in program.sources
+        ],
     }
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.legal import turned_special
+from rosprivacy.analysis.model import GDPR_APPLIES
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -66,6 +67,8 @@ def grant_entry(grant: Grant) -> GrantEntry:
             "first": grant.observation.first,
             "last": grant.observation.last,
         }
+    if grant.basis:
+        line["basis"] = grant.basis
     return line
 
 
@@ -76,6 +79,8 @@ def finding_entry(finding: Finding, contexts: Contexts) -> FindingEntry:
     reason: FindingMore = {}
     if finding.why:
         reason = {"reason": finding.reason, "because": {"key": finding.why.key, "values": dict(finding.why.values)}}
+    applies = contexts.scope(finding)
+    scope: FindingMore = {} if applies == GDPR_APPLIES else {"gdpr": applies}
     plain: FindingMore = {"beside_pseudonymised": True} if finding.plain_also else {}
     shown: FindingEntry = {
         "id": finding.id,
@@ -95,6 +100,7 @@ def finding_entry(finding: Finding, contexts: Contexts) -> FindingEntry:
         "in_context": [
             {"context": legal.context, **entry} for legal in contexts.revealed(finding) for entry in _law((legal,))
         ],
+        **scope,
         **reason,
         "accepted": finding.accepted,
         **plain,

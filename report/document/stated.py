@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.contexts import article9_in, revealed
+from rosprivacy.analysis.model import GDPR_APPLIES
 from rosprivacy.analysis.non_ros import DEFAULT_ROLES, limited, not_stated
 from rosprivacy.report.document.records import element_dict
 
@@ -143,6 +144,8 @@ def surroundings(document: Document) -> list[SurroundingsEntry]:
             rows.append({"element": element_dict(element), "contexts": list(where.contexts)})
             if where.country:
                 rows[-1]["country"] = where.country
+            if where.gdpr != GDPR_APPLIES:
+                rows[-1]["gdpr"] = where.gdpr
     return rows
 
 
@@ -297,5 +300,6 @@ def _type(message_type: MessageType) -> TypeEntry:
         "line": message_type.place.line,
     }
     nodes = {"writers": list(message_type.writers), "readers": list(message_type.readers)}
-    entry.update(_present(hash=message_type.hash, **nodes, first=message_type.first, last=message_type.last))
+    span = {"first": message_type.first, "last": message_type.last}
+    entry.update(_present(hash=message_type.hash, **nodes, **span, definition=message_type.definition))
     return entry

@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from rosprivacy.report.catalogs.words import Words
+    from rosprivacy.report.page.flows import ToDecide
     from rosprivacy.report.page.index import Index
-    from rosprivacy.report.page.opening import ToDecide
 
 FORMAT = "rosprivacy.assessment/1"
 HINT = "give what the button 'Save the answers' of a report wrote"
@@ -81,6 +81,7 @@ def _clean(text: str) -> str:
 
 
 PERSONAL = {"CommunicationContent", "CommunicationMetadata", "Household", "Location", "Voice"}  # WP 248, criterion 4
+TRACKED = {"Location", "WirelessDeviceId"}  # where persons are, and who passes by
 SHOWN_AT_MOST = 6
 
 
@@ -118,9 +119,15 @@ def _observes(index: Index) -> str:
     sources = [
         index.elements[element]
         for element, categories in index.of_role.get("source", {}).items()
-        if any(not set(index.categories[category]["data_types"]).isdisjoint(SENSED) for category in categories)
+        if any(_of_persons_there(category, index) for category in categories)
     ]
     return index.words("criterion.observes", names=_row(list(index.names(sources)), index)) if sources else ""
+
+
+def _of_persons_there(category: str, index: Index) -> bool:
+    """Whether data are of who is there: seen or heard, where somebody is, or whose device is near."""
+    seen = not set(index.categories[category]["data_types"]).isdisjoint(SENSED)
+    return seen or not TRACKED.isdisjoint(index.upwards(category))
 
 
 def _special(index: Index) -> str:

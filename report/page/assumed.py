@@ -12,12 +12,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from rosprivacy.analysis.model import MAY_REVEAL
 from rosprivacy.analysis.text import fit, printable
 from rosprivacy.report.document.ledger import hanging_labels
-from rosprivacy.report.naming import infrastructure_file, key, name, opening_text
+from rosprivacy.report.finding_facts import grouped
+from rosprivacy.report.naming import infrastructure_file, key, name
 from rosprivacy.report.observed_lines import observed_lines
-from rosprivacy.report.page.index import grouped
+from rosprivacy.report.page.hanging import Hanging, hanging
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Mapping
 
     from rosprivacy.report.page.index import Index
 
@@ -106,8 +107,18 @@ def assumed(index: Index) -> Iterator[str]:
         yield words("file.none")
     yield from _outside(index)
     yield from _unstated(index)
+    yield from _decisions(index)
     yield words("assumption.law", date=words.date(said["law_as_of"]))
     yield words("assumption.labels")
+
+
+def _decisions(index: Index) -> Iterator[str]:
+    """The head of the log of decisions, to be written down outside of it; or that nobody would see a change."""
+    decisions = index.document["assumptions"].get("decisions")
+    if decisions and decisions.get("head"):
+        yield index.words("assumption.decisions.log", file=fit(decisions["file"]), head=decisions["head"])
+    elif decisions:
+        yield index.words("assumption.decisions.file", file=fit(decisions["file"]))
 
 
 def _standard(index: Index) -> str:
@@ -125,7 +136,7 @@ def _stopped(index: Index) -> Iterator[str]:
     """Standard channels at which data stops, those of which a glob says otherwise, and what labels take away."""
     words, said = index.words, index.document["assumptions"]
     for rows in grouped(said.get("standard_channels_reached", ()), lambda row: tuple(row["categories"])):
-        names = words.row(index.names([row["element"] for row in rows]))
+        names = words.row(index.names_by_node([row["element"] for row in rows]))
         yield words("assumption.standard.reached", element=names, data=index.all_data(rows[0]["categories"]))
     for row in said.get("standard_channels_reached", ()):
         if end := row.get("keeps_from"):
@@ -236,88 +247,6 @@ def remarks(index: Index) -> tuple[Remark, ...]:
         )
         for row in rows
     )
-
-
-FEW = 8  # elements that a row names, of each sort; the document has all
-
-
-class Hanging(NamedTuple):
-    """One statement.
-
-    Attributes
-    ----------
-    where, line
-        The elements that it is about; file and line.
-    statement, by, why
-        What it says, who says so, with which reason; the last two may be empty.
-    findings, questions
-        What there would be without it.
-    shipped
-        Whether it is not the user's.
-    """
-
-    where: str
-    line: str
-    statement: str
-    by: str
-    why: str
-    findings: tuple[str, ...]
-    questions: tuple[str, ...]
-    shipped: bool
-
-
-def hanging(index: Index) -> tuple[Hanging, ...] | None:
-    """Return the statements on which something hangs; None where it was not worked out."""
-    rows = index.document.get("hangs_on")
-    return None if rows is None else tuple(_hanging(row, index) for row in rows)
-
-
-def _hanging(row: Mapping[str, Any], index: Index) -> Hanging:
-    words = index.words
-    ends = (_names_shown(index.names(row[end]), index) for end in ("elements", "to") if row[end])
-    return Hanging(
-        where=" → ".join(words.row(names) for names in ends),
-        line=f"{fit(row['file'])}:{row['line']}",
-        statement=_statement(row, index),
-        by=fit(row["author"]),
-        why=fit(row["why"]),
-        findings=_names_shown(list(_findings(row, index)), index),
-        questions=_names_shown(list(_questions(row, index)), index),
-        shipped=row["shipped"],
-    )
-
-
-def _statement(row: Mapping[str, Any], index: Index) -> str:
-    words = index.words
-    role = "absent" if row["method"] == "absent" else row["role"]
-    said = words(f"reliance.{role}")
-    if row["role"] == "sanitizer" and role != "absent":
-        method = words(f"method.{row['method']}")
-        said = f"{said} ({method})"
-    said = words.pair(said, index.all_data(row["categories"])) if row["categories"] else said
-    return words("closed.glob", said=said) if row["glob"] else said
-
-
-def _findings(row: Mapping[str, Any], index: Index) -> Iterator[str]:
-    words = index.words
-    if row["refused"]:
-        yield words("reliance.refused", why=fit(row["refused"]))
-    if row["perhaps"]:
-        yield words("closed.perhaps")
-    for opening in row["findings"]:
-        data = index.data(opening["category"], pseudonymised=opening["pseudonymised"])
-        ends = [words.row(index.names([opening[end]])) for end in ("source", "leak")]
-        yield opening_text(opening, words.pair(data, " → ".join(ends)), words)
-
-
-def _questions(row: Mapping[str, Any], index: Index) -> Iterator[str]:
-    for one in row["questions"]:
-        yield f"{index.words.row(index.names([one['element']]))} ({index.all_data(one['categories'])})"
-
-
-def _names_shown(texts: Sequence[str], index: Index) -> tuple[str, ...]:
-    distinct = tuple(dict.fromkeys(texts))  # the legs of a service have one name
-    return index.words.first(distinct, FEW)
 
 
 class Typed(NamedTuple):

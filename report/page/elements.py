@@ -14,11 +14,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from rosprivacy.analysis.legal import PROHIBITED
 from rosprivacy.analysis.model import SPECIAL
 from rosprivacy.analysis.text import fit
+from rosprivacy.report.finding_facts import grouped
 from rosprivacy.report.naming import key, name, without_leg
-from rosprivacy.report.page.index import grouped, state, weight, without_robots
+from rosprivacy.report.page.index import state, weight, without_robots
+from rosprivacy.report.row_texts import backups_text, country
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     from rosprivacy.report.naming import Key
     from rosprivacy.report.page.finding_entries import PathEntry
@@ -204,9 +206,9 @@ def _outside(row: Mapping[str, Any], index: Index) -> Outside:
         storage=element["kind"] == STORAGE,
         holds=index.all_data(row["holds"]),
         retention=retention(row, index),
-        backups=_backups(row.get("backups"), index),
+        backups=backups_text(row.get("backups"), index.words),
         encrypted="" if "encrypted" not in row else words("yes" if row["encrypted"] else "no"),
-        country=country(row, index),
+        country=country(row, index.words),
         operator=fit(row.get("operator", "")),
         recipient=words.of_value(f"recipient.{row['recipient']}", row["recipient"]) if row.get("recipient") else "",
         transfer=words.of_value(f"transfer.{row['transfer']}", row["transfer"]) if row.get("transfer") else "",
@@ -214,12 +216,6 @@ def _outside(row: Mapping[str, Any], index: Index) -> Outside:
         warnings=tuple(warnings),
         place=f"{fit(row['file'])}:{row['line']}" if row.get("file") else "",
     )
-
-
-def country(row: Mapping[str, Any], index: Index) -> str:
-    """Return where an element lies, and what holds there; empty if it is not stated."""
-    area = index.words(f"area.{row['area']}") if row.get("area") else ""
-    return fit(row.get("country", "")) + (f" ({area})" if area else "")
 
 
 def retention(row: Mapping[str, Any], index: Index) -> str:
@@ -231,30 +227,6 @@ def retention(row: Mapping[str, Any], index: Index) -> str:
         else words("outside.of", data=index.data(category), duration=words.duration(fit(duration)))
         for category, duration in row.get("retention", {}).items()
     )
-
-
-def states_retention(row: Mapping[str, Any], category: str, index: Index) -> bool:
-    """Return whether it is stated how long an element keeps a kind of data: of it, a broader one or all."""
-    return any(kind in row.get("retention", ()) for kind in (*index.upwards(category), EVERY))
-
-
-def retention_text(row: Mapping[str, Any], category: str, index: Index) -> str:
-    """Return how long a storage keeps one kind of data, as stated of it or of the nearest broader one; with backups."""
-    words, stated = index.words, row["retention"]
-    nearest = next((kind for kind in index.upwards(category) if kind in stated), EVERY)
-    duration = words.duration(fit(stated[nearest])) if nearest in stated else words("not.stated")
-    backups = row.get("backups")
-    if backups is True:
-        return words("outside.kept.backups.unknown", duration=duration)
-    return words("outside.kept.backups", duration=duration, more=_backups(backups, index)) if backups else duration
-
-
-def _backups(value: Any, index: Index) -> str:
-    if value is None:
-        return ""
-    if isinstance(value, bool):
-        return index.words("outside.backups.unknown" if value else "no")
-    return index.words.duration(fit(str(value)))
 
 
 SHOWN = 100  # entries of one row
@@ -397,3 +369,22 @@ def _recognises(entry: Mapping[str, Any]) -> bool:
     """Whether persons are recognised or judged by such data, as ``recognises`` has it of a category."""
     special = any(legal["verdict"] in SPECIAL for legal in entry.get("law", ()))
     return special or any(at.startswith(PROHIBITED) for at in entry.get("look_at", ()))
+
+
+PROTECTION = ("category", "method", "stated", "everywhere")  # what tells measures at elements of one name apart
+
+
+def protections(row: Mapping[str, Any], index: Index) -> Iterator[str]:
+    """Yield technical measures that are seen on the ways of the row; others are a person's to add."""
+    words = index.words
+    alike = grouped(
+        row["measures"], lambda one: (without_leg(one["element"])[1:], *(str(one[of]) for of in PROTECTION))
+    )
+    for same in alike:
+        first = same[0]
+        method = words(f"method.{first['method']}" if first["stated"] else "method.unstated")
+        names = words.row(index.names([one["element"] for one in same]))
+        cleans = words("record.measure.cleans", element=names, data=index.data(first["category"]), method=method)
+        yield cleans if first["everywhere"] else words("record.measure.past", measure=cleans)
+    for place in row["places"] if row["encrypted"] else ():
+        yield words("record.measure.encrypted", element=name(place))

@@ -33,13 +33,24 @@ from rosprivacy.report.pictures.graphviz import (
     unlink,
     way_of,
 )
-from rosprivacy.report.pictures.looks import BEYOND, CLEANED, INK, LINE_LOOKS, PALE, ROLE_LOOKS, SHORTEST, WAY, Look
+from rosprivacy.report.pictures.looks import (
+    BEYOND,
+    CLEANED,
+    INK,
+    LINE_LOOKS,
+    OPEN,
+    PALE,
+    ROLE_LOOKS,
+    SHORTEST,
+    WAY,
+    Look,
+)
 from rosprivacy.report.pictures.narrow import folded
 from rosprivacy.report.pictures.phrases import Phrases
 from rosprivacy.report.pictures.views import PER_BOX, FindingViews, bounded, drawable, is_cut, marking, overview
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
     from typing import Any
 
     from rosprivacy.analysis.answer import Analysis, Finding
@@ -51,6 +62,7 @@ if TYPE_CHECKING:
 
 ROOM = 5 * 2**20  # bytes of all pictures together
 OVERVIEW = 24  # elements of the first picture
+HIDDEN = "hidden"  # a look: of what only pseudonymised data goes along
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,6 +86,12 @@ class Figures:
     overview: Inline | None = None
     drawn: int = 0
     beyond: Mapping[str, Inline] = field(default_factory=dict)
+
+    @property
+    def looks(self) -> frozenset[str]:
+        """What a legend has to explain of all of them."""
+        overview = [self.overview] if self.overview else []
+        return frozenset(look for one in (*self.of.values(), *self.beyond.values(), *overview) for look in one.looks)
 
 
 def figures(
@@ -140,7 +158,9 @@ def _beyond(graphviz: Graphviz, document: Document, report: Outline, wishes: Wis
 def _overview(graphviz: Graphviz, analysis: Analysis, report: Outline, wishes: Wishes) -> tuple[Inline | None, int]:
     """One picture of the first things to decide, and how many they are."""
     findings = {finding.id: finding for finding in analysis.findings}
-    rows = [[findings[entry.id] for entry in row.entries if entry.id in findings] for row in report.opening.rows]
+    rows = [
+        [findings[entry.id] for entry in row.entries if entry.id in findings] for row in report.opening.rows[:OVERVIEW]
+    ]
     rows = rows[: next((n for n, row in enumerate(rows) if not row), len(rows))]
     count = drawable([row[0] for row in rows], OVERVIEW)
     shown = [finding for row in rows[:count] for finding in row]
@@ -150,12 +170,25 @@ def _overview(graphviz: Graphviz, analysis: Analysis, report: Outline, wishes: W
     return picture_of_all(graphviz, analysis, shown, replace(wishes, labels={shown[0].id: label})), count
 
 
-def page_legend(words: Words, *, beyond: bool = False) -> list[tuple[Look, bool, str]]:
-    """Return what the pictures of a page mean: a look, whether it is that of a box or of a line, and words."""
-    boxes = [(look, True, words(f"phrase.look.{name}")) for name, look in ROLE_LOOKS.items()]
-    lines = [(LINE_LOOKS[name], False, words(f"phrase.look.{name}")) for name in (SHORTEST, WAY, CLEANED)]
-    lines += [(LINE_LOOKS[BEYOND], False, words(f"phrase.look.{BEYOND}"))] if beyond else []
-    return [*boxes, *lines, (Look("", INK, style="dashed"), False, words("phrase.look.hidden"))]
+def page_legend(words: Words, looks: Collection[str]) -> list[tuple[Look, bool, str]]:
+    """Return what the pictures of a page mean: a look, whether it is that of a box or of a line, and words.
+
+    Parameters
+    ----------
+    looks
+        What is in them, see ``looks_of``; the legend has no more.
+    """
+    boxes = [(name, look, True) for name, look in ROLE_LOOKS.items()]
+    lines = [(name, LINE_LOOKS[name], False) for name in (SHORTEST, WAY, CLEANED, BEYOND)]
+    every = [*boxes, *lines, (HIDDEN, Look("", INK, style="dashed"), False)]
+    return [(look, box, words(f"phrase.look.{name}")) for name, look, box in every if name in looks]
+
+
+def looks_of(picture: Picture) -> frozenset[str]:
+    """Return the looks of the boxes and lines of a picture, by name."""
+    looks = {box.look for box in picture.boxes} | {line.look for line in picture.lines}
+    looks |= {OPEN} if any(box.open for box in picture.boxes) else set()
+    return frozenset(looks | ({HIDDEN} if any(line.pseudonymised for line in picture.lines) else set()))
 
 
 BOUND = 16  # boxes, unless the shortest path itself is longer
@@ -197,10 +230,13 @@ class Inline(NamedTuple):
     ----------
     all_paths
         Whether every path of the finding is in it, not the shorter ones only.
+    looks
+        What a legend has to explain of it.
     """
 
     svg: Markup
     all_paths: bool
+    looks: frozenset[str] = frozenset()
 
 
 def pictures_of(
@@ -259,16 +295,16 @@ def _drawn(graphviz: Graphviz, picture: Picture, wishes: Wishes, finding: Findin
         except DrawingError:
             continue
         label = wishes.labels.get(finding.id) or alt_text(changed)
-        return Inline(page_svg(data, changed, label), all_paths and wanted is picture)
+        return Inline(page_svg(data, changed, label), all_paths and wanted is picture, looks_of(changed))
     return None
 
 
 def _best(graphviz: Graphviz, picture: Picture) -> bytes:
     """To the right, as people read, or downwards where that would be too wide and downwards is less so."""
-    right = graphviz.draw(Job(dot(picture, legend=False)), SECONDS)
+    right = graphviz.draw(Job(dot(picture, legend=False, title=False)), SECONDS)
     if width(right) <= WIDEST:
         return right
-    down = graphviz.draw(Job(dot(picture, legend=False, direction="TB")), SECONDS)
+    down = graphviz.draw(Job(dot(picture, legend=False, title=False, direction="TB")), SECONDS)
     return min(right, down, key=width)
 
 

@@ -10,21 +10,21 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rosprivacy.analysis.legal import gaps
 from rosprivacy.analysis.text import fit, printable
 from rosprivacy.report.catalogs.words import finding_reason
-from rosprivacy.report.finding_facts import in_order, made_of
+from rosprivacy.report.finding_facts import gaps_of, grouped, in_order, made_of
 from rosprivacy.report.naming import key, line, name
-from rosprivacy.report.page.index import anchor, finding_pattern, grouped, kind_anchor, state
+from rosprivacy.report.page.index import anchor, finding_pattern, kind_anchor, state
 from rosprivacy.report.page.look_at import revealed
 from rosprivacy.report.robots import forms_in_words
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
+    from rosprivacy.analysis.legal import Gap
     from rosprivacy.report.page.index import Index
 
-FIELDS = ("reason", "owner", "legal_basis", "date", "expires", "ticket", "state")
+FIELDS = ("reason", "condition", "owner", "legal_basis", "date", "expires", "ticket", "state")
 DATES = ("date", "expires")
 ACCEPT, ORPHANED = "accept", "orphaned"
 
@@ -61,7 +61,8 @@ def orphans(index: Index) -> tuple[DecisionText, ...]:
 
 def _decision(decision: Mapping[str, Any], findings: Iterable[Mapping[str, Any]], index: Index) -> DecisionText:
     words, what = index.words, decision["choice"]
-    rows = [(words(f"decision.{key}"), _value(decision[key], key, index)) for key in FIELDS if decision[key]]
+    rows = [(words(f"decision.{key}"), _value(decision[key], key, index)) for key in FIELDS if decision.get(key)]
+    rows += [(words("decision.history"), _step(step, index)) for step in decision.get("history", ())]
     flags = (*_changed(decision, index), *(_flags(decision, findings, index) if what == ACCEPT else ()))
     return DecisionText(words.of_value(f"decision.{what}", what), tuple(rows), flags)
 
@@ -74,6 +75,21 @@ def _changed(decision: Mapping[str, Any], index: Index) -> Iterator[str]:
         )
 
 
+def _step(step: Mapping[str, Any], index: Index) -> str:
+    """One entry of a log: what, by whom, when, and its hash, by which it is found there."""
+    words, dash = index.words, "–"
+    return words(
+        "decision.step",
+        when=printable(step["when"]),
+        decision=words.of_value(f"decision.{step['decision']}", printable(step["decision"])),
+        owner=printable(step["owner"]) or dash,
+        account=printable(step["account"]),
+        expires=words.date(step["expires"]) if step["expires"] else dash,
+        reason=printable(step["reason"]) or dash,
+        hash=step["hash"][:16],
+    )
+
+
 def _value(value: Any, key: str, index: Index) -> str:
     words, text = index.words, printable(str(value))
     if key == "state":
@@ -84,18 +100,15 @@ def _value(value: Any, key: str, index: Index) -> str:
 
 
 def _flags(decision: Mapping[str, Any], findings: Iterable[Mapping[str, Any]], index: Index) -> Iterator[str]:
-    """What an acceptance lacks: a legal basis, a ground for special categories, one of chapter V."""
-    held = list(findings)
-    law = {f["category"]: tuple(_provisions(f["category"], held)) for f in held}
-    for gap in gaps(decision["legal_basis"], [(f["kind"], f["category"]) for f in held], law):
-        provision = index.provision(gap.category, gap.provision)
-        yield index.words(f"decision.gap.{gap.lack.name.lower()}", data=index.data(gap.category), provision=provision)
+    """What an acceptance lacks: a legal basis, a ground for special categories, one of chapter V, an end."""
+    for gap in gaps_of(decision, list(findings)):
+        yield gap_in_words(gap, index)
 
 
-def _provisions(category: str, findings: Iterable[Mapping[str, Any]]) -> Iterator[tuple[str, str]]:
-    """What can apply to data of a category, where their sources work too."""
-    rows = (row for f in findings if f["category"] == category for row in (*f["law"], *f.get("in_context", ())))
-    yield from dict.fromkeys((row["provision"], row["verdict"]) for row in rows)
+def gap_in_words(gap: Gap, index: Index) -> str:
+    """Return a sentence about what an acceptance lacks."""
+    provision = index.provision(gap.category, gap.provision)
+    return index.words(f"decision.gap.{gap.lack.name.lower()}", data=index.data(gap.category), provision=provision)
 
 
 LINES = 4  # policy lines shown of one step
@@ -157,6 +170,8 @@ class PathEntry(NamedTuple):
         the one that is shown.
     pattern
         On a fleet, the id of the pattern: what decisions name.
+    same_way
+        (number, anchor) of an entry before it that has the same hops; None if there is none.
     through
         Other recipients that every path leads through.
     notes
@@ -189,6 +204,7 @@ class PathEntry(NamedTuple):
     pattern: str = ""
     detailed: bool = True
     where: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    same_way: tuple[int, str] | None = None
 
     @property
     def brief(self) -> str:
@@ -221,7 +237,18 @@ def finding_entries(index: Index, marks: Mapping[str, str] | None = None) -> tup
     for number, group in enumerate(groups, 1):
         left[group[0]["category"]] -= 1
         entries.append(_entry(number, group, index, decided, marks, detailed=left[group[0]["category"]] >= 0))
-    return tuple(entries)
+    return tuple(_ways_once(entries))
+
+
+def _ways_once(entries: Iterable[PathEntry]) -> Iterator[PathEntry]:
+    """The entries; one that goes along the same hops as one before says so."""
+    first: dict[tuple[Hop, ...], tuple[int, str]] = {}
+    for entry in entries:
+        if entry.hops:
+            way = first.setdefault(entry.hops, (entry.number, entry.anchor))
+            yield entry if way[0] == entry.number else entry._replace(same_way=way)
+        else:
+            yield entry
 
 
 def _entry(
@@ -342,6 +369,8 @@ def _notes(finding: Mapping[str, Any], index: Index) -> Iterator[str]:
     if reason := finding_reason(finding, words, index.data):
         yield words("entry.because", reason=reason)
     yield from revealed(finding, index)
+    if "gdpr" in finding:
+        yield words(f"entry.gdpr.{finding['gdpr']}")
     if finding["dismissed"]:
         yield words("entry.dismissed", names=words.row(map(name, finding["through"])))
     if finding.get("beside_pseudonymised"):

@@ -25,6 +25,7 @@ from rosprivacy.report.pictures.looks import INK
 if TYPE_CHECKING:
     from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.page.outline import Outline
+    from rosprivacy.report.page.persons import DataPlace
 
 
 class _Escaped:
@@ -60,7 +61,7 @@ def html(report: Outline, drawn: Figures | None = None) -> str:
         drawn=drawn,
         undrawn=sum(entry.detailed and entry.id not in drawn.of for entry in report.entries) if drawn else 0,
         ink=INK,
-        looks=page_legend(report.words, beyond=bool(drawn.beyond)) if drawn and (drawn.of or drawn.beyond) else [],
+        looks=page_legend(report.words, drawn.looks) if drawn else [],
         paragraphs=PARAGRAPHS,
     )
     return page.strip() + "\n"
@@ -100,18 +101,22 @@ def works_council(report: Outline) -> str:
 
     Notes
     -----
-    It tells what the report tells and nothing else: its rows are those of the rights of the persons and of what is
-    cleaned. Complexity: O(their size).
+    It tells what the report tells and nothing else: its rows are those of the rights of the persons, of the register.
+    Complexity: O(their size).
     """
     environment, css, _ = environment_of(report.words.language)
-    there = {place.data for group in report.persons.rights for place in group.places}
-    kinds = [kind for kind in report.kinds if any(kind.title in data for data in there)]
+    places: dict[DataPlace, list[str]] = {}
+    for group in report.persons.rights:
+        for place in group.places:
+            places.setdefault(place, []).append(group.name)
+    kinds = [kind for kind in report.kinds if any(kind.title in place.data for place in places)]
     measures = [field.line for field in report.assessment.general if field.key == f"sign.{DECIDED}" and field.line]
     page = environment.get_template("works_council.html.j2").render(
         r=report,
         t=in_html(report.words),
         policy=f"default-src 'none'; style-src '{hashed(css)}'; img-src data:; base-uri 'none'; form-action 'none'",
         css=Markup(css),  # noqa: S704 - our own file
+        places=[(report.words.row(names), place) for place, names in places.items()],
         kinds=kinds,
         measures=measures,
     )

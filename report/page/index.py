@@ -11,17 +11,21 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.model.message_type import PARAMETER_SERVICES
+from rosprivacy.analysis.model.register_row import Cell
 from rosprivacy.analysis.text import fit
-from rosprivacy.report.finding_facts import looked_at
-from rosprivacy.report.naming import key, name, text, without_leg
+from rosprivacy.report.finding_facts import grouped, looked_at
+from rosprivacy.report.naming import key, name, text
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Mapping
+    from collections.abc import Collection, Hashable, Iterable, Mapping, Sequence
 
     from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.naming import Key
+
+NOBODY: Mapping[str, Collection[str]] = MappingProxyType({})
 
 
 @dataclass(frozen=True)
@@ -86,49 +90,18 @@ class Index:
         """Whom the data of a source are about."""
         return {key(row["element"]): [fit(group) for group in row["subjects"]] for row in self.document["subjects"]}
 
-    @cached_property
-    def ways(self) -> dict[tuple[Key | None, str], Mapping[str, Any]]:
-        """(element or nowhere in particular, category) -> whose data get there, and what protects them on the way."""
-        rows = self.document.get("ways", ())
-        return {(without_leg(row["element"]) if "element" in row else None, row["category"]): row for row in rows}
+    @property
+    def register(self) -> Sequence[Mapping[str, Any]]:
+        """The rows of the register."""
+        rows: Sequence[Mapping[str, Any]] = self.document.get("register", ())
+        return rows
 
-    def persons(self, category: str, places: Collection[Mapping[str, Any]]) -> tuple[list[str], bool]:
-        """Return whose data of a kind get to one of some places, or are anywhere; and whether some are not named."""
-        keys: list[Key | None] = [without_leg(element) for element in places] or [None]
-        rows = [self.ways.get((place, category), {"subjects": (), "subjects_missing": True}) for place in keys]
-        groups = {fit(group) for row in rows for group in row["subjects"]}
-        return sorted(groups), any(row["subjects_missing"] for row in rows)
-
-    def is_of(self, group: str | None, category: str, places: Collection[Mapping[str, Any]] = ()) -> bool:
-        """Return whether data of a group of persons get there as a kind; of None, of those that labels do not name."""
-        named, missing = self.persons(category, places)
-        return missing if group is None else group in named
-
-    def protections(self, category: str, places: Collection[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-        """Return who cleans data of a kind on the ways to places of one name; without places, where the kind ends."""
-        names = {(element["kind"], element["name"]) for element in places}
-        here = (row for (at, of), row in self.ways.items() if at and of == category and at[1:3] in names)
-        found = [one for row in here for one in row["protections"]]
-        if not places:
-            cleaning = (row for row in self.document["sanitizers"] if row["category"] == category and row["reached"])
-            found = [{**row, "everywhere": True} for row in cleaning if not row.get("recognises")]
-        return found
-
-    @cached_property
-    def carried(self) -> dict[Key, dict[str, set[str]]]:
-        """Element, its legs together -> which kinds of data get there as they are, and which pseudonymised."""
-        found: dict[Key, dict[str, set[str]]] = {}
-        for row in self.document["carries"]:
-            here = found.setdefault(without_leg(row["element"]), {"categories": set(), "pseudonymised": set()})
-            for form, kinds in here.items():
-                kinds.update(row[form])
-        return found
-
-    def pseudonymised(self, element: Mapping[str, Any], category: str) -> bool:
-        """Return whether a kind of data gets to an element pseudonymised only."""
-        here = self.carried.get(without_leg(element), {"categories": set(), "pseudonymised": set()})
-        plain = any(category in self.upwards(kind) for kind in here["categories"])
-        return category in here["pseudonymised"] and not plain
+    def is_of(self, group: str | None, category: str) -> bool:
+        """Return whether data of a group of persons are there as a kind; of None, of those that labels do not name."""
+        rows = [row for row in self.register if row["category"] == category]
+        if group is None:
+            return not rows or any(Cell.SUBJECTS in row["to_complete"] for row in rows)
+        return any(group == fit(name) for row in rows for name in row["subjects"])
 
     @cached_property
     def processed_for(self) -> dict[tuple[Key, str], Mapping[str, Any]]:
@@ -193,12 +166,36 @@ class Index:
         """Return the names of elements, each once; one that several robots have, with their number."""
         return names_of(elements, self.words, self.alike)
 
+    def names_by_node(self, elements: Iterable[Mapping[str, Any]]) -> tuple[str, ...]:
+        """Return the same, where all parameter services of a node are one."""
+        elements = list(elements)
+        services: dict[Any, set[str]] = {}
+        for element in elements:
+            if node := node_of_service(element):
+                services.setdefault(node, set()).add(element["name"].rpartition("/")[2])
+        whole = {node for node, names in services.items() if names == PARAMETER_SERVICES.keys()}
+        names = self.names(element for element in elements if node_of_service(element) not in whole)
+        nodes = self.names(
+            {"robot": robot, "kind": "node", "name": node} for robot, node in services if (robot, node) in whole
+        )
+        return (*([self.words("services", nodes=self.words.row(nodes))] if nodes else []), *names)
+
 
 def state(finding: Mapping[str, Any]) -> str:
     """Return where a finding stands: ``accepted``, ``dismissed`` or ``open``."""
     if finding.get("accepted"):
         return "accepted"
     return "dismissed" if finding["dismissed"] else "open"
+
+
+def node_of_service(element: Mapping[str, Any]) -> tuple[str, str] | None:
+    """Return (robot, name) of the node whose parameter service an element is; None if it is none.
+
+    >>> node_of_service({"robot": "r", "kind": "service", "name": "/camera/list_parameters"})
+    ('r', '/camera')
+    """
+    node, _, service = element["name"].rpartition("/")
+    return (element["robot"], node) if element["kind"] == "service" and service in PARAMETER_SERVICES else None
 
 
 def anchor(finding_id: str) -> str:
@@ -209,23 +206,6 @@ def anchor(finding_id: str) -> str:
 def kind_anchor(name: str) -> str:
     """Return where a kind of data stands in a page; names are parts of IRIs, so anything may be in them."""
     return f"kind-{''.join(c if c.isascii() and c.isalnum() else f'_{ord(c):x}' for c in fit(name))}"
-
-
-Row = TypeVar("Row")
-NOBODY: Mapping[str, Collection[str]] = MappingProxyType({})
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Hashable, Iterable, Mapping
-
-    from rosprivacy.report.catalogs.words import Words
-
-
-def grouped(rows: Iterable[Row], pattern: Callable[[Row], Hashable]) -> list[list[Row]]:
-    """Return rows of one pattern together, in the order of the first of each."""
-    groups: dict[Hashable, list[Row]] = {}
-    for row in rows:
-        groups.setdefault(pattern(row), []).append(row)
-    return list(groups.values())
 
 
 def without_robots(elements: Iterable[Mapping[str, Any]]) -> tuple[tuple[Any, ...], ...]:

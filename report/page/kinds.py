@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.report.page.finding_entries import PathEntry
     from rosprivacy.report.page.index import Index
+    from rosprivacy.report.page.look_at import FurtherLaw
 
 NARROWER = "⊇ "  # how the ontology writes, in other languages than English: if the data are of one of these kinds
 
@@ -42,6 +43,25 @@ class ProvisionText(NamedTuple):
     sources: str
     stated: str
     as_of: str
+
+
+class ProvisionOnce(NamedTuple):
+    """A provision that kinds of data, contexts or every system call for, told once.
+
+    Attributes
+    ----------
+    callers
+        Contexts, or every system; the kinds name theirs themselves.
+    contexts
+        (why it is to be looked at in a context, of which kinds of data).
+    """
+
+    name: str
+    title: str
+    meaning: str
+    dates: str
+    callers: tuple[str, ...]
+    contexts: tuple[tuple[str, str], ...]
 
 
 class KindEntry(NamedTuple):
@@ -86,6 +106,20 @@ class KindEntry(NamedTuple):
     def anchor(self) -> str:
         """Where it stands in a page."""
         return kind_anchor(self.name)
+
+    @property
+    def law_anchor(self) -> str:
+        """Where a page has what the law says of it."""
+        return f"law-{self.anchor}"
+
+    @property
+    def shared(self) -> dict[str, tuple[PathEntry, ...]]:
+        """Notes that several entries have -> these; each stands once, before them."""
+        of: dict[str, list[PathEntry]] = {}
+        for entry in self.detailed:
+            for note in entry.notes:
+                of.setdefault(note, []).append(entry)
+        return {note: tuple(entries) for note, entries in of.items() if len(entries) > 1}
 
     @property
     def detailed(self) -> tuple[PathEntry, ...]:
@@ -140,6 +174,40 @@ def _kind(category: Mapping[str, Any], index: Index, entries: tuple[PathEntry, .
             for legal in category.get("in_context", ())
         ),
         look_at=of_kind(of, index),
+    )
+
+
+def provisions(entries: Iterable[KindEntry], further: FurtherLaw, index: Index) -> tuple[ProvisionOnce, ...]:
+    """Return what the provisions say, each once; by name."""
+    words = index.words
+    titles: dict[tuple[str, str, str], str] = {}
+    callers: dict[tuple[str, str, str], dict[str, None]] = {}
+    contexts: dict[tuple[str, str, str], dict[str, list[str]]] = {}
+    for kind in entries:
+        for law in kind.law:
+            titles.setdefault((law.name, law.meaning, words("law.as.of", date=law.as_of)), "")
+        for context, law in kind.in_context:
+            key = law.name, law.meaning, words("law.as.of", date=law.as_of)
+            titles.setdefault(key, "")
+            why = words.pair(words(f"law.context.{law.verdict}", context=context), law.condition)
+            why = f"{why}. {words.pair(words('law.sources'), law.sources)}" if law.sources else why
+            contexts.setdefault(key, {}).setdefault(why, []).append(kind.title)
+        for look in kind.look_at:
+            titles[look.name, look.meaning, look.dates] = look.title
+    for caller, several in further.provisions:
+        for look in several:
+            titles[look.name, look.meaning, look.dates] = look.title
+            callers.setdefault((look.name, look.meaning, look.dates), {})[caller] = None
+    return tuple(
+        ProvisionOnce(
+            name,
+            titles[name, meaning, dates],
+            meaning,
+            dates,
+            tuple(callers.get((name, meaning, dates), ())),
+            tuple((why, words.row(of)) for why, of in contexts.get((name, meaning, dates), {}).items()),
+        )
+        for name, meaning, dates in sorted(titles)
     )
 
 

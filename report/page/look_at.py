@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.model import MAY_REVEAL
 from rosprivacy.analysis.text import fit
-from rosprivacy.report.finding_facts import LANGUAGE_COUNTRIES, countries_of_use, of_every_system
+from rosprivacy.report.finding_facts import of_every_system
 from rosprivacy.report.naming import text
 
 if TYPE_CHECKING:
@@ -74,20 +74,23 @@ def further(index: Index) -> tuple[tuple[str, tuple[LookAt, ...]], ...]:
 
 
 def at_work(index: Index) -> tuple[LookAt, ...]:
-    """Return what a works council has to look at: what the workplace and the kinds of data call for."""
+    """Return what a works council has to look at: of the provisions of the register those that are about work."""
+    called = {name for row in index.register for name in row["look_at"]}
 
     def is_about_work(row: Mapping[str, Any]) -> bool:
-        return WORKPLACE in row["contexts"] or (row["categories"] and row["provision"].startswith(ABOUT_WORK))
+        return row["provision"] in called and (WORKPLACE in row["contexts"] or row["provision"].startswith(ABOUT_WORK))
 
     return tuple(_provision_text(filter(is_about_work, index.looked_at), index))
 
 
 def national(index: Index) -> tuple[str, ...]:
     """Return whose national law is to be looked at, and how much of it is known here; never that of the language."""
-    words, countries = index.words, countries_of_use(index.document)
-    known = words.row(LANGUAGE_COUNTRIES)
+    words = index.words
+    countries = sorted({country for row in index.register for country in row["countries"]})
+    countries_known = sorted({row["country"] for row in index.document.get("look_at", ()) if row["country"]})
+    known = words.row(countries_known)
     told = [
-        words(f"look.national.{'some' if one in LANGUAGE_COUNTRIES else 'none'}", country=one, known=known)
+        words(f"look.national.{'some' if one in countries_known else 'none'}", country=one, known=known)
         for one in countries
     ]
     return tuple(told) or (words("look.national.unstated", known=known),)
@@ -127,6 +130,7 @@ def _provision_text(rows: Iterable[Mapping[str, Any]], index: Index) -> Iterator
         if row["applies_from"]:
             dates.append(words("look.applies", date=words.date(row["applies_from"])))
         if not row.get("confirmed", True):
-            dates.append(words("look.unconfirmed", date=words.date(row["adopted"])))
+            adopted = row["adopted"]
+            dates.append(words("look.unconfirmed", date=words.date(adopted)) if adopted else words("look.pointer"))
         provision, title, meaning = (text(row, what, language) for what in ("provision", "title", "meaning"))
         yield LookAt(provision, title, meaning, "; ".join(dates))

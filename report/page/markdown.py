@@ -8,16 +8,21 @@ from __future__ import annotations
 
 import re
 from functools import cache
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 
 from rosprivacy.report.catalogs.words import NARROW, WIDE
+from rosprivacy.report.finding_facts import grouped
 from rosprivacy.report.page.outline import PARAGRAPHS
 from rosprivacy.report.page.spaced_templates import TEMPLATES, CompiledTemplates, SpacedTemplates
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.page.outline import Outline
 
 _SPECIAL = re.compile(r"([\\`*_{}\[\]#+!|~$@]|(?<=:)//|(?<=www)\.)", re.IGNORECASE)
@@ -28,11 +33,12 @@ _LEADING = re.compile(r"^(\s*)(-|=)|^(\s*\d+)([.)])")  # of a number, the sign a
 
 def markdown(report: Outline) -> str:
     """Return the text. Complexity: O(size of the outline)."""
-    text = (
-        _environment(report.words.language)
-        .get_template("report.md.j2")
-        .render(r=report, t=report.words, paragraphs=PARAGRAPHS)
-    )
+    return rendered("report.md.j2", report.words, r=report, paragraphs=PARAGRAPHS)
+
+
+def rendered(template: str, words: Words, **values: Any) -> str:
+    """Return what a template makes of words and values, with one empty line between blocks."""
+    text = _environment(words.language).get_template(template).render(t=words, **values)
     return re.sub(r"\n{3,}", "\n\n", text).strip() + "\n"
 
 
@@ -65,6 +71,11 @@ def code(value: str) -> Markup:
     return Markup(f"{fence}{space}{line.replace('|', chr(92) + '|')}{space}{fence}")  # noqa: S704 - in a fence
 
 
+def alike(rows: Iterable[Any], *fields: str) -> list[list[Any]]:
+    """Return rows that have the same in some fields together, in the order of the first of each."""
+    return grouped(rows, attrgetter(*fields))
+
+
 @cache
 def _environment(language: str) -> Environment:
     environment = Environment(
@@ -77,4 +88,5 @@ def _environment(language: str) -> Environment:
         lstrip_blocks=True,
     )
     environment.filters["code"] = code
+    environment.filters["alike"] = alike
     return environment

@@ -1,4 +1,4 @@
-"""What a report begins with: what a person has to decide, the worst first; one flow is decided once.
+"""What a report begins with: what a person has to decide, place by place, the worst first; a flow is decided once.
 
 In: an ``Index`` and the entries of the report, in the order of ``finding_order``. Out: ``OpeningSection``, in plain
 texts. What nobody has reviewed is told beside it: that little is listed never means that little can happen (rule S11).
@@ -8,58 +8,31 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import islice
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.legal import CHAPTER_V
-from rosprivacy.analysis.model import THIRD_COUNTRY
-from rosprivacy.analysis.text import fit, printable
-from rosprivacy.report.finding_facts import data_made
-from rosprivacy.report.naming import count_rows, key, name
-from rosprivacy.report.page.elements import country
-from rosprivacy.report.page.index import grouped
+from rosprivacy.analysis.legal import Lack
+from rosprivacy.report.finding_facts import gaps_of
+from rosprivacy.report.naming import count_rows
+from rosprivacy.report.page.exits import exit_cards, kinds_in_words
+from rosprivacy.report.page.flows import TO_DECIDE, first_names
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
+    from rosprivacy.report.page.exits import ExitCard
     from rosprivacy.report.page.finding_entries import PathEntry
+    from rosprivacy.report.page.flows import ToDecide
     from rosprivacy.report.page.index import Index
 
-BOUND = 12  # rows; the others are told by their number
+BOUND = 12  # cards; the others are told by their number
+LACKING = {  # key of words -> what an acceptance lacks; None: it was changed since
+    "opening.but.article_9": Lack.ARTICLE_9,
+    "opening.but.article_10": Lack.ARTICLE_10,
+    "opening.but.chapter_v": Lack.CHAPTER_V,
+    "opening.but.changed": None,
+    "opening.but.no_end": Lack.NO_END,
+}
 PLACES = 3  # groups of places that the first sentence names
-SHOWN_AT_MOST = 3  # elements in one row
-VALID = "valid"
-TO_DECIDE = ("open", "decided")  # states of entries
-
-
-class ToDecide(NamedTuple):
-    """One flow to decide: a kind of data, from where, to whom.
-
-    Attributes
-    ----------
-    waits
-        Whether nobody has decided yet, or the decision no longer holds.
-    content
-        The data, with what they are made of and where, if they are.
-    kinds
-        Of the findings, in words.
-    entries
-        The entries of the report that it is; several where one flow is several findings.
-    spread
-        On which robots, in sentences; empty where there is one.
-    facts
-        (what, value): whose data, provisions, legal basis, recipient, owner, state.
-    """
-
-    waits: bool
-    data: str
-    content: str
-    source: str
-    leak: str
-    article9: str
-    kinds: tuple[str, ...]
-    spread: tuple[str, ...]
-    facts: tuple[tuple[str, str], ...]
-    entries: tuple[PathEntry, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,20 +44,39 @@ class OpeningSection:
     headline
         How many things wait for a decision; without any, the verdict.
     sentences
-        What is there, by name, and what is not known.
-    rows
-        The first of them, ``count`` in all; ``remainder`` tells how many others there are.
+        What else is decided, and what is not known.
+    gist
+        Which data can get where, in one sentence, for a page without the cards.
+    cards
+        The places of exit; ``remainder`` tells how many others there are than those that are shown.
+    count
+        How many flows are to be decided.
     """
 
     headline: str
     sentences: tuple[str, ...]
-    rows: tuple[ToDecide, ...] = ()
+    cards: tuple[ExitCard, ...] = ()
     count: int = 0
     remainder: str = ""
+    gist: str = ""
+
+    @property
+    def shown(self) -> tuple[ExitCard, ...]:
+        """The cards that the page shows."""
+        return self.cards[:BOUND]
+
+    @property
+    def rows(self) -> tuple[ToDecide, ...]:
+        """The flows to decide, in the order of the cards."""
+        return tuple(flow for card in self.cards for flow in card.flows)
 
 
 def opening(
-    index: Index, flows: Iterable[ToDecide], verdict: str, means: str, doubts: tuple[str, ...] = ()
+    index: Index,
+    flows: Sequence[ToDecide],
+    entries: Iterable[PathEntry],
+    verdict: tuple[str, str],
+    doubts: tuple[str, ...] = (),
 ) -> OpeningSection:
     """Return what a report begins with.
 
@@ -92,7 +84,9 @@ def opening(
     ----------
     flows
         All of them, see ``flows``.
-    verdict, means
+    entries
+        All entries of the report.
+    verdict
         Its verdict, and what that means, in words: of a report without anything to decide.
     doubts
         What is in doubt, in sentences.
@@ -102,40 +96,48 @@ def opening(
     words = index.words
     rows = [flow for flow in flows if flow.entries[0].state in TO_DECIDE]
     waiting = sum(row.waits for row in rows)
+    cards = exit_cards(index, flows, entries)
+    unfounded = tuple(_unfounded(index, flows))
+    more = words.count(len(cards) - BOUND, "opening.more") if len(cards) > BOUND else ""
     if not rows:
-        return OpeningSection(verdict, (means, *doubts, *_first_to_review(index)))
+        headline, means = verdict
+        sentences = (means, *unfounded, *doubts, *_first_to_review(index))
+        return OpeningSection(headline, sentences, cards, remainder=more)
     headline = words.count(waiting, "opening.decide") if waiting else words.count(len(rows), "opening.carry")
-    said = [
-        _can(rows, index),
-        *([words.count(len(rows) - waiting, "opening.decided")] if 0 < waiting < len(rows) else []),
+    decided = [words.count(len(rows) - waiting, "opening.decided")] if 0 < waiting < len(rows) else []
+    sentences = (*decided, *unfounded, *_unreviewed(index), *doubts)
+    return OpeningSection(headline, sentences, cards, len(rows), more, gist=_gist(rows, index))
+
+
+def _unfounded(index: Index, flows: Sequence[ToDecide]) -> Iterator[str]:
+    """What is accepted and lacks a ground or an end, or is not what it was: data goes there all the same."""
+    accepted = [
+        [index.by_id[entry.id] for entry in flow.entries] for flow in flows if flow.entries[0].state == "accepted"
     ]
-    more = words("opening.more", n=len(rows) - BOUND) if len(rows) > BOUND else ""
-    return OpeningSection(headline, (*said, *_unreviewed(index), *doubts), tuple(rows[:BOUND]), len(rows), more)
+    counts = dict.fromkeys(LACKING, 0)
+    for findings in accepted:
+        decisions = [finding["decision"] for finding in findings if finding.get("decision")]
+        lacks = {gap.lack for decision in decisions for gap in gaps_of(decision, findings)}
+        for key, lack in LACKING.items():
+            changed = lack is None and any(decision.get("changed") for decision in decisions)
+            counts[key] += changed or lack in lacks
+    parts = [index.words.count(count, key) for key, count in counts.items() if count]
+    if parts:
+        yield index.words("opening.but", what="; ".join(parts))
 
 
-def flows(index: Index, entries: Iterable[PathEntry]) -> list[ToDecide]:
-    """Return the flows that are decided by themselves, what waits for somebody first, what is accepted last."""
-    decided = [entry for entry in entries if entry.state != "dismissed"]
-    rows = [_row(group, index) for group in grouped(decided, _flow)]
-    return sorted(rows, key=lambda row: (row.entries[0].state not in TO_DECIDE, not row.waits))
-
-
-def _flow(entry: PathEntry) -> Any:
-    same = (entry.category, entry.source, entry.leak, entry.robots, entry.pseudonymised)
-    return same, entry.mark, entry.state in TO_DECIDE
-
-
-def _can(rows: Sequence[ToDecide], index: Index) -> str:
+def _gist(rows: Sequence[ToDecide], index: Index) -> str:
     """What is there: which data can get to whom."""
     words = index.words
-    data: dict[str, dict[str, None]] = {}
+    at: dict[str, list[PathEntry]] = {}
     for row in rows:
-        data.setdefault(row.leak, {})[row.data] = None
+        at.setdefault(row.leak, []).extend(row.entries)
+    every = {entry.category for row in rows for entry in row.entries}
     places: dict[str, list[str]] = {}
-    for leak, kinds in data.items():
-        places.setdefault(words.row(kinds), []).append(leak)
+    for leak, entries in at.items():
+        places.setdefault(kinds_in_words(entries, every, index), []).append(leak)
     first = islice(places.items(), PLACES)
-    said = [words("opening.can", data=kinds, leak=_names_shown(leaks, index)) for kinds, leaks in first]
+    said = [words("opening.can", data=data, leak=first_names(leaks, index)) for data, leaks in first]
     rest = sum(len(leaks) for leaks in islice(places.values(), PLACES, None))
     said += [words.count(rest, "opening.places")] if rest else []
     sentence = "; ".join(said)
@@ -151,121 +153,4 @@ def _unreviewed(index: Index) -> Iterator[str]:
 def _first_to_review(index: Index) -> Iterator[str]:
     first = [row["element"] for row in index.document["open"] if row["frontier"]]
     if first:
-        yield index.words("opening.review", names=_names_shown(index.names(first), index))
-
-
-def _names_shown(names: Sequence[str], index: Index) -> str:
-    return index.words.row(index.words.first(names, SHOWN_AT_MOST))
-
-
-def _row(group: Sequence[PathEntry], index: Index) -> ToDecide:
-    findings = [index.by_id[entry.id] for entry in group]
-    first, entry = findings[0], group[0]
-    many = len(entry.robots) > 1
-
-    def name_of(element: Mapping[str, Any]) -> str:
-        return _name(element, index, many=many)
-
-    return ToDecide(
-        waits=any(_waits(finding, index) for finding in findings),
-        data=entry.data,
-        content=data_made(first, entry.data, index.words, index.data, name_of),
-        source=name_of(first["source"]),
-        leak=name_of(first["leak"]),
-        article9=entry.article9,
-        kinds=tuple(index.words(f"finding.{finding['kind']}") for finding in findings),
-        spread=entry.spread,
-        facts=tuple(_facts(findings, index)),
-        entries=tuple(group),
-    )
-
-
-def _name(element: Mapping[str, Any], index: Index, *, many: bool) -> str:
-    """A name; without its robot where it stands for several."""
-    return fit(element["name"]) if many and element["robot"] in index.alike else name(element)
-
-
-def _waits(finding: Mapping[str, Any], index: Index) -> bool:
-    """Whether nobody has decided about it, or the decision is over, about something else now, or about some robots."""
-    said = finding.get("decision")
-    return not said or said["state"] != VALID or bool(said.get("changed") or _robots_decided(finding, index))
-
-
-def _robots_decided(finding: Mapping[str, Any], index: Index) -> str:
-    """Return the robots that a decision names, where the finding stands for more."""
-    said, pattern = finding.get("decision"), index.patterns.get(finding["id"], {})
-    robots = pattern.get("robots", ())
-    if not said or len(robots) <= 1:
-        return ""
-    place = said["file"], said["line"]
-    decisions = index.document.get("decisions", ())
-    target: Mapping[str, Any] = next((d["target"] for d in decisions if (d["file"], d["line"]) == place), {})
-    listed = target.get("from_robots") or target.get("robots", ())
-    if listed and (pattern["across"] or not set(robots) <= set(listed)):
-        return _names_shown([fit(one) for one in listed], index)
-    return fit(target.get("robot", ""))
-
-
-def _facts(findings: Sequence[Mapping[str, Any]], index: Index) -> Iterator[tuple[str, str]]:
-    words, first = index.words, findings[0]
-    subjects = index.subjects.get(key(first["source"]))
-    yield words("opening.whose"), words.row(subjects) if subjects else words("not.stated")
-    yield words("opening.law"), "; ".join(dict.fromkeys(_provisions(findings, index)))
-    yield words("opening.basis"), words.row(_bases(findings, index)) or words("opening.basis.none")
-    yield words("opening.recipient"), _recipient(first["leak"], index)
-    yield words("opening.owner"), words.row(_owners(findings)) or words("opening.owner.none")
-    yield words("decision.state"), words.row(dict.fromkeys(_state(finding, index) for finding in findings))
-
-
-def _provisions(findings: Iterable[Mapping[str, Any]], index: Index) -> Iterator[str]:
-    for finding in findings:
-        yield index.words(f"opening.law.{finding['kind']}")
-        for legal in finding["law"]:
-            cited = index.provision(finding["category"], legal["provision"])
-            yield cited.partition(" (")[0]  # without its title, which stands where the law is told
-
-
-def _bases(findings: Sequence[Mapping[str, Any]], index: Index) -> list[str]:
-    """The legal bases that decisions record, and those that labels state where the data get to."""
-    ends = [index.processed_for.get((key(finding["leak"]), finding["category"]), {}) for finding in findings]
-    decided = [basis for finding in findings for basis in _decided(finding, "legal_basis")]
-    stated = [basis for end in ends for basis in end.get("legal_bases", ())]
-    bases = dict.fromkeys((*decided, *stated))
-    leaves = any(finding["kind"] == THIRD_COUNTRY for finding in findings)
-    lacks = bases and leaves and not any(basis.startswith(CHAPTER_V) for basis in bases)
-    return [
-        *map(index.words.basis, map(printable, bases)),
-        *([index.words("opening.basis.chapter_v")] if lacks else []),
-    ]
-
-
-def _owners(findings: Iterable[Mapping[str, Any]]) -> list[str]:
-    owners = (_decided(finding, "owner") for finding in findings)
-    return [printable(owner) for owner in dict.fromkeys(owners) if owner]
-
-
-def _decided(finding: Mapping[str, Any], key: str) -> Any:
-    return (finding.get("decision") or {}).get(key) or ""
-
-
-def _state(finding: Mapping[str, Any], index: Index) -> str:
-    """What was decided, and whether it still holds."""
-    words, said = index.words, finding.get("decision")
-    if not said:
-        return words("state.open")
-    decided = words.of_value(f"decision.{said['choice']}", printable(said["choice"]))
-    if only := _robots_decided(finding, index):
-        decided = words("opening.only", decided=decided, robot=only)
-    if said.get("changed"):
-        decided = words("opening.changed", decided=decided)
-    state = words.of_value(f"decision.state.{said['state']}", printable(said["state"]))
-    return decided if said["state"] == VALID else f"{decided}; {state}"
-
-
-def _recipient(leak: Mapping[str, Any], index: Index) -> str:
-    """Who stands behind the place that data get to, as far as it is stated."""
-    words, row = index.words, index.outside.get(key(leak), {})
-    said = [printable(row["operator"])] if row.get("operator") else []
-    said += [words.of_value(f"recipient.{row['recipient']}", row["recipient"])] if row.get("recipient") else []
-    said += [country(row, index)] if row.get("country") else []
-    return words.row(said) or words("not.stated")
+        yield index.words("opening.review", names=first_names(index.names(first), index))

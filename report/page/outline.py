@@ -23,12 +23,14 @@ from rosprivacy.report.page.closing import BeyondEntry, ClosingEntry, beyond_ent
 from rosprivacy.report.page.elements import Inventory, inventory
 from rosprivacy.report.page.finding_entries import DecisionText, PathEntry, finding_entries, orphans
 from rosprivacy.report.page.fleet_section import FleetSection, fleet_told
+from rosprivacy.report.page.flows import flows
 from rosprivacy.report.page.index import Index, state
-from rosprivacy.report.page.kinds import KindEntry, kinds
+from rosprivacy.report.page.kinds import KindEntry, ProvisionOnce, kinds, provisions
 from rosprivacy.report.page.look_at import FurtherLaw, further_law
-from rosprivacy.report.page.opening import OpeningSection, flows, opening
+from rosprivacy.report.page.opening import OpeningSection, opening
 from rosprivacy.report.page.persons import Concerned, concerned, signed
 from rosprivacy.report.page.review import QuestionGroup, Sort, doubts, in_doubt, review
+from rosprivacy.report.page.to_confirm import RowQuestions, row_questions
 from rosprivacy.report.verdict import verdict_meaning, verdict_sentence
 
 if TYPE_CHECKING:
@@ -39,9 +41,12 @@ if TYPE_CHECKING:
 
 DECIDE = "decide"  # its heading is what there is to decide
 SECTIONS = (
-    DECIDE, "closing", "hangs", "changes", "fleet", "findings", "beyond", "doubts", "questions", "tables", "rights",
-    "outside", "sanitizers", "types", "risks", "criteria", "sign", "kinds", "assumptions", "inventory", "method",
+    DECIDE, "closing", "changes", "fleet", "findings", "beyond", "doubts", "questions", "risks", "criteria", "sign",
+    "confirm", "kinds", "hangs", "tables", "rights", "outside", "sanitizers", "types",
+    "assumptions", "inventory", "method",
 )  # fmt: skip
+ONLY_WITH = {"wildcard": "pattern", "request": "leg"}  # words that come only where an element has it
+LAST = "sign"  # of what is no appendix
 SHOWN_AT_MOST = 3  # robots or policies in the title
 PARAGRAPHS = 10  # of the method note
 EXPLAINED = ("profile", "enclave", "label", "wildcard", "request")  # before they first come, beside the view
@@ -105,6 +110,8 @@ class Outline(NamedTuple):
         (anchor, heading), in order.
     opening
         What it begins with: what is to be decided.
+    row_questions
+        What is to be confirmed and to be known beside it.
     closing
         What closes these paths; None where there are none.
     """
@@ -114,6 +121,7 @@ class Outline(NamedTuple):
     sections: tuple[tuple[str, str], ...]
     summary: Summary
     opening: OpeningSection
+    row_questions: RowQuestions
     closing: ClosingEntry | None
     grounds: ResultGrounds
     fleet: FleetSection | None
@@ -125,11 +133,18 @@ class Outline(NamedTuple):
     beyond_said: tuple[str, ...]
     orphans: tuple[DecisionText, ...]
     further: FurtherLaw
+    provisions: tuple[ProvisionOnce, ...]
     questions: tuple[QuestionGroup, ...]
     doubts: tuple[Sort, ...]
     criteria: tuple[AssessmentCriterion, ...]
     assessment: Assessment
     inventory: Inventory
+
+    @property
+    def appendix(self) -> str:
+        """Where the appendix begins: what the sections before rest on."""
+        anchors = [anchor for anchor, _ in self.sections]
+        return anchors[anchors.index(LAST) + 1]
 
     def number(self, section: str) -> int:
         """Return the number of a section."""
@@ -170,26 +185,32 @@ def outline(
     differ = changes(earlier.document, document) if earlier else None
     entries = finding_entries(index, differ.marks() if differ else None)
     decided = flows(index, entries)
-    begins = opening(index, decided, *_verdict(index), tuple(in_doubt(index)))
+    begins = opening(index, decided, entries, _verdict(index), tuple(in_doubt(index)))
+    questions = row_questions(index, entries)
+    of_kinds, further = kinds(index, entries), further_law(index)
     closes = closing(index, entries, proposals)
-    sections = _sections(index, begins.headline, closes=bool(closes), changes=bool(differ))
+    sections = _sections(
+        index, begins.headline, closes=bool(closes), changes=bool(differ), confirm=any(questions.remainder)
+    )
     return Outline(
         words=index.words,
         cover=_cover(index, title, date, redacted=redacted),
         sections=sections,
         summary=_summary(index, entries, sections),
         opening=begins,
+        row_questions=questions,
         closing=closes,
         grounds=grounds(index),
         fleet=fleet_told(index, entries),
         changes=changed(differ, earlier, entries, index) if differ and earlier else None,
         persons=concerned(index, entries),
-        kinds=kinds(index, entries),
+        kinds=of_kinds,
         entries=entries,
         beyond=beyond_entries(index),
         beyond_said=beyond_said(index),
         orphans=orphans(index),
-        further=further_law(index),
+        further=further,
+        provisions=provisions(of_kinds, further, index),
         questions=review(index),
         doubts=doubts(index),
         criteria=criteria(index),
@@ -198,12 +219,15 @@ def outline(
     )
 
 
-def _sections(index: Index, headline: str, *, closes: bool, changes: bool) -> tuple[tuple[str, str], ...]:
+def _sections(
+    index: Index, headline: str, *, closes: bool, changes: bool, confirm: bool
+) -> tuple[tuple[str, str], ...]:
     """The sections that there are, in order: (anchor, heading)."""
     document = index.document
     there = {
         "closing": closes,
         "changes": changes,
+        "confirm": confirm,
         "fleet": bool(index.alike),
         "types": bool(document.get("types")),
         "beyond": "enforced" in document,
@@ -221,7 +245,8 @@ def _cover(index: Index, title: str, date: str, *, redacted: bool) -> Cover:
 
 def _summary(index: Index, entries: Sequence[PathEntry], sections: Iterable[tuple[str, str]]) -> Summary:
     document, words = index.document, index.words
-    explained = (document["view"], *EXPLAINED)
+    marks = {mark for element in index.elements.values() for mark in ("pattern", "leg") if element.get(mark)}
+    explained = (document["view"], *(word for word in EXPLAINED if ONLY_WITH.get(word) in {None, *marks}))
     return Summary(
         code=document["verdict"],
         verdict=verdict_meaning(document),
@@ -262,8 +287,6 @@ def _verdict(index: Index) -> tuple[str, str]:
 def _means(index: Index, sections: list[str], remaining: int) -> Iterator[str]:
     """What else is to be known of the result: what to ask of each path, and which are not to be decided now."""
     words = index.words
-    if index.to_assess:
-        yield words("opening.each")
     dismissed = sum(state(finding) == "dismissed" for finding in index.findings)
     if dismissed:
         yield words("opening.dismissed", ways=words.count(dismissed, "way"))
@@ -276,18 +299,22 @@ def _means(index: Index, sections: list[str], remaining: int) -> Iterator[str]:
 
 
 def _numbers(index: Index) -> Iterator[tuple[int, str]]:
-    words, to_assess = index.words, index.to_assess
+    words = index.words
+    there = [finding for finding in index.findings if not finding["dismissed"] or finding.get("accepted")]
+    accepted, dismissed = (
+        sum(bool(finding.get(what)) for finding in index.findings) for what in ("accepted", "dismissed")
+    )
     if index.alike:
         yield len(index.robots()), words("total.robots")
-    yield len(to_assess), words("total.ways")
-    strengths = Counter(map(strength, to_assess))
+    yield len(there), words("total.ways")
+    if accepted:
+        yield accepted, words("total.accepted")
+    strengths = Counter(map(strength, there))
     yield strengths[SPECIAL], words("total.special")
     yield strengths[REVEALS], words("total.reveals")
-    yield len({tuple(finding["leak"].items()) for finding in to_assess}), words("total.recipients")
+    yield len({tuple(finding["leak"].items()) for finding in there}), words("total.recipients")
     yield count_rows(index.document["open"]).elements, words("total.open")
     if globbed := count_rows(by_globs(index.document)).elements:
         yield globbed, words("total.glob")
-    for what in ("accepted", "dismissed"):
-        number = sum(bool(finding.get(what)) for finding in index.findings)
-        if number:
-            yield number, words(f"total.{what}")
+    if dismissed:
+        yield dismissed, words("total.dismissed")

@@ -13,10 +13,14 @@ from collections import defaultdict
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from rosprivacy.analysis.model.register_row import Cell
+from rosprivacy.analysis.non_ros import RESTING
 from rosprivacy.analysis.text import fit
+from rosprivacy.report import row_texts
+from rosprivacy.report.finding_facts import grouped
 from rosprivacy.report.naming import key
-from rosprivacy.report.page.elements import STORAGE, country, retention_text
-from rosprivacy.report.page.index import anchor, grouped, state
+from rosprivacy.report.page.elements import STORAGE, protections
+from rosprivacy.report.page.index import anchor, state
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -26,7 +30,6 @@ if TYPE_CHECKING:
     from rosprivacy.report.page.index import Index
 
 COLUMNS = 6  # of one part, so that it fits a page upright
-OUTSIDE = ("storage", "external-system", "display", "participant", "person", "device")
 
 
 class Concerned(NamedTuple):
@@ -58,7 +61,7 @@ def concerned(index: Index, entries: Sequence[PathEntry]) -> Concerned:
     return Concerned(table, silent, recipients(index, links), processed(index), rights(index))
 
 
-class Cell(NamedTuple):
+class TableCell(NamedTuple):
     """What a table says at one place.
 
     Attributes
@@ -79,7 +82,7 @@ class TableRow(NamedTuple):
 
     name: str
     kind: str
-    cells: tuple[Cell, ...]
+    cells: tuple[TableCell, ...]
 
 
 class TablePart(NamedTuple):
@@ -122,7 +125,7 @@ def recipients(index: Index, links: TableLinks) -> PageTable:
     """Return who can get data: elements that let it out, keep it, or lie outside ROS."""
     found = {key(f["leak"]): f["leak"] for f in index.findings}
     found |= {element: index.elements[element] for element in index.of_role.get("leak", {})}
-    found |= {k: row["element"] for k, row in index.outside.items() if row["element"]["kind"] in OUTSIDE}
+    found |= {k: row["element"] for k, row in index.outside.items() if row["element"]["kind"] in RESTING}
     findings: dict[tuple[Key, str], list[Mapping[str, Any]]] = defaultdict(list)
     for finding in index.findings:
         findings[key(finding["leak"]), finding["category"]].append(finding)
@@ -141,7 +144,7 @@ def _columns(index: Index) -> tuple[str, ...]:
 def _gets(
     group: Sequence[Mapping[str, Any]], category: str, findings: Mapping[Any, list[Mapping[str, Any]]],
     index: Index, links: TableLinks,
-) -> Cell:  # fmt: skip
+) -> TableCell:  # fmt: skip
     here = [finding for element in group for finding in findings.get((key(element), category), ())]
     words = index.words
     for stands, said in (("open", ""), ("accepted", "cell.accepted"), ("dismissed", "cell.through")):
@@ -149,13 +152,13 @@ def _gets(
         if some:
             hidden = f", {words('cell.hidden')}" if all(finding["pseudonymised"] for finding in some) else ""
             text = words(said) if said else words.count(len(some), "way")
-            return Cell(text + hidden, links.to(some), strong=stands == "open")
+            return TableCell(text + hidden, links.to(some), strong=stands == "open")
     if any(category in index.outside.get(key(element), {}).get("holds", ()) for element in group):
-        return Cell(words("cell.gets"))
+        return TableCell(words("cell.gets"))
     cleaned = [row for element in group if (row := index.cleaned.get((key(element), category)))]
     if cleaned and cleaned[0].get("recognises"):
-        return Cell(words("cell.gets"))
-    return Cell(_cleaned(cleaned[0], index) if cleaned else words("cell.no"))
+        return TableCell(words("cell.gets"))
+    return TableCell(_cleaned(cleaned[0], index) if cleaned else words("cell.no"))
 
 
 def _cleaned(row: Mapping[str, Any], index: Index) -> str:
@@ -194,18 +197,18 @@ def subjects(index: Index, links: TableLinks) -> tuple[PageTable, tuple[str, ...
 def _about(
     name: str | None, members: set[Key], category: str, findings: Mapping[Any, list[Mapping[str, Any]]],
     index: Index, links: TableLinks,
-) -> Cell:  # fmt: skip
+) -> TableCell:  # fmt: skip
     here = [finding for member in sorted(members) for finding in findings.get((member, category), ())]
     open_findings = [finding for finding in here if state(finding) == "open"]
     words = index.words
     if open_findings:
-        return Cell(words.count(len(open_findings), "way"), links.to(open_findings), strong=True)
+        return TableCell(words.count(len(open_findings), "way"), links.to(open_findings), strong=True)
     if here:
         accepted = any(state(finding) == "accepted" for finding in here)
-        return Cell(words("cell.accepted" if accepted else "cell.through"), links.to(here))
+        return TableCell(words("cell.accepted" if accepted else "cell.through"), links.to(here))
     if any(category in index.of_role["source"][member] for member in members):
-        return Cell(words("cell.brought"))
-    return Cell(words("cell.made" if index.is_of(name, category) else "cell.none"))
+        return TableCell(words("cell.brought"))
+    return TableCell(words("cell.made" if index.is_of(name, category) else "cell.none"))
 
 
 PURPOSE, BASIS = "purpose", "legal_basis"  # as a document says that they are missing
@@ -230,7 +233,7 @@ def processed(index: Index) -> tuple[PurposeRow, ...]:
             here, lambda row: (row["element"]["kind"], row["element"]["name"], str(_stated_purposes(row)))
         ):
             names = index.words.row(index.names([row["element"] for row in group]))
-            texts = purposes(group, index), bases(group, (), index), controllers(group, index)
+            texts = purposes(group, index), bases(group, index), controllers(group, index)
             rows.append(PurposeRow(index.data(category), names, *texts))
     return tuple(rows)
 
@@ -245,7 +248,7 @@ def signed(index: Index) -> dict[str, str]:
     found = {
         "controller": controllers(rows, index),
         "purpose": _by_kind(index, purposes),
-        "basis": _by_kind(index, _bases),
+        "basis": _by_kind(index, bases),
     }
     return {field: said for field, said in found.items() if rows and said}
 
@@ -265,13 +268,9 @@ def purposes(rows: Sequence[Mapping[str, Any]], index: Index) -> str:
     return _with_pending(rows, "purposes", PURPOSE, fit, index)
 
 
-def bases(rows: Sequence[Mapping[str, Any]], decided: Iterable[str], index: Index) -> str:
-    """Return legal bases, those that decisions record too; also that some are to be completed."""
-    return _with_pending(rows, "legal_bases", BASIS, index.words.basis, index, decided)
-
-
-def _bases(rows: Sequence[Mapping[str, Any]], index: Index) -> str:
-    return bases(rows, (), index)
+def bases(rows: Sequence[Mapping[str, Any]], index: Index) -> str:
+    """Return legal bases; also that some are to be completed."""
+    return _with_pending(rows, "legal_bases", BASIS, index.words.basis, index)
 
 
 def controllers(rows: Iterable[Mapping[str, Any]], index: Index) -> str:
@@ -282,22 +281,30 @@ def controllers(rows: Iterable[Mapping[str, Any]], index: Index) -> str:
 
 
 def _with_pending(
-    rows: Sequence[Mapping[str, Any]], key: str, fact: str, text_of: Callable[[str], str], index: Index,
-    decided: Iterable[str] = (),
-) -> str:  # fmt: skip
-    stated = dict.fromkeys([*(one for row in rows for one in row[key]), *decided])
+    rows: Sequence[Mapping[str, Any]], key: str, fact: str, text_of: Callable[[str], str], index: Index
+) -> str:
+    stated = dict.fromkeys(one for row in rows for one in row[key])
     lacking = not stated or any(fact in row["missing"] for row in rows)
     return "; ".join([*map(text_of, stated), *([index.words("record.open")] if lacking else [])])
 
 
 class DataPlace(NamedTuple):
-    """Where data of a group can lie: a storage, an external recipient, or an element that lets data out."""
+    """Where data of a group can lie: a storage, an external recipient, or an element that lets data out.
+
+    Attributes
+    ----------
+    recipient
+        Who operates it, where, and on which safeguard data get there; or that nobody states it.
+    measures
+        What is seen to protect the data on their way there.
+    """
 
     name: str
     kind: str
     data: str
     retention: str
     recipient: str
+    measures: tuple[str, ...]
 
 
 class Persons(NamedTuple):
@@ -308,62 +315,30 @@ class Persons(NamedTuple):
 
 
 def rights(index: Index) -> tuple[Persons, ...]:
-    """Return the groups that labels name, then the persons that they do not name.
-
-    Complexity: O(groups x (storages + findings) x kinds of data).
-    """
-    sources = index.of_role.get("source", {})
-    groups: dict[str, set[Key]] = {}
-    for source in sources:
-        for name in index.subjects.get(source, ()):
-            groups.setdefault(name, set()).add(source)
-    told = [Persons(fit(name), tuple(_places(name, members, index))) for name, members in sorted(groups.items())]
-    silent = {source for source in sources if source not in index.subjects}
-    if silent:
-        told.append(Persons(index.words("subject.unknown"), tuple(_places(None, silent, index))))
-    return tuple(told)
+    """Return the groups that labels name, then the persons that they do not name: rows of the register."""
+    names = sorted({group for row in index.register for group in row["subjects"]})
+    groups = [(fit(name), _places([row for row in index.register if name in row["subjects"]], index)) for name in names]
+    if silent := [row for row in index.register if Cell.SUBJECTS in row["to_complete"]]:
+        groups.append((index.words("subject.unknown"), _places(silent, index)))
+    return tuple(Persons(name, tuple(places)) for name, places in groups)
 
 
-def _places(group: str | None, members: set[Key], index: Index) -> Iterator[DataPlace]:
-    """Storages first, then who receives data."""
-    there = sorted(_kinds(group, members, index).items(), key=lambda one: (one[0][1] != STORAGE, one[0]))
-    alike: dict[tuple[str, DataPlace], list[Mapping[str, Any]]] = {}
-    for place, kinds in there:
-        element = index.elements[place]
-        alike.setdefault((element["name"], _place(element, kinds, index)), []).append(element)
-    for (_, made), elements in alike.items():
-        yield made._replace(name=index.words.row(index.names(elements)))
+def _places(rows: Iterable[Mapping[str, Any]], index: Index) -> Iterator[DataPlace]:
+    """Storages first, then who receives data; kinds of data of which all else is the same are one."""
+    there = [row for row in rows if row["places"]]
+    there.sort(key=lambda row: (row["places"][0]["kind"] != STORAGE, key(row["places"][0])))
+    for same in grouped([_place(row, index) for row in there], lambda place: place._replace(data="")):
+        yield same[0]._replace(data=index.words.row(dict.fromkeys(place.data for place in same)))
 
 
-def _kinds(group: str | None, members: set[Key], index: Index) -> dict[Key, dict[str, bool]]:
-    """Place -> the kinds of the members' data that can get there, and whether these come pseudonymised only."""
-    found: dict[Key, dict[str, bool]] = {}
-    for finding in index.findings:
-        if key(finding["source"]) in members:
-            here, category = found.setdefault(key(finding["leak"]), {}), finding["category"]
-            here[category] = here.get(category, True) and finding["pseudonymised"]
-    for place, row in index.outside.items():
-        for category in row["holds"] if row["element"]["kind"] in OUTSIDE else ():
-            if index.is_of(group, category, [row["element"]]):
-                hidden = index.pseudonymised(row["element"], category)
-                found.setdefault(place, {}).setdefault(category, hidden)
-    return found
-
-
-def _place(element: Mapping[str, Any], kinds: Mapping[str, bool], index: Index) -> DataPlace:
-    words, row = index.words, index.outside.get(key(element), {})
-    durations = {category: retention_text(row, category, index) if row.get("retention") else "" for category in kinds}
-    stated = {duration for duration in durations.values() if duration}
-    if not stated:
-        said = words("rights.unknown")
-    elif len(set(durations.values())) == 1:
-        said = stated.pop()
-    else:
-        said = "; ".join(
-            words("outside.of", data=index.data(category), duration=duration or words("rights.unknown"))
-            for category, duration in durations.items()
-        )
-    who = [fit(row["operator"])] if row.get("operator") else []
-    who += [country(row, index)] if row.get("country") else []
-    data = words.row(index.data(category, pseudonymised=hidden) for category, hidden in kinds.items())
-    return DataPlace("", words.kind(element), data, said, words.row(who) or words("rights.unknown"))
+def _place(row: Mapping[str, Any], index: Index) -> DataPlace:
+    words = index.words
+    return DataPlace(
+        name=words.row(index.names(row["places"])),
+        kind=words.kind(row["places"][0]),
+        data=index.data(row["category"], pseudonymised=row["pseudonymised"]),
+        retention=row_texts.retention(row, words) or words("rights.unknown"),
+        recipient="; ".join(filter(None, (*row_texts.recipient(row, words), row_texts.where(row, words))))
+        or words("rights.unknown"),
+        measures=tuple(protections(row, index)),
+    )

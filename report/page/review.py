@@ -10,8 +10,8 @@ from itertools import groupby
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.text import fit
+from rosprivacy.report.finding_facts import grouped
 from rosprivacy.report.naming import count_rows, key
-from rosprivacy.report.page.index import grouped
 from rosprivacy.report.review_groups import review_groups, sources_of
 from rosprivacy.report.verdict import doubt_phrases, subject
 

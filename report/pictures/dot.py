@@ -46,7 +46,7 @@ ON_A_LINE = "shape=plaintext, margin=0, height=0, width=0"
 LONGEST_WORDS = 300  # of all lines of a phrase: what some kinds of data are called goes in whole
 
 
-def dot(picture: Picture, *, direction: str = "LR", legend: bool = True) -> str:
+def dot(picture: Picture, *, direction: str = "LR", legend: bool = True, title: bool = True) -> str:
     """Return a picture as DOT.
 
     Parameters
@@ -54,10 +54,12 @@ def dot(picture: Picture, *, direction: str = "LR", legend: bool = True) -> str:
     direction
         ``LR`` or ``TB``: where the data goes on the paper.
     legend
-        Whether title and notes stand above it, and a legend below.
+        Whether a legend stands below it.
+    title
+        Whether title and notes stand above it.
     """
     entries = legend_of(picture) if legend else []
-    caption = f"label=<{_caption(picture)}>, " if legend else ""
+    caption = f"label=<{_caption(picture)}>, " if title else ""
     packed = f'pack=12, packmode="{PACKED[direction]}", ' if entries else ""
     text = f'fontname="{FONT}", fontsize={SIZE}'
     place = f"labelloc=t, labeljust=l, {packed}rankdir={direction}, nodesep=0.22, ranksep=0.4, pad=0.1"
@@ -68,9 +70,10 @@ def dot(picture: Picture, *, direction: str = "LR", legend: bool = True) -> str:
         f'  edge [color="{INK}", arrowsize=0.7];',
     ]
     drawn = list(_drawn(picture))
+    if title:  # in a cluster, which makes a picture narrower
+        drawn = ["  subgraph cluster_drawn {", f"    {FRAME}", *drawn, "  }"]
     if entries:
         legend_rows = swatches(entries, direction)
-        drawn = ["  subgraph cluster_drawn {", f"    {FRAME}", *drawn, "  }"]
         drawn = [*legend_rows, *drawn] if direction == "LR" else [*drawn, *legend_rows]  # LR is packed from below
     return "\n".join([*rows, *drawn, "}", ""])
 

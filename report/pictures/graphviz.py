@@ -29,7 +29,9 @@ from lxml import etree
 from rosprivacy.analysis.errors import DrawingError, shown
 from rosprivacy.analysis.text import counted, printable
 from rosprivacy.report.installing import command_for
+from rosprivacy.report.pictures.corner_legend import drawn_boxes, legend_dot, legend_place
 from rosprivacy.report.pictures.dot import dot, hover, line_hover, paired
+from rosprivacy.report.pictures.looks import legend
 from rosprivacy.report.pictures.phrases import sentences
 
 if TYPE_CHECKING:
@@ -249,6 +251,7 @@ def _head(root: etree._Element, picture: Picture) -> None:
 
 
 SVG, PNG = "svg", "png"
+PLACED, IN_PLACE = "dot", "nop2"  # a graph with the places of all in it, and the layout that keeps them
 SECONDS = 45.0
 DIRECTIONS = ("LR", "TB")
 ORDERED = "dot"  # the engine that knows a direction
@@ -344,21 +347,34 @@ def drawn(
     noted = picture.noted(*note)
     with Graphviz() as graphviz:
 
-        @cache
-        def draw(form: str, direction: str) -> bytes:
-            job = Job(dot(noted, direction=direction), way.engine, form, {**way.attributes, **_paper(form)})
+        def draw(job: Job) -> bytes:
             return graphviz.draw(job, end - time.monotonic())
+
+        @cache
+        def laid_out(direction: str) -> tuple[str, bytes]:
+            text = dot(noted, direction=direction, legend=False)
+            laid = draw(Job(text, way.engine, PLACED, way.attributes)).decode()
+            return laid, draw(Job(laid, IN_PLACE, SVG, {"notranslate": "true"}))
 
         try:
             if not direction and way.engine == ORDERED:
-                direction = max(DIRECTIONS, key=lambda one: _scale(draw(SVG, one)))
-            data = draw(form, direction or DIRECTIONS[0])
+                direction = max(DIRECTIONS, key=lambda one: _scale(laid_out(one)[1]))
+            text = _with_legend(noted, *laid_out(direction or DIRECTIONS[0]))
+            data = draw(Job(text, IN_PLACE, form, _paper(form)))
         except TooLongError:
             what = f"the layout of {counted(len(picture.boxes), 'box', 'boxes')} takes more than {seconds:g} seconds"
             raise DrawingError(f"graph: {what}; {instead}") from None
     if form == SVG:
         return Drawn(finished(data, noted), note)
     return Drawn(data, (*note, *_smaller(data)))
+
+
+def _with_legend(picture: Picture, laid: str, svg: bytes) -> str:
+    """A graph with all places, and its legend in a corner."""
+    entries, boxes = legend(picture), drawn_boxes(svg)
+    if not (entries and boxes.drawn):
+        return laid
+    return f"{laid.rstrip().removesuffix('}')}{legend_dot(entries, legend_place(entries, boxes))}\n}}\n"
 
 
 def way_of(picture: Picture, ways: tuple[Way, ...] = WAYS) -> Way:

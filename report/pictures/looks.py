@@ -107,7 +107,7 @@ SOURCE, LEAK, DERIVATION, SANITIZER, END = "source", "leak", "derivation", "sani
 REVIEWED, OPEN, UNTOUCHED = "reviewed", "open", "untouched"
 ROLE_LOOKS = {
     SOURCE: Look("source: brings data in", SKY, width=3.0),
-    LEAK: Look("leak: lets data out", RED, width=1.5, double=True),
+    LEAK: Look("way out: lets data out", RED, width=1.5, double=True),
     DERIVATION: Look("makes one kind of data of another", PURPLE, width=1.5),
     SANITIZER: Look("cleans, but not all", GREEN, width=1.5),
     REVIEWED: Look("reviewed: passes on what it gets", GRAY),
@@ -130,8 +130,8 @@ LINE_LOOKS = {
     DENIED: Look("denied", QUIET, style="dashed", head="tee"),
     CLEANED: Look("data gets there, said to be cleaned there", INK, width=0.8, head="tee"),
     DATA: Look("data can go here", INK),
-    WAY: Look("on a path to a leak", RED, width=2.2),
-    SHORTEST: Look("on the shortest path to a leak", RED, width=4.5),
+    WAY: Look("on a path to a way out", RED, width=2.2),
+    SHORTEST: Look("on the shortest path to a way out", RED, width=4.5),
     BEYOND: Look("beyond the node's own profile: only its enclave allows it", PURPLE, 3.0, "dashed", head="vee"),
     ONWARD: Look("data can go here only then", PURPLE, width=1.5),
     QUESTIONED: Look("how data gets to what is asked about, step by step", BLUE, width=3.0),

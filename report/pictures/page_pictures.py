@@ -114,7 +114,7 @@ def legend(scene: Scene) -> Markup:
     >>> from rosprivacy.analysis.example import factory
     >>> from rosprivacy.analysis.findings.findings import analyse
     >>> from rosprivacy.report.pictures.scenes import Scenes
-    >>> "leak: lets data out" in legend(Scenes(analyse(*factory())).of())
+    >>> "way out: lets data out" in legend(Scenes(analyse(*factory())).of())
     True
     """
     items = (Markup(_ITEM).format(classes=sign.classes, form=Markup(sign.form)) + sign.words for sign in signs(scene))  # noqa: S704 - forms of our own

@@ -63,7 +63,7 @@ def provision_triples(provisions: Iterable[Legal | Pointer]) -> Iterator[Triple]
             country = [text(legal.country)] if legal.country else []
             yield from about(foreign(legal.iri), (RP.appliesFrom, applies), (RP.country, country))
             if not legal.confirmed:
-                adopted = [Literal(legal.adopted, datatype=XSD.date)]
+                adopted = [Literal(legal.adopted, datatype=XSD.date)] if legal.adopted else []
                 yield from about(foreign(legal.iri), (RP.confirmed, [Literal(False)]), (RP.adopted, adopted))
         if (subject, RDF.type, INSIDE.LegalProvision) in shipped:
             named |= {URIRef(str(up)) for up in shipped.transitive_objects(subject, INSIDE.partOf)}

@@ -205,4 +205,6 @@ def _hop(step: Step) -> str:
     grant = next(iter(step.grants), None)
     if grant is None or not grant.node:
         return f"{what}."
+    if grant.basis:
+        return f"{what} ({text(step.role)} by {text(grant.node)}; the name is known by: {text(grant.basis)})."
     return f"{what} ({text(step.role)}, profile {text(grant.node)} of enclave {text(grant.enclave)})."

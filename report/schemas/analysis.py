@@ -32,6 +32,7 @@ from rosprivacy.report.schemas.records import (
     Stopped,
     UnknownEnd,
 )
+from rosprivacy.report.schemas.register import RegisterEntry
 from rosprivacy.report.schemas.stated import (
     Carried,
     CategoryEntry,
@@ -45,7 +46,6 @@ from rosprivacy.report.schemas.stated import (
     SanitizerEntry,
     SubjectsEntry,
     SurroundingsEntry,
-    WaysEntry,
 )
 
 
@@ -177,9 +177,10 @@ class ClosedEntry(TypedDict):
 
 
 class DecisionsFile(FileEntry):
-    """The file of decisions, and the day that they are looked at."""
+    """The log or file of decisions, and the day that they are looked at."""
 
     today: Day
+    head: Annotated[NotRequired[str], "Of a log: the hash of its last entry. A file has no chain."]
 
 
 class Assumptions(TypedDict):
@@ -400,11 +401,10 @@ class Answered(HangsOn, FactsOfElements):
     ]
     roles: Annotated[NotRequired[list[RolesEntry]], "What labels say of nodes, per category."]
     subjects: Annotated[list[SubjectsEntry], "Whom the data of sources are about, as labels say."]
-    ways: Annotated[
-        NotRequired[list[WaysEntry]],
-        "Whose data of a kind get to where its findings end and to each element outside ROS, and what protects "
-        "them on the way; without an element: wherever the kind is. What lies on no way of a row stands in none. "
-        "Rows of which nothing is stated are left out.",
+    register: Annotated[
+        NotRequired[list[RegisterEntry]],
+        "The register of processing: each kind of data at each place where it leaves or rests, whether that is a "
+        "finding or not, then what leaves nowhere. What lies on no way of a row does not stand in it.",
     ]
     surroundings: Annotated[
         NotRequired[list[SurroundingsEntry]],

@@ -1,4 +1,4 @@
-"""The document ``rosprivacy.bags/1``."""
+"""The documents ``rosprivacy.bags/1`` and ``rosprivacy.shared-bag/1``."""
 
 from typing import Annotated, Any, NotRequired, TypedDict
 
@@ -80,3 +80,28 @@ class BagsDocument(TypedDict):
         dict[str, Any],
         "What it rests on: with policies as in rosprivacy.analysis/1, else the label files with their hashes.",
     ]
+
+
+class SharedTopicEntry(TypedDict):
+    """A topic that is in a copy of a bag, or was left out of it."""
+
+    topic: Annotated[str, "Name of the topic, as the bag has it."]
+    types: list[str]
+    messages: Annotated[Count | None, "How many were copied or left out; null where nobody counted them."]
+    kinds: Annotated[list[str], "Names of categories that can be in it, sorted."]
+    suggested: Annotated[list[SuggestionEntry], "What its types suggest: questions for a person, no facts."]
+    why: Annotated[str, "Why it is in the copy, or was left out."]
+
+
+class SharedBagDocument(TypedDict):
+    """What `rosprivacy bag --without KIND --format json` prints. Keys that are listed here stay; more may be added."""
+
+    format: Annotated[str, Keywords(const="rosprivacy.shared-bag/1")]
+    bag: Annotated[str, "The bag that was copied."]
+    copy: Annotated[str | None, "The file that was written; null where no topic could be copied."]
+    without: Annotated[list[str], "Names of the categories that the copy is to be without; empty for all."]
+    messages: Annotated[Count, "How many are in the copy."]
+    topics: Annotated[list[SharedTopicEntry], "Those in the copy, sorted by name."]
+    left_out: Annotated[list[SharedTopicEntry], "Those that are not, sorted by name."]
+    extras: Annotated[list[str], "What else was left out, such as attachments."]
+    assumptions: Annotated[dict[str, Any], "As of rosprivacy.bags/1."]

@@ -76,6 +76,40 @@ class KeptEntry(TypedDict):
     way: list[PlainElement]
 
 
+SettingEntry = TypedDict(
+    "SettingEntry",
+    {
+        "channels": Annotated[str, one_of("topic", "service", "action")],
+        "in": Annotated[str, one_of("parameter", "configuration file", "command line")],
+        "do": Annotated[str, one_of("set", "take out"), "Set it so, or take what is written out of it."],
+        "text": str,
+        "note": str,
+    },
+)
+
+
+class SettingSourceEntry(TypedDict):
+    """What a setting was read in."""
+
+    at: str
+    commit: str
+    files: list[str]
+    read: Annotated[str, "The day."]
+
+
+class LeftOutEntry(TypedDict):
+    """How a person makes a bridge or a recorder leave channels out."""
+
+    node: MarkedElement
+    program: Annotated[str, one_of("bridge", "recorder")]
+    package: str
+    confidence: Annotated[str, one_of("likely", "may"), "How sure it is that the node is of the package."]
+    agrees: Annotated[str, "By what it is recognised."]
+    channels: Annotated[list[PlainElement], "To be left out: the data of the findings gets to the node through them."]
+    write: Annotated[list[SettingEntry], "What to write; of one kind of channel any one of them."]
+    sources: list[SettingSourceEntry]
+
+
 class ProposedStepEntry(TypedDict):
     """A step of a proposal."""
 
@@ -136,6 +170,12 @@ class ProposalEntry(TypedDict):
     categories: list[str]
     removes: Annotated[list[Id], "Findings."]
     keeps: list[KeptEntry]
+    settings: Annotated[
+        list[LeftOutEntry],
+        "What a person would set first, of bridges, then of recorders that the removed findings are about. The program "
+        "keeps to it, not DDS security: what the policy grants stays granted. The steps and the proof know nothing of "
+        "it.",
+    ]
     steps: Annotated[list[ProposedStepEntry], "Empty if nothing can be removed or no proposal could be proven."]
     statements: Annotated[
         list[StatementEntry],

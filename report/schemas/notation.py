@@ -83,6 +83,7 @@ Article9 = Annotated[str, one_of("always", "conditional", "may-reveal", "no", "u
 LawVerdict = Annotated[str, one_of("always", "conditional", "may-reveal")]
 ContextVerdict = Annotated[str, one_of("always", "conditional", "may-reveal", "concerns")]
 Context = Annotated[str, one_of("care", "public-space", "school", "union", "workplace", "worship")]
+GdprScope = Annotated[str, one_of("open", "denied")]
 Method = Annotated[str, one_of("anonymise", "aggregate", "drop", "pseudonymise")]
 Leg = Annotated[str, one_of("request", "response")]
 NotStated = Annotated[str, one_of("country", "occasional")]

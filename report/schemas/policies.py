@@ -55,6 +55,11 @@ class CheckDocument(TypedDict):
     """What a policy says and what is deployed: rosprivacy check --format json."""
 
     format: Annotated[str, Keywords(const="rosprivacy.check/1")]
+    compared: Annotated[
+        NotRequired[Annotated[str, one_of("deployment", "description")]],
+        "With what: what is deployed; or, with what their code does (deployed), descriptions of nodes (policy). "
+        "Absent in documents of earlier versions.",
+    ]
     exposed: Annotated[
         NotRequired[list[ExposedEntry]],
         "What the deployed governance leaves in the open: it is no difference, since a policy says nothing of it. "

@@ -10,6 +10,7 @@ from rosprivacy.report.schemas.notation import (
     Count,
     Day,
     ElementKind,
+    GdprScope,
     Id,
     Keywords,
     LawVerdict,
@@ -64,10 +65,15 @@ class LineEntry(PlaceEntry):
 
 
 class GrantEntry(LineEntry):
-    """A line that allows or denies something; where it was seen in use, when."""
+    """A line that allows or denies something; where it was seen in use, when; of a scan, the line of the code."""
 
     seen: Annotated[
         NotRequired[SeenEntry], "Of an observed policy: through which doors, and from when to when, it was seen in use."
+    ]
+    basis: Annotated[
+        NotRequired[str],
+        "Of a scanned policy: how the code at this line fixes the name (literal, description, launch, default, "
+        "package, guessed).",
     ]
 
 
@@ -115,10 +121,30 @@ LegalBasis = Annotated[
 ]
 
 
+class LoggedEntry(TypedDict):
+    """One entry of a log of decisions."""
+
+    hash: Annotated[str, "Of the entry; the next one names it."]
+    when: Annotated[str, "When it was written, in UTC."]
+    account: Annotated[str, "Who wrote it, as the system and git know them."]
+    decision: Annotated[
+        str,
+        one_of("accept", "accept-on-condition", "mitigate", "delegate", "avoid", "confirm", "withdraw"),
+        "A choice; confirm: the condition is met; withdraw: it is not decided any more.",
+    ]
+    owner: Annotated[str, "Who answers for it, as they stated."]
+    reason: str
+    expires: Day | None
+
+
 class DecisionEntry(TypedDict):
     """What was decided."""
 
-    choice: Annotated[str, one_of("accept", "mitigate", "delegate", "avoid")]
+    choice: Annotated[
+        str,
+        one_of("accept", "accept-on-condition", "mitigate", "delegate", "avoid"),
+        "accept-on-condition counts as nothing until a person confirms the condition; then it is accept.",
+    ]
     state: Annotated[
         str, one_of("valid", "expired", "orphaned"), "orphaned: it is about no finding. An expired one decides nothing."
     ]
@@ -130,6 +156,12 @@ class DecisionEntry(TypedDict):
     ticket: str | None
     file: str
     line: Positive
+    condition: Annotated[NotRequired[str], "What has to be so before it counts, or had to be."]
+    history: Annotated[
+        NotRequired[list[LoggedEntry]],
+        Keywords(minItems=1),
+        "Of a log: what was decided about the same target, the latest last.",
+    ]
     changed: Annotated[
         NotRequired[list[ChangedSince]],
         Keywords(minItems=1),
@@ -190,6 +222,11 @@ class FindingMore(TypedDict, total=False):
         list[ContextLaw],
         "What the data may reveal in the context of their source, which takes part in article9; and provisions "
         "that concern them there.",
+    ]
+    gdpr: Annotated[
+        GdprScope,
+        "Whether the GDPR applies (Article 3), where the source of the data is outside the EEA and that is not "
+        "affirmed: a question, or denied by a label file.",
     ]
     reason: Annotated[str, "Of other kinds than disclosure: what is wrong there, in English."]
     because: Annotated[
@@ -333,7 +370,8 @@ class DiagnosticEntry(TypedDict):
         NotRequired[str],
         "What it is, for programs: unread-file, dead-deny, shared-enclave, fallback-taken, empty-group, "
         "refused-name, joins-nothing, leak-joins-nothing, own-domains, observed, enclaves-made-up, folded-names, "
-        "made-without-warnings, observation-gap, seen-although-denied, bag-gap, access-gap, recording; absent "
+        "made-without-warnings, observation-gap, scanned, scan-gap, seen-although-denied, bag-gap, access-gap, "
+        "recording; absent "
         "where nobody has to tell it from others.",
     ]
 
@@ -435,9 +473,11 @@ class RelianceEntry(TypedDict):
 
     role: Annotated[
         str,
-        one_of("sanitizer", "conduit", "mundane", "sensitive", "only", "never", "cannot", "no-source", "no-leak"),
-        "What the statement says; no-source and no-leak are `source: none` and `leak: none`; cannot is of the "
-        "type of a channel.",
+        one_of(
+            "sanitizer", "conduit", "mundane", "sensitive", "only", "never", "by-type", "cannot", "no-source", "no-leak"
+        ),
+        "What the statement says; no-source and no-leak are `source: none` and `leak: none`; by-type is "
+        "`only: by-type`; cannot is of the type of a channel.",
     ]
     method: Annotated[str, "Of a sanitizer; absent of a node that is said not to be there; else empty."]
     categories: Annotated[list[str], "That it names; none where it is about every kind."]

@@ -7,6 +7,7 @@ from rosprivacy.report.schemas.notation import (
     Context,
     ContextVerdict,
     Count,
+    GdprScope,
     Keywords,
     LawVerdict,
     Method,
@@ -94,6 +95,7 @@ class TypeEntry(TypedDict):
     readers: NotRequired[list[str]]
     first: NotRequired[str]
     last: NotRequired[str]
+    definition: Annotated[NotRequired[str], "The file that defines it, where its fields are known types."]
 
 
 @closed
@@ -111,6 +113,10 @@ class SurroundingsEntry(TypedDict):
     element: ElementEntry
     contexts: Annotated[list[Context], Term("context")]
     country: Annotated[NotRequired[str], Term("country"), "ISO 3166-1 alpha-2."]
+    gdpr: Annotated[
+        NotRequired[GdprScope],
+        "Whether the GDPR applies there (Article 3), where that is outside the EEA and not affirmed.",
+    ]
 
 
 class CategoryEntry(TypedDict):
@@ -191,32 +197,6 @@ class ProcessedEntry(TypedDict):
     missing: Annotated[
         list[Annotated[str, one_of("purpose", "legal_basis")]],
         "What is not stated of all data of the kind that get there.",
-    ]
-
-
-class ProtectionEntry(TypedDict):
-    """Who cleans data on the way, of which kind; whether the data get there in no other form."""
-
-    element: ElementEntry
-    category: str
-    method: Method
-    stated: bool
-    everywhere: Annotated[bool, "Whether the data get there in no other form; else some ways lead past it."]
-
-
-class WaysEntry(TypedDict):
-    """Whose data of a kind get to a place, what protects them before; without an element: wherever the kind is."""
-
-    element: NotRequired[ElementEntry]
-    category: str
-    subjects: Annotated[
-        list[str], "Groups of persons that labels name of the sources whose data get there as this kind."
-    ]
-    subjects_missing: Annotated[bool, "Whether data of a source get there of which no label names the persons."]
-    protections: Annotated[
-        list[ProtectionEntry],
-        "Sanitizers on the ways to all such places of this kind and name, told at the first; none that recognises "
-        "or judges persons.",
     ]
 
 

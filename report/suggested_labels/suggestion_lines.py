@@ -1,14 +1,15 @@
-"""The document of proposals -> a table for the terminal: one proposal a line, its reasons under it."""
+"""The document of proposals -> a table for the terminal: one proposal a line, its surest reason under it."""
 
 from __future__ import annotations
 
 from collections import Counter
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.errors import InputError, shown
 from rosprivacy.analysis.model import Confidence
 from rosprivacy.analysis.suggesting.evidence import MODEL
 from rosprivacy.analysis.text import counted, printable
+from rosprivacy.analysis.written_names import did_you_mean, nearest
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterable, Iterator, Sequence
@@ -19,6 +20,7 @@ NOTHING = "nothing to suggest: no rule speaks of what nobody has labelled"
 BY_HAND = ", and it would close a finding: only by hand"
 OF_ROBOTS = "Write what you accept into the label files of the robot, or of its model."
 WIDEST = 50  # signs of a column
+ALL_NAMES = "rosprivacy suggest without --why names all"
 SHOWN = 3  # places of code in a line
 
 
@@ -58,6 +60,26 @@ def suggestion_lines(document: SuggestionsDocument) -> Iterator[str]:
         yield f"Or write them into a label file with --into labels.yaml, then: {accept}"
 
 
+def why_lines(rows: Sequence[ProposalEntry]) -> Iterator[str]:
+    """Yield proposals of one element with all their reasons."""
+    yield from _table(rows, whole=True)
+
+
+def of_element(document: SuggestionsDocument, name: str) -> list[ProposalEntry]:
+    """Return the proposals of an element, by its name; of a fleet also by ``robot:name``.
+
+    Raises
+    ------
+    InputError
+        If nothing is suggested of it.
+    """
+    rows = [row for row in document["suggestions"] if name in (row["name"], f"{row['robot']}:{row['name']}")]
+    if not rows:
+        names = nearest(name, sorted({row["name"] for row in document["suggestions"]}), bound=2)
+        raise InputError("--why", 0, f"nothing is suggested of {shown(name)}", did_you_mean(names, ALL_NAMES))
+    return rows
+
+
 def _not_looked_at(document: SuggestionsDocument) -> Iterator[str]:
     """Source code that suggests nothing, and why."""
     unread = [f"{shown(one['file'])}:{one['line']}: {shown(one['problem'])}" for one in document["unread"]]
@@ -84,13 +106,16 @@ def _accept_arguments(rows: Sequence[ProposalEntry]) -> str:
     return f"{Confidence.LIKELY if sure else 'NAME'} --by 'YOUR NAME' -l labels.yaml"
 
 
-def _table(rows: Sequence[ProposalEntry]) -> Iterator[str]:
+def _table(rows: Sequence[ProposalEntry], *, whole: bool = False) -> Iterator[str]:
     cells = [(_full_name(row), said_of(row), row["confidence"]) for row in rows]
     widths = [min(WIDEST, max(len(row[at]) for row in cells)) for at in (0, 1)]
     for row, (name, said, sure) in zip(rows, cells, strict=True):
         kind = row["section"].removesuffix("s")
         yield f"  {kind:7} {name:{widths[0]}}  {said:{widths[1]}}  {sure}{BY_HAND if row['by_hand'] else ''}"
-        yield from (f"            {shown(reason)}" for reason in _reasons(row))
+        reasons = list(_reasons(row))
+        yield from (f"            {shown(reason)}" for reason in (reasons if whole else reasons[:1]))
+        if len(reasons) > 1 and not whole:
+            yield f"            {counted(len(reasons) - 1, 'more reason')}: --why {_full_name(row)}"
 
 
 def _full_name(row: ProposalEntry) -> str:

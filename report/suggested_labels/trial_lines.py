@@ -8,12 +8,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.model import GAPS
+from rosprivacy.analysis.model import GAPS, SCAN_GAP, unresolved_rank
 from rosprivacy.analysis.suggesting.evidence import DERIVATION, LEAK, SOURCE
+from rosprivacy.analysis.suggesting.trial import weightiest
 from rosprivacy.analysis.text import counted
+from rosprivacy.analysis.written_names import listed
+from rosprivacy.report.catalogs.words import IN_ENGLISH
+from rosprivacy.report.naming import all_kinds
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.model import Category, Doubt, Element
     from rosprivacy.analysis.suggesting.evidence import LabelProposal, SuggestedLabel
@@ -23,8 +27,12 @@ if TYPE_CHECKING:
 
 SHOWN = 3  # ways out, and names in a row
 KINDS_SHOWN = 4
+ENDS_SHOWN = 6
+ALL_OF_A_ROBOT = 50  # places where data gets out or may: what is not named is overlooked
+GAPS_SHOWN = 12
 TO = {"network": "to a network", "domain": "to another DDS domain", "file": "to a file", "display": "to a display",
       "loudspeaker": "to a loudspeaker", "device": "to a device", "": "where to is not known"}  # fmt: skip
+OTHERWISE = " only along channels whose types are made for other data"
 NO_WAY = "No way out is seen, even if they are right. That is no all-clear:"
 NO_SOURCE = "nothing is suggested, and nothing stated, that brings personal data in"
 NO_EXIT = "nothing is suggested, and nothing stated, that lets data out"
@@ -35,6 +43,8 @@ def trial_lines(
     supposed: Sequence[LabelProposal],
     left_out: Sequence[LabelProposal],
     ways: Sequence[WayOut],
+    ends: Sequence[WayOut],
+    unreached: Sequence[Element],
     unknown: Sequence[Element],
     doubts: Iterable[Doubt],
     categories: Mapping[str, Category],
@@ -45,7 +55,7 @@ def trial_lines(
     ----------
     nodes
         How many there are.
-    supposed, left_out, ways, unknown
+    supposed, left_out, ways, ends, unreached, unknown
         As of ``Trial``.
     doubts
         Of the answer as it is stated.
@@ -56,30 +66,55 @@ def trial_lines(
     else:
         what = f"{counted(len(supposed), 'suggestion')} of what brings personal data in, makes it, or lets it out"
         yield f"{counted(nodes, 'node')}, {what}. Nobody has confirmed them.", ""
-    if ways:
-        yield f"If they are right, data gets out at {counted(len(ways), 'place')}{_first(ways)}:", "bold"
-    for number, way in enumerate(ways[:SHOWN], 1):
+    if ways or ends:
+        yield f"If they are right, {_places(ways, ends)}:", "bold"
+    numbered = weightiest(ways, ends, categories, SHOWN)
+    everywhere = {kind for way in (*ways, *ends) for kind in way.kinds}
+    for number, way in enumerate(numbered, 1):
         yield "", ""
-        yield from _way(number, way, categories)
-    if more := ways[SHOWN:]:
+        yield from _way(number, way, everywhere, categories)
+    if more := [way for way in ways if way not in numbered]:
         yield "", ""
-        yield f"{counted(len(more), 'more place', 'more places')}: {_names([way.exit for way in more])}", ""
+        yield f"{counted(len(more), 'more place', 'more places')}: {_names(way.exit for way in more)}", ""
+    if more := [way for way in ends if way not in numbered]:
+        yield "", ""
+        yield from _ends(more, everywhere)
     yield "", ""
     if not ways:
         yield NO_WAY, "yellow"
         roles = {one.label.role for one in supposed}
         yield from ((f"  {text}", "") for role, text in ((SOURCE, NO_SOURCE), (LEAK, NO_EXIT)) if role not in roles)
+    if unreached:
+        what = "Let data out, if suggestions are right, and nothing was seen to get there"
+        yield f"{what}: {_names(unreached)}", "yellow"
     yield from _not_seen(unknown, left_out, gaps)
 
 
-def _first(ways: Sequence[WayOut]) -> str:
-    return f". The {SHOWN} that weigh most" if len(ways) > SHOWN else ""
+def _places(ways: Sequence[WayOut], ends: Sequence[WayOut]) -> str:
+    """At how many places data gets out, and at how many it may."""
+    out = f"data gets out at {counted(len(ways), 'place')}"
+    ending = f"ends at {counted(len(ends), 'node')} of which nobody says what becomes of it there"
+    text = f"{out} and {ending}" if ways and ends else out if ways else f"data {ending}"
+    return f"{text}. The {SHOWN} that weigh most" if len(ways) + len(ends) > SHOWN else text
 
 
-def _way(number: int, way: WayOut, categories: Mapping[str, Category]) -> Iterator[Line]:
+def _ends(ends: Sequence[WayOut], everywhere: Collection[str]) -> Iterator[Line]:
+    """What gets to nodes of which nobody says what they do with it."""
+    yield "It also ends here, where it is kept, shown, sent, or made into something else:", "bold"
+    for way in ends[:ENDS_SHOWN]:
+        yield f"  {shown(way.exit.name)} gets {_kinds(way.kinds, everywhere)}", ""
+    if more := ends[ENDS_SHOWN:]:
+        yield f"  and {len(more)} more: {_names(way.exit for way in more)}", ""
+
+
+def _way(number: int, way: WayOut, everywhere: Collection[str], categories: Mapping[str, Category]) -> Iterator[Line]:
     first = way.findings[0]
     yield f"{number}. {shown(way.exit.name)}, {TO[way.where]}", "bold"
-    yield f"   {_kinds(way.kinds)}", ""
+    yield f"   {_kinds(way.kinds, everywhere)}", ""
+    if unlikely := len(way.unlikely_kinds):
+        yield f"   and {counted(unlikely, 'more kind', 'more kinds')}{OTHERWISE}", ""
+    elif not way.likely:
+        yield f"  {OTHERWISE}", ""
     path = " -> ".join(shown(element.name) for element in dict.fromkeys(first.witness))
     yield f"   {first.category}: {path}", "red"
     for one in way.proposals:
@@ -91,11 +126,13 @@ def _way(number: int, way: WayOut, categories: Mapping[str, Category]) -> Iterat
         yield "   This is stated, not suggested.", "bold"
 
 
-def _kinds(kinds: Sequence[str]) -> str:
-    """What gets out there, a few by name."""
+def _kinds(kinds: Sequence[str], everywhere: Collection[str]) -> str:
+    """What gets out there, a few by name, and whether it is all that gets out anywhere."""
     if len(kinds) <= KINDS_SHOWN + 1:
         return ", ".join(kinds)
-    return f"{', '.join(kinds[:KINDS_SHOWN])} and {len(kinds) - KINDS_SHOWN} more kinds"
+    names, more = ", ".join(kinds[:KINDS_SHOWN]), len(kinds) - KINDS_SHOWN
+    every = all_kinds(kinds, everywhere, IN_ENGLISH)
+    return f"{every}: {names} and {more} more" if every else f"{names} and {more} more kinds"
 
 
 def _meaning(label: SuggestedLabel) -> str:
@@ -119,15 +156,18 @@ def _question(label: SuggestedLabel, category: str, categories: Mapping[str, Cat
 def _not_seen(unknown: Sequence[Element], left_out: Sequence[LabelProposal], gaps: Sequence[Doubt]) -> Iterator[Line]:
     """What neither labels nor suggestions speak of: there may be more ways out."""
     if unknown:
-        what = counted(len(unknown), "node")
-        yield f"Not known: what {what} {'does' if len(unknown) == 1 else 'do'} with data: {_names(unknown)}", "yellow"
+        what = f"what {counted(len(unknown), 'node')} {'does' if len(unknown) == 1 else 'do'} with data"
+        yield f"Not known: {what}: {_names(unknown)}", "yellow"
     if left_out:
         names = list(dict.fromkeys(one.label.element for one in left_out))
-        yield f"Left out, since labels say otherwise: suggestions about {_names(names)}", "yellow"
-    for doubt in gaps:
-        yield f"Not seen: {doubt.message}", "yellow"
+        yield f"Left out, since labels say otherwise: suggestions about {_names(names, SHOWN)}", "yellow"
+    ordered = sorted(gaps, key=lambda doubt: unresolved_rank(doubt.message))
+    for doubt in ordered[:GAPS_SHOWN]:
+        at = f"{doubt.place}: " if doubt.name == SCAN_GAP else ""
+        yield f"Not seen: {at}{doubt.message}", "yellow"
+    if more := ordered[GAPS_SHOWN:]:
+        yield f"Not seen: {counted(len(more), 'more gap')}", "yellow"
 
 
-def _names(elements: Sequence[Element]) -> str:
-    names = ", ".join(shown(element.name) for element in elements[:SHOWN])
-    return f"{names} and {len(elements) - SHOWN} more" if len(elements) > SHOWN else names
+def _names(elements: Iterable[Element], at_most: int = ALL_OF_A_ROBOT) -> str:
+    return listed([element.name for element in elements], at_most)

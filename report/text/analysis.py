@@ -14,8 +14,9 @@ from rosprivacy.report.catalogs.words import IN_ENGLISH, Words
 from rosprivacy.report.naming import count_rows, legs, names_shown, shown_name
 from rosprivacy.report.observed_lines import observed_lines
 from rosprivacy.report.review_groups import SHOWN
-from rosprivacy.report.text.finding_lines import MANY, details, enforced_lines, law_lines, overview
+from rosprivacy.report.text.finding_lines import MANY, details, enforced_lines, overview
 from rosprivacy.report.text.fleet import fleet_lines
+from rosprivacy.report.text.law_lines import law_lines
 from rosprivacy.report.text.line_parts import place, wrapped
 from rosprivacy.report.text.review import doubt_lines, next_lines, review_lines
 from rosprivacy.report.text.taken_away import (
@@ -166,6 +167,8 @@ def _assumed(report: Mapping[str, Any], words: Words, limit: int | None) -> Iter
             f"   {words('terminal.file.decisions', file=shown(taken['file']), sha=taken['sha256'][:12], date=date)}",
             "",
         )
+        head = taken.get("head", "")
+        yield f"   {words('terminal.decisions.head', head=head) if head else words('terminal.decisions.file')}", ""
     yield from _question(report, words)
     yield from _files(assumptions["ontologies"], "ontologies", words)
     yield f"   {words('terminal.law', date=words.date(assumptions['law_as_of']))}", ""

@@ -25,6 +25,7 @@ ADEQUACY = "Adequacy decisions (GDPR Art. 45)"
 UNCONFIRMED = (
     "amendment adopted {date}; that the Official Journal has it is not confirmed; look whether it was published"
 )
+POINTER = "a pointer, not confirmed by us: all that we know of it is what others write; look the law up"
 WORDS = {
     "en": {
         "definition": "Definition", "names": "Also", "broader": "Broader", "narrower": "Narrower",
@@ -147,18 +148,18 @@ def law_lines(provisions: Sequence[Provision], countries: str) -> Iterator[str]:
         where = f"  {provision.address}" if provision.address else ""
         yield f"{provision.name}: {provision.title} (reviewed {provision.as_of}){where}"
         yield f"   {provision.meaning}"
-        if provision.adopted:
-            yield f"   {UNCONFIRMED.format(date=provision.adopted)}"
+        if not provision.confirmed:
+            yield f"   {_unconfirmed(provision)}"
     yield f"{ADEQUACY}: reviewed {countries}"
 
 
 def unconfirmed_lines(provisions: Sequence[Provision]) -> list[str]:
-    """Return what rests on law that was adopted, and that we did not find published."""
-    return [
-        f"{provision.name}: {UNCONFIRMED.format(date=provision.adopted)}"
-        for provision in provisions
-        if provision.adopted
-    ]
+    """Return what rests on law that we did not find published."""
+    return [f"{provision.name}: {_unconfirmed(provision)}" for provision in provisions if not provision.confirmed]
+
+
+def _unconfirmed(provision: Provision) -> str:
+    return UNCONFIRMED.format(date=provision.adopted) if provision.adopted else POINTER
 
 
 def old_lines(provisions: Sequence[Provision], countries: str, today: str) -> list[str]:

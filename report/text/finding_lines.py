@@ -1,6 +1,7 @@
-"""Findings as lines: a list, the details hop by hop, what was decided, what the enforced view adds, and the law once.
+"""Findings as lines, by the places where data gets out: a list, the details hop by hop, what the enforced view adds.
 
-In: a JSON document of the contract. Out: lines. What a person decides first stands first.
+In: a JSON document of the contract. Out: lines. What a person decides first stands first: a place has the rank of the
+worst that gets there. Places are numbered, findings have ids.
 """
 
 from __future__ import annotations
@@ -10,10 +11,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import CHANNELS, UNPROTECTED
-from rosprivacy.analysis.text import blanked
-from rosprivacy.report.catalogs.words import IN_ENGLISH, Words, finding_reason, spaced
-from rosprivacy.report.finding_facts import data_made, in_order, looked_at
-from rosprivacy.report.naming import key, kind_in, names_shown, shown_name
+from rosprivacy.report.catalogs.words import IN_ENGLISH, Words, finding_reason
+from rosprivacy.report.finding_facts import data_made, grouped, in_order, made_of
+from rosprivacy.report.naming import all_kinds, joined_by_and, key, kind_in, names_shown, shown_name, without_leg
 from rosprivacy.report.text.fleet import on_robots, robots_of
 from rosprivacy.report.text.line_parts import place
 
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 
 MANY = 5  # findings; of more a list of one line each comes first
 SHOWN_AT_MOST = 4  # kinds of data in one line
-NARROWER = "⊇ "  # how the ontology writes, in other languages than English: if the data are of one of these kinds
 VERBS = {  # (role, whether data goes into a channel) -> what is between the two
     ("publish", True): "publish",
     ("subscribe", False): "subscribe",
@@ -45,28 +44,41 @@ def verb(role: str, *, into_channel: bool, words: Words) -> str:
 
 
 def overview(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
-    """Return one line for each finding where there are many, and for those that one line of a governance is behind."""
+    """Return a line or two for each finding where there are many, by the places where data gets out.
+
+    Those that one line of a governance is behind are a single line: their ids are among the details.
+    """
     if len(report["findings"]) <= MANY:
         return
     unreviewed = {element for element, _ in _unreviewed(report, report["findings"])}
-    yield "", ""
-    yield words("terminal.findings", n=str(len(report["findings"]))), "bold"
-    ordered = in_order(report["findings"], report)
-    numbers = {finding["id"]: number for number, finding in enumerate(ordered, 1)}
-    for finding, *others in _by_line(ordered):
-        number = numbers[finding["id"]]
-        if others:
-            yield f"{number:>3}. {_group_line([finding, *others], _reason(finding, words), words)}", _style(finding)
-            continue
+
+    def remarks(finding: Mapping[str, Any]) -> tuple[str, ...]:
         met = {key(e) for e in finding["witness"]} & unreviewed
-        parts = [
+        return (
             words.count(len(finding["steps"]), "terminal.hop"),
             *([words("terminal.number.unreviewed", n=len(met))] if met else []),
             *on_robots(report, finding, words),
             *_states(finding, words),
-        ]
-        title = _title(report, finding, words)
-        yield f"{number:>3}. {title}, {', '.join(parts)}   [{finding['id']}]", _style(finding)
+        )
+
+    exits = _exits(report["findings"], report)
+    yield "", ""
+    ways_out = words.count(len(exits), "exit")
+    yield words("terminal.findings", n=str(len(report["findings"])), exits=ways_out), "bold"
+    kinds = _plain_kinds(report["findings"])
+    for number, exit_ in enumerate(exits, 1):
+        numbered = f"{number:>3}. "
+        titles = grouped(exit_, lambda finding: (_route(finding), _content(finding), remarks(finding)))
+        if len(titles) == 1:
+            place = shown_name(exit_[0]["leak"])
+            title = words.pair(place, _title(report, titles[0], words, remarks(exit_[0])))
+            yield f"{numbered}{title}", _style(exit_[0])
+            continue
+        yield f"{numbered}{_heading(exit_, kinds, words)}", _style(exit_[0])
+        if not _behind_one_line(exit_[0]):
+            for alike in titles:
+                title = _title(report, alike, words, remarks(alike[0]))
+                yield f"{' ' * len(numbered)}{title}", "dim" if _is_settled(alike[0]) else ""
 
 
 def details(
@@ -75,7 +87,7 @@ def details(
     words: Words = IN_ENGLISH,
     detail_lines: Callable[[Mapping[str, Any]], Iterable[Line]] = lambda _: (),
 ) -> Iterator[Line]:
-    """Return the findings hop by hop.
+    """Return the findings hop by hop, by the places where data gets out; a path that several have stands once.
 
     Parameters
     ----------
@@ -84,24 +96,93 @@ def details(
     """
     roles = {(key(said["element"]), said["category"]): said["roles"] for said in report["roles"]}
     unreviewed, folder = _unreviewed(report, findings), _policies_in(report)
+    way, kinds = _Way(roles, unreviewed, folder, words), _plain_kinds(findings)
+
+    def before(finding: Mapping[str, Any]) -> tuple[Line, ...]:
+        return tuple(_remarks(report, finding, words))
+
+    def after(finding: Mapping[str, Any]) -> tuple[Line, ...]:
+        return (*_paths(finding, words), *detail_lines(finding))
+
     if folder and any(finding["steps"] for finding in findings):
         yield words("terminal.folder", folder=shown(folder)), "dim"
-    for number, finding in enumerate(in_order(findings, report), 1):
+    for number, exit_ in enumerate(_exits(findings, report), 1):
+        routes = [
+            grouped(route, lambda finding: (_content(finding), before(finding), after(finding)))
+            for route in grouped(exit_, _route)
+        ]
+        alone = len(routes) == len(routes[0]) == 1
         yield "", ""
-        yield f"{number}. {_title(report, finding, words)}   [{finding['id']}]", _style(finding)
-        yield from robots_of(report, finding, words)
-        if "reason" in finding:
-            yield f"   {_reason(finding, words)}", ""
-        if finding["dismissed"]:
-            through = ", ".join(shown_name(element) for element in finding["through"])
-            past = words("terminal.past") if finding.get("beside_pseudonymised") else ""
-            yield f"   {words('terminal.through', names=through, past=past)}", "dim"
-        yield from _decision(finding, words)
-        yield from _Way(roles, unreviewed, folder, words).lines(finding)
-        yield from _paths(finding, words)
-        if finding["special_from"]:
-            yield f"   {words('terminal.special', element=shown_name(finding['special_from']))}", ""
-        yield from detail_lines(finding)
+        if not alone:
+            yield f"{number}. {_heading(exit_, kinds, words)}", _style(exit_[0])
+        for route in routes:
+            if not alone:
+                yield "", ""
+            same = len({after(titled[0]) for titled in route}) == 1
+            for titled in route:
+                first = titled[0]
+                title, place = _title(report, titled, words), shown_name(first["leak"])
+                placed = words.pair(place, title) if alone or _behind_one_line(first) else title
+                yield f"{f'{number}.' if alone else '  '} {placed}", _style(first)
+                yield from before(first)
+                yield from () if same else after(first)
+            yield from way.lines([finding for titled in route for finding in titled])
+            yield from after(route[0][0]) if same else ()
+
+
+def _exits(findings: Iterable[Mapping[str, Any]], report: Mapping[str, Any]) -> list[list[Mapping[str, Any]]]:
+    """Findings of one place where data gets out together, and those that one line of a governance is behind."""
+
+    def place_of(finding: Mapping[str, Any]) -> Any:
+        return finding["reason"] if _behind_one_line(finding) else without_leg(finding["leak"])
+
+    return grouped(in_order(findings, report), place_of)
+
+
+def _behind_one_line(finding: Mapping[str, Any]) -> bool:
+    """Whether it is about a channel that a governance leaves unprotected, perhaps with others."""
+    return finding["kind"] == UNPROTECTED and not finding["accepted"]
+
+
+def _route(finding: Mapping[str, Any]) -> Any:
+    """Where it goes along, and what allows each step."""
+    lines = [[(grant["file"], grant["line"]) for grant in step["policy"]] for step in finding["steps"]]
+    return tuple(map(key, finding["witness"])), repr([step["role"] for step in finding["steps"]]), repr(lines)
+
+
+def _content(finding: Mapping[str, Any]) -> Any:
+    """What findings of one route have in common that one title names: all but the kind of data."""
+    of, makers = made_of(finding)
+    return finding["kind"], finding["pseudonymised"], of if makers else "", tuple(map(key, makers))
+
+
+def _plain_kinds(findings: Iterable[Mapping[str, Any]]) -> dict[str, None]:
+    """The kinds of data that somebody has to decide about, other than pseudonymised, in their order."""
+    return {f["category"]: None for f in findings if not (_is_settled(f) or f["pseudonymised"])}
+
+
+def _heading(exit_: Sequence[Mapping[str, Any]], everywhere: Collection[str], words: Words) -> str:
+    """A place and what gets there; of those behind one line of a governance, how many there are, and the line."""
+    first = exit_[0]
+    if _behind_one_line(first):
+        return _group_line(exit_, _reason(first, words), words)
+    waiting = [finding for finding in exit_ if not _is_settled(finding)] or exit_
+    if not (data := all_kinds(_plain_kinds(waiting), everywhere, words)):
+        kinds = dict.fromkeys(_data(f["category"], words, pseudonymised=f["pseudonymised"]) for f in waiting)
+        data = words.row(words.first(list(kinds), SHOWN_AT_MOST))
+    return words.pair(shown_name(first["leak"]), data)
+
+
+def _remarks(report: Mapping[str, Any], finding: Mapping[str, Any], words: Words) -> Iterator[Line]:
+    """What stands below the title: on which robots it is, why it is one, and what was decided."""
+    yield from robots_of(report, finding, words)
+    if "reason" in finding:
+        yield f"   {_reason(finding, words)}", ""
+    if finding["dismissed"]:
+        through = ", ".join(shown_name(element) for element in finding["through"])
+        past = words("terminal.past") if finding.get("beside_pseudonymised") else ""
+        yield f"   {words('terminal.through', names=through, past=past)}", "dim"
+    yield from _decision(finding, words)
 
 
 def _reason(finding: Mapping[str, Any], words: Words) -> str:
@@ -160,53 +241,6 @@ def _listed(enclaves: list[str]) -> str:
     return ", ".join(map(shown, enclaves))
 
 
-def law_lines(
-    report: Mapping[str, Any], findings: Iterable[Mapping[str, Any]], words: Words = IN_ENGLISH
-) -> Iterator[Line]:
-    """Return what a person has to look up about each kind of data that arrives somewhere, once for each kind."""
-    ordered = in_order(findings, report)
-    by_kind = {finding["category"]: finding for finding in ordered}
-    findings_of = {kind: [finding for finding in ordered if finding["category"] == kind] for kind in by_kind}
-    if not by_kind:
-        return
-    kinds = {category["name"]: category for category in report["categories"]}
-    yield "", ""
-    yield words("terminal.law.title"), "bold"
-    for category, finding in by_kind.items():
-        for legal in _law(finding, kinds, words):
-            yield f"   {words('terminal.law.line', kind=category, **legal)}", "magenta"
-        yield from _in_contexts(kinds.get(category, {}), findings_of[category], words)
-        yield from _pointers(report, category, words)
-        if finding["article9"] == "unknown":
-            yield f"   {words('terminal.law.unknown', kind=category)}", "yellow"
-        if finding["article9"] == "no":
-            reason = _text(kinds[category], "reason", words) if category in kinds else ""
-            yield f"   {words('terminal.law.no', kind=category, reason=reason)}", "dim"
-    yield from _of_contexts(report, words)
-
-
-def _law(finding: Mapping[str, Any], kinds: Mapping[str, Mapping[str, Any]], words: Words) -> Iterator[dict[str, str]]:
-    """The provisions of a finding, with the texts that the ontology has of them."""
-    stated = kinds.get(finding["category"], {}).get("law", ())
-    for legal in finding["law"]:
-        alike = (
-            other for other in stated if all(other[key] == legal[key] for key in ("provision", "verdict", "condition"))
-        )
-        texts = next(alike, {**legal, "translations": {}})
-        condition = _text(texts, "condition", words).removeprefix(NARROWER)
-        yield {
-            "provision": _text(texts, "provision", words),
-            "may": words(f"terminal.may.{legal['verdict']}"),
-            "condition": words("terminal.law.condition", condition=condition) if condition else "",
-        }
-
-
-def _text(of: Mapping[str, Any], field: str, words: Words, fit: Callable[[str], str] = str) -> str:
-    """A text of the ontology in the reader's language, in English if there is no translation."""
-    text = of.get("translations", {}).get(words.language, {}).get(field) or of[field]
-    return spaced(fit(blanked(text)), words.language)
-
-
 def _policies_in(report: Mapping[str, Any]) -> str:
     """The folder that all policies are in, empty if there is none that says anything."""
     files = [entry["file"] for entry in report["assumptions"].get("policies", ())]
@@ -216,12 +250,21 @@ def _policies_in(report: Mapping[str, Any]) -> str:
         return ""
 
 
-def _title(report: Mapping[str, Any], finding: Mapping[str, Any], words: Words) -> str:
-    data = _data(finding["category"], words, pseudonymised=finding["pseudonymised"])
-    asked = _may_be_asked(report, finding["category"], words)
-    made = data_made(finding, f"{data}{asked}", words, str, shown_name)
-    what = words(f"terminal.kind.{finding['kind']}", data=made)
-    return words.pair(what, f"{shown_name(finding['source'])} -> {shown_name(finding['leak'])}")
+def _title(
+    report: Mapping[str, Any], alike: Sequence[Mapping[str, Any]], words: Words, remarks: Sequence[str] = ()
+) -> str:
+    """What findings are about that differ only in the kind of data, with the id of each."""
+    first = alike[0]
+    data = []
+    for finding in alike:
+        kind = _data(finding["category"], words, pseudonymised=finding["pseudonymised"])
+        id_ = f" [{finding['id']}]" if len(alike) > 1 else ""
+        data.append(f"{kind}{_may_be_asked(report, finding['category'], words)}{id_}")
+    made = data_made(first, words.row(data), words, str, shown_name)
+    what = words(f"terminal.kind.{first['kind']}", data=made)
+    scope = [words(f"terminal.state.gdpr.{first['gdpr']}")] if "gdpr" in first else []  # one source, so one for all
+    title = words.row([words("terminal.from", data=what, source=shown_name(first["source"])), *scope, *remarks])
+    return title if len(alike) > 1 else f"{title}   [{first['id']}]"
 
 
 def _data(category: str, words: Words, *, pseudonymised: bool) -> str:
@@ -233,7 +276,11 @@ def _states(finding: Mapping[str, Any], words: Words) -> list[str]:
 
 
 def _style(finding: Mapping[str, Any]) -> str:
-    return "dim" if finding["dismissed"] or finding["accepted"] else "bold"
+    return "dim" if _is_settled(finding) else "bold"
+
+
+def _is_settled(finding: Mapping[str, Any]) -> bool:
+    return bool(finding["dismissed"] or finding["accepted"])
 
 
 def _unreviewed(report: Mapping[str, Any], findings: Iterable[Mapping[str, Any]]) -> set[Any]:
@@ -263,41 +310,70 @@ class _Way(NamedTuple):
     folder: str
     words: Words
 
-    def lines(self, finding: Mapping[str, Any]) -> Iterator[Line]:
-        """Return the witness: element, what labels say of it, policy line."""
-        witness, steps, words = finding["witness"], finding["steps"], self.words
-        data = [step["category"] for step in steps]
+    def lines(self, findings: Sequence[Mapping[str, Any]]) -> Iterator[Line]:
+        """Return the witness of findings that have the same: element, what labels say of it, policy line."""
+        witness, words = findings[0]["witness"], self.words
+        last = len(witness) - 1
         for hop, element in enumerate(witness):
-            # what is there: the data that arrives, at the source the data that leaves, at the leak what gets out too
-            last = [] if hop < len(steps) else [finding["category"]]
-            here = dict.fromkeys([*data[max(hop - 1, 0) : hop or 1], *last])
-            roles_of = [(name, role) for name in here for role in self.roles.get((key(element), name), ())]
-            notes = [
-                f"{words(f'terminal.role.{role}', kind=name)}{self._of_another(finding, hop, role, name)}"
-                for name, role in roles_of
-            ]
-            notes += [words("unreviewed") for name in here if (key(element), name) in self.unreviewed]
-            style = "red" if any(role == "leak" for _, role in roles_of) else ""
+            here = dict.fromkeys(name for finding in findings for name in _kinds_at(finding, hop))
+            notes = list(self._notes(findings, hop, here))
+            style = "red" if any("leak" in self.roles.get((key(element), name), ()) for name in here) else ""
             yield f"   {shown_name(element)}  ({', '.join([kind_in(element, words), *notes])})", style
-            if hop < len(steps):
-                before = steps[hop - 1] if hop else steps[hop]
-                yield f"     | {self._step(steps[hop], before, witness[hop + 1])}", "dim"
+            if hop < last:
+                yield f"     | {self._step(findings, hop, witness[hop + 1])}", "dim"
 
-    def _of_another(self, finding: Mapping[str, Any], hop: int, role: str, name: str) -> str:
+    def _notes(self, findings: Sequence[Mapping[str, Any]], hop: int, present: Collection[str]) -> Iterator[str]:
+        """What labels say of an element, for each kind of data that is there."""
+        words, at = self.words, key(findings[0]["witness"][hop])
+        kinds: dict[tuple[str, str], list[str]] = {}
+        for name in present:
+            for role in self.roles.get((at, name), ()):
+                kinds.setdefault((role, self._of_another(findings, hop, role, name)), []).append(name)
+        for (role, another), names in kinds.items():
+            data = all_kinds(names, present, words) or _joined(names, words)
+            yield f"{words(f'terminal.role.{role}', kind=data)}{another}"
+        if unreviewed := [name for name in present if (at, name) in self.unreviewed]:
+            whole = len(unreviewed) == len(present)
+            yield words("unreviewed") if whole else words("terminal.unreviewed.of", kinds=_joined(unreviewed, words))
+
+    def _of_another(self, findings: Sequence[Mapping[str, Any]], hop: int, role: str, name: str) -> str:
         """Why a leak on the path does not dismiss a finding: it lets out what this one is not about (rule S10)."""
-        between = role == "leak" and hop < len(finding["steps"]) and name != finding["category"]
-        return self.words("terminal.another") if between else ""
+        between = role == "leak" and hop < len(findings[0]["steps"])
+        another = between and all(name != finding["category"] for finding in findings)
+        return self.words("terminal.another") if another else ""
 
-    def _step(self, step: Mapping[str, Any], before: Mapping[str, Any], to: Mapping[str, Any]) -> str:
+    def _step(self, findings: Sequence[Mapping[str, Any]], hop: int, to: Mapping[str, Any]) -> str:
         """One hop: what the policy allows, where, and what the data has become."""
-        words = self.words
-        places = [f"{shown(_within(self.folder, grant['file']))}:{grant['line']}" for grant in step["policy"]]
+        words, step = self.words, findings[0]["steps"][hop]
+        places = [
+            f"{shown(_within(self.folder, grant['file']))}:{grant['line']}"
+            + (f" ({grant['basis']})" if "basis" in grant else "")
+            for grant in step["policy"]
+        ]
         more = words("terminal.more", n=len(places) - 1) if len(places) > 1 else ""
         text = verb(step["role"], into_channel=to["kind"] in CHANNELS, words=words)
         what = f"{text}  {places[0]}{more}" if places else text
-        if (step["category"], step["pseudonymised"]) == (before["category"], before["pseudonymised"]):
+        data = [_data_at(finding, hop, words) for finding in findings]
+        if data == [_data_at(finding, max(hop - 1, 0), words) for finding in findings]:
             return what
-        return what + words("terminal.now", data=_data(step["category"], words, pseudonymised=step["pseudonymised"]))
+        return what + words("terminal.now", data=_joined(list(dict.fromkeys(data)), words))
+
+
+def _kinds_at(finding: Mapping[str, Any], hop: int) -> Iterator[str]:
+    """What is there: the data that arrives, at the source the data that leaves, at the leak what gets out too."""
+    data = [step["category"] for step in finding["steps"]]
+    yield from data[max(hop - 1, 0) : hop or 1]
+    if hop == len(data):
+        yield finding["category"]
+
+
+def _data_at(finding: Mapping[str, Any], hop: int, words: Words) -> str:
+    step = finding["steps"][hop]
+    return _data(step["category"], words, pseudonymised=step["pseudonymised"])
+
+
+def _joined(names: Sequence[str], words: Words) -> str:
+    return joined_by_and([words.row(names[:-1]), names[-1]] if len(names) > 1 else names, words)
 
 
 def _within(folder: str, file: str) -> str:
@@ -313,21 +389,14 @@ def _paths(finding: Mapping[str, Any], words: Words) -> Iterator[Line]:
         yield f"   {words('terminal.path', path=' -> '.join(shown_name(element) for element in path))}", ""
     if finding.get("paths_bounded"):
         yield f"   {words('terminal.bounded', n=len(finding['paths']))}", "yellow"
+    if finding["special_from"]:
+        yield f"   {words('terminal.special', element=shown_name(finding['special_from']))}", ""
 
 
 def _may_be_asked(report: Mapping[str, Any], category: str, words: Words) -> str:
     """Which of the kinds asked for data of another may be, with a space before; empty for what is asked for."""
     kinds = report["assumptions"].get("may_be_asked", {}).get(category)
     return words("terminal.may.be", kinds=names_shown(kinds, words)) if kinds else ""
-
-
-def _by_line(findings: Iterable[Mapping[str, Any]]) -> list[list[Mapping[str, Any]]]:
-    """Findings in their order; those of channels that one line of a governance leaves unprotected are together."""
-    groups: dict[Any, list[Mapping[str, Any]]] = {}
-    for finding in findings:
-        stands = finding["kind"] == UNPROTECTED and not finding["accepted"]
-        groups.setdefault(finding["reason"] if stands else finding["id"], []).append(finding)
-    return list(groups.values())
 
 
 def _group_line(group: Sequence[Mapping[str, Any]], reason: str, words: Words) -> str:
@@ -357,42 +426,9 @@ def _decision(finding: Mapping[str, Any], words: Words) -> Iterator[Line]:
     yield f"   {choice}{owner}{until}{basis}  ({at})", style
     if decision["reason"]:
         yield f"      {shown(decision['reason'])}", style
+    if decision.get("condition"):
+        yield f"      {words('terminal.condition', condition=shown(decision['condition']))}", style
     for change in decision.get("changed", ()):
         what = words.of_value(f"terminal.changed.{change['what']}", change["what"].replace("_", " "))
         before, now = shown(change["before"]), shown(change["now"])
         yield f"      {words('terminal.changed', what=what, before=before, now=now)}", "yellow"
-
-
-def _in_contexts(kind: Mapping[str, Any], findings: Iterable[Mapping[str, Any]], words: Words) -> Iterator[Line]:
-    """What data of a kind may reveal, once for each context and provision, with the sources there."""
-    of_source: dict[tuple[str, str, str], dict[str, None]] = {}
-    for finding in findings:
-        for legal in finding.get("in_context", ()):
-            at = legal["context"], legal["provision"], legal["condition"]
-            of_source.setdefault(at, {})[shown_name(finding["source"])] = None
-    for row in kind.get("in_context", ()):
-        sources = of_source.get((row["context"], row["provision"], row["condition"]), {})
-        if sources:
-            texts = {what: _text(row, what, words, shown) for what in ("provision", "condition")}
-            who = {"kind": kind["name"], "sources": ", ".join(sources), "context": row["context"]}
-            sentence = f"terminal.law.context.{row['verdict']}"
-            yield f"   {words(sentence, **who, **texts)}", "magenta"
-
-
-def _pointers(report: Mapping[str, Any], category: str, words: Words) -> Iterator[Line]:
-    """The provisions that a kind of data points at, in one line."""
-    rows = [row for row in looked_at(report) if category in row["categories"]]
-    if rows:
-        yield f"   {words('terminal.law.look', kind=category, names=_names(rows, words))}", "dim"
-
-
-def _of_contexts(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
-    """The provisions that each context of the system points at; those of every system are in the report."""
-    for context in report.get("contexts", ()):
-        rows = [row for row in looked_at(report) if context["name"] in row["contexts"]]
-        if rows:
-            yield f"   {words('terminal.law.look.context', context=context['name'], names=_names(rows, words))}", "dim"
-
-
-def _names(rows: Iterable[Mapping[str, Any]], words: Words) -> str:
-    return ", ".join(_text(row, "provision", words, shown) for row in rows)

@@ -13,13 +13,23 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import GOES_NOWHERE, NO_LEAK_NAMED
 from rosprivacy.report.catalogs.words import IN_ENGLISH, Words
-from rosprivacy.report.naming import count_rows, joined_by_and, key, kind_in, label_name, legs, names_shown, shown_name
+from rosprivacy.report.naming import (
+    all_kinds,
+    count_rows,
+    joined_by_and,
+    key,
+    kind_in,
+    label_name,
+    legs,
+    names_shown,
+    shown_name,
+)
 from rosprivacy.report.review_groups import SHOWN, next_round, review_groups, sources_of
 from rosprivacy.report.text.line_parts import place
 from rosprivacy.report.verdict import doubts_of, lacking, restriction, subject
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Collection, Iterator, Mapping, Sequence
 
     from rosprivacy.report.review_groups import ReviewGroup
     from rosprivacy.report.text.line_parts import Line
@@ -29,12 +39,14 @@ SENSORS = (  # what is in the name of a node that brings personal data in, more 
     "laser", "lidar", "scan", "radar", "gnss", "face", "person", "people", "teleop", "amcl", "slam", "localiz",
 )  # fmt: skip
 SHORT = ("cam", "rgb", "zed", "mic", "asr", "gps", "joy", "user")  # of these only whole words
+MANY, MOST_OTHERS = 4, 2  # kinds that are said together, and without which
 EXAMPLE = "nodes: {/camera: {source: [Video]}}"
 
 
 def review_lines(report: Mapping[str, Any], words: Words, *, verbose: bool) -> Iterator[Line]:
     """Return open elements: nodes on the frontier, then channels, then what lies behind."""
     brings = sources_of(report)
+    everywhere = () if verbose else [category["name"] for category in report["categories"]]
     for group in review_groups(report):
         if not group.questions:
             continue
@@ -44,23 +56,51 @@ def review_lines(report: Mapping[str, Any], words: Words, *, verbose: bool) -> I
         yield words.pair(title, f"{count.elements}{legs(count, words)}"), "bold"
         for question in group.questions if verbose else group.now[:SHOWN]:
             steps = words("terminal.from.source", steps=words.count(question["distance"], "step"))
-            what = "; ".join((kind_in(question["element"], words), steps, review_text(question, brings, words)))
+            what = "; ".join(
+                (kind_in(question["element"], words), steps, review_text(question, brings, words, everywhere))
+            )
             yield f"   {label_name(question)}  ({what})", ""
         if not verbose:
             yield from _additional(group, words)
 
 
-def review_text(question: Mapping[str, Any], brings: Mapping[Any, Sequence[str]], words: Words = IN_ENGLISH) -> str:
-    """Return which data is at an open element, through which element it comes, and what a label there can close."""
+def review_text(
+    question: Mapping[str, Any],
+    brings: Mapping[Any, Sequence[str]],
+    words: Words = IN_ENGLISH,
+    everywhere: Collection[str] = (),
+) -> str:
+    """Return which data is at an open element, through which element it comes, and what a label there can close.
+
+    Parameters
+    ----------
+    everywhere
+        All kinds of data that there are: many that are all of these, or nearly so, are said as such.
+    """
     kinds = ", ".join(question["categories"])
+    told = _together(question["categories"], everywhere, words)
     own = brings.get(key(question["element"]), ())
     through = question.get("through")
-    parts = [words("terminal.comes.through", kinds=kinds, element=shown_name(through)) if through else kinds]
+    parts = [words("terminal.comes.through", kinds=told, element=shown_name(through)) if through else told]
     parts += [words(f"terminal.missing.{what}") for what in question.get("missing", ())]
     parts += [words("terminal.brings", own=", ".join(own), kinds=kinds)] if own else []
     behind = [words.count(question["closes"], "open_element")] if question.get("closes") else []
     behind += [words.count(question["leaks"], "exit")] if question.get("leaks") else []
     return "; ".join([*parts, *([words("terminal.only.past", behind=joined_by_and(behind, words))] if behind else [])])
+
+
+def _together(kinds: Sequence[str], everywhere: Collection[str], words: Words) -> str:
+    """Kinds by name; of many all, or all but a few.
+
+    >>> every = ["Gait", "Gesture", "LaserScan", "Video", "Voice"]
+    >>> [_together(every[:n], every, IN_ENGLISH) for n in (5, 4, 3)]
+    ['all 5 kinds of data', 'all 5 kinds of data but Voice', 'Gait, Gesture, LaserScan']
+    """
+    others = [kind for kind in everywhere if kind not in kinds]
+    if len(kinds) < MANY or not everywhere or len(others) > MOST_OTHERS:
+        return ", ".join(kinds)
+    every = all_kinds(everywhere, everywhere, words)
+    return words("terminal.kinds.but", all=every, others=", ".join(others)) if others else every
 
 
 def _additional(group: ReviewGroup, words: Words) -> Iterator[Line]:

@@ -5,14 +5,13 @@ In: what was found, and what it rests on. Out: ``Answer``, of which ``documents.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.contexts import Contexts
 from rosprivacy.analysis.findings.processed import processed
 from rosprivacy.analysis.findings.review_order import Behind, review_order
-from rosprivacy.analysis.findings.witness import Ways, ways
 from rosprivacy.analysis.fleet.likeness import NO_ROBOTS
 from rosprivacy.analysis.whatif.ledger import GlobUse, globs, ledger
 from rosprivacy.analysis.whatif.reliance import Reliance, reliances
@@ -29,6 +28,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.fleet.counts import Counts
     from rosprivacy.analysis.fleet.patterns import FleetView
     from rosprivacy.analysis.model import Bound, Diagnostic, Doubt, Element
+    from rosprivacy.analysis.model.register_row import RegisterRow
     from rosprivacy.analysis.whatif.ledger import TakenAway
     from rosprivacy.ontology.vocabulary import Vocabulary
 
@@ -182,23 +182,38 @@ class Answer:
         return tuple(row for row in rows if row.element.robot not in self._robots_not_shown)
 
     @cached_property
-    def ways(self) -> tuple[Ways, ...]:
-        """What lies on the ways of each kind of data to each place; of robots that are alike of one.
+    def register(self) -> tuple[RegisterRow, ...]:
+        """The register of processing; of robots that are alike of one.
 
-        Where the graph does not hold the whole fleet, the persons of other robots are not known at what robots share.
+        Where the graph does not hold the whole fleet, the persons of other robots are not known at what robots share,
+        nor where data leave nowhere.
         """
+        from rosprivacy.analysis.findings.register import Statements, register  # noqa: PLC0415 - light start
+
         likeness = self.fleet.likeness if self.fleet else NO_ROBOTS
+        decided = (
+            {}
+            if self.decided is None
+            else {
+                finding.id: decision.legal_basis
+                for finding in self.shown.findings
+                if (decision := self.decided.valid(finding))
+            }
+        )
+        stated = Statements(
+            self.bound, self.processed, self.contexts, self.vocabulary.hierarchy, self._law, decided, likeness.second
+        )
+        rows = register(self.shown, stated)
+        if self.counts is None:
+            return rows
+        alone = (row.places and all(likeness.is_robot(place.robot) for place in row.places) for row in rows)
+        return tuple(row if some else row.without_all_subjects() for row, some in zip(rows, alone, strict=True))
 
-        def difference(row: Ways) -> Ways:
-            shown = (
-                p._replace(element=replace(p.element, robot=likeness.second.get(p.element.robot, p.element.robot)))
-                for p in row.protections
-            )
-            shared = row.element is None or not likeness.is_robot(row.element.robot)
-            unnamed = row.unnamed or (self.counts is not None and shared)
-            return row._replace(protections=tuple(dict.fromkeys(shown)), unnamed=unnamed)
-
-        return tuple(map(difference, ways(self.shown, self.bound, self.vocabulary.categories)))
+    def _law(self, category: str, contexts: Collection[str], countries: Collection[str]) -> tuple[str, ...]:
+        """Return the provisions to look at that a kind or a context calls for, of the Union and of some countries."""
+        kind = self.vocabulary.categories[category]
+        rows = self.vocabulary.pointed.rows([kind], contexts)
+        return tuple(law.name for law, kinds, where in rows if (kinds or where) and law.country in ("", *countries))
 
     def fleet_counts(self, view: FleetView) -> Counts:
         """Return how many elements, flows and standard channels the fleet has, not its graph."""

@@ -17,6 +17,7 @@ from rosprivacy.analysis.findings.findings import Options, analyse, chosen_findi
 from rosprivacy.analysis.findings.processed import lacks, processed
 from rosprivacy.analysis.fleet.likeness import pattern_id
 from rosprivacy.analysis.kernel.states import Net
+from rosprivacy.analysis.model import TYPE_LINE
 from rosprivacy.analysis.modes import Paths, View
 from rosprivacy.analysis.whatif.answered_by_globs import answered_by_globs
 from rosprivacy.assumptions import assumptions_of
@@ -69,6 +70,7 @@ def answer(system: System, question: Question, *, count_paths: bool = True, befo
         today=question.today,
         bounds=question.settings.bounds,
     )
+    system = _under_lines(system, question)
     limits = question.type_limits() if question.type_limits and system.bound.types else None
     bound = system.bound
     if limits is not None:
@@ -85,6 +87,17 @@ def answer(system: System, question: Question, *, count_paths: bool = True, befo
     if view and options.uncounted and options.count_paths:
         analysis, view = _counted(replace(system, bound=bound), options, analysis, view)
     return concluded(replace(system, bound=bound), question, analysis, view, options)
+
+
+def _under_lines(system: System, question: Question) -> System:
+    """A system with what its lines ``only: by-type`` close, and with what a reader has to know of them."""
+    if not any(one.role == TYPE_LINE for said in system.bound.elements.values() for one in said):
+        return system
+    from rosprivacy.analysis.kernel.by_type import under_lines  # noqa: PLC0415 - light start
+
+    hierarchy = system.vocabulary.hierarchy
+    bound, said = under_lines(system.graph, system.bound, hierarchy, question.types() if question.types else None)
+    return replace(system, bound=bound, diagnostics=(*system.diagnostics, *said))
 
 
 def _under_types(system: System, options: Options, under: Analysis) -> Analysis:
@@ -105,6 +118,7 @@ def _under_types(system: System, options: Options, under: Analysis) -> Analysis:
         open=without.open,
         verdict=Verdict.of(leak=leak, is_open=bool(without.open), grounded=not under.lacking),
         closed=ClosedByTypes(*closed(under.spread, mask), gone),
+        closed_by_lines=without.closed_by_lines,
     )
 
 

@@ -5,6 +5,7 @@ In: names of files, texts, choices; of all lists one item alone may be given. Ou
 
 from __future__ import annotations
 
+from dataclasses import replace
 from os import PathLike, fspath
 from typing import TYPE_CHECKING, Any, overload
 
@@ -105,6 +106,7 @@ def suggest(
     packages: Paths = (),
     sources: Paths = (),
     libraries: Paths = (),
+    types: Paths = (),
     settings: Settings | None = None,
 ) -> Suggested:
     """Say what the elements of a robot could be labelled as: questions with reasons; nothing is applied.
@@ -123,6 +125,8 @@ def suggest(
         Source code of nodes: names and types in it, and the libraries that it uses, are evidence.
     libraries
         Files of rules about libraries, beside those that come with the program.
+    types
+        Files of message types, as those of ``analyze``; beside those of ``settings``.
     settings
         How to read, as ``rosprivacy.settings.Settings``; by default as ``analyze`` does.
 
@@ -143,11 +147,14 @@ def suggest(
     >>> one.label.element.name, one.label.role, one.label.kind, str(one.confidence)
     ('/recorder', 'leak', 'PersonalData', 'may')
     """
-    from rosprivacy.labelling.knowledge import UserFiles  # noqa: PLC0415 - light start
+    from rosprivacy.labelling.by_type_lines import with_offer  # noqa: PLC0415 - light start
+    from rosprivacy.labelling.knowledge import UserFiles  # noqa: PLC0415
     from rosprivacy.labelling.suggesting import suggest_labels  # noqa: PLC0415
 
     files = UserFiles(several(rules), several(packages), several(sources), several(libraries))
-    return suggest_labels(several(policies), _labels(labels), settings or Settings(), files)
+    settings = settings or Settings()
+    settings = replace(settings, types=(*settings.types, *several(types)))
+    return with_offer(suggest_labels(several(policies), _labels(labels), settings, files), settings)
 
 
 def suggest_fleet(

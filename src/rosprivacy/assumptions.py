@@ -128,7 +128,8 @@ def _decisions(decisions: Decisions | None) -> dict[str, Any]:
     """Which decisions an answer takes into account, and on which day."""
     if decisions is None:
         return {}
-    return {"decisions": {"file": decisions.file, "sha256": decisions.sha256, "today": decisions.today}}
+    head = {"head": decisions.head} if decisions.head else {}
+    return {"decisions": {"file": decisions.file, "sha256": decisions.sha256, "today": decisions.today, **head}}
 
 
 def remembered(

@@ -29,10 +29,11 @@ from rosprivacy.systems.robot_system import answer_robot, read_label_files
 from rosprivacy.version import __version__
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 
     from rosprivacy.analysis.answer import Analysis
-    from rosprivacy.analysis.model import Statement, Suggestion
+    from rosprivacy.analysis.kernel.roles import Facts
+    from rosprivacy.analysis.model import Element, Statement, Suggestion
     from rosprivacy.analysis.model.recording import Bag, BagTopic
     from rosprivacy.ingest.labels.entries import Entry
     from rosprivacy.ingest.labels.label_file import Labels
@@ -112,6 +113,8 @@ class SaidOfBags:
         Whether a person's label says it of the topic itself.
     shipped
         Whether only the program's own labels say it (S13).
+    bound, doubt
+        As of ``TopicKinds``.
     """
 
     kinds: tuple[str, ...] = ()
@@ -119,6 +122,8 @@ class SaidOfBags:
     why: str = ""
     covered: bool = False
     shipped: bool = False
+    bound: tuple[str, ...] | None = None
+    doubt: str = ""
 
 
 def judged(bags: Iterable[Bag], said_of: Callable[[str], SaidOfBags], table: TypeTable) -> tuple[JudgedBag, ...]:
@@ -135,7 +140,8 @@ def _judged(bag: Bag, topic: BagTopic, said_of: Callable[[str], SaidOfBags], tab
     if not (said.kinds or said.unknown or said.covered):
         looked_at = bool(topic.types) and all(table.knows(name) for name in topic.types)
         said = _questions(said, suggested, looked_at=looked_at)
-    return TopicKinds(topic, said.kinds, said.unknown, said.why, suggested)
+    labelled = said.covered and said.bound is not None
+    return TopicKinds(topic, said.kinds, said.unknown, said.why, suggested, said.bound, said.doubt, labelled)
 
 
 def _questions(statements: SaidOfBags, suggested: Sequence[Suggestion], *, looked_at: bool) -> SaidOfBags:
@@ -171,6 +177,8 @@ def by_system(result: Result) -> Callable[[str], SaidOfBags]:
     for flow in graph.flows:
         writers[flow.target].append(flow.source)
 
+    doubt_behind = _doubts(result, unreached)
+
     def statement_of(channel: Channel) -> list[int]:
         kind, name, leg = channel
         if vertices.get(channel) or is_pattern(name):
@@ -182,9 +190,9 @@ def by_system(result: Result) -> Callable[[str], SaidOfBags]:
         if not here:
             return SaidOfBags(unknown="the policies do not name it")
         kinds = {name for vertex in here for name in spread.names(spread.present(vertex))}
-        if kinds:
-            return SaidOfBags(tuple(sorted(kinds)), why="what the policies and labels let arrive there")
         stated = labels(topic)
+        if kinds:
+            return _arriving(kinds, stated, doubt_behind(here))
         if not stated.unknown:
             return stated
         if analysis.lacking in NOTHING_FOLLOWED:
@@ -204,9 +212,49 @@ def by_system(result: Result) -> Callable[[str], SaidOfBags]:
             if silent:
                 more = f" and {len(silent) - 1} more" if len(silent) > 1 else ""
                 return SaidOfBags(unknown=f"no label says what {shown(silent[0])}{more} sends")
-        return SaidOfBags(why="no kind of data gets to those that write to it, and labels speak of all of them")
+        doubt = doubt_behind(vertices)
+        why = "no kind of data gets to those that write to it, and labels speak of all of them"
+        return SaidOfBags(why=why, bound=None if doubt else (), doubt=doubt)
 
     return said_of
+
+
+def _arriving(kinds: Collection[str], stated: SaidOfBags, doubt: str) -> SaidOfBags:
+    """What is said of a topic to which kinds get: others can get there, too, unless its label or all behind it tell."""
+    limit = stated.bound if stated.covered else None
+    return SaidOfBags(
+        tuple(sorted(kinds)),
+        why="what the policies and labels let arrive there",
+        covered=limit is not None,
+        bound=None if limit is None and doubt else tuple(sorted({*kinds, *(limit or ())})),
+        doubt=doubt if limit is None else "",
+    )
+
+
+def _doubts(result: Result, unreached: Collection[Element]) -> Callable[[Sequence[int]], str]:
+    """What tells why data of which nobody speaks can get to some channels, however far it comes; empty if none can."""
+    unread_files = unread(result.diagnostics)
+    if unread_files:
+        return lambda _: f"grants were not read: {shown(str(unread_files[0]))}"
+    graph, statements = result.analysis.graph, result.bound.elements
+    readers: dict[int, list[int]] = defaultdict(list)
+    for flow in graph.flows:
+        readers[flow.source].append(flow.target)
+    silent = sorted(
+        (element.name, vertex)
+        for vertex, element in enumerate(graph.elements)
+        if not element.is_channel
+        and (element in unreached or all(one.pinned is not None for one in statements.get(vertex) or ()))
+    )
+    doubts: dict[int, str] = {}
+    for name, start in silent:
+        waiting = [start]
+        while waiting:
+            vertex = waiting.pop()
+            if vertex not in doubts:
+                doubts[vertex] = f"data can get there from {shown(name)}, of which no label speaks"
+                waiting += readers[vertex]
+    return lambda vertices: next((doubts[vertex] for vertex in vertices if vertex in doubts), "")
 
 
 def _senders(vertex: int, writers: dict[int, list[int]], analysis: Analysis) -> set[int]:
@@ -226,6 +274,7 @@ def _senders(vertex: int, writers: dict[int, list[int]], analysis: Analysis) -> 
 def by_labels(files: Sequence[Labels], vocabulary: Vocabulary) -> Callable[[str], SaidOfBags]:
     """Return what tells of a topic what label files say of it, where no policy says who writes to it."""
     entries = [entry for file in files for entry in file.entries]
+    pinned = {id(entry) for file in files if file.pins is not None for entry in file.entries}
     sources = [one for entry in entries for one in entry.statements if one.role == "source" and one.through]
     named: dict[str, list[int]] = defaultdict(list)  # a bag can have more topics than a system has channels
     globs = [at for at, entry in enumerate(entries) if is_glob(entry.name)]
@@ -238,13 +287,26 @@ def by_labels(files: Sequence[Labels], vocabulary: Vocabulary) -> Callable[[str]
         channels = recorded_channels(topic)
         names = {name for _, name, _ in channels}
         kinds = {kind for one in sources if any(covered(end, names) for end in one.through) for kind in one.categories}
-        if kinds:
-            return SaidOfBags(tuple(sorted(kinds)), why="sources that name the channel", covered=True)
         near = [entries[at] for at in sorted({at for name in names for at in named.get(name, ())}.union(globs))]
-        said = tuple(statement for entry in near if _is_about(entry, channels) for statement in entry.statements)
-        if said not in decided:
-            decided[said] = _decided(topic, said, vocabulary)
-        return decided[said]
+        about = [entry for entry in near if _is_about(entry, channels)]
+        stated = decision(topic, tuple(statement for entry in about for statement in entry.statements))
+        reviewed = decision(
+            topic,
+            tuple(one for entry in about for one in entry.statements if not (one.to_be_seen and id(entry) in pinned)),
+        )
+        bound = (
+            None
+            if stated.bound is None or reviewed.bound is None
+            else tuple(sorted({*kinds, *stated.bound, *reviewed.bound}))
+        )
+        if kinds:
+            return SaidOfBags(tuple(sorted(kinds)), why="sources that name the channel", covered=True, bound=bound)
+        return replace(stated, bound=bound)
+
+    def decision(topic: str, statements: tuple[Statement, ...]) -> SaidOfBags:
+        if statements not in decided:
+            decided[statements] = _decided(topic, statements, vocabulary)
+        return decided[statements]
 
     return said_of
 
@@ -262,12 +324,21 @@ def _decided(topic: str, statements: Sequence[Statement], vocabulary: Vocabulary
         shipped = len(own) < len(statements) and any(
             facts(topic, own, name, vocabulary.hierarchy).passes for name in decided
         )
-        return SaidOfBags(why=f"{_lines(statements)}: it carries no kind of data", covered=not shipped, shipped=shipped)
+        why = f"{_lines(statements)}: it carries no kind of data"
+        return SaidOfBags(why=why, covered=not shipped, shipped=shipped, bound=())
     if len(passing) < len(decided) and (only := {s for fact in decided.values() for s in fact.by_role("only")}):
         stated = {name for statement in only for name in statement.categories}.intersection(passing)
         if stated:
-            return SaidOfBags(tuple(sorted(stated)), why=f"{_lines(only)}: it carries these at most", covered=True)
+            why = f"{_lines(only)}: it carries these at most"
+            kinds = tuple(sorted(stated))
+            limited = all(_by_only(decided[name]) for name in passing)
+            return SaidOfBags(kinds, why=why, covered=True, bound=kinds if limited else None)
     return SaidOfBags(unknown="no label says what it carries")
+
+
+def _by_only(fact: Facts) -> bool:
+    """Whether a kind passes since 'only' names one like it, not since 'sensitive' of a higher rank lets it pass."""
+    return next((one.role for one in fact.accepted if one.role in ("only", "sensitive")), "") == "only"
 
 
 def _lines(statements: Iterable[Statement]) -> str:

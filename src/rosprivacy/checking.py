@@ -10,18 +10,18 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import InputErrors, ObservationError
-from rosprivacy.analysis.model import ACCESS_GAP, OBSERVATION_GAP, OBSERVED, UNREAD_FILE
+from rosprivacy.analysis.model import ACCESS_GAP, OBSERVATION_GAP, OBSERVED, SCAN_GAP, UNREAD_FILE
 from rosprivacy.analysis.model.reason import NOT_ENCRYPTED, STRANGERS
 from rosprivacy.ingest.deployed.differences import differences, generator_losses
 from rosprivacy.ingest.mitigation.deny_lines import with_denied
 from rosprivacy.ingest.mitigation.deny_patch import Patch, patch
 from rosprivacy.ingest.running.granted_and_used import usage
-from rosprivacy.systems.granted import ZENOH, read_granted
+from rosprivacy.systems.granted import ZENOH, code_roots, read_granted
 from rosprivacy.systems.robot_system import read_graphs, read_system
 from rosprivacy.version import __version__
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from rosprivacy.analysis.model import Diagnostic, Grant, Place, Policy
     from rosprivacy.ingest.deployed.differences import GrantDifference, Loss
@@ -39,12 +39,15 @@ def check_document(policy: str, deployed: tuple[str, ...], settings: Settings) -
 
     A file of Zenoh is the view of one process, and its name that of a node: it is compared with what the policy grants
     to the nodes of that name, and what the known generator loses is told as such. All else is compared by enclave.
+    Where both are sources, what descriptions in the first say is compared with what the code in the second does.
 
     Raises
     ------
     InputErrors
         With every problem of the input, one line each.
     """
+    if sides := _described_and_coded(policy, deployed):
+        return _checked(differences(sides[:1], sides[1:]), (), sides, (), compared="description")
     stated, said = read_granted([policy], replace(settings, permissions_ca=()))  # what is meant; nobody signs it
     zenoh = [name for name in deployed if name.endswith(ZENOH)]
     others = [name for name in deployed if not name.endswith(ZENOH)]
@@ -59,10 +62,31 @@ def check_document(policy: str, deployed: tuple[str, ...], settings: Settings) -
             losses = generator_losses(stated, there, new, who) if names is zenoh else losses
             read += there
             said += more
-    told = [*(one for one_read in read for one in one_read.diagnostics), *said]
+    return _checked(found, losses, read, said)
+
+
+def _described_and_coded(policy: str, deployed: tuple[str, ...]) -> tuple[Policy, Policy] | None:
+    """What descriptions say and what code does, where both are named; else None."""
+    code = code_roots([policy, *deployed])
+    if policy not in code or len(deployed) != 1 or deployed[0] not in code:
+        return None
+    from rosprivacy.ingest.scan.described_code import described_and_coded  # noqa: PLC0415 - light start
+
+    return described_and_coded(code[policy], code[deployed[0]])
+
+
+def _checked(
+    differences: Iterable[GrantDifference],
+    losses: Iterable[Loss],
+    read: Sequence[Policy],
+    diagnostics: Iterable[Diagnostic],
+    compared: str = "deployment",
+) -> CheckDocument:
+    told = [*(one for one_read in read for one in one_read.diagnostics), *diagnostics]
     return {
         "format": CHECK_FORMAT,
-        "differences": [_entry(difference) for difference in sorted(found)],
+        "compared": compared,
+        "differences": [_entry(difference) for difference in sorted(differences)],
         "losses": [
             {"loss": one.fault, "message": one.message, "file": one.place.file, "line": one.place.line}
             for one in losses
@@ -71,7 +95,7 @@ def check_document(policy: str, deployed: tuple[str, ...], settings: Settings) -
             {"cause": cause, "dds": dds, "file": place.file, "line": place.line}
             for cause, dds, place in sorted({one for policy in read for one in _exposed(policy)})
         ],
-        "undetermined": any(one.code in (ACCESS_GAP, UNREAD_FILE) for one in told),
+        "undetermined": any(one.code in (ACCESS_GAP, SCAN_GAP, UNREAD_FILE) for one in told),
         "diagnostics": list(_diagnostics(told)),
         "policies": [
             {"file": file, "sha256": digest} for file, digest in sorted({one for some in read for one in some.sources})

@@ -50,3 +50,12 @@ def today(environment: Mapping[str, str]) -> str:
     '2026-01-01'
     """
     return (source_date(environment) or datetime.now(UTC)).date().isoformat()
+
+
+def now(environment: Mapping[str, str]) -> str:
+    """Return the time, in UTC, as ``YYYY-MM-DDThh:mm:ssZ``: that of the environment, else that of now (rule S14).
+
+    >>> now({"SOURCE_DATE_EPOCH": "1767225600"})
+    '2026-01-01T00:00:00Z'
+    """
+    return (source_date(environment) or datetime.now(UTC)).strftime("%Y-%m-%dT%H:%M:%SZ")

@@ -29,12 +29,12 @@ if TYPE_CHECKING:
 
 
 def decisions_of(settings: Settings, vocabulary: Vocabulary) -> Decisions | None:
-    """Read the decisions file, if one is named."""
+    """Read the log of decisions, or the decisions file, if one is named."""
     if settings.decisions is None:
         return None
-    from rosprivacy.ingest.decisions.decisions_file import read_decisions  # noqa: PLC0415 - only where there are some
+    from rosprivacy.ingest.decisions.decision_log import read_log_or_file  # noqa: PLC0415 - only where there are some
 
-    return judged(read_decisions(settings.decisions, vocabulary, "", settings.bounds), settings)
+    return judged(read_log_or_file(settings.decisions, vocabulary, "", settings.bounds), settings)
 
 
 def judged(decisions: Decisions, settings: Settings) -> Decisions:

@@ -22,8 +22,8 @@ from rosprivacy.report.document.contents import (
     POSITIONS,
     PROCESSING,
     PROPOSALS,
+    REGISTER,
     RELIANCE,
-    WAYS,
 )
 from rosprivacy.terminal_width import terminal_width
 
@@ -33,15 +33,18 @@ if TYPE_CHECKING:
     from rosprivacy.answer import Answer
     from rosprivacy.report.compare.earlier import Earlier
     from rosprivacy.report.document.contents import Document
+    from rosprivacy.report.page.assessment import Answers
     from rosprivacy.report.page.outline import Outline
     from rosprivacy.report.pictures.picture import Key
 
     Aliases = Mapping[Key, tuple[str, str]]
 
-# What is text; the table below has one row for each, and 'docx'.
+# What is text, and what is Word; the table below has one row for each.
 TextFormat = Literal[
-    "text", "json", "json1", "sarif", "cnil-pia", "turtle", "json-ld", "html", "markdown", "article30", "works-council",
+    "text", "json", "json1", "sarif", "cnil-pia", "turtle", "json-ld", "html", "markdown", "article30",
+    "article30-processors", "notice", "works-council",
 ]  # fmt: skip
+WordFormat = Literal["docx", "edpb-dpia"]
 
 
 class Style(NamedTuple):
@@ -107,13 +110,13 @@ class OutputFormat(NamedTuple):
 
 
 @overload
-def written(answer: Answer, name: Literal["docx"], style: Style | None = None) -> bytes: ...
+def written(answer: Answer, name: WordFormat, style: Style | None = None) -> bytes: ...
 @overload
 def written(answer: Answer, name: TextFormat, style: Style | None = None) -> str: ...
 @overload
 def written(answer: Answer, name: str, style: Style | None = None) -> str | bytes: ...
 def written(answer: Answer, name: str, style: Style | None = None) -> str | bytes:
-    """Return an answer in one of ``FORMATS``: text, but for ``docx``.
+    """Return an answer in one of ``FORMATS``: text, or the bytes of a Word document.
 
     Raises
     ------
@@ -214,6 +217,18 @@ def _article30(document: Document, style: Style) -> str:
     return record(_rendered_parts(document, style)[0], style.language)
 
 
+def _article30_processors(document: Document, style: Style) -> str:
+    from rosprivacy.report.page.article30 import record_of_processors
+
+    return record_of_processors(_rendered_parts(document, style)[0], style.language)
+
+
+def _notice(document: Document, style: Style) -> str:
+    from rosprivacy.report.page.notice import notice
+
+    return notice(_rendered_parts(document, style)[0], style.language, style.title)
+
+
 def _markdown(document: Document, style: Style) -> str:
     from rosprivacy.report.page.markdown import markdown
 
@@ -227,6 +242,17 @@ def _docx(document: Document, style: Style) -> bytes:
 
     told = _outline(document, style)[0]
     return word_document(markdown(told), told.cover.title, style.language, today(os.environ))
+
+
+def _edpb_dpia(document: Document, style: Style) -> bytes:
+    """The date is that of a Word report."""
+    from rosprivacy.report.page.edpb_dpia import edpb_dpia
+    from rosprivacy.report.page.word_document import word_document
+
+    shown, *_ = _rendered_parts(document, style)
+    title, date, answers = _shown_title(document, style), today(os.environ), _answers(style)
+    text = edpb_dpia(shown, style.language, title=title, date=date, redacted=style.redact, answers=answers)
+    return word_document(text, title, style.language, date)
 
 
 def _html(document: Document, style: Style) -> str:
@@ -244,22 +270,33 @@ def _works_council(document: Document, style: Style) -> str:
 
 
 def _outline(document: Document, style: Style) -> tuple[Outline, Aliases | None]:
-    from rosprivacy.report.page.assessment import read_answers
     from rosprivacy.report.page.outline import outline
 
-    answers = read_answers(style.assessment) if style.assessment else None
+    answers = _answers(style)
     told, earlier, proposals, aliases = _rendered_parts(document, style)
     report = outline(
         told,
         style.language,
-        title=style.title or ("" if style.redact else _title(document, style)),
+        title=_shown_title(document, style),
         date=today(os.environ),
         earlier=earlier,
         redacted=style.redact,
         proposals=proposals,
-        answers=None if style.redact else answers,  # free text names whom it wants
+        answers=answers,
     )
     return report, aliases
+
+
+def _answers(style: Style) -> Answers | None:
+    """What people answered in an earlier report; none where names are replaced, since free text names whom it wants."""
+    from rosprivacy.report.page.assessment import read_answers
+
+    answers = read_answers(style.assessment) if style.assessment else None
+    return None if style.redact else answers
+
+
+def _shown_title(document: Document, style: Style) -> str:
+    return style.title or ("" if style.redact else _title(document, style))
 
 
 def _title(document: Document, style: Style) -> str:
@@ -292,6 +329,7 @@ def _rendered_parts(
 
 
 _REPORT = ("language", "title", "since", "redact", "assessment")
+_DPIA = ("language", "title", "redact", "assessment")
 _LINKED = ("base", "redact")
 _PAGE = (*IN_JSON, RELIANCE, PROPOSALS)
 FORMATS = {
@@ -301,13 +339,16 @@ FORMATS = {
         OutputFormat("json", ".json", _short_json, both_views=True, asks=IN_JSON),
         OutputFormat("json1", ".json", _json, both_views=True),
         OutputFormat("sarif", ".sarif", _sarif, both_views=True, asks=(POSITIONS,)),
-        OutputFormat("cnil-pia", ".json", _cnil_pia, ("language",), asks=(WAYS, PROCESSING)),
+        OutputFormat("cnil-pia", ".json", _cnil_pia, ("language",), asks=(REGISTER, PROCESSING)),
         OutputFormat("turtle", ".ttl", _linked_data("turtle"), _LINKED),
         OutputFormat("json-ld", ".jsonld", _linked_data("json-ld"), _LINKED),
         OutputFormat("html", ".html", _html, _REPORT, both_views=True, page="a page", asks=(*_PAGE, PATHS)),
         OutputFormat("markdown", ".md", _markdown, _REPORT, both_views=True, asks=_PAGE),
         OutputFormat("docx", ".docx", _docx, _REPORT, both_views=True, page="a Word document", asks=_PAGE),
         OutputFormat("article30", ".csv", _article30, ("language", "redact")),
+        OutputFormat("article30-processors", ".csv", _article30_processors, ("language", "redact")),
+        OutputFormat("notice", ".md", _notice, ("language", "title", "redact")),
         OutputFormat("works-council", ".html", _works_council, _REPORT, page="a page"),
+        OutputFormat("edpb-dpia", ".docx", _edpb_dpia, _DPIA, page="a Word document", asks=IN_JSON),
     )
 }

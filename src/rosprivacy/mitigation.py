@@ -11,27 +11,33 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.findings.doubts import doubts, judged
+from rosprivacy.analysis.mitigation.channel_settings import RecognisedProgram, left_out
 from rosprivacy.analysis.mitigation.limits import CHANGES, DENY, Limits
 from rosprivacy.analysis.mitigation.propose import MitigatedSystem, mitigate, open_findings
-from rosprivacy.analysis.model import UNPROTECTED
+from rosprivacy.analysis.model import UNPROTECTED, Confidence
+from rosprivacy.analysis.suggesting.packages import nodes_of_packages
 from rosprivacy.documents import document_of
 from rosprivacy.ingest.deployed.exposures import with_exposed
+from rosprivacy.ingest.known_packages.package_folders import catalogue
+from rosprivacy.ingest.known_packages.program_settings import programs
 from rosprivacy.ingest.labels.binding import join
 from rosprivacy.ingest.mitigation.deny_lines import Denials, open_ended, with_denied
 from rosprivacy.ingest.mitigation.deny_patch import Patch, patch
 from rosprivacy.ingest.mitigation.limits_file import read_limits
 from rosprivacy.ingest.policies.flow_graph import build
+from rosprivacy.ingest.scan.reviewed_code import with_reviewed_code
 from rosprivacy.report.document.analysis import json_document
 from rosprivacy.report.document.contents import LEDGER
 from rosprivacy.report.document.mitigation import mitigation_document
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable
+    from collections.abc import Collection, Iterable, Mapping, Sequence
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.bounds import Bounds
+    from rosprivacy.analysis.mitigation.channel_settings import LeftOut
     from rosprivacy.analysis.mitigation.proposals import Proposal
-    from rosprivacy.analysis.model import Bound, FlowGraph, Grant
+    from rosprivacy.analysis.model import Bound, Category, FlowGraph, Grant
     from rosprivacy.report.schemas.mitigation import MitigationDocument
     from rosprivacy.result import Result
 
@@ -54,6 +60,9 @@ class Mitigation:
         What labels would then name that is no longer there.
     notes
         What else a reader has to know.
+    settings
+        By proposal: how a person makes bridges and recorders leave out what its findings are about. The proof does
+        not rest on them.
     """
 
     result: Result
@@ -62,6 +71,7 @@ class Mitigation:
     patch: Patch
     unmatched: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
+    settings: tuple[tuple[LeftOut, ...], ...] = ()
 
     @property
     def complete(self) -> bool:
@@ -73,7 +83,7 @@ class Mitigation:
         report = json_document(document_of(self.result, (LEDGER,)))
         return mitigation_document(
             report, self.result.analysis, self.limits, self.proposals, self.patch.diff, self.patch.why_not,
-            self.unmatched, self.notes,
+            self.unmatched, self.notes, self.settings,
         )  # fmt: skip
 
 
@@ -103,19 +113,46 @@ def run_mitigation(
 
     def deny(grants: Collection[Grant]) -> tuple[FlowGraph, Bound]:
         changed = build(with_denied(result.policies, grants), view, bounds)
-        return changed, with_exposed(changed, join(changed, result.labels, bounds)[0], result.policies)
+        bound = join(changed, result.labels, bounds)[0]
+        bound = with_reviewed_code(changed, bound, result.labels, result.policies).bound
+        return changed, with_exposed(changed, bound, result.policies)
 
     system = MitigatedSystem(
         graph, result.bound, result.vocabulary.hierarchy, result.options,
         Denials(result.policies, graph).of, deny, open_ended, partial(_judged, result),
     )  # fmt: skip
-    proposals = mitigate(system, result.analysis, limits)
+    proposals = _by_weight(mitigate(system, result.analysis, limits), result.vocabulary.categories)
+    recognised = _recognised(result) if any(proposal.removed for proposal in proposals) else ()
+    settings = tuple(left_out(result.analysis, proposal.removed, recognised) for proposal in proposals)
     grants = list(_denied(proposals[-1:]))
     if not grants:
-        return Mitigation(result, limits, proposals, Patch(), notes=notes)
+        return Mitigation(result, limits, proposals, Patch(), notes=notes, settings=settings)
     changed = build(with_denied(result.policies, grants), view, bounds)
     unmatched = tuple(str(problem) for problem in join(changed, result.labels, bounds)[1])
-    return Mitigation(result, limits, proposals, patch(result.policies, grants), unmatched, notes)
+    return Mitigation(result, limits, proposals, patch(result.policies, grants), unmatched, notes, settings)
+
+
+def _by_weight(proposals: Sequence[Proposal], categories: Mapping[str, Category]) -> tuple[Proposal, ...]:
+    """What weighs most first, as everywhere; all together stays last."""
+    return (*sorted(proposals[:-1], key=lambda one: categories[one.categories[0]].weight), *proposals[-1:])
+
+
+def _recognised(result: Result) -> tuple[RecognisedProgram, ...]:
+    """The nodes that are called like bridges and recorders of the catalogue of packages."""
+    graph = result.analysis.graph
+    by_node = {(one.package, one.node): one for one in programs()}
+    packages = {package for package, _ in by_node}
+    of_packages = nodes_of_packages(
+        graph, result.bound.types, [one for one in catalogue(result.vocabulary) if one.name in packages]
+    )
+    rows = []
+    for one in of_packages:
+        program = next((by_node[key] for name in one.node.names if (key := (one.package.name, name)) in by_node), None)
+        likely = one.is_exit(graph.elements[one.vertex].name)
+        if program:
+            sure = Confidence.LIKELY if likely else Confidence.MAY
+            rows.append(RecognisedProgram(one.vertex, program, sure, one.agrees))
+    return tuple(rows)
 
 
 def _judged(result: Result, analysis: Analysis) -> Analysis:

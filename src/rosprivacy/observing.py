@@ -108,15 +108,20 @@ def time_of(text: str) -> str:
     raise InputError("--at", 0, f"{shown(repr(text))} is no time with a time zone", "write 2026-11-22T10:00:00Z")
 
 
-def declared_file(policy: Path) -> Path:
+def declared_file(policy: Path, sort: str = "declared") -> Path:
     """Return the label file with what nodes declare of themselves, beside a policy; one that is there stays.
+
+    Parameters
+    ----------
+    sort
+        ``outside`` for that of what lies outside ROS.
 
     >>> from pathlib import Path
     >>> str(declared_file(Path("robot.policy.xml")))
     'robot.declared.labels.yaml'
     """
-    numbered = (named_after(policy, f"declared-{number}.labels") for number in count(2))
-    return next(file for file in chain([named_after(policy, "declared.labels")], numbered) if not file.exists())
+    numbered = (named_after(policy, f"{sort}-{number}.labels") for number in count(2))
+    return next(file for file in chain([named_after(policy, f"{sort}.labels")], numbered) if not file.exists())
 
 
 def keeps_what_is_there(policy: Path) -> None:

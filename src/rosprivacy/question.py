@@ -45,6 +45,8 @@ class Question(NamedTuple):
     type_limits
         What message types cannot carry, as a table that is read when it is asked for; None where each is taken to
         carry everything.
+    types
+        What message types are made for, as a table that is read when it is asked for: also where none limits anything.
     every
         Make every finding of a fleet, not one of each pattern.
     most_across
@@ -62,6 +64,7 @@ class Question(NamedTuple):
     most_across: int | None = None
     contexts: frozenset[str] = frozenset()
     type_limits: Callable[[], TypeLimits] | None = None
+    types: Callable[[], TypeLimits] | None = None
 
     @property
     def every_finding(self) -> bool:
@@ -80,9 +83,10 @@ def question_of(settings: Settings) -> Question:
     vocabulary = load(ontologies=settings.ontologies)
     asked = asked_for(vocabulary, settings)
     decisions = decisions_of(settings, vocabulary)
-    limits = _limits(settings, vocabulary) if settings.type_limits else None
+    types = _limits(settings, vocabulary)
+    limits = types if settings.type_limits else None
     today = settings.today or judged_on(os.environ)
-    return Question(settings, vocabulary, asked, decisions, today, type_limits=limits)
+    return Question(settings, vocabulary, asked, decisions, today, type_limits=limits, types=types)
 
 
 def _limits(settings: Settings, vocabulary: Vocabulary) -> Callable[[], TypeLimits]:
@@ -94,7 +98,7 @@ def _limits(settings: Settings, vocabulary: Vocabulary) -> Callable[[], TypeLimi
 
         return read_table(settings.type_limits or TABLE, vocabulary, settings.bounds).limits
 
-    if settings.type_limits != TABLE:
+    if settings.type_limits not in (TABLE, None):
         read()
     return read
 

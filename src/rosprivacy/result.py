@@ -66,6 +66,10 @@ class Result(Answer):
     def __repr__(self) -> str:
         return f"<Result: {self._verdict()}>"
 
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        return self.findings._repr_html_()
+
     def _verdict(self) -> str:
         """The line that every report begins with."""
         from rosprivacy.report.text.analysis import verdict_line  # noqa: PLC0415 - light start

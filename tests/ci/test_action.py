@@ -13,17 +13,34 @@ from pathlib import Path
 import pytest
 import yaml
 
-from tests.helpers.ci_files import ACTION, CI, FACTORY, FROM_HERE, HOSTED, hooks_repository, hostile, planted, tool
+import rosprivacy
+from tests.helpers.ci_files import (
+    ACTION,
+    CI,
+    FACTORY,
+    FROM_HERE,
+    GIT,
+    HOSTED,
+    committed,
+    hooks_repository,
+    hostile,
+    planted,
+    tool,
+)
 from tests.helpers.paths import ROOT
 from tests.helpers.sarif import checked
 
 pytestmark = pytest.mark.slow  # each step of the action is a process
 
 
+OF_PULL_REQUEST = "${{ github.event.pull_request.base.sha }}"  # nothing on a push
+
+
 def steps_of(inputs: dict[str, str]) -> list[tuple[str, dict[str, str]]]:
     """(script, variables) of the action's steps, with inputs put in as GitHub does: in ``env`` only."""
     action = yaml.safe_load(ACTION.read_text("utf-8"))
-    given = {name: str(said.get("default", "")) for name, said in action["inputs"].items()} | inputs
+    given = {name: str(said.get("default", "")) for name, said in action["inputs"].items()}
+    given = {name: "" if value == OF_PULL_REQUEST else value for name, value in given.items()} | inputs
     found = []
     for step in action["runs"]["steps"]:
         assert "${{" not in step["run"]  # a script that an input could change
@@ -104,6 +121,14 @@ def test_nothing_of_a_hostile_checkout_runs_in_the_action(runner: dict[str, str]
     assert json.loads((checkout / "rosprivacy.json").read_text("utf-8"))["verdict"] == "leak"
 
 
+def test_the_action_takes_types(runner: dict[str, str], tmp_path: Path) -> None:
+    shutil.copytree(FACTORY, tmp_path / "p")
+    planted(tmp_path / "t.yaml", "types: 1\ntopics:\n  /safety_video: [{type: sensor_msgs/msg/Image}]\n")
+    *_, done = run_action({**LEAK, "types": "t.yaml\n"}, runner, tmp_path)
+    assert (done.returncode, done.stderr) == (1, "")
+    assert "t.yaml" in (tmp_path / "rosprivacy.json").read_text("utf-8")
+
+
 def test_bad_input_ends_the_action_with_the_problem(runner: dict[str, str], tmp_path: Path) -> None:
     """No input is part of a script; and answers that the checkout brings are not there for a later step."""
     for name in ("rosprivacy.sarif", "rosprivacy.json"):
@@ -164,3 +189,174 @@ def test_a_file_with_another_hash_is_not_installed(runner: dict[str, str], tmp_p
     assert done.returncode == 1
     assert "DO NOT MATCH THE HASHES" in done.stderr
     assert not (tmp_path / "temp" / "rosprivacy" / "bin" / "rosprivacy").exists()
+
+
+LEAK = {"policies": "p/before.policy.xml", "labels": "p/run2.labels.yaml"}
+NOBODY = "decisions: 1\nfindings: []\n"
+
+
+@pytest.fixture
+def accepted() -> str:
+    """A file of decisions that accepts all that the action finds in ``LEAK``."""
+    (policy, labels) = (str(FACTORY / Path(name).name) for name in LEAK.values())
+    found = rosprivacy.analyze(policy, labels).analysis.findings
+    lines = [f"- {{id: {one.id}, decision: accept, reason: it has to be, owner: A. Person}}\n" for one in found]
+    assert len(lines) == 2
+    return f"decisions: 1\nfindings:\n{''.join(lines)}"
+
+
+def pull_request(folder: Path, before: dict[str, str], after: dict[str, str]) -> str:
+    """Make a repository whose checkout is a pull request; return the revision that it is for."""
+    shutil.copytree(FACTORY, folder / "p")
+    for name, text in before.items():
+        planted(folder / name, text)
+    committed(folder)
+    done = subprocess.run([*GIT, "rev-parse", "HEAD"], cwd=folder, capture_output=True, text=True, check=True)
+    for name in before.keys() - after.keys():
+        (folder / name).unlink()
+    for name, text in after.items():
+        planted(folder / name, text)
+    for command in (["add", "-A"], ["commit", "-qm", "mine", "--allow-empty"]):
+        subprocess.run([*GIT, *command], cwd=folder, capture_output=True, check=True)
+    return done.stdout.strip()
+
+
+PROJECT = 'decisions = "d/decisions.yaml"\nfail-on = "{}"\n'
+
+
+def test_a_pull_request_cannot_accept_its_own_findings(accepted: str, runner: dict[str, str], tmp_path: Path) -> None:
+    """Neither by the project file and its decisions, nor by decisions that the workflow names."""
+    before = {"rosprivacy.toml": PROJECT.format("undetermined"), "d/decisions.yaml": NOBODY}
+    after = {"rosprivacy.toml": PROJECT.format("never"), "d/decisions.yaml": accepted}
+    base = pull_request(tmp_path / "checkout", before, after)
+    for more in ({}, {"options": "--decisions=d/decisions.yaml"}, {"decisions": "d/decisions.yaml"}):
+        *_, done = run_action({**LEAK, "base": base, **more}, runner, tmp_path / "checkout")
+        assert (done.returncode, done.stderr) == (1, "")
+        assert outputs(runner)["findings"] == "2"
+
+
+def test_what_the_base_accepts_is_accepted(accepted: str, runner: dict[str, str], tmp_path: Path) -> None:
+    """Even if the pull request takes the files away."""
+    before = {"rosprivacy.toml": PROJECT.format("leak"), "d/decisions.yaml": accepted}
+    base = pull_request(tmp_path / "checkout", before, {})
+    *_, done = run_action({**LEAK, "base": base}, runner, tmp_path / "checkout")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert outputs(runner)["findings"] == "0"
+    assert not any((tmp_path / "checkout" / name).exists() for name in before)
+    *_, done = run_action({**LEAK, "base": base, "fail-on": "undetermined"}, runner, tmp_path / "checkout")
+    assert done.returncode == 4  # the workflow asks for more
+
+
+@pytest.mark.parametrize(("stated", "given", "code"), [("leak", "", 0), ("undetermined", "", 4), ("leak", "doubt", 4)])
+def test_the_job_fails_on_what_the_base_says_if_the_workflow_says_nothing(
+    stated: str, given: str, code: int, runner: dict[str, str], tmp_path: Path
+) -> None:
+    before = {"pyproject.toml": f'[tool.rosprivacy]\nfail-on = "{stated}"\n'}
+    after = {"pyproject.toml": '[tool.rosprivacy]\nfail-on = "never"\n'}
+    base = pull_request(tmp_path / "checkout", before, after)
+    inputs = {"policies": "p/before.policy.xml", "labels": "p/run1.labels.yaml", "base": base}
+    options = f"--fail-on={given}" if given else ""
+    for more in ({"fail-on": given}, {"options": options}, {"options": options.replace("=", "\n")}):
+        *_, done = run_action({**inputs, **more}, runner, tmp_path / "checkout")
+        assert (done.returncode, done.stderr) == (code, "")
+
+
+@pytest.mark.parametrize("link", [False, True])
+def test_decisions_that_the_base_does_not_have_count_for_nothing(
+    accepted: str, runner: dict[str, str], tmp_path: Path, *, link: bool
+) -> None:
+    planted(tmp_path / "elsewhere.yaml", accepted)
+    base = pull_request(tmp_path / "checkout", {}, {} if link else {"decisions.yaml": accepted})
+    if link:
+        (tmp_path / "checkout" / "decisions.yaml").symlink_to("../elsewhere.yaml")
+    inputs = {**LEAK, "base": base, "options": "--decisions\ndecisions.yaml"}
+    *_, done = run_action(inputs, runner, tmp_path / "checkout")
+    assert done.returncode == 1
+    assert done.stderr == f"decisions.yaml: not in {base[:12]}, so nothing in it counts\n"
+    outside = {**LEAK, "base": base, "options": f"--decisions\n{tmp_path / 'elsewhere.yaml'}", "fail-on": "leak"}
+    *_, done = run_action(outside, runner, tmp_path / "checkout")
+    assert (done.returncode, done.stderr) == (0, "")  # it is no part of the pull request
+
+
+def test_a_base_that_has_none_of_it_changes_nothing(runner: dict[str, str], tmp_path: Path) -> None:
+    base = pull_request(tmp_path / "checkout", {}, {"rosprivacy.toml": 'fail-on = "never"\n'})
+    answers = []
+    for given in ({"base": base}, {}):
+        *_, done = run_action({**LEAK, **given}, runner, tmp_path / "checkout")
+        answers.append((done.returncode, done.stderr, (tmp_path / "checkout" / "rosprivacy.json").read_bytes()))
+    assert answers[0] == answers[1]
+    assert answers[0][:2] == (1, "")
+
+
+def test_a_base_that_is_not_there_is_fetched_or_refused(accepted: str, runner: dict[str, str], tmp_path: Path) -> None:
+    whole = tmp_path / "whole"
+    base = pull_request(whole, {"rosprivacy.toml": PROJECT.format("leak"), "d/decisions.yaml": accepted}, {})
+    url, checkout = f"file://{whole}", tmp_path / "checkout"
+    subprocess.run([*GIT, "clone", "-q", "--depth=1", url, str(checkout)], capture_output=True, check=True)
+    *_, done = run_action({**LEAK, "base": base}, runner, checkout)
+    assert (done.returncode, done.stderr) == (0, "")
+    *_, done = run_action({**LEAK, "base": "0" * 40}, runner, checkout)
+    assert done.returncode == 2
+    assert re.fullmatch(f"{'0' * 40}: .+; .*fetch-depth: 0.*\n", done.stderr)
+
+
+def pull_request_of_code(folder: Path, *edits: tuple[str, str, str]) -> str:
+    """Make a repository of a robot's code whose checkout is a pull request; return the revision that it is for."""
+    committed(shutil.copytree(ROOT / "examples" / "scan_robot", folder))
+    for name, old, new in edits:
+        text = (folder / name).read_text("utf-8")
+        assert old in text
+        planted(folder / name, text.replace(old, new))
+    done = subprocess.run([*GIT, "rev-parse", "HEAD"], cwd=folder, capture_output=True, text=True, check=True)
+    return done.stdout.strip()
+
+
+NEW = {"policies": ".", "fail-on": "new"}
+UPLOADER = "guide_perception/guide_perception/uploader.py"
+
+
+def test_the_action_fails_on_a_new_way_out_of_code_and_names_its_line(runner: dict[str, str], tmp_path: Path) -> None:
+    edits = [(UPLOADER, "pictures.example.org", "pictures.example.com")]
+    base = pull_request_of_code(tmp_path / "checkout", *edits)
+    *_, done = run_action({**NEW, "base": base}, runner, tmp_path / "checkout")
+    assert (done.returncode, done.stderr) == (1, "")
+    assert outputs(runner)["verdict"] == "undetermined"
+    summary = Path(runner["GITHUB_STEP_SUMMARY"]).read_text("utf-8")
+    assert "pictures.example.com" in summary
+    assert f"{UPLOADER}:" in summary
+    checked(json.loads((tmp_path / "checkout" / "rosprivacy.sarif").read_text("utf-8")))
+
+
+def test_the_action_passes_code_that_has_nothing_new(runner: dict[str, str], tmp_path: Path) -> None:
+    """Though a scan is undetermined, and though a pull request states that it never fails."""
+    base = pull_request_of_code(tmp_path / "checkout", (UPLOADER, "import rclpy\n", "# a comment\n\nimport rclpy\n"))
+    *_, done = run_action({**NEW, "base": base}, runner, tmp_path / "checkout")
+    assert (done.returncode, done.stderr) == (0, "")
+    *_, done = run_action({**NEW, "base": base, "fail-on": ""}, runner, tmp_path / "checkout")
+    assert done.returncode == 4
+    *_, done = run_action(NEW, runner, tmp_path / "checkout")  # a push: there is nothing to compare with
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_the_action_compares_policies_too(runner: dict[str, str], tmp_path: Path) -> None:
+    """What the base has is not new, and what a label file of a pull request makes a finding of is."""
+    base = pull_request(
+        tmp_path / "checkout", {"l.yaml": "labels: 1\n"}, {"l.yaml": (FACTORY / "run2.labels.yaml").read_text()}
+    )
+    inputs = {**LEAK, "labels": "l.yaml", "fail-on": "new", "base": base}
+    *_, done = run_action(inputs, runner, tmp_path / "checkout")
+    assert done.returncode == 1
+    *_, done = run_action({**inputs, "labels": "p/run2.labels.yaml"}, runner, tmp_path / "checkout")
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_nothing_of_a_hostile_checkout_of_code_runs_in_the_action(runner: dict[str, str], tmp_path: Path) -> None:
+    checkout = tmp_path / "checkout"
+    base = pull_request_of_code(checkout)
+    config = (checkout / ".git" / "config").read_text("utf-8")
+    trace = hostile(checkout)
+    planted(checkout / ".git" / "config", config + (checkout / ".git" / "config").read_text("utf-8"))
+    *_, done = run_action({**NEW, "base": base}, {**runner, **FROM_HERE}, checkout)
+    assert not trace.exists(), trace.read_text("utf-8")
+    assert done.returncode in (0, 1), done.stderr
+    assert (tmp_path / "victim").read_text("utf-8") == "mine"

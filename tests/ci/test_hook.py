@@ -7,11 +7,13 @@ import os
 import shutil
 import subprocess
 import sys
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+import rosprivacy
 from tests.helpers.ci_files import (
     FACTORY,
     FROM_HERE,
@@ -36,10 +38,19 @@ def users_repository(folder: Path, hooks: Path, hook: dict[str, Any]) -> Path:
     return committed(folder)
 
 
-def run_hook(folder: Path, tmp_path: Path, **more: str) -> subprocess.CompletedProcess[str]:
+def run_hook(folder: Path, tmp_path: Path, *which: str, **more: str) -> subprocess.CompletedProcess[str]:
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
     variables = {"PRE_COMMIT_HOME": str(tmp_path / "home"), "PATH": path, "GIT_CONFIG_NOSYSTEM": "1", **more}
-    command = [sys.executable, "-I", "-m", "pre_commit", "run", "--all-files", "--verbose", "--color=never"]
+    command = [
+        sys.executable,
+        "-I",
+        "-m",
+        "pre_commit",
+        "run",
+        *(which or ["--all-files"]),
+        "--verbose",
+        "--color=never",
+    ]
     environment = {**os.environ, **variables}
     return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
 
@@ -63,7 +74,7 @@ def test_the_hook_fails_on_a_leak_and_passes_without_one(hooks: Path, tmp_path: 
     assert leak.returncode == 1, leak.stderr
     assert "where personal data can go" in leak.stdout
     assert "exit code: 1" in leak.stdout
-    assert "Video: /safety_camera -> /archive_server" in leak.stdout
+    assert "1. /archive_server: Video" in leak.stdout
     clean = run_hook(users_repository(tmp_path / "clean", hooks, {**entry, "args": arguments(5)}), tmp_path)
     assert clean.returncode == 0, clean.stdout
     assert "Passed" in clean.stdout
@@ -77,13 +88,55 @@ def test_nothing_of_a_hostile_repository_runs_in_the_hook(hooks: Path, tmp_path:
         planted(folder / name, f"open({str(trace)!r}, 'a').write(__file__ + ' ')\n")
     done = run_hook(folder, tmp_path, **FROM_HERE)
     assert not trace.exists(), trace.read_text("utf-8")
-    assert "Video: /safety_camera -> /archive_server" in done.stdout, done.stdout + done.stderr
+    assert "1. /archive_server: Video" in done.stdout, done.stdout + done.stderr
     assert done.returncode == 1
+
+
+PROJECT = 'policies = "policies/before.policy.xml"\nlabels = "policies/run2.labels.yaml"\ndecisions = "d.yaml"\n'
+LESS = {"language": "system", "entry": "python -I -m rosprivacy.cli.hook --fail-on leak"}
+
+
+@pytest.mark.parametrize("words", [(), tuple(arguments(2))])
+def test_in_ci_the_hook_takes_decisions_from_the_revision_that_is_compared_with(
+    hooks: Path, tmp_path: Path, words: tuple[str, ...]
+) -> None:
+    """A pull request accepts nothing of its own; and what is accepted already stays so. A person's own commit does."""
+    labels = str(FACTORY / "run2.labels.yaml")
+    findings = rosprivacy.analyze(str(FACTORY / "before.policy.xml"), labels).analysis.findings
+    accepted = [f"- {{id: {one.id}, decision: accept, reason: it has to be, owner: A. P.}}\n" for one in findings]
+    folder = users_repository(tmp_path / "user", hooks, {**LESS, "args": [*words]})
+    revisions = []
+    for text in ("", *accepted[:1], "".join(accepted), "".join(accepted) + "# more\n"):
+        planted(folder / "rosprivacy.toml", PROJECT)
+        planted(folder / "d.yaml", f"decisions: 1\nfindings:\n{text}")
+        committed(folder)
+        done = subprocess.run(["git", "rev-parse", "HEAD"], cwd=folder, capture_output=True, text=True, check=True)
+        revisions.append(done.stdout.strip())
+    codes = []
+    for base, head in pairwise(revisions):
+        subprocess.run(["git", "checkout", "-q", head], cwd=folder, check=True)
+        done = run_hook(folder, tmp_path, "--from-ref", base, "--to-ref", head)
+        codes.append(done.returncode)
+        assert ("exit code: 1" in done.stdout) == bool(done.returncode), done.stdout + done.stderr
+    assert codes == [1, 1, 0]
+    assert run_hook(folder, tmp_path).returncode == 0
+
+
+def test_no_name_of_a_project_file_is_an_option_of_the_hook(hooks: Path, tmp_path: Path) -> None:
+    """The pull request writes the project file that says which policies there are."""
+    folder = users_repository(tmp_path / "user", hooks, LESS)
+    shutil.copy(folder / "policies" / "before.policy.xml", folder / "policies" / "x.xml")
+    hostile_name = '["policies/before.policy.xml", "--fail-on=never"]'
+    planted(folder / "rosprivacy.toml", PROJECT.replace('"policies/before.policy.xml"', hostile_name))
+    committed(folder)
+    done = run_hook(folder, tmp_path, "--from-ref", "HEAD~1", "--to-ref", "HEAD")
+    assert done.returncode == 1
+    assert "--fail-on=never: file not found" in done.stdout
 
 
 @pytest.mark.thorough  # an environment with all that rosprivacy needs is made
 def test_pre_commit_installs_the_hook_from_this_repository(tmp_path: Path) -> None:
     hooks = hooks_repository(tmp_path / "hooks")
     done = run_hook(users_repository(tmp_path / "user", hooks, {"args": arguments(2)}), tmp_path)
-    assert "Video: /safety_camera -> /archive_server" in done.stdout, done.stdout + done.stderr
+    assert "1. /archive_server: Video" in done.stdout, done.stdout + done.stderr
     assert done.returncode == 1

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import jsonschema
 import pytest
 
+from tests.helpers.checkouts import CAMERA, put_checkout
 from tests.helpers.command import cli
 from tests.helpers.keystores import Keystore, governance, grant, permissions, rule, topic_rule
 from tests.helpers.paths import ROOT
@@ -133,3 +134,34 @@ def test_what_the_governance_leaves_in_the_open_is_no_difference_and_is_seen(
     assert document["code"] == bool(exposed)
     assert [(row["cause"], row["dds"]) for row in document["exposed"]] == exposed
     assert all(row["file"].endswith("governance.p7s") and row["line"] for row in document["exposed"])
+
+
+@pytest.mark.parametrize("named", ["robot", "robot/camera.nodl.yaml", "apart"])
+def test_what_a_description_says_is_compared_with_what_the_code_does(cli: Cli, tmp_path: Path, named: str) -> None:
+    """Of the nodes that are described: both places are named, and channels of ROS itself count on neither side."""
+    stated = "nodl_version: 2\npublishers:\n  - {name: image, type: a/msg/A}\n  - {name: ~/faces, type: a/msg/B}\n"
+    rosout = "  - {name: /rosout, type: rcl_interfaces/msg/Log}\n"
+    extra = CAMERA.replace('"image", 10)', '"image", 10)\n        self.create_publisher(Image, "extra", 10)')
+    put_checkout(tmp_path / "robot", guide__camera_dot_py=extra)
+    folder = tmp_path / ("apart" if named == "apart" else "robot")
+    folder.mkdir(exist_ok=True)
+    (folder / "camera.nodl.yaml").write_text(stated + rosout)
+    done = cli("check", named, "robot", "--format", "json", cwd=tmp_path)
+    document = json.loads(done.stdout)
+    jsonschema.validate(document, SCHEMA)
+    assert (done.returncode, document["compared"]) == (1, "description")
+    assert [(one["only_in"], one["name"], one["file"], one["line"]) for one in document["differences"]] == [
+        ("deployed", "/robot/extra", "robot/guide/camera.py", 12),
+        ("policy", "/robot/camera/faces", f"{folder.name}/camera.nodl.yaml" if named != "apart" else
+         "robot/../apart/camera.nodl.yaml", 4),
+    ]  # fmt: skip
+    notices = [one["message"] for one in document["diagnostics"] if one["file"] == "robot/guide/camera.py"]
+    assert len(notices) == 1
+    assert "camera.nodl.yaml:1" in notices[0]
+
+
+def test_code_that_does_what_is_described_is_undetermined_at_best(cli: Cli, tmp_path: Path) -> None:
+    stated = "nodl_version: 2\npublishers: [{name: image, type: sensor_msgs/msg/Image}]\n"
+    put_checkout(tmp_path / "robot", camera_dot_nodl_dot_yaml=stated)
+    done = cli("check", "robot", "robot", cwd=tmp_path)
+    assert (done.returncode, done.stdout.partition(":")[0]) == (4, "undetermined")

@@ -193,7 +193,7 @@ def test_what_is_written_today_is_read(cli: Cli, folder: Path) -> None:
     """With all that a decision can say."""
     bases = [word for basis in BASES for word in ("--legal-basis", basis)]
     cli("decide", "accept", "59dc", "--report", "ok.json", *SIGNED, *bases, "--expires", "2999-01-01", cwd=folder)
-    cli("analyze", *SYSTEM, "--decisions", "decisions.yaml", "-f", "json", "-o", "new.json", cwd=folder)
+    cli("analyze", *SYSTEM, "--decisions", "decisions.jsonl", "-f", "json", "-o", "new.json", cwd=folder)
     assert json.loads((folder / "new.json").read_text("utf-8"))["decisions"][0]["legal_basis"] == [*BASES]
     done = cli("diff", "new.json", "new.json", cwd=folder)
     assert (done.returncode, *done.stdout.splitlines()[:1], done.stdout.splitlines()[-1]) == (0, *SAME)

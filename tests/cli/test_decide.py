@@ -32,9 +32,9 @@ NOT_CHECKED = "the ids were not checked; --report FILE checks them against an an
 
 
 def decide(cli: Cli, folder: Path, *arguments: str) -> str:
-    done = cli("decide", *arguments, cwd=folder)
-    said = "" if {"--report", "--category", "--leak"} & {*arguments} else NOT_CHECKED
-    assert (done.returncode, done.stderr) == (0, said)
+    done = cli("decide", *arguments, "--decisions", "decisions.yaml", cwd=folder)
+    checked = bool({"--report", "--category", "--leak"} & {*arguments})
+    assert (done.returncode, NOT_CHECKED in done.stderr) == (0, not checked)
     return (folder / "decisions.yaml").read_text("utf-8")
 
 
@@ -118,10 +118,10 @@ def test_comments_order_and_layout_stay(cli: Cli, tmp_path: Path) -> None:
 def test_an_entry_that_is_there_is_changed_where_it_stands(cli: Cli, tmp_path: Path) -> None:
     file = tmp_path / "decisions.yaml"
     file.write_text(WRITTEN)
-    text = decide(cli, tmp_path, "accept", OTHER, "--owner", "B. Person")
+    text = decide(cli, tmp_path, "accept", OTHER, "--owner", "B. Person", "--reason", "a blind spot")
     first, second = yaml.safe_load(text)["findings"]
     assert (first["decision"], first["owner"], first["note"]) == ("accept", "B. Person", "a long story")
-    assert first["reason"] == "the filter is ordered"  # what is not said anew stays
+    assert first["history"][0]["reason"] == "the filter is ordered"
     assert second["leak"] == "/cloud*"
     for comment in re.findall(r"#.*", WRITTEN):
         assert comment in text
@@ -267,6 +267,15 @@ def test_the_file_keeps_its_rights_and_its_link(cli: Cli, tmp_path: Path) -> Non
     assert (tmp_path / "decisions.yaml").is_symlink()
     assert real.stat().st_mode & 0o777 == 0o640
     assert ID in real.read_text()
+
+
+def test_what_is_decided_anew_inherits_no_end(cli: Cli, tmp_path: Path) -> None:
+    """Who decides anew says until when, on which basis, and where the work is tracked; or nobody does."""
+    decide(cli, tmp_path, "accept", ID, *SIGNED, "--expires", "2999-01-01", "--ticket", "PRIV-7")
+    text = decide(cli, tmp_path, "accept", ID, "--reason", "as before", "--owner", "B. Person")
+    (entry,) = yaml.safe_load(text)["findings"]
+    assert not entry.keys() & {"expires", "ticket", "legal_basis"}
+    assert entry["history"][0]["ticket"] == "PRIV-7"
 
 
 def test_several_findings_are_decided_at_once(cli: Cli, tmp_path: Path) -> None:

@@ -66,7 +66,7 @@ class TestAccepting:
         (robot / "r.json").write_text(json.dumps(document(cli, "p.xml", "-l", "l.yaml")))
         (doubt,) = document(cli, "p.xml", "-l", "l.yaml")["doubts"]
         assert cli("decide", "accept", doubt["id"][:5], "--report", "r.json", *SIGNED, cwd=robot).returncode == 0
-        decided = ("p.xml", "-l", "l.yaml", "--decisions", "decisions.yaml")
+        decided = ("p.xml", "-l", "l.yaml", "--decisions", "decisions.jsonl")
         assert cli("analyze", *decided, "--fail-on", "doubt", cwd=robot).returncode == 0
         (accepted,) = document(cli, *decided)["doubts"]
         assert accepted["accepted"]["owner"] == "A. Person"
@@ -78,7 +78,9 @@ class TestAccepting:
     def test_by_names(self, cli: Cli, robot: Path, element: str, code: int) -> None:
         named = ("--doubt", "no-reader", "--element", element)
         assert cli("decide", "accept", *named, *SIGNED, cwd=robot).returncode == 0
-        done = cli("analyze", "p.xml", "-l", "l.yaml", "--decisions", "decisions.yaml", "--fail-on", "doubt", cwd=robot)
+        done = cli(
+            "analyze", "p.xml", "-l", "l.yaml", "--decisions", "decisions.jsonl", "--fail-on", "doubt", cwd=robot
+        )
         assert done.returncode == code
         assert ("it is orphaned" in done.stdout) == bool(code)
 
@@ -112,7 +114,7 @@ class TestAccepting:
         (robot / "l.yaml").write_text(SEES)
         assert document(cli, "d", "-l", "l.yaml")["verdict"] == "undetermined"
         assert cli("decide", "accept", "--doubt", "unread-file", "--file", "d/up*", *SIGNED, cwd=robot).returncode == 0
-        done = cli("analyze", "d", "-l", "l.yaml", "--decisions", "decisions.yaml", "-q", cwd=robot)
+        done = cli("analyze", "d", "-l", "l.yaml", "--decisions", "decisions.jsonl", "-q", cwd=robot)
         assert (done.returncode, done.stdout.partition(":")[0]) == (0, "no-leak-found")
         assert "1 doubt accepted" in done.stdout
 

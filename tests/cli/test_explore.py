@@ -111,14 +111,14 @@ def test_a_decision_goes_to_the_file_that_the_command_names(tmp_path: Path) -> N
 
 
 @pytest.mark.slow
-def test_what_is_not_saved_is_told_at_the_end(tmp_path: Path) -> None:
-    with started("-l", str(tmp_path / "new.labels.yaml")) as (process, lines):
+def test_what_is_not_saved_is_told_at_the_end_and_is_kept(tmp_path: Path) -> None:
+    with started("-l", str(tmp_path / "new.labels.yaml"), ROSPRIVACY_DATA=str(tmp_path)) as (process, lines):
         asking, headers = entered(lines[0])
         assert post(asking, headers, "/label", **CAMERA)[0] == 303
         asking.close()
         process.send_signal(signal.SIGINT)
         _, errors = process.communicate(timeout=SECONDS)
-    assert errors == "Not saved: what was said of 1 element\n"
+    assert errors == "Not saved: what was said of 1 element; it is kept, and the same command offers to take it up\n"
     assert not (tmp_path / "new.labels.yaml").exists()
 
 

@@ -71,9 +71,9 @@ def clinic(made: Path, tmp_path: Path) -> Path:
 
 
 USES = [  # a command, its exit code, and what it then says of the own category
-    (["analyze", *SYSTEM], 1, "PulseCurve: /camera -> /uplink"),
-    (["analyze", *SYSTEM, "--decisions", "d.yaml"], 1, "PulseCurve: /camera -> /uplink"),
-    (["analyze", "--fleet", "f.yaml"], 1, "PulseCurve: m_1:/camera -> m_1:/uplink"),
+    (["analyze", *SYSTEM], 1, "/uplink: PulseCurve, from /camera"),
+    (["analyze", *SYSTEM, "--decisions", "d.yaml"], 1, "/uplink: PulseCurve, from /camera"),
+    (["analyze", "--fleet", "f.yaml"], 1, "m_1:/uplink: PulseCurve, from m_1:/camera"),
     (["report", *SYSTEM, "-f", "markdown"], 0, "pulse curve"),
     (["report", "--fleet", "f.yaml", "-f", "markdown"], 0, "pulse curve"),
     (["graph", *SYSTEM, "--show", "privacy"], 0, "PulseCurve"),
@@ -199,7 +199,10 @@ def test_a_second_system_beside_a_first_is_refused_in_one_wording(
         (["analyze", *FLEETS, "--save-graph", "n.json"], f"{NAMED} --save-graph"),
         (["analyze", "--from-database", "--save-graph", "n.json"], f"{STORED} --save-graph"),
         (["load", "--results", "r", *SYSTEM], "--results takes what is in the folder: no POLICY, --labels"),
-        (["analyze", "--engine", "spark", *FLEETS, "--decisions", "d.yaml"], "--engine spark takes a fleet"),
+        (
+            ["analyze", "--engine", "spark", *FLEETS, "--results", "r", "--decisions", "d.yaml"],
+            "--results takes a fleet",
+        ),
     ],
 )
 def test_what_only_one_command_has_is_refused_in_the_same_wording(

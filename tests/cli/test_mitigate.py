@@ -79,6 +79,24 @@ def test_storages_and_transfers_can_be_cut_off_or_stated(cli: Cli, tmp_path: Pat
     ]
 
 
+def test_what_weighs_most_is_proposed_first_and_a_proof_tells_what_stays(cli: Cli, tmp_path: Path) -> None:
+    """In the order of findings; that findings of other kinds stay is no failure of the proof."""
+    labels = tmp_path / "l.yaml"
+    labels.write_text(
+        "labels: 1\nnodes:\n  /safety_camera: {source: [Video, HomeMap, Voice]}\n"
+        "  /archive_server: {leak: [PersonalData]}\n",
+        "utf-8",
+    )
+    found = proposals(cli, BEFORE, "-l", labels)["proposals"]
+    assert [proposal["categories"] for proposal in found] == [
+        ["Video"], ["Voice"], ["HomeMap"], ["HomeMap", "Video", "Voice"],
+    ]  # fmt: skip
+    assert [proposal["verdict_then"] for proposal in found][:3] == ["leak"] * 3
+    text = cli("mitigate", BEFORE, "-l", labels).stdout
+    assert text.count("findings of other kinds stay") == 3
+    assert "verdict is then leak" not in text
+
+
 def test_the_proof_knows_of_storages(cli: Cli, tmp_path: Path) -> None:
     """The proposal for one kind of data says what the verdict is while another is kept too long."""
     labels = tmp_path / "l.yaml"
@@ -362,9 +380,9 @@ def test_a_hostile_name_is_quoted_in_the_label_and_harmless_in_the_text(cli: Cli
 
 def test_the_readme_of_mitigation_shows_what_is_printed(cli: Cli) -> None:
     page = (ROOT / "docs" / "mitigation.md").read_text("utf-8")
-    (shown,) = re.findall(r"```text\n(.*?)```", page, re.DOTALL)
+    shown, _ = re.findall(r"```text\n(.*?)```", page, re.DOTALL)
     (text,) = re.findall(r"```yaml\n(limits:.*?)```", page, re.DOTALL)
-    printed = cli("mitigate", BEFORE, "-l", RUN3, cwd=ROOT).stdout.splitlines()
+    printed = cli("mitigate", BEFORE.relative_to(ROOT), "-l", RUN3.relative_to(ROOT), cwd=ROOT).stdout.splitlines()
     assert all(line in printed for line in shown.splitlines())
     assert yaml.safe_load(text)["weights"] == asdict(Weights())
 
@@ -379,6 +397,21 @@ def test_several_kinds_get_a_proposal_each_and_one_together(cli: Cli) -> None:
     assert together["categories"] == names
     assert together["verdict_then"] != "leak"
     assert all(proposal["proven"] for proposal in report["proposals"])
+
+
+def test_without_v_nothing_is_told_twice_and_what_is_left_out_is_counted(cli: Cli) -> None:
+    care = ROOT / "examples" / "care-home"
+    system = ("mitigate", care / "care-home.policy.xml", "-l", care / "care-home.labels.yaml")
+    short, whole = (cli(*system, *more).stdout for more in ((), ("-v",)))
+    steps = {line for line in whole.splitlines() if line.startswith(("   Or put", "   Do not record"))}
+    assert len(steps) == 4
+    assert {short.count(line) for line in steps} == {1}
+    assert {whole.count(line) for line in steps} == {2}
+    assert "   1 setting, as above\n   3 changes, as above\n" in short
+    assert "as above" not in whole
+    assert "(-v)" in short
+    assert "(-v)" not in whole
+    assert cli(*system, "-f", "json").stdout == cli(*system, "-f", "json", "-v").stdout
 
 
 def test_a_flow_that_a_person_states_is_named_by_its_line(cli: Cli, tmp_path: Path) -> None:
@@ -402,4 +435,4 @@ def test_a_sanitizer_that_reads_a_wildcard_which_a_source_names(cli: Cli, tmp_pa
     assert done.stderr == ""
     assert "3 changes remove 2 findings" in done.stdout
     assert "Put a filter between /* (topic wildcard) and /clean (node)" in done.stdout
-    assert "Proven: analysed anew with this, no open finding of Video is left" in done.stdout
+    assert "Proven: analysed anew with the 3 filters, no open finding of Video is left" in done.stdout

@@ -376,3 +376,17 @@ def test_a_fleet_of_observed_robots_is_told_in_few_lines_and_one_gap_counts(cli:
     assert (without[0], with_gap[0]) == (0, 4)
     assert sum("tells what was seen running" in line for line in with_gap[1].splitlines()) == 1
     assert "r0.xml, r7.xml tells what was seen running" in with_gap[1]
+
+
+def test_a_message_with_the_graph_is_a_door(cli: Cli, robot: Path) -> None:
+    types = "{name: sensor_msgs/msg/Image}"
+    rest = "  service_servers: []\n  service_clients: []\n  action_servers: []\n  action_clients: []\n"
+    ends = f"[{{name: /image, type: {types}}}]"
+    text = f"nodes:\n- name: /cam\n  publishers: {ends}\n  subscriptions: []\n{rest}"
+    text += f"- name: /up\n  publishers: []\n  subscriptions: {ends}\n{rest}---\n"
+    (robot / "rosgraph.yaml").write_text(text)
+    done = cli("observe", "--rosgraph", "rosgraph.yaml", "--at", AT, "-o", "g.policy.xml", cwd=robot)
+    assert done.returncode == 0, done.stderr
+    assert f"observed from {AT} to {AT} by rosgraph" in done.stderr
+    answer = cli("analyze", "g.policy.xml", "-l", "labels.yaml", "--types", "g.types.yaml", cwd=robot)
+    assert answer.returncode == 1, answer.stderr

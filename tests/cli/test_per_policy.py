@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+import re
 from typing import TYPE_CHECKING, Any
 
 import jsonschema
 import pytest
 
 from tests.helpers.fleet_files import policy
+from tests.helpers.observed import node_info
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
@@ -17,6 +19,7 @@ if TYPE_CHECKING:
     from tests.helpers.command import Cli
 
 APART = "what goes from the nodes of one to those of another is not looked at"
+NODES = ("camera", "mapper", "uplink")
 MERGED = "policies make one graph"
 LABELS = """labels: 1
 nodes: {/camera: {source: [Video], leak: none}, /uplink: {leak: [Video]}}
@@ -56,6 +59,34 @@ def test_what_may_not_belong_together_is_named(cli: Cli, folder: Path, third: tu
     told = [line for line in lines if MERGED in line]
     assert len(told) == bool(notice)
     assert all(line.startswith(ONE_GRAPH) and notice in line and line.endswith(ALONE) for line in told)
+
+
+@pytest.mark.parametrize("observed", [False, True], ids=["policies", "observed"])
+@pytest.mark.parametrize("joint", ["", "tf"], ids=["nothing in common", "a channel in common"])
+def test_a_robot_beside_itself_below_a_namespace_is_told_of(
+    cli: Cli, tmp_path: Path, joint: str, *, observed: bool
+) -> None:
+    """Whoever gives two robots at once has one graph; two observations of one robot are meant to be one."""
+    robots = {}
+    for name, below in (("a", ""), ("b", "/r1")):
+        shared = [f"/{joint}: tf2_msgs/msg/TFMessage"] if joint else []
+        nodes = [
+            node_info(f"{below}/{node}", publishers="; ".join([f"{below}/{node}: t/msg/T", *shared])) for node in NODES
+        ]
+        (tmp_path / f"{name}.txt").write_text("".join(nodes))
+        done = cli(
+            "observe", "--text", f"{name}.txt", "-o", f"{name}.xml", "--at", "2026-11-22T10:00:00Z", cwd=tmp_path
+        )
+        assert done.returncode == 0, done.stderr
+        text = (tmp_path / f"{name}.xml").read_text()
+        robots[name] = text if observed else re.sub(r"<!--.*?-->", "", text, flags=re.DOTALL)
+        (tmp_path / f"{name}.xml").write_text(robots[name])
+    (tmp_path / "again.xml").write_text(robots["a"])
+    (line,) = (line for line in cli("analyze", "a.xml", "b.xml", cwd=tmp_path).stdout.splitlines() if MERGED in line)
+    assert line.startswith("notice: a.xml:")
+    assert ("below /, /r1" in line) == bool(joint)
+    assert line.endswith(ALONE)
+    assert MERGED not in cli("analyze", "a.xml", "again.xml", cwd=tmp_path).stdout
 
 
 def test_several_policies_of_one_robot_of_a_fleet_are_told_alike(cli: Cli, folder: Path) -> None:

@@ -952,3 +952,36 @@ def test_accepting_every_suggestion_hides_no_planted_leak_of_the_corpus(
             assert accepted.analysis.verdict != "no-leak-found", f"{file}: {path}"
             tried += 1
     assert tried > 5
+
+
+def test_the_surest_reason_is_told_and_all_of_one_element_on_demand(cli: Cli, robot: Path) -> None:
+    """What is told on demand is all that the document has, the surest first."""
+    reasons = {
+        (one["role"], one["kind"]): [reason["reason"] for reason in one["evidence"]]
+        for one in document_of(cli, robot)["suggestions"]
+        if one["name"] == "/camera"
+    }
+    assert max(map(len, reasons.values())) > 1
+    text = cli("suggest", "p.xml", "-l", "l.yaml", cwd=robot).stdout
+    whole = cli("suggest", "p.xml", "-l", "l.yaml", "--why", "/camera", cwd=robot).stdout
+    for some in reasons.values():
+        assert some[0] in text
+        assert [whole.index(reason) for reason in some] != []
+    assert not [some[-1] for some in reasons.values() if len(set(some)) > 1 and f"            {some[-1]}\n" in text]
+    assert ": --why /camera\n" in text
+    assert "/finder" not in {line.split()[1] for line in whole.splitlines() if line.startswith("  node")}
+
+
+def test_who_asks_why_of_what_nothing_is_suggested_is_told_what_is_near(cli: Cli, robot: Path) -> None:
+    (line,) = refused(cli("suggest", "p.xml", "-l", "l.yaml", "--why", "/camra", cwd=robot))
+    assert line.startswith("--why: nothing is suggested of /camra; did you mean /camera")
+    for more in (("-f", "json"), ("--into", "l.yaml")):
+        assert cli("suggest", "p.xml", "-l", "l.yaml", "--why", "/camera", *more, cwd=robot).returncode == 2
+
+
+def test_lines_are_broken_at_the_width_of_a_terminal(cli: Cli, tmp_path: Path) -> None:
+    robot_of(tmp_path, {"usb_cam": (["/image_raw"], []), "foxglove_bridge": ([], ["/image_raw"])}, "labels: 1\n")
+    wide = cli("suggest", "p.xml", cwd=tmp_path).stdout
+    shown = cli("suggest", "p.xml", cwd=tmp_path, FORCE_COLOR="1", COLUMNS="80").stdout
+    assert max(map(len, wide.splitlines())) > 80 >= max(map(len, shown.splitlines()))
+    assert shown.split() == wide.split()

@@ -281,11 +281,12 @@ def test_a_process_that_is_killed_loses_the_key_in_hand_at_most(robot: Path) -> 
 
 @pytest.mark.slow
 def test_at_a_terminal_a_key_needs_no_enter(robot: Path) -> None:
+    """After the key that asks about what is left as lists."""
     ours, theirs = pty.openpty()
     with subprocess.Popen(COMMAND, cwd=robot, stdin=theirs, stdout=subprocess.PIPE, bufsize=0) as process:
         assert process.stdout is not None
         shown = b""
-        for key in (b"1", b"q"):
+        for key in (b"l", b"1", b"q"):
             while not shown.endswith(b"> ") and (more := process.stdout.read(1)):
                 shown += more
             wait_for_keys(theirs)
@@ -381,3 +382,38 @@ def test_what_somebody_has_written_since_is_never_taken_back(
     assert "somebody has changed the file since: nothing is taken back" in done.stdout
     assert text_of(robot).endswith("# mine\n")
     assert "/customer_bridge" in text_of(robot)
+
+
+@pytest.mark.parametrize(
+    ("reads", "said", "named"),
+    [
+        ([], "", True),
+        (["/rosout", "/parameter_events"], "", True),  # as every node does
+        (["/other"], "", False),
+        (["/cmd_vel"], "topics: {/cmd_vel: {types: [geometry_msgs/msg/Twist]}}\n", False),  # that carries nothing
+        ([], "  /log_shipper: {leak: [PersonalData]}\n", False),
+    ],
+    ids=["none", "standard channels", "a channel of its own", "one of a type", "somebody has said what it is"],
+)
+def test_a_node_without_a_channel_of_its_own_is_named_at_the_end(
+    by_keys: ByKeys, tmp_path: Path, reads: list[str], said: str, *, named: bool
+) -> None:
+    """What it does with data it does outside ROS, as who reads log files: no question can be asked about it."""
+    nodes: Nodes = {"camera": (["/image"], []), "log_shipper": ([], reads)}
+    robot_of(tmp_path, nodes, f"labels: 1\nnodes:\n  /camera: {{source: [Video]}}\n{said}")
+    lines = by_keys(tmp_path, "q", "--by", "Ada").stdout.splitlines()
+    told = [line for line in lines if line.startswith("not asked about")]
+    assert len(told) == named
+    assert all(line.endswith(": /log_shipper") for line in told)
+
+
+@pytest.mark.parametrize(("keys", "named"), [("q", True), ("y", False), ("n", False)])
+def test_what_perhaps_brings_data_in_and_nobody_has_answered_is_named_at_the_end(
+    by_keys: ByKeys, tmp_path: Path, keys: str, *, named: bool
+) -> None:
+    """An answer counts a source that is stated only: what is left out of it is told."""
+    nodes: Nodes = {"driver": (["/image_raw"], []), "recorder": ([], ["/image_raw"])}
+    robot_of(tmp_path, nodes, "labels: 1\nnodes: {/recorder: {leak: [PersonalData]}}\n")
+    lines = by_keys(tmp_path, keys * 9, "--by", "Ada").stdout.splitlines()
+    told = [line for line in lines if line.startswith("not in this answer")]
+    assert told == (["not in this answer: data that perhaps comes from /driver"] if named else [])

@@ -125,7 +125,7 @@ def test_at_a_terminal_a_line_is_shown_while_it_is_typed(robot: Path) -> None:
             os.write(ours, b"/")
             wait_for_keys(theirs, whole_lines=True)
             os.write(ours, line)
-            screen += read_until(ours, b"? help") + read_until(ours, b"> ")
+            screen += read_until(ours, b"q stop") + read_until(ours, b"> ")
         wait_for_keys(theirs)
         os.write(ours, b"q")
         screen += read_until(ours, b"tells all)")

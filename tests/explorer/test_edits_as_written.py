@@ -115,6 +115,16 @@ def test_edits_mean_what_the_edited_file_means(system: Written, deeds: list[Edit
     held(system, deeds)
 
 
+def test_an_edit_with_a_wrong_key_at_a_wrong_name_is_told_of_both() -> None:
+    policy = (
+        '<policy version="0.2.0"><enclaves><enclave path="/e"><profiles><profile ns="/" node="n0">'
+        '<topics publish="ALLOW"><topic>/b</topic></topics></profile></profiles></enclave></enclaves></policy>'
+    )
+    held(
+        Written(policy, "labels: 1\nnodes:\n  /n0: {source: [Video]}\n", ()), [Edit("nodes", "/m", {"leek": ["Video"]})]
+    )
+
+
 def held(system: Written, deeds: list[Edit | str]) -> None:
     """Do what is to be done, and hold the session against the file after each deed."""
     with tempfile.TemporaryDirectory() as folder:

@@ -249,15 +249,16 @@ def test_where_the_file_contradicts_itself_nothing_is_written(small: Path) -> No
     assert (session.result.to("json1"), session.version) == (before, version)
 
 
-def test_a_decision_that_is_over_is_not_renewed_without_a_day(small: Path) -> None:
+def test_a_decision_that_is_over_is_made_anew_and_inherits_no_day(small: Path) -> None:
     session, file = begun(small), decisions(small)
     finding = pattern(session, across=False).id
     session.decide(finding, "accept", reason="agreed", owner="A. Lee", expires="2999-12-31")
     over = file.read_text("utf-8").replace("2999-12-31", "2020-01-01")
     file.write_text(over, "utf-8")
-    with pytest.raises(RosPrivacyError, match="2020-01-01 is over"):
-        session.decide(finding, "accept", **SIGNED)
-    assert file.read_text("utf-8") == over
+    session.decide(finding, "accept", **SIGNED)
+    assert session.result.decided
+    (entry,) = session.result.decided.decisions.entries
+    assert (entry.expires, entry.owner) == (SIGNED.get("expires", ""), SIGNED["owner"])
 
 
 def test_what_was_refused_before_a_decision_keeps_no_robots_apart(small: Path) -> None:

@@ -19,6 +19,7 @@ from rosprivacy.analysis.suggesting.evidence import HIDING
 from rosprivacy.analysis.suggesting.library_rules import CPP, PYTHON, NodeUse
 from rosprivacy.analysis.suggesting.name_rules import of_topic
 from rosprivacy.analysis.suggesting.packages import nodes_of_packages, package_evidence
+from rosprivacy.bag_copy import share_bag
 from rosprivacy.explorer.journal import read_journal
 from rosprivacy.explorer.session import Session
 from rosprivacy.ingest.decisions.decisions_file import read_decisions
@@ -205,6 +206,22 @@ def _bags() -> None:
     for bag in read_bags(["bag", "bag/bag_0.mcap", "bag/bag_0.db3"]):
         assert all(one.isprintable() for one in (*bag.gaps, *bag.extras, *bag.notes)), bag
         assert bag.messages is None or bag.complete
+    Path("mundane.yaml").write_text('labels: 1\nchannels: {"*": mundane}\n', "utf-8")
+    for file in ("bag", "bag/bag_0.mcap", "bag/bag_0.db3"):
+        _shared(file)
+
+
+def _shared(bag: str) -> None:
+    """What may be shared of it is a whole recording again; of what is refused nothing is written."""
+    copy = Path("copy.mcap")
+    copy.unlink(missing_ok=True)
+    try:
+        share_bag(bag, ["all"], copy, (), ("mundane.yaml",), Settings())
+    except (InputError, InputErrors):
+        assert not copy.exists()
+    if copy.exists():
+        (again,) = read_bags([str(copy)])
+        assert again.complete
 
 
 def _observed() -> None:

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     Arguments = tuple[str, ...]
 
 LANGUAGES = ("en", "de", "fr")
+LEGAL = ("article30", "article30-processors", "notice", "works-council", "edpb-dpia")  # views of the register
 FLEETS = 8  # random fleets; of each, one model is a robot alone
 HERE = ("examples", "tests/cases")
 
@@ -86,7 +87,7 @@ def of_one_robot(robot: Arguments) -> Iterator[Arguments]:
         yield ("analyze", *robot, "--lang", language, "-v")
         yield ("analyze", *robot, "--lang", language, "--view", "both")
         yield ("analyze", *robot, "-f", "cnil-pia", "--lang", language)
-        for form in ("html", "markdown", "docx", "article30", "works-council"):
+        for form in ("html", "markdown", "docx", *LEGAL):
             yield ("report", *robot, "-f", form, "--lang", language, "-o", "out")
     for form in ("html", "markdown"):
         yield ("report", *robot, "-f", form, "--redact", "-o", "out")
@@ -123,7 +124,7 @@ def of_a_fleet(given: Arguments, *, every: bool) -> Iterator[Arguments]:
     if every:
         yield ("analyze", *given, "-v", "--decisions", "tests/cases/earlier/fleet/decisions.yaml")
         for language in LANGUAGES:
-            for form in ("html", "docx", "article30", "works-council"):
+            for form in ("html", "docx", *LEGAL):
                 yield ("report", *given, "-f", form, "--lang", language, "-o", "out")
             yield ("analyze", *given, "-f", "cnil-pia", "--lang", language)
         for form in ("turtle", "json-ld"):

@@ -33,6 +33,7 @@ PAIRS = [
 ]
 OF_CHANNELS = {"mundane", "sensitive", "only", "never"}  # S7: statements of one kind
 OF_EVERY_KIND = {"mundane", "sensitive", "only"}
+ADDS = {"source", "leak", "derivation"}  # S11: they hold without anybody having seen it, and review nothing then
 PASSING = {"conduit", "sensitive", "only"}
 KEPT = {("conduit", "source"), ("conduit", "leak"), ("sanitizer", "source")}  # the first takes no second away
 ENDS = {"anonymise", "aggregate", "drop"}
@@ -134,7 +135,8 @@ class Brute:
         said = [*self.said.get(vertex, []), *BY_KIND.get(self.outside.get(vertex, ("",))[0], [])]
         said = [s for s in said if self.nearness(s, category) is not None]
         # S11: what a glob of a pinned file takes away is not there for what nobody has seen; what lets through is
-        said = [s for s in said if s.counts_for(category) or (s.role in PASSING and not self.closes(s, category))]
+        lets = [s for s in said if s.role in ADDS or (s.role in PASSING and not self.closes(s, category))]
+        said = [s for s in said if s.counts_for(category) or s in lets]
         if vertex not in self.nodes and self.named(vertex, category):
             return [s for s in said if by_a_users_name(s) or not self.closes(s, category)]
         return said
@@ -191,7 +193,7 @@ class Brute:
         return [
             s
             for s in applying
-            if s.counts_for(category)  # S11: … and what lets through reviews nothing
+            if (s.counts_for(category) or s.role in ADDS)  # S11: … and what lets through reviews nothing
             and not any(self.opposed(s, t, category) and self.beats(t, s, category) for t in applying)
         ]
 
@@ -214,7 +216,8 @@ class Brute:
                 if s.role not in ("source", "leak") or s in holding or s.rank[0] <= 0:
                     continue
                 still = [t for t in holding if t.role == s.role]
-                if still and (s.role == "leak" or not still[0].through or self.within(s, still[0])):
+                anywhere = still and not (still[0].through and still[0].counts_for(category))
+                if still and (s.role == "leak" or anywhere or self.within(s, still[0])):
                     continue
                 against = [t for t in applying if self.opposed(s, t, category) and self.beats(t, s, category)]
                 away = [t for t in against if t.rank != s.rank or t.place.file != s.place.file]
@@ -308,7 +311,7 @@ class Brute:
         for category in {c for s in self.said.get(vertex, []) for c in s.categories if s.role == "source"}:
             for s in self.holding(vertex, category):
                 if s.role == "source":
-                    data[category, False] = self.ends(vertex, s) if s.through else None
+                    data[category, False] = self.ends(vertex, s) if s.through and s.counts_for(category) else None
         own = list(data)
         return data | {made: None for d in own for made in self.made(vertex, d) if not made[1]}
 
@@ -448,8 +451,8 @@ class Brute:
         if facts is not None and facts.transfer == "derogation" and facts.area in ("", *ABROAD):
             return False
         said = [s for s in self.holding(vertex, category) if not s.role.startswith("no-")]
-        return bool(said) or any(
-            s.role == "derivation" and s.to == category
+        return any(s.counts_for(category) for s in said) or any(
+            s.role == "derivation" and s.to == category and s.counts_for(c)
             for c in self.hierarchy.ancestors
             for s in self.holding(vertex, c)
         )

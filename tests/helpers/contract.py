@@ -10,7 +10,7 @@ import types
 from typing import TYPE_CHECKING, Annotated, Any, NotRequired, Union, get_args, get_origin, get_type_hints, is_typeddict
 
 from rosprivacy.report.schemas.analysis import AnalysisDocument, ShortDocument
-from rosprivacy.report.schemas.bags import BagsDocument
+from rosprivacy.report.schemas.bags import BagsDocument, SharedBagDocument
 from rosprivacy.report.schemas.mitigation import MitigationDocument
 from rosprivacy.report.schemas.policies import CheckDocument, LintDocument
 from rosprivacy.report.schemas.suggested import ExchangesDocument, SuggestionsDocument
@@ -28,6 +28,7 @@ DOCUMENTS: dict[str, Any] = {
     "suggestions": SuggestionsDocument,
     "model-exchanges": ExchangesDocument,
     "bags": BagsDocument,
+    "shared-bag": SharedBagDocument,
     "check": CheckDocument,
     "lint": LintDocument,
 }

@@ -51,14 +51,20 @@ class Explorer:
         Whether the policy is a fleet file, which names its label files itself.
     decisions
         Where decisions about findings are written.
+    types
+        What was observed of the types of channels.
     """
 
     def __init__(
         self, policy: Path, labels: Path, *, port: int = PORT, read_only: bool = False, language: str = "en",
         root: Path | None = None, journal: Path | None = None, review: bool = False, fleet: bool = False,
-        decisions: Path | None = None,
+        decisions: Path | None = None, types: Path | None = None,
     ) -> None:  # fmt: skip
-        settings = Settings(include_root=str(root) if root else None, decisions=str(decisions) if decisions else None)
+        settings = Settings(
+            include_root=str(root) if root else None,
+            decisions=str(decisions) if decisions else None,
+            types=(str(types),) if types else (),
+        )
         self.labels, self.door = labels, RequestDoor(port, read_only)
         self.session = (
             Session.open_fleet(str(policy), settings, journal=journal)

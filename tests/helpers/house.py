@@ -22,7 +22,7 @@ ROOMS: dict[str, set[str]] = {
 }
 # Which wings a wing may import from; '' is what stands in the room itself. A name of one module is that module alone.
 MODEL = {"", "model"}
-FACTS = MODEL | {"kernel", "answer", "case", "decisions", "legal"}
+FACTS = MODEL | {"kernel", "answer", "case", "contexts", "decisions", "legal"}
 READING = {"reading", "policies"}
 ANSWERS = {"", "result", "answering"}
 WORK = ANSWERS | {"formats", "outputs", "mitigation", "systems", "both_views", "checking", "linting", "labelling"}
@@ -54,6 +54,7 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "running": READING | {"types"},
         "labels": READING | {"running"},
         "code": READING | {"labels"},
+        "scan": READING | {"code", "deployed", "known_packages", "labels", "running", "suggestion_rules", "types"},
         "mitigation": READING,
         "language_model": {"reading"},
         "deployed": READING,
@@ -73,8 +74,9 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "compare": {"", "schemas", "document"},
         "page": {"", "document", "pictures", "compare", "catalogs"},
         "bags": {"", "schemas"},
+        "shared_bag": {"", "schemas", "bags"},
         "lint": {"", "schemas", "sarif"},
-        "suggested_labels": {"", "schemas"},
+        "suggested_labels": {"", "schemas", "catalogs"},
         "sarif": {"", "document", "catalogs"},
         "cnil": {"", "document", "catalogs"},
         "rdf": {"", "schemas", "document"},
@@ -94,12 +96,14 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "linting": ANSWERS | {"systems"},
         "labelling": ANSWERS | {"systems"},
         "bags": ANSWERS | {"systems"},
+        "bag_copy": ANSWERS | {"systems", "bags"},
         "observing": {""},
+        "scanning": {""},
         "watching": ANSWERS | {"systems", "observing"},
         "parts": ANSWERS | {"systems"},
         "private_neo4j": {""},
         "explorer": WORK,
-        "cli": WORK | {"bags", "observing", "watching", "private_neo4j", "parts", "explorer"},
+        "cli": WORK | {"bags", "bag_copy", "observing", "scanning", "watching", "private_neo4j", "parts", "explorer"},
         "__main__": {"cli"},
     },
 }

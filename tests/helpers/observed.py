@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from rosprivacy.ingest.running.observation import Observation, ObservedEndpoint, ObservedNode, Span
 
 AT = "2026-11-22T10:00:00Z"
@@ -46,3 +48,21 @@ def node_info(node: str, **sections: str) -> str:
         entries = sections.get(title.lower().replace(" ", "_"), "")
         lines += [f"    {entry.strip()}" for entry in entries.split(";") if entry.strip()]
     return "\n".join([*lines, ""]) + "\n"
+
+
+SECTIONS = {
+    "subscribers": "subscribes", "publishers": "publishes", "service_servers": "serves", "service_clients": "calls",
+    "action_servers": "acts", "action_clients": "asks",
+}  # fmt: skip
+
+
+def robot_text(robot: dict[str, Any]) -> str:
+    """What ``ros2 node info`` prints of a robot of ``tests/cases/try``."""
+    parts = []
+    for name, said in robot["nodes"].items():
+        sections = {
+            section: "; ".join(f"{topic}: {kind}" for topic, kind in said.get(word, {}).items())
+            for section, word in SECTIONS.items()
+        }
+        parts.append(node_info(name, **sections))
+    return "".join(parts)

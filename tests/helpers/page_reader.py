@@ -60,6 +60,16 @@ class Reader:
             ActionChains(self.browser).send_keys(key).perform()
             WebDriverWait(self.browser, SECONDS, 0.02).until(lambda b: b.execute_script(SETTLED))
 
+    def accept(self) -> None:
+        """Sign an acceptance without an end from its reason on, and say yes where the page asks again."""
+        from selenium.webdriver.common.keys import Keys
+
+        self.press(*"inside", Keys.TAB, *"A. Lee", Keys.ENTER)
+        (message,) = chrome.console(self.browser)  # Chromium tells of every 409
+        assert "409" in message["message"]
+        self.focus("#decide [name=reason]")
+        self.press(Keys.ENTER)
+
     def save(self) -> None:
         """Press Ctrl+S, and see that it was saved."""
         before = self.version

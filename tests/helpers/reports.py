@@ -67,6 +67,52 @@ def hostile(folder: Path) -> dict[str, Any]:
     return harmed(result.document())
 
 
+OF_OFFICE: dict[str, dict[str, Any]] = {
+    "archive": {
+        "kind": "storage", "country": "US", "recipient": "processor", "contract": "Article 28",
+        "retention": "P1Y", "encrypted": False, "transfer": "standard-clauses",
+    },
+    "help desk": {"kind": "external-system", "country": "TN", "recipient": "processor", "transfer": "derogation"},
+    "partner": {"kind": "external-system", "country": "DE", "recipient": "joint-controller"},
+}  # fmt: skip
+
+
+def office(folder: Path) -> dict[str, Any]:
+    """A workplace with emotion estimates and a watch list, which rest abroad and are no finding."""
+    profiles: dict[str, tuple[list[str], list[str]]] = {
+        "camera": (["/image"], []),
+        "emotion": (["/mood"], ["/image"]),
+        "guard": (["/alarm"], ["/image"]),
+        "mic": (["/audio"], []),
+        "recorder": ([], ["/mood", "/alarm"]),
+        "teleop": ([], ["/audio"]),
+    }
+    labels = {
+        "labels": 1,
+        "context": ["workplace"],
+        "country": "DE",
+        "nodes": {
+            "/camera": {"source": ["Video"]},
+            "/mic": {"source": ["Voice"]},
+            "/emotion": {"derives": [{"from": "Video", "to": "EmotionEstimate"}], "sanitizer": {"Video": "drop"}},
+            "/guard": {"derives": [{"from": "Video", "to": "WatchListMatch"}], "sanitizer": {"Video": "drop"}},
+            "/recorder": "conduit",
+            "/teleop": "conduit",
+        },
+        "channels": dict.fromkeys(("/image", "/mood", "/alarm", "/audio"), "sensitive"),
+        "elements": OF_OFFICE,
+        "flows": [
+            {"from": "/recorder", "to": "archive"},
+            {"from": "/teleop", "to": "help desk"},
+            {"from": "/teleop", "to": "partner"},
+        ],
+    }
+    (folder / "office.policy.xml").write_text(policy(profiles), "utf-8")
+    (folder / "office.labels.json").write_text(json.dumps(labels), "utf-8")
+    analysed = rosprivacy.analyze([str(folder / "office.policy.xml")], [str(folder / "office.labels.json")])
+    return json.loads(json.dumps(analysed.document()))  # type: ignore[no-any-return]  # JSON
+
+
 def harmed(document: dict[str, Any]) -> dict[str, Any]:
     """A document with a way through each hostile name, as a hostile policy or database could have it."""
     (template,) = document["findings"]
@@ -93,6 +139,10 @@ def harmed(document: dict[str, Any]) -> dict[str, Any]:
             "holds": ["Video"],
         }
     ]
+    (like,) = document["register"]
+    ends = {finding["id"]: finding for finding in document["findings"]}
+    document["register"] = [registered(like, document["outside"][0])]
+    document["register"] += [{**like, "places": [one["leak"]], "findings": [of]} for of, one in ends.items()]
     return document
 
 
@@ -161,11 +211,25 @@ def with_outside(document: dict[str, Any]) -> dict[str, Any]:
     kept["because"] = {"key": "no-retention", "values": {}}
     kept["leak"] = kept["witness"][-1] = OUTSIDE[1]["element"]
     document["findings"].append(kept)
-    of_kinds = {row["category"]: row for row in document["ways"] if "element" not in row}
-    document["ways"] += [
-        {**of_kinds[kind], "element": row["element"]} for row in OUTSIDE for kind in row["holds"] if kind in of_kinds
-    ]
+    of_kinds = {row["category"]: row for row in document["register"]}
+    document["register"] += [registered(of_kinds[kind], row) for row in OUTSIDE for kind in row["holds"]]
     return document
+
+
+def registered(like: Mapping[str, Any], stated: Mapping[str, Any]) -> dict[str, Any]:
+    """A row of the register like another one, at a place of which something is stated; nothing is to be completed."""
+    fields = ("operator", "recipient", "contract", "country", "area", "transfer", "backups", "encrypted")
+    kept = stated.get("retention", {})
+    return {
+        **copy.deepcopy(dict(like)),
+        **{field: stated.get(field, None if field in ("backups", "encrypted") else "") for field in fields},
+        "retention": [kept[of] for of in (like["category"], "every") if of in kept][:1],
+        "places": [stated["element"]],
+        "safeguards": [],
+        "measures": [],
+        "findings": [],
+        "to_complete": [],
+    }
 
 
 def with_decisions(document: dict[str, Any]) -> dict[str, Any]:

@@ -43,6 +43,8 @@ CHANNEL = ("mundane", "sensitive", "{only: [Video], note: checked}", "{never: [V
 SURROUNDINGS: tuple[tuple[list[str], str], ...] = (  # of the system, of one source
     ([], ""), (["context: [care]"], ""), (["context: [union, care]", "country: FR"], "context: school, "),
     (["country: DE"], "context: [worship, workplace], "), ([], "context: public-space, "),
+    (["country: US", "gdpr: {established: no}"], ""),
+    (["country: JP", "gdpr: {established: false, targeted: false}"], "context: care, "),
 )  # fmt: skip
 
 
@@ -103,6 +105,8 @@ def told(result: Result) -> dict[str, Any]:
         assumptions.pop(way, None)
     document["diagnostics"] = sorted(document["diagnostics"], key=json.dumps)
     plain: dict[str, Any] = _plain(document, patterns)
+    for row in plain.get("register", ()):
+        row.pop("id")  # the same
     for decision in plain.get("decisions", ()):  # sorted by ids, which hold the robot's name
         decision["findings"] = sorted(decision["findings"])
     return plain

@@ -303,7 +303,7 @@ class TestLaw:
         for meaning in ontology().objects(provision, SKOS.definition):
             assert str(meaning).endswith(".")
             assert ". " not in str(meaning).replace("Version 2.0", "").replace("29. Januar", "").replace("7. Juli", "")
-        assert str(ontology().value(provision, RP.asOf)) in {"2026-11-21", "2026-11-22", "2026-11-25"}
+        assert str(ontology().value(provision, RP.asOf)) in {"2026-11-21", "2026-11-22", "2026-11-25", "2026-11-28"}
 
     @pytest.mark.parametrize(("article", "letters"), [("6-1", "abcdef"), ("9-2", "abcdefghij")])
     def test_legal_bases_are_those_of_dpv(self, article: str, letters: str) -> None:

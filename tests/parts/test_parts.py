@@ -5,7 +5,6 @@ Here the parts are in a list; ``test_spark.py`` has them on Spark.
 
 from __future__ import annotations
 
-from contextlib import chdir
 from functools import partial
 from pathlib import Path
 
@@ -18,7 +17,7 @@ from rosprivacy.parts import distributed
 from rosprivacy.settings import Settings
 from rosprivacy.systems.fleet_system import answer_fleet
 from tests.helpers.fleet_files import policy, write
-from tests.helpers.parts import FLEET, documents, fleet_file, in_list, same, scattered
+from tests.helpers.parts import FLEET, documents, fleet_file, fleet_of_two, in_list, same, scattered
 from tests.helpers.paths import ROOT
 from tests.helpers.random_fleets import Case, fleets
 from tests.helpers.written_systems import Written, written
@@ -54,28 +53,12 @@ def test_the_example(monkeypatch: pytest.MonkeyPatch) -> None:
     documents("fleet.yaml", in_list)
 
 
-OF_TWO = """fleet: 1
-robots:
-  one: {policies: one.xml, labels: one.yaml}
-  two: {policies: two.xml, labels: two.yaml}
-elements: {cloud: {kind: external-system, country: US}}
-flows: [{from: "*:/n1", to: cloud}, {from: cloud, to: "two:/n2"}]
-"""
-
-
 @given(written(), written())
 def test_the_document_of_random_fleets(tmp_path_factory: pytest.TempPathFactory, one: Written, two: Written) -> None:
     """Findings, patterns, assumptions, diagnostics and verdict are those in memory."""
-    folder = tmp_path_factory.mktemp("fleet")
-    one.write(folder, "one")
-    two.write(folder, "two")
-    with chdir(folder):
-        write("f.yaml", OF_TWO)
-        try:
-            answer_fleet("f.yaml", Settings())
-        except InputErrors:
-            return
-        documents("f.yaml", in_list)
+    with fleet_of_two(tmp_path_factory, one, two) as file:
+        if file:
+            documents(file, in_list)
 
 
 @pytest.mark.parametrize(

@@ -23,12 +23,12 @@ import pytest
 from hypothesis import given
 
 from rosprivacy.analysis.errors import ClusterError, InputError, InputErrors
-from rosprivacy.parts import kept_parts, processes, workers
+from rosprivacy.parts import distributed, kept_parts, processes, workers
 from rosprivacy.parts.fleet_in_parts import run_in_processes, task_of
 from rosprivacy.parts.units import split
 from rosprivacy.settings import Settings
 from tests.helpers.fleet_files import policy, write
-from tests.helpers.parts import ASKED, FLEET, documents, fleet_file, in_list, same
+from tests.helpers.parts import ASKED, FLEET, documents, fleet_file, in_list, same, same_bytes
 from tests.helpers.paths import ROOT
 from tests.helpers.random_fleets import Case, fleets
 
@@ -48,7 +48,7 @@ def pool() -> Iterator[ProcessPoolExecutor]:
     """One for all random fleets; its processes find the tests, too."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(sys, "path", [str(ROOT), *sys.path])
-        with ProcessPoolExecutor(2, get_context("spawn"), processes._begin) as executor:
+        with ProcessPoolExecutor(2, get_context("spawn"), processes._begin, ("",)) as executor:
             yield executor
 
 
@@ -75,7 +75,8 @@ def test_the_answer_is_that_of_spark(fleet_file: str) -> None:
 
 
 def kept_in(folder: Path) -> dict[str, int]:
-    return {file.name: file.stat().st_mtime_ns for file in folder.iterdir()}
+    """The parts that were kept, and when; a file with a dot before its name is not written to its end."""
+    return {file.name: file.stat().st_mtime_ns for file in folder.iterdir() if not file.name.startswith(".")}
 
 
 def test_what_was_read_is_not_read_again(fleet_file: str, tmp_path: Path) -> None:
@@ -216,7 +217,12 @@ def test_a_run_that_is_killed_goes_on_and_leaves_no_process(tmp_path: Path) -> N
     command = [sys.executable, "-m", "rosprivacy", "analyze", "--fleet", "f.yaml", "--engine", "parts", "-f", "json"]
     resuming = [*command, "--resume", "kept"]
     folder = tmp_path / "kept"
-    process = subprocess.Popen(resuming, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    values = tmp_path / "values"
+    values.mkdir()
+    environment = {**os.environ, "TMPDIR": str(values)}
+    process = subprocess.Popen(
+        resuming, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=environment
+    )
     while process.poll() is None and (not folder.is_dir() or len(list(folder.iterdir())) < 2):
         time.sleep(0.01)
     started = children(process.pid)
@@ -227,6 +233,7 @@ def test_a_run_that_is_killed_goes_on_and_leaves_no_process(tmp_path: Path) -> N
     assert 0 < len(kept) < MANY / processes.UNITS
     while any(Path("/proc", str(number)).exists() for number in started):
         time.sleep(0.05)
+    assert not list(values.glob("rosprivacy-parts-*"))
     again, whole = (
         subprocess.run(each, cwd=tmp_path, stdout=subprocess.PIPE, check=False) for each in (resuming, command)
     )
@@ -264,6 +271,13 @@ def test_bad_usage_is_told(cli: Cli, options: list[str], problem: str) -> None:
     assert (done.returncode, problem in " ".join(done.stderr.split())) == (2, True)
 
 
-def test_decisions_are_refused(fleet_file: str) -> None:
-    with pytest.raises(InputError, match=r"^--decisions: --engine parts takes no decisions into account"):
-        run_in_processes(fleet_file, Settings(decisions="d.yaml"))
+def test_decisions_about_a_large_fleet_are_refused(fleet_file: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of one that is shown as a whole they count as in memory."""
+    entry = "{category: Video, leak: /uplink, robot: odd, decision: accept, reason: A glass wall., owner: Ada}"
+    write("d.yaml", f"decisions: 1\nfindings:\n  - {entry}\n")
+    asked = Settings(decisions="d.yaml", today="2026-11-27")
+    same_bytes(fleet_file, partial(run_in_processes, settings=asked), "parts", asked)
+    assert [row for row in run_in_processes(fleet_file, asked).document()["findings"] if row["accepted"]]
+    monkeypatch.setattr(distributed, "MOST_WHOLE", 0)
+    with pytest.raises(InputError, match=r"^--decisions: --engine parts takes no decisions about more than"):
+        run_in_processes(fleet_file, asked)

@@ -23,8 +23,9 @@ from rosprivacy.analysis.errors import ClusterError, InputError, InputErrors
 from rosprivacy.analysis.files_read import one_run
 from rosprivacy.analysis.model import IN_PARTS
 from rosprivacy.ingest.fleet.joins import OF_FLEET
+from rosprivacy.parts import distributed
 from rosprivacy.parts import session as spark
-from rosprivacy.parts.fleet_in_parts import run_on_spark
+from rosprivacy.parts.fleet_in_parts import run_in_processes, run_on_spark
 from rosprivacy.parts.parquet import check_new, read
 from rosprivacy.parts.session import HOST
 from rosprivacy.private_neo4j import connection
@@ -37,9 +38,10 @@ from tests.helpers.command import XI
 from tests.helpers.fleet_files import policy, write
 from tests.helpers.fleet_rows import rows as rows_in_memory
 from tests.helpers.graphs import dump
-from tests.helpers.parts import ASKED, FLEET, documents, fleet_file, same
+from tests.helpers.parts import ASKED, FLEET, documents, fleet_file, fleet_of_two, same, same_bytes
 from tests.helpers.paths import ROOT
 from tests.helpers.random_fleets import Case, fleets
+from tests.helpers.written_systems import Written, written
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
@@ -92,6 +94,27 @@ def test_random_fleets(session: SparkSession) -> None:
     assert seen == 4
 
 
+@pytest.mark.usefixtures("session")
+def test_memory_processes_and_spark_write_the_same_bytes(
+    tmp_path_factory: pytest.TempPathFactory, *, thorough: bool
+) -> None:
+    """Random robots with labels of all sorts, joined by a cloud that sends back; each week a hundred such fleets."""
+    number, seen = 100 if thorough else 3, 0
+
+    @settings(max_examples=number, derandomize=True, database=None, phases=[Phase.generate], deadline=None)
+    @given(written(), written())
+    def check(one: Written, two: Written) -> None:
+        nonlocal seen
+        with fleet_of_two(tmp_path_factory, one, two) as file:
+            if file:
+                same_bytes(file, partial(run_on_spark, settings=ASKED), "spark")
+                same_bytes(file, partial(run_in_processes, settings=ASKED), "parts")
+                seen += 1
+
+    check()
+    assert seen > number / 2
+
+
 WORK = """fleet: 1
 context: workplace
 models: {m: {policies: p.xml, labels: l.yaml}, n: {policies: p.xml, labels: l.yaml, context: care}}
@@ -121,12 +144,16 @@ groups: [{robots: 2, model: m}, {robots: 3, model: n}]
 
 
 @pytest.mark.usefixtures("session")
-def test_types_limit_nothing_and_the_answer_says_so(fleet_file: str) -> None:
+def test_in_a_large_fleet_types_limit_nothing_and_the_answer_says_so(
+    fleet_file: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """S15: on the safe side, more findings; else it is the answer in memory without limits."""
     write(fleet_file, TYPED)
     write("l.yaml", "labels: 1\nnodes: {/cam: {source: [Video]}, /uplink: {leak: [Video]}}\n")
     write("p.xml", policy("/cam>/a", "/uplink</a"))
     write("t.yaml", "types: 1\ntopics: {/a: [{type: std_msgs/msg/Bool, writers: [/cam]}]}\n")
+    same_bytes(fleet_file, partial(run_on_spark, settings=ASKED), "spark")
+    monkeypatch.setattr(distributed, "MOST_WHOLE", 0)
     said = "message types limit nothing in parts: in memory there can be fewer findings"
     got = run_on_spark(fleet_file, Settings()).document()
     of_engine = [row for row in got["diagnostics"] if row["file"] == "--engine spark"]
@@ -141,12 +168,6 @@ def test_types_limit_nothing_and_the_answer_says_so(fleet_file: str) -> None:
     for key in ("types", "type_limits"):
         assert unlimited["assumptions"][key] == got["assumptions"][key] == expected["assumptions"][key]
     assert answer_fleet(fleet_file, Settings()).document()["findings"] != expected["findings"]
-
-
-@pytest.mark.usefixtures("session")
-def test_decisions_are_refused(fleet_file: str) -> None:
-    with pytest.raises(InputError, match=r"^--decisions: --engine spark takes no decisions into account"):
-        run_on_spark(fleet_file, Settings(decisions="d.yaml"))
 
 
 @pytest.mark.usefixtures("session")

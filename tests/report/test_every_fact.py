@@ -116,6 +116,9 @@ def subjects(document: Document) -> list[str]:
     return [one for row in document["subjects"] for one in row["subjects"]]
 
 
+SOME_ROWS = ("json", "article30-processors")  # the short form, and a record of some rows only
+
+
 def pseudonymised(document: Document) -> list[str]:
     return ["pseudonymised"] if any(f["pseudonymised"] for f in document["findings"]) else []
 
@@ -182,7 +185,7 @@ FACTS = {
         | dict.fromkeys(RDF, line_iri)
         | {"text": lambda place: f"  {place.removeprefix('examples/fleet/')}"},  # as seen from the policies' folder
     ),
-    "pseudonymised": Fact(pseudonymised, dict.fromkeys((name for name in FORMATS if name != "json"), same)),
+    "pseudonymised": Fact(pseudonymised, dict.fromkeys((name for name in FORMATS if name not in SOME_ROWS), same)),
     "a method that is not stated": Fact(without_method, MEASURE),
     "a retention that is not stated": Fact(
         no_retention, {"turtle": lambda category: f"keeps {category}; for how long is not stated"}

@@ -116,16 +116,21 @@ def test_who_recognises_or_judges_persons_is_no_measure(tmp_path: Path) -> None:
     for language in LANGUAGES:
         words = Words(language)
         page = seen(result, "works-council", language)
-        protections = page.partition(plain(words("works_council.measures")))[2].partition(
-            plain(words("works_council.open"))
-        )[0]
-        line = next(line for line in protections.split("\n") if "/blur" in line)
-        assert plain(words("sanitizer.cleans.too", element="/emotion")) not in line
-        recognised = page.partition(plain(words("works_council.recognised")))[2].partition(
-            plain(words("works_council.measures"))
-        )[0]
+        heading = plain(words("works_council.recognised"))
+        protections, _, recognised = page.partition(plain(words("works_council.measures")))[2].partition(heading)
+        assert "/blur" in protections
+        assert all(f"{name} (" not in protections for name in ("/emotion", "/guard"))
+        recognised = recognised.partition(plain(words("works_council.open")))[0]
         assert all(name in recognised for name in ("/emotion", "/guard"))
-        assert not any(protections.lstrip().startswith(name) for name in ("/emotion", "/guard"))
+
+
+def test_a_transfer_that_is_stated_to_have_no_basis_reads_so(tmp_path: Path) -> None:
+    """No adequacy decision stands at a recipient whose label says ``transfer: none``."""
+    for language in LANGUAGES:
+        words = Words(language)
+        for form in ("works-council", "html"):
+            page = seen(office(tmp_path, transfer="transfer: none"), form, language)
+            assert plain(words.pair("US", words("transfer.none"))) in page
 
 
 @pytest.mark.slow
@@ -135,8 +140,9 @@ def test_who_recognises_or_judges_persons_is_no_measure(tmp_path: Path) -> None:
         ("DE", "de", ["§ 26 BDSG", "§ 87 Abs. 1 Nr. 6 BetrVG"], ["Code du travail"]),
         ("DE", "fr", ["§ 26 BDSG"], ["L2312-38"]),
         ("FR", "de", ["L2312-38"], ["BDSG", "BetrVG"]),
-        ("AT", "de", ["Nationales Recht von AT"], ["BDSG", "BetrVG", "StGB"]),
-        ("CH", "fr", ["Droit national de CH"], ["L2312-38", "code du travail"]),
+        ("AT", "de", ["Nationales Recht von AT", "§ 96 Abs. 1 Z 3 ArbVG"], ["BDSG", "BetrVG", "StGB", "ArGV"]),
+        ("CH", "fr", ["Droit national de CH", "art. 26 OLT 3"], ["L2312-38", "code du travail", "ArbVG"]),
+        ("ES", "en", ["National law of ES"], ["BDSG", "ArbVG", "United Kingdom", "Illinois"]),
         ("", "de", ["nationale Recht des Landes der Verwendung"], ["BDSG", "BetrVG", "StGB"]),
     ],
 )

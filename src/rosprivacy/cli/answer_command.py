@@ -17,6 +17,7 @@ from rosprivacy.cli.exit_code import FailOn, exit_code
 from rosprivacy.cli.inputs import Inputs, refuse
 from rosprivacy.cli.options import QUESTION_PANEL, Engine, HangsOn, Language, Output, ViewOrBoth, ViewOrBothChosen
 from rosprivacy.cli.output import emit, not_for_a_terminal
+from rosprivacy.cli.suggestions_to_answer import suggestions_to_answer
 from rosprivacy.formats import FORMATS, Style, in_pieces
 
 if TYPE_CHECKING:
@@ -155,7 +156,8 @@ class Written(NamedTuple):
             metavar=f"<{'|'.join(FORMATS)}>",
             show_default="as the output's name ends, else html; of analyze text",
             help="For a terminal, for programs, for code scanning; linked data; the CNIL's tool; a page, a text, a "
-            "Word document; rows for the record of processing (Article 30 GDPR); one page for works councils.",
+            "Word document; rows for the records of processing (Article 30 GDPR); a notice to persons (Articles 13 and "
+            "14); one page for works councils; an impact assessment along the EDPB's template.",
             rich_help_panel=WRITTEN,
         ),
     ] = None
@@ -315,6 +317,9 @@ def answer(
     if isinstance(text, str) and form != "text":
         text = text.encode()  # a file says of itself that it is UTF-8, whatever the terminal understands
     emit(text, written.output, others)
+    if form == "text" and not written.quiet:
+        for line in suggestions_to_answer(inputs):
+            typer.echo(line, err=True)
     raise typer.Exit(exit_code(result, fail_on))
 
 
@@ -336,7 +341,8 @@ def _check(inputs: Inputs, computed: Computed, *, save_graph: bool, per_policy: 
         refuse("--fleet", "what the fleet file names", both)
     engine = f"--engine {computed.engine.value}"
     if computed.engine is not Engine.memory:
-        refuse(engine, "a fleet that nobody has decided about", inputs.given_options("decisions"))
+        if computed.results:
+            refuse("--results", "a fleet that nobody has decided about", inputs.given_options("decisions"))
         if not inputs.fleet:
             raise typer.BadParameter(f"{engine} is for fleets: give --fleet too")
     if computed.engine is not Engine.spark and (computed.master or computed.results):

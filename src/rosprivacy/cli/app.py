@@ -10,7 +10,8 @@ import sys
 from contextlib import suppress
 from functools import cache
 from importlib import import_module
-from typing import Annotated, NoReturn
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
@@ -20,11 +21,15 @@ from rosprivacy.cli.exit_code import OWN_ERROR
 from rosprivacy.cli.help import ANALYSE, BEGIN, DECIDE, LABEL, MANY, OBSERVE, SEE, HelpGroup
 from rosprivacy.version import __version__
 
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
 COMMANDS = {  # name -> its group in help; each stands in the module of its name
     "try": BEGIN,
     "init": BEGIN,
     "help": BEGIN,
     "observe": OBSERVE,
+    "scan": OBSERVE,
     "labels": LABEL,
     "explore": LABEL,
     "suggest": LABEL,
@@ -41,6 +46,7 @@ COMMANDS = {  # name -> its group in help; each stands in the module of its name
     "report": SEE,
     "graph": SEE,
     "decide": DECIDE,
+    "decisions": DECIDE,
     "mitigate": DECIDE,
     "fleet": MANY,
     "load": MANY,
@@ -48,7 +54,17 @@ COMMANDS = {  # name -> its group in help; each stands in the module of its name
     "query": MANY,
     "db": MANY,
 }
-FUNCTIONS = {"try": "try_out", "help": "help_topic"}  # of commands whose name Python or another module has
+GROUPS = {  # of commands that have commands
+    "db": "The private Neo4j: start it, stop it, see where it is.",
+    "decisions": "The log of decisions: show it, verify that nobody changed it, join two, take an old file over.",
+}
+PURPOSE = "Where personal data can go in a ROS 2 system, per kind of data."
+NO_COMMAND = 2  # exit code: bad usage
+FUNCTIONS = {
+    "try": "try_out",
+    "help": "help_topic",
+    "decisions": "decision_commands",
+}  # whose name Python or another module has
 
 
 @cache
@@ -56,9 +72,8 @@ def program(command_name: str = "") -> typer.Typer:
     """Return the command line; with one of its commands where that is named, since the others need not be imported."""
     app = typer.Typer(
         name="rosprivacy",
-        help="Where personal data can go in a ROS 2 system, per kind of data.",
+        help=PURPOSE,
         cls=HelpGroup,
-        no_args_is_help=True,
         pretty_exceptions_enable=False,
         context_settings={"help_option_names": ["-h", "--help"]},
     )
@@ -67,21 +82,35 @@ def program(command_name: str = "") -> typer.Typer:
         if command_name in ("", name):
             function = FUNCTIONS.get(name, name.replace("-", "_"))
             module = import_module(f"rosprivacy.cli.{function}")
-            if name == "db":
-                what = "The private Neo4j: start it, stop it, see where it is."
-                app.add_typer(module.app, name=name, help=what, rich_help_panel=panel)
+            if name in GROUPS:
+                app.add_typer(module.app, name=name, help=GROUPS[name], rich_help_panel=panel)
             else:
                 app.command(name, rich_help_panel=panel)(getattr(module, function))
     return app
 
 
 def root(
+    context: typer.Context,
     version: Annotated[bool, typer.Option("--version", help="Print the version.")] = False,
 ) -> None:
     """Where personal data can go in a ROS 2 system, per kind of data."""
     if version:
         print(f"rosprivacy {__version__}")
         raise typer.Exit
+    if context.invoked_subcommand is None:
+        from rosprivacy.cli.folder_notice import folder_notice
+
+        print(f"Begin here: {folder_notice(Path.cwd())}\n")
+        print("\n".join(_commands_by_group()))
+        raise typer.Exit(NO_COMMAND)
+
+
+def _commands_by_group() -> Iterator[str]:
+    """What the program does, and the names of its commands: short, for who has named none."""
+    yield f"{PURPOSE} Commands:"
+    for group in dict.fromkeys(COMMANDS.values()):
+        yield f"  {group}: {', '.join(name for name, other in COMMANDS.items() if other == group)}"
+    yield "What each does: rosprivacy --help"
 
 
 def main() -> None:

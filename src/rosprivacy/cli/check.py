@@ -1,4 +1,4 @@
-"""``rosprivacy check``: what a policy says, and what is deployed."""
+"""``rosprivacy check``: what a policy says and what is deployed; what descriptions say and what code does."""
 
 from __future__ import annotations
 
@@ -29,12 +29,18 @@ class FailOnCheck(StrEnum):
 )  # fmt: skip
 def check(
     policy: Annotated[
-        str, typer.Argument(metavar="POLICY", help="What is meant: an SROS 2 policy, or a folder of such.")
+        str,
+        typer.Argument(
+            metavar="POLICY",
+            help="What is meant: an SROS 2 policy, or a folder of such; or descriptions of nodes (NoDL).",
+        ),
     ],
     deployed: Annotated[
         list[str],
         typer.Argument(
-            metavar="DEPLOYED", help="A keystore, permissions and governance files, or Zenoh configurations."
+            metavar="DEPLOYED",
+            help="A keystore, permissions and governance files, or Zenoh configurations; or the folder of sources of "
+            "described nodes.",
         ),
     ],
     inputs: Inputs,
@@ -48,6 +54,8 @@ def check(
     output: Output = None,
 ) -> None:
     """Compare a policy with what is deployed: which rights only one of them has, by enclave, each with its line.
+
+    With descriptions of nodes and a folder of sources (the same one may be named twice): what only one of them says.
 
     Ends with 1 if there is a difference, with 4 if there is none but more may be allowed than can be compared.
     """

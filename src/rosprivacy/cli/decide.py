@@ -1,4 +1,4 @@
-"""``rosprivacy decide``: what is decided about findings, into ``decisions.yaml``."""
+"""``rosprivacy decide``: what is decided about findings, into the log of decisions."""
 
 from __future__ import annotations
 
@@ -17,10 +17,11 @@ from rosprivacy.cli.options import Ontologies, complete_category
 from rosprivacy.cli.output import emit
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
 PATTERN = "A pattern of findings"  # a panel of help
 DOUBT = "A doubt"
+TAKE_OVER = "rosprivacy decisions take-over"
 SHORTEST = 4  # digits of an id, where the report says which are meant
 
 
@@ -28,9 +29,19 @@ class Decide(StrEnum):
     """What is decided."""
 
     accept = "accept"
+    accept_on_condition = "accept-on-condition"
     mitigate = "mitigate"
     delegate = "delegate"
     avoid = "avoid"
+    approve = "approve"
+    reject = "reject"
+    refer = "refer"
+    confirm = "confirm"
+    withdraw = "withdraw"
+
+
+WRITTEN = {Decide.approve: Decide.accept, Decide.reject: Decide.mitigate, Decide.refer: Decide.delegate}
+IN_A_LOG = (Decide.confirm, Decide.withdraw)  # both are about an earlier entry
 
 
 class DecisionTarget(NamedTuple):
@@ -40,9 +51,14 @@ class DecisionTarget(NamedTuple):
         list[str] | None,
         typer.Argument(metavar="ID", help="Of findings; without one, a pattern.", show_default=False),
     ] = None
-    decisions: Annotated[Path, typer.Option(metavar="FILE", help="The decisions file; made if it is not there.")] = (
-        Path("decisions.yaml")
-    )
+    decisions: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            show_default="decisions.jsonl",
+            help="The log; made if it is not there. A decisions.yaml that is alone in the folder is written as before.",
+        ),
+    ] = None
     report: Annotated[
         Path | None,
         typer.Option(
@@ -68,6 +84,10 @@ class DecisionFacts(NamedTuple):
         str | None, typer.Option(metavar="YYYY-MM-DD", help="The last day on which it is valid.", show_default=False)
     ] = None
     ticket: Annotated[str | None, typer.Option(help="Where the work is tracked.", show_default=False)] = None
+    condition: Annotated[
+        str | None,
+        typer.Option(help="What has to be so before accept-on-condition counts.", show_default=False),
+    ] = None
 
 
 class FindingPattern(NamedTuple):
@@ -135,7 +155,14 @@ class DoubtPattern(NamedTuple):
 
 @takes_groups
 def decide(
-    choice: Annotated[Decide, typer.Argument(metavar="DECISION", help="accept, mitigate, delegate or avoid.")],
+    choice: Annotated[
+        Decide,
+        typer.Argument(
+            metavar="DECISION",
+            help="accept (or approve), accept-on-condition, mitigate (or reject), delegate (or refer), avoid; "
+            "confirm a condition, or withdraw what was decided.",
+        ),
+    ],
     about: DecisionTarget,
     facts: DecisionFacts,
     findings_meant: FindingPattern,
@@ -143,18 +170,21 @@ def decide(
     ontology: Ontologies = None,
 ) -> None:
     """Decide about findings, a pattern of them, or doubts, in a file that analyze and mitigate take into account."""
-    from rosprivacy.ingest.decisions.decision_writer import DOUBTS, FINDINGS, text_in, with_decision
+    from rosprivacy.decision_record import provenance, subject, with_recorded
+    from rosprivacy.ingest.decisions.decision_log import is_log
+    from rosprivacy.ingest.decisions.decision_writer import DOUBTS, FINDINGS, text_in
     from rosprivacy.ontology.vocabulary import load
     from rosprivacy.report.atomic import editing
     from rosprivacy.report.compare.earlier import read_earlier
 
-    ids, decisions, report = about.ids, about.decisions, about.report
+    ids, decisions, report = about.ids, about.decisions or _default_log(), about.report
+    choice = WRITTEN.get(choice, choice)
     pattern = _as_pattern(findings_meant)
     in_doubt = _as_pattern(doubts_meant)
     if in_doubt:
         pattern = _doubt_pattern(choice, in_doubt, pattern)
     _check_target(ids, pattern)
-    _check_expiry(facts.expires)
+    _check_words(choice, facts, decisions)
     document = read_earlier(str(report)).document if report else None
     findings = _findings(document) if document else None
     doubts = _doubts(document) if document else {}
@@ -163,15 +193,40 @@ def decide(
     names = "; ".join(", ".join(f"{key} {shown(str(value))}" for key, value in target.items()) for target in targets)
     answer = f"{shown(str(decisions))}: {choice.value} {names}\n"
     with editing(decisions):
-        text = text_in(decisions)
+        text, remarks = text_in(decisions), []
         for target in targets:
-            whole = {**target, **entry, **_made_about(findings, target)}
+            finding = (findings or {}).get(target.get("id", ""))
+            what = f"the acceptance of {target.get('id', 'a pattern')}"
+            remarks += [f"{what} {gap}" for gap in _gaps(choice, facts, finding)]
+            whole = {**target, **entry, **({} if choice in IN_A_LOG else _made_about(findings, target))}
             section = DOUBTS if in_doubt or target.get("id") in doubts else FINDINGS
             remark = _remark(findings, target) or _doubt_remark(doubts.get(target.get("id", "")))
-            text = with_decision(str(decisions), text, whole, remark, vocabulary, section)
+            there = provenance(decisions.parent, subject(document, finding) if document and finding else None)
+            text = with_recorded(str(decisions), text, whole, remark, vocabulary, section, there)
         if ids and not report:
-            print("the ids were not checked; --report FILE checks them against an analysis", file=sys.stderr)
+            remarks.append("the ids were not checked; --report FILE checks them against an analysis")
+        if not is_log(str(decisions)):
+            remarks.append(f"{shown(str(decisions))} is no log, so that nobody sees who changes it: {TAKE_OVER}")
+        print(*remarks, sep="\n", end="\n" if remarks else "", file=sys.stderr)  # before it is written
         emit(answer, None, {decisions: text or ""}, edited=decisions)  # the one file that is read and written
+
+
+def _default_log() -> Path:
+    """The log of the folder; a decisions file that nobody has taken over is what other commands are given."""
+    log, former = Path("decisions.jsonl"), Path("decisions.yaml")
+    return former if former.exists() and not log.exists() else log
+
+
+def _gaps(choice: Decide, facts: DecisionFacts, finding: Mapping[str, Any] | None) -> Iterator[str]:
+    """What an acceptance lacks, as far as the report tells what it is about."""
+    from rosprivacy.ingest.reading.legal_basis import legal_basis
+    from rosprivacy.report.finding_facts import gaps_of
+
+    if choice not in (Decide.accept, Decide.accept_on_condition):
+        return
+    bases = [legal_basis(basis) or "" for basis in facts.legal_basis or ()]
+    decision = {"legal_basis": bases, "expires": facts.expires}
+    yield from map(str, gaps_of(decision, [finding] if finding else []))
 
 
 def _as_pattern(options: FindingPattern | DoubtPattern) -> dict[str, str]:
@@ -186,6 +241,7 @@ def _entry(choice: Decide, facts: DecisionFacts) -> dict[str, Any]:
     entry = {
         "decision": choice.value,
         "reason": facts.reason,
+        "condition": facts.condition,
         "owner": facts.owner,
         "legal_basis": list(facts.legal_basis) if facts.legal_basis else None,
         "date": date.fromisoformat(today(os.environ)),
@@ -211,9 +267,16 @@ def _check_target(ids: list[str] | None, pattern: Mapping[str, str]) -> None:
         raise typer.BadParameter("name an id, or a pattern: --category, --source, --leak, --doubt")
 
 
-def _check_expiry(expires: str | None) -> None:
+def _check_words(choice: Decide, facts: DecisionFacts, decisions: Path) -> None:
     from rosprivacy.clock import today
+    from rosprivacy.ingest.decisions.decision_log import is_log
     from rosprivacy.ingest.decisions.decisions_file import is_date
+
+    expires = facts.expires
+    if choice in IN_A_LOG and not is_log(str(decisions)):
+        raise typer.BadParameter(f"{choice.value} is for a log: {TAKE_OVER} {shown(str(decisions))}")
+    if facts.condition and choice is not Decide.accept_on_condition:
+        raise typer.BadParameter("a condition goes with accept-on-condition", param_hint="--condition")
 
     if expires is not None and not is_date(expires):
         raise typer.BadParameter(f"{expires!r} is not a date: write YYYY-MM-DD", param_hint="--expires")

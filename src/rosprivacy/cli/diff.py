@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from enum import StrEnum
 from pathlib import Path
@@ -9,14 +10,14 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
-from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.errors import InputError, InputErrors, shown
 from rosprivacy.cli.exit_code import UNDETERMINED
 from rosprivacy.cli.inputs import Inputs, reads_system, refuse
 from rosprivacy.cli.options import READ, Output
 from rosprivacy.cli.output import emit
 
 if TYPE_CHECKING:
-    from rosprivacy.report.compare.snapshot import Snapshot
+    from rosprivacy.report.compare.snapshot import CodeState, Snapshot
     from rosprivacy.settings import Settings
 
 
@@ -43,7 +44,7 @@ class As(StrEnum):
     usage = "usage"
 
 
-State = "a policy, a folder of them, a fleet file, a saved analysis or a saved graph."
+State = "a policy, a folder of them or of source code, a launch file, a fleet file, a saved analysis or a saved graph."
 
 
 @reads_system(
@@ -74,10 +75,19 @@ def diff(
     fail_on: Annotated[
         FailOnChange,
         typer.Option(
-            help="Exit with 1 on a finding, doubt or verdict that is new or worse, or on any difference; with 4 where "
-            "labels are given and no data was followed on a side."
+            help="Exit with 1 on a finding, doubt or verdict that is new or worse, and on a new way out or gap of "
+            "source code; or on any difference; with 4 where labels are given and no data was followed on a side."
         ),
     ] = FailOnChange.worse,
+    base: Annotated[
+        str,
+        typer.Option(
+            metavar="REVISION",
+            show_default=False,
+            help="Compare the one state that is named, or the working folder, with itself at this revision of git; "
+            "labels are those of each.",
+        ),
+    ] = "",
     compared_as: Annotated[
         As,
         typer.Option("--as", help="Two states; or usage: OLD is what is granted, NEW what `observe` saw in use."),
@@ -91,11 +101,13 @@ def diff(
         ),
     ] = None,
 ) -> None:
-    """Compare two states: grants, elements and findings that are new, gone or changed.
+    """Compare two states: grants, elements and findings, of source code ways out and gaps; new, gone or changed.
 
     Nodes whose names change at every start (a process id, an address) are matched without these. With --as usage it
     ends with 1 if something runs that is not granted, and with 4 if nothing such was seen but the observation has gaps.
     """
+    if base and (new or old_labels or compared_as is As.usage):
+        raise typer.BadParameter("--base is for one state, without --old-labels and --as usage")
     if compared_as is As.usage:
         refuse("diff --as usage", "policies alone", inputs.given_options("labels"))
         if not old or not new:
@@ -105,16 +117,59 @@ def diff(
         raise typer.BadParameter("--patch is for --as usage")
     from rosprivacy.report.compare.difference import difference, differs, incomparable
 
-    (before, after), inputs = _states(old, new, inputs)
-    settings, given = inputs.settings, tuple(inputs.labels or ())
-    document = difference(
-        _snapshot(before, tuple(old_labels) if old_labels else given, settings), _snapshot(after, given, settings)
-    )
+    if base:
+        inputs = inputs._replace(no_project=True)
+        now, settings = os.path.relpath(old or os.curdir), _with_whole_names(inputs.settings)
+        given = tuple(map(os.path.relpath, inputs.labels or ()))
+        document = difference(_at(base, now, given, settings), _snapshot((now,), given, settings))
+    else:
+        (before, after), inputs = _states(old, new, inputs)
+        settings, given = inputs.settings, tuple(inputs.labels or ())
+        document = difference(
+            _snapshot(before, tuple(old_labels) if old_labels else given, settings), _snapshot(after, given, settings)
+        )
     emit(_text(document, format), output)
     if fail_on is FailOnChange.never:
         raise typer.Exit(0)
     failed = document["worse"] if fail_on is FailOnChange.worse else differs(document)
     raise typer.Exit(1 if failed else UNDETERMINED if incomparable(document) else 0)
+
+
+def _at(revision: str, state: str, labels: tuple[str, ...], settings: Settings) -> Snapshot:
+    """A state as a revision has it, with the labels that it has."""
+    from rosprivacy.cli.base_tree import at_revision
+
+    if state.startswith(os.pardir):
+        hint = "run this in a folder above it, in its repository"
+        raise InputErrors([InputError(state, 0, "is not in the working folder", hint)])
+    named = [_whole(name) if name.startswith(os.pardir) else name for name in labels]
+    with at_revision(revision):
+        try:
+            return _snapshot((state,), tuple(name for name in named if Path(name).exists()), settings)
+        except InputErrors as problems:
+            raise InputErrors(
+                InputError(f"{revision}:{one.file}", one.line, one.problem, one.hint) for one in problems.errors
+            ) from None
+
+
+def _with_whole_names(settings: Settings) -> Settings:
+    """Settings that name the same files from every folder: of a revision only the state and its labels are read."""
+    from dataclasses import replace
+
+    return replace(
+        settings,
+        ontologies=tuple(map(_whole, settings.ontologies)),
+        types=tuple(map(_whole, settings.types)),
+        permissions_ca=tuple(map(_whole, settings.permissions_ca)),
+        standard_channels=settings.standard_channels and _whole(settings.standard_channels),
+        type_limits=settings.type_limits and _whole(settings.type_limits),
+        decisions=settings.decisions and _whole(settings.decisions),
+    )
+
+
+def _whole(name: str) -> str:
+    """The name of a file from the root; of what is no file, such as a fingerprint, as it is."""
+    return str(Path(name).absolute()) if Path(name).exists() else name
 
 
 def _states(old: str | None, new: str | None, inputs: Inputs) -> tuple[tuple[tuple[str, ...], ...], Inputs]:
@@ -182,11 +237,25 @@ def _snapshot(states: tuple[str, ...], labels: tuple[str, ...], settings: Settin
         result = answer_robot((), labels, replace(settings, add=(state,)))
     else:
         result = answer_robot(states, labels, settings)
+        return snapshot(result.document(), result.policies, _code(states))
     return snapshot(result.document(), result.policies)
 
 
+def _code(states: tuple[str, ...]) -> CodeState | None:
+    """What source code says beyond its policy, if a state is one."""
+    from rosprivacy.systems.granted import code_roots
+
+    roots = code_roots(states)
+    if not roots:
+        return None
+    from rosprivacy.ingest.scan.code_roots import read_as_one
+    from rosprivacy.scanning import code_state, scan
+
+    return code_state(scan(*folders, launch=launch) for folders, launch in read_as_one(roots.values()))
+
+
 def _kind(state: str) -> str:
-    """What a file is, by how it begins; folders and globs hold policies."""
+    """What a file is, by how it begins; folders, globs and launch files are read as policies."""
     try:
         path = Path(state)
         head = path.read_bytes()[:4096] if path.is_file() else b""
@@ -196,4 +265,8 @@ def _kind(state: str) -> str:
         return "analysis"
     if b'"rosprivacy.graph/' in head:
         return "graph"
-    return "policies" if head.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<") or not head else "fleet"
+    if head.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<") or not head:
+        return "policies"
+    from rosprivacy.systems.granted import code_roots
+
+    return "policies" if code_roots((state,)) else "fleet"

@@ -18,14 +18,16 @@ if TYPE_CHECKING:
 CODES = {
     0: "no leak found; of other commands: done",
     1: "what the command exists to find: a leak; for `bag` personal data; for `diff` a finding, doubt or verdict that "
-    "is new or worse, with `--as usage` something that runs and is not granted; for `lint` a broken rule; for `check` "
+    "is new or worse, with `--as usage` something that runs and is not granted; for `lint` a broken rule; "
+    "for `decisions verify` an entry that was changed, moved or removed; for `check` "
     "and `annotations --check` a difference",
     2: "bad input or usage",
     3: "a server (database, middleware, Spark) cannot be reached",
     4: "`analyze` and `bag`: undetermined; `--fail-on leak` makes it 0, but never where no data was followed, and "
     "`--fail-on doubt` adds a doubt that nobody has accepted; `check`: nothing differs, but not all is known; "
-    "`observe`: nothing was seen; `diff`: labels are given and no data was followed on a side, with `--as usage` the "
-    "observation has gaps; `query`: `--limit` cuts JSON or CSV",
+    "`bag --without`: no topic is left; `observe`: nothing was seen; `scan`: always, as code does not say all; "
+    "`diff`: labels are given and no data was followed on a side, with `--as usage` the observation has gaps; "
+    "`query`: `--limit` cuts JSON or CSV",
     70: "an error of the program itself: no answer; the message says which file to send",
 }
 LEAK, UNDETERMINED, OWN_ERROR = 1, 4, 70

@@ -94,7 +94,10 @@ def explore(
             site.close()
             session.close()
     if session.unsaved:
-        print(f"Not saved: what was said of {counted(session.unsaved, 'element')}", file=sys.stderr)
+        next_time = (
+            "; it is kept, and the same command offers to take it up" if journal and not session.is_stored else ""
+        )
+        print(f"Not saved: what was said of {counted(session.unsaved, 'element')}{next_time}", file=sys.stderr)
 
 
 def _session(inputs: Inputs, journal: Path | None) -> tuple[Session, Opens | None]:

@@ -13,11 +13,12 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 import typer
 
 from rosprivacy.analysis.errors import InputError, InputErrors, shown
-from rosprivacy.analysis.text import blanked, counted
+from rosprivacy.analysis.text import blanked
 from rosprivacy.cli.exit_code import FailOn
 from rosprivacy.cli.inputs import Inputs, reads_system
 from rosprivacy.cli.options import Language
 from rosprivacy.cli.project_file import OWN_FILE, SHIPPED
+from rosprivacy.cli.suggestions_to_answer import line_about
 from rosprivacy.cli.what_runs import Ros2, as_policies
 from rosprivacy.ingest.reading.bounded_file import leaves
 from rosprivacy.ingest.types import named_after, types_path
@@ -59,14 +60,16 @@ def init(
         str | None, typer.Option(metavar="NAME", help="Who answers, the author of the label file.", show_default=False)
     ] = None,
 ) -> None:
-    """Begin a project in this folder: a project file, and a label file with suggestions to answer.
+    """Begin a project in this folder: a project file, and a label file with what brings data in or lets it out.
 
     POLICY is a policy, a folder, a keystore, or a text of `ros2 node info`. What runs is written as a policy with its
     types. No file that is there is changed.
     """
     inputs = inputs if inputs.policies or ros2 else inputs._replace(policies=_policies_here())
     if not (ros2 or inputs.policies):
-        raise typer.BadParameter(SOMETHING, param_hint="POLICY")
+        from rosprivacy.cli.folder_notice import folder_notice
+
+        raise typer.BadParameter(f"{SOMETHING}. Here {folder_notice(Path.cwd())}", param_hint="POLICY")
     with as_policies(inputs, ros2=ros2) as read:
         policies = [ROBOT] if read.observed else [*(inputs.policies or ())]
         answers = _defaults(inputs, read, policies)._replace(author=by or "")
@@ -79,7 +82,10 @@ def init(
         from rosprivacy.report.atomic import write_texts
 
         write_texts([(Path(name), text) for name, text in files.items()])
-    _say_what_is_next(files, answers, suggestions.added if answers.labels in files else 0)
+    print(f"written: {', '.join(map(shown, files))}")
+    if line := line_about(answers.labels, files.get(answers.labels, "").splitlines()):
+        print(line)
+    print("Then: rosprivacy analyze")
 
 
 def _policies_here() -> list[str]:
@@ -119,14 +125,20 @@ def _files(read: Read, policies: list[str], answers: ProjectAnswers, labels: str
 
 
 def _label_file(read: Read, answers: ProjectAnswers) -> LabelLines:
-    """A label file in which nothing is said yet, with suggestions as comments."""
+    """A label file in which nothing is said yet, with the suggestions that count in a trial as comments."""
+    from rosprivacy.analysis.suggesting.trial import opening
     from rosprivacy.ingest.labels.label_writer import NEW
+    from rosprivacy.labelling.knowledge import UserFiles
     from rosprivacy.labelling.suggested_lines import with_suggestions
     from rosprivacy.labelling.suggesting import suggest_labels
+    from rosprivacy.systems.granted import code_folders
 
     there = read.inputs
-    suggestions = suggest_labels(there.required_policies, tuple(there.labels or ()), there.settings)
-    lines = with_suggestions(answers.labels, suggestions)
+    files = UserFiles(sources=code_folders(there.policies or ()))
+    suggestions = suggest_labels(there.required_policies, tuple(there.labels or ()), there.settings, files)
+    sourced = bool(suggestions.result.analysis.emitted)
+    shown_in_trial = replace(suggestions, proposals=opening(suggestions.proposals, sourced=sourced))
+    lines = with_suggestions(answers.labels, shown_in_trial)
     author = f"author: {json.dumps(blanked(answers.author, '?'), ensure_ascii=False)}\n" if answers.author else ""
     return replace(lines, text=lines.text.replace(NEW, NEW + author, 1))
 
@@ -168,12 +180,3 @@ def _check_here(names: Sequence[str]) -> None:
     ]  # fmt: skip
     if problems:
         raise InputErrors(problems)
-
-
-def _say_what_is_next(files: Mapping[str, str], answers: ProjectAnswers, suggestions: int) -> None:
-    print(f"written: {', '.join(map(shown, files))}")
-    by = "" if answers.author else " --by 'YOUR NAME'"
-    print(
-        f"{counted(suggestions, 'suggestion')} to answer: rosprivacy suggest --into {shown(answers.labels)} --ask{by}"
-    )
-    print("Then: rosprivacy analyze")

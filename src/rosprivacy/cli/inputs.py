@@ -113,8 +113,10 @@ class Inputs(NamedTuple):
     def required_policies(self) -> tuple[str, ...]:
         """The policies that are named; there has to be one, or a saved graph."""
         if not self.policies and not self.add:
+            from rosprivacy.cli.folder_notice import folder_notice
+
             what = "name at least one policy: a file, a folder or a glob; or have one named by a project file"
-            raise typer.BadParameter(f"{what} (rosprivacy init)", param_hint="POLICY")
+            raise typer.BadParameter(f"{what} (rosprivacy init). Here {folder_notice(Path.cwd())}", param_hint="POLICY")
         return tuple(self.policies or ())
 
     def given_options(self, *names: str) -> list[str]:

@@ -38,13 +38,22 @@ class LabelWork(NamedTuple):
             "gets there is open then; of a robot or a --fleet.",
         ),
     ] = False
+    pin_code: Annotated[
+        bool,
+        typer.Option(
+            "--pin-code",
+            help="Keep in the label files which version of the code their nodes have, in a checkout or what a launch "
+            "file starts: when it changes, such a node is open again.",
+        ),
+    ] = False
     accept: Annotated[
         list[str] | None,
         typer.Option(
             metavar="WHAT",
             help="Make labels of suggestions in the file of --labels: the surest of an element, by its name "
             "(/camera=Video where there are several), or all that are certain, likely or may, with those that are "
-            "surer; what takes data away only if policies are given too; may be repeated.",
+            "surer; what takes data away only if policies are given too; may be repeated. by-type, alone: a line "
+            "'only: by-type', with its pin, for each open channel at which these close no way.",
             show_default=False,
         ),
     ] = None
@@ -74,11 +83,16 @@ def labels(
 ) -> None:
     """Make a label file or add to one, or print the schema or the files that come with the program."""
     if sum(map(bool, work)) != 1:
-        hint = "name one of --init, --update, --next, --pin, --accept, --schema, --standard, --infrastructure"
+        hint = (
+            "name one of --init, --update, --next, --pin, --pin-code, --accept, --schema, --standard, --infrastructure"
+        )
         raise typer.BadParameter(hint)
-    if work.pin:
-        refuse("labels --pin", "what it reads, and writes into it", ["--by"] if by else [])
-        _pin(inputs, output)
+    if work.pin or work.pin_code:
+        name = "labels --pin" if work.pin else "labels --pin-code"
+        refuse(name, "what it reads, and writes into it", ["--by"] if by else [])
+        if work.pin_code:
+            refuse(name, "the code of one robot", inputs.given_options("fleet"))
+        _pin(inputs, output, of_code=work.pin_code)
         return
     refuse("labels", "the policies of one robot, but with --pin", inputs.given_options("fleet"))
     if work.accept:
@@ -88,7 +102,11 @@ def labels(
     if work.update or work.next_round:
         _add(inputs, output, update=work.update)
         return
-    refuse("labels", "label files with --update, --next, --pin and --accept only", inputs.given_options("labels"))
+    refuse(
+        "labels",
+        "label files with --update, --next, --pin, --pin-code and --accept only",
+        inputs.given_options("labels"),
+    )
     if work.init:
         _begin(inputs, output)
     else:
@@ -112,13 +130,16 @@ def _add(inputs: Inputs, output: Path | None, *, update: bool) -> None:
     typer.echo(f"{file}: {counted(written.added, 'line')} added", err=True)
 
 
-def _pin(inputs: Inputs, output: Path | None) -> None:
-    """Pins into every label file with globs, those that need none left as they are; remarks go to the terminal."""
+def _pin(inputs: Inputs, output: Path | None, *, of_code: bool) -> None:
+    """Pins into every label file, those that need none left as they are; remarks go to the terminal."""
+    from rosprivacy.labelling.code_pinning import pinned_code
     from rosprivacy.labelling.pinning import pinned, pinned_in_fleet
     from rosprivacy.report.atomic import editing
 
     if inputs.fleet:
         files = list(pinned_in_fleet(inputs.fleet, inputs.settings))
+    elif of_code:
+        files = list(pinned_code(inputs.required_policies, tuple(inputs.labels or ()), inputs.settings))
     else:
         files = list(pinned(inputs.required_policies, tuple(inputs.labels or ()), inputs.settings))
     if output and len(files) != 1:
@@ -137,14 +158,20 @@ def _pin(inputs: Inputs, output: Path | None) -> None:
 
 def _accept(inputs: Inputs, accepted: list[str], by: str | None, output: Path | None) -> None:
     """Suggestions that a person accepts become labels, in the file that people edit."""
+    from rosprivacy.labelling.by_type_lines import WORD, with_lines_by_type
     from rosprivacy.labelling.label_lines import own_file
     from rosprivacy.labelling.suggested_lines import with_accepted
     from rosprivacy.report.atomic import editing
 
-    labels = tuple(inputs.labels or ())
+    labels, policies = tuple(inputs.labels or ()), tuple(inputs.policies or ())
+    if WORD in accepted:
+        refuse("labels --accept by-type", "nothing else at once", sorted({*accepted} - {WORD}))
     file = output if output and output != PRINTED else Path(own_file(labels))
     with editing(file):
-        written = with_accepted(labels, accepted, by, inputs.settings, tuple(inputs.policies or ()))
+        if WORD in accepted:
+            written = with_lines_by_type(policies, labels, by, inputs.settings)
+        else:
+            written = with_accepted(labels, accepted, by, inputs.settings, policies)
         for remark in written.remarks:
             typer.echo(remark, err=True)
         if written.added or output:

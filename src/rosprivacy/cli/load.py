@@ -52,6 +52,14 @@ def load(
         str | None,
         typer.Option(metavar="DIR", help="Write what analyze --results has written there.", show_default=False),
     ] = None,
+    without_standard: Annotated[
+        bool,
+        typer.Option(
+            "--without-standard",
+            help="Leave out parameter services and other channels that only the standard file speaks of: they are most "
+            "of many graphs, and no data goes on from them.",
+        ),
+    ] = False,
 ) -> None:
     """Analyse policies and write the robot into Neo4j, or all robots of a fleet, in place of what was there before."""
     from rosprivacy.ingest.neo4j_graph import loading as database
@@ -61,18 +69,19 @@ def load(
     if results:
         other = inputs.given_options("policies", "labels", "fleet", "add")
         more = [*(["--robot"] if robot is not None else []), *(["--view"] if both else [])]
+        more += ["--without-standard"] if without_standard else []
         refuse("--results", "what is in the folder", [*other, *more])
         _load_results(results, settings.ontologies, inputs.neo4j)
         return
     if inputs.fleet:
         refuse("--fleet", "the names of the fleet file", ["--robot"] if robot is not None else [])
-        _load_fleet(inputs.fleet, settings, inputs.neo4j, both_views=both)
+        _load_fleet(inputs.fleet, settings, inputs.neo4j, both_views=both, without_standard=without_standard)
         return
     from rosprivacy.systems.robot_system import robot_of
 
     name = database.check_robot_name(name_of(inputs) if robot is None else robot)
     result = inputs.result(settings, both_views=both)
-    rows = robot_of(name, result)
+    rows = robot_of(name, result, without_standard=without_standard)
     with driver_of(inputs.neo4j) as driver:
         if robot is None and (others := database.others_there(driver, rows)):
             what = f"the database has a robot {shown(name)} of other policies ({', '.join(map(shown, others))})"
@@ -131,7 +140,7 @@ def _tell_replaced(loaded: Loaded) -> None:
         print(f"warning: {what}: {', '.join(names[:SHOWN_AT_MOST])}{more}", file=sys.stderr)
 
 
-def _load_fleet(file: str, settings: Settings, neo4j: str | None, *, both_views: bool) -> None:
+def _load_fleet(file: str, settings: Settings, neo4j: str | None, *, both_views: bool, without_standard: bool) -> None:
     from rosprivacy.answering import answer
     from rosprivacy.ingest.neo4j_graph.fleet_rows import MOST_ACROSS
     from rosprivacy.question import question_of
@@ -146,7 +155,7 @@ def _load_fleet(file: str, settings: Settings, neo4j: str | None, *, both_views:
             from rosprivacy.both_views import both_views_of_fleet
 
             result = replace(result, enforced=both_views_of_fleet(file, settings).enforced)
-    rows = rows_of_fleet(system, question, result)
+    rows = rows_of_fleet(system, question, result, without_standard=without_standard)
     _load_many(rows, system.vocabulary, neo4j, f"fleet {shown(file)}", len(system.fleet.robots), _sentence(result))
     if rows.left_out:
         message = f"{rows.left_out:,} findings from one robot to another are not written one by one: of each pattern"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -40,6 +40,9 @@ def mitigate(
     ] = None,
     format: Annotated[TextOrJson, typer.Option("--format", "-f", help="Of the answer.")] = TextOrJson.text,  # noqa: A002 - the option's name
     output: Output = None,
+    verbose: Annotated[
+        bool, typer.Option("--verbose", "-v", help="Of text: every way to set a program, and all that gets less.")
+    ] = False,
 ) -> None:
     """Propose the cheapest changes that remove the open findings, proven by a new analysis.
 
@@ -59,7 +62,11 @@ def mitigate(
     if format is TextOrJson.json:
         emit(as_text(report), output, texts)
     else:
-        emit(on_console(lambda console: print_mitigation(console, report), colour=output is None), output, texts)
+
+        def write(console: Any) -> None:
+            print_mitigation(console, report, verbose=verbose)
+
+        emit(on_console(write, colour=output is None), output, texts)
     if patch and not found.patch.diff:
         print(f"{shown(str(patch))}: left as it is: there is no patch; the answer says why", file=sys.stderr)
     raise typer.Exit(0 if found.complete else 1)

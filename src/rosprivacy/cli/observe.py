@@ -44,6 +44,16 @@ class DoorOptions(NamedTuple):
             rich_help_panel=THROUGH,
         ),
     ] = None
+    rosgraph: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="FILE",
+            show_default=False,
+            help="A message of rosgraph_msgs: what `ros2 topic echo --full-length` printed (- is standard input), or "
+            "a recording (.mcap, .db3); may be repeated.",
+            rich_help_panel=THROUGH,
+        ),
+    ] = None
     earlier: Annotated[
         list[str] | None,
         typer.Option(
@@ -160,8 +170,8 @@ def observe(
 
     stop = Stop()
     doors = _doors(look, stop.wait if watch else time.sleep)
-    if watch and (look.text or look.earlier or len(doors) > 1):
-        what = "--watch looks through one door to a running system: no --text, no --earlier, and no second door"
+    if watch and (look.text or look.rosgraph or look.earlier or len(doors) > 1):
+        what = "--watch looks through one door to a running system: no files, no --earlier, and no second door"
         raise typer.BadParameter(what)
     if output:
         keeps_what_is_there(output)
@@ -188,7 +198,7 @@ def _doors(look: DoorOptions, wait: Wait) -> list[Door]:
         doors.append(_dds_door(look.domain, tuple(look.peer or ()), look.interface, wait))
     if not doors:
         raise typer.BadParameter(
-            "name a door: --text FILE, --ros2, --zenoh, --dds, or what was seen by --earlier POLICY"
+            "name a door: --text FILE, --rosgraph FILE, --ros2, --zenoh, --dds, or what was seen by --earlier POLICY"
         )
     return doors
 
@@ -204,6 +214,10 @@ def _doors_of_ros(look: DoorOptions, wait: Wait) -> list[Door]:
         doors.append(EarlierFiles(tuple((file, str(types_path(Path(file)))) for file in look.earlier)))
     if look.text:
         doors.append(TextFiles(tuple(look.text), now, time_of(look.at) if look.at else ""))
+    if look.rosgraph:
+        from rosprivacy.ingest.running.graph_messages import GraphFiles
+
+        doors.append(GraphFiles(tuple(look.rosgraph), now, time_of(look.at) if look.at else ""))
     if look.ros2:
         doors.append(Ros2Program(now, wait=wait))
     return doors

@@ -32,7 +32,8 @@ def show(
 
     from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.json_text import as_text
-    from rosprivacy.report.text.finding_lines import details, law_lines
+    from rosprivacy.report.text.finding_lines import details
+    from rosprivacy.report.text.law_lines import law_lines
     from rosprivacy.report.text.line_parts import wrapped
 
     report = inputs.result(inputs.settings).document()

@@ -75,8 +75,9 @@ class AnswerOptions(NamedTuple):
         bool,
         typer.Option(
             "--ask",
-            help="Ask one question at a time, answered by single keys, and write each answer into the file of --into. "
-            "Keys come from the terminal, or from standard input if it is none.",
+            help="Ask at a terminal about one element a screen, answered by single keys, and write each answer into "
+            "the file of --into. Standard input that is no terminal is keys that answer questions about several "
+            "elements.",
         ),
     ] = False
     by: Annotated[
@@ -91,6 +92,10 @@ def suggest(
     evidence: EvidenceFiles,
     answers: AnswerOptions,
     model: ModelOptions,
+    why: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", show_default=False, help="Tell all reasons for what is suggested of an element."),
+    ] = None,
     format: Annotated[TextOrJson, typer.Option("--format", "-f", help="Of the answer.")] = TextOrJson.text,  # noqa: A002 - the option's name
     output: Output = None,
 ) -> None:
@@ -98,8 +103,11 @@ def suggest(
 
     Nothing is applied, in a database neither. 'rosprivacy labels --accept' makes labels of those that a person accepts.
     """
+    from rosprivacy.labelling.by_type_lines import with_offer
     from rosprivacy.labelling.knowledge import UserFiles
     from rosprivacy.labelling.suggesting import suggested
+    from rosprivacy.systems.granted import code_folders
+    from rosprivacy.terminal_width import terminal_width
 
     into, stored = answers.into, inputs.given_options("fleet", "from_database")
     model.check(into)
@@ -108,12 +116,16 @@ def suggest(
     unasked = into is None or output or format is TextOrJson.json or model.model or model.replay or model.dry_run
     if answers.ask and unasked:
         raise typer.BadParameter("--ask needs --into FILE; it takes neither --output, --format json nor a model")
+    if why is not None:
+        json_too = ["--format json"] if format is TextOrJson.json else []
+        refuse("--why", "what is suggested", [*(["--into"] if into else []), *json_too])
     if model.model or model.replay:
         refuse("--model" if model.model else "--replay", "the policies of one robot", stored)
     if into:
         refuse("--into", "the label file of one robot (what you accept of a fleet's, write into its own)", stored)
     labels = _with_own(tuple(inputs.labels or ()), into)
-    files = UserFiles(evidence.rules or (), evidence.packages or (), evidence.source or (), evidence.libraries or ())
+    sources = [*(evidence.source or ()), *code_folders(inputs.policies or ())]
+    files = UserFiles(evidence.rules or (), evidence.packages or (), sources, evidence.libraries or ())
     if answers.ask and into:
         _ask(into, inputs, files, answers.by)
         return
@@ -123,22 +135,25 @@ def suggest(
     with model.interview(output) as interview:
 
         def progress() -> Suggested:
-            return suggested(_result(inputs._replace(labels=list(labels))), inputs.settings, files, interview)
+            found = suggested(_result(inputs._replace(labels=list(labels))), inputs.settings, files, interview)
+            return found if why is not None else with_offer(found, inputs.settings)
 
         if into:
             _write(into, progress)
         else:
-            emit(_answer(progress(), format), output)
+            emit(_answer(progress(), format, why, terminal_width() if output is None else None), output)
 
 
-def _answer(suggested: Suggested, format_: TextOrJson) -> str:
+def _answer(suggested: Suggested, format_: TextOrJson, why: str | None, width: int | None) -> str:
     from rosprivacy.report.json_text import as_text
-    from rosprivacy.report.suggested_labels.suggestion_lines import suggestion_lines
+    from rosprivacy.report.suggested_labels.suggestion_lines import of_element, suggestion_lines, why_lines
+    from rosprivacy.report.text.line_parts import wrapped
 
     document = suggested.document()
-    return (
-        as_text(document) if format_ is TextOrJson.json else "".join(f"{line}\n" for line in suggestion_lines(document))
-    )
+    if format_ is TextOrJson.json:
+        return as_text(document)
+    lines = suggestion_lines(document) if why is None else why_lines(of_element(document, why))
+    return "".join(f"{line}\n" for line, _ in wrapped(((line, "") for line in lines), width))
 
 
 def _would_be_sent(inputs: Inputs, labels: tuple[str, ...], sources: Sequence[str], options: ModelOptions) -> str:
@@ -187,8 +202,8 @@ def _write(file: Path, progress: Callable[[], Suggested]) -> None:
 
 
 def _ask(file: Path, inputs: Inputs, files: UserFiles, by: str | None) -> None:
-    """Questions until nothing is left to ask; each answer is in the file before the next one is asked."""
-    from rosprivacy.cli.dialogue import ask
+    """Ask until nothing is left to ask; each answer is in the file before the next screen or question."""
+    from rosprivacy.cli.asking.dialogue import ask
     from rosprivacy.labelling.suggesting import suggest_labels
 
     def progress() -> Suggested:

@@ -23,8 +23,10 @@ from rosprivacy.analysis.fleet.likeness import NO_ROBOTS, pattern_id
 from rosprivacy.analysis.remembered import as_written
 from rosprivacy.clock import judged_on, today
 from rosprivacy.decided import about_today, in_fleet
-from rosprivacy.ingest.decisions.decision_writer import text_in, with_decision
-from rosprivacy.ingest.decisions.decisions_file import is_date, parse_decisions
+from rosprivacy.decision_record import parse_recorded, provenance, subject, with_recorded
+from rosprivacy.ingest.decisions.decision_log import is_log
+from rosprivacy.ingest.decisions.decision_writer import text_in
+from rosprivacy.ingest.decisions.decisions_file import REQUIRED, is_date
 from rosprivacy.report.atomic import editing, write_texts
 
 if TYPE_CHECKING:
@@ -37,7 +39,6 @@ if TYPE_CHECKING:
 
     RobotNames = Collection[str] | None  # robots, by id; None for all that are alike
 
-REQUIRED_FIELDS = {"accept": ("reason", "owner")}  # what a person signs
 ENDS = 2  # robots of one kind that are enough to see what holds between any two
 
 
@@ -47,7 +48,9 @@ class Ruling(NamedTuple):
     Attributes
     ----------
     choice
-        ``accept``, ``mitigate``, ``delegate`` or ``avoid``.
+        A ``Choice``.
+    condition
+        What has to be so before an acceptance counts.
     expires
         The last day on which it is valid, ``YYYY-MM-DD``.
     legal_basis
@@ -60,6 +63,7 @@ class Ruling(NamedTuple):
     expires: str = ""
     ticket: str = ""
     legal_basis: tuple[str, ...] = ()
+    condition: str = ""
 
 
 class How(TypedDict, total=False):
@@ -70,6 +74,7 @@ class How(TypedDict, total=False):
     expires: str
     ticket: str
     legal_basis: tuple[str, ...]
+    condition: str
 
 
 class Scope(NamedTuple):
@@ -145,8 +150,9 @@ def record(
     remark = f"{about.category}: {about.source.name} -> {about.leak.name}"  # what a person reads beside an id
     path = Path(file)
     with one_run(), editing(path):
-        text = with_decision(file, text_in(path), entry, remark, result.vocabulary)
-        decisions = parse_decisions(file, text, result.vocabulary, judged_on(os.environ))
+        facts = provenance(path.parent, _subject(result, scope.finding)) if is_log(file) else {}
+        text = with_recorded(file, text_in(path), entry, remark, result.vocabulary, facts=facts)
+        decisions = parse_recorded(file, text, result.vocabulary, judged_on(os.environ))
         _check_meaning(decisions, scope, likeness, entry)
         judge(decisions)
         write_texts([(path, text)], edited=path)
@@ -157,7 +163,7 @@ def _check(file: str, ruling: Ruling) -> None:
         raise _refused(file, f"{shown(ruling.expires)!r} is not a date", "write YYYY-MM-DD")
     if ruling.expires and ruling.expires < today(os.environ):
         raise _refused(file, f"{ruling.expires} is over: it would decide nothing", "name a day to come")
-    for name in REQUIRED_FIELDS.get(ruling.choice, ()):
+    for name in REQUIRED.get(ruling.choice, ()):
         if not getattr(ruling, name):
             raise _refused(file, f"an acceptance without {name}", f"say the {name}: it is what a person signs")
 
@@ -188,6 +194,7 @@ def _entry(ruling: Ruling) -> dict[str, Any]:
     entry = {
         "decision": ruling.choice,
         "reason": ruling.reason,
+        "condition": ruling.condition,
         "owner": ruling.owner,
         "legal_basis": list(ruling.legal_basis),
         "date": date.fromisoformat(today(os.environ)),
@@ -201,6 +208,13 @@ def _made_about(result: Result, finding: Finding) -> Mapping[str, object]:
     """What is so now; of a fleet without the number of paths, which changes with the robots that are alike."""
     about = about_today(result.analysis, None)[finding.id]
     return as_written(replace(about, disjoint_paths=0) if result.fleet else about)
+
+
+def _subject(result: Result, finding: Finding) -> Mapping[str, str]:
+    """What a log keeps of a finding; one that the document of a fleet shows on another robot is known by its id."""
+    document = result.document()
+    row = next((row for row in document["findings"] if row["id"] == finding.id), {"id": finding.id})
+    return subject(document, row)
 
 
 def _check_meaning(decisions: Decisions, scope: Scope, likeness: Likeness, entry: Mapping[str, Any]) -> None:

@@ -13,8 +13,8 @@ from rosprivacy.explorer.edited_file import EditedFile, chosen, read_file
 from rosprivacy.explorer.edits import Edit, differences, place_of
 from rosprivacy.explorer.scenarios import tried
 from rosprivacy.explorer.watched_files import files_in
-from rosprivacy.ingest.labels.label_file import Labels
-from rosprivacy.systems.robot_system import read_label_files, robot_system
+from rosprivacy.ingest.labels.label_file import LabelErrors, Labels
+from rosprivacy.systems.robot_system import read_label_files, robot_system, with_misnamed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -155,7 +155,10 @@ class RobotFiles:
     def system(self, edits: Sequence[Edit]) -> System:
         """Return the same policies under the label files with edits."""
         files = list(self._files)
-        (files[self._at],) = self._edited.labels(edits).values()
+        try:
+            (files[self._at],) = self._edited.labels(edits).values()
+        except LabelErrors as error:
+            raise with_misnamed(error, self.read.graph) from None
         assert self.read.under is not None, "of one robot"
         return self.read.under(tuple(files))
 

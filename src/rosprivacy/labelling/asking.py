@@ -14,11 +14,12 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import InputErrors, shown
 from rosprivacy.analysis.suggesting.channels import traffic
-from rosprivacy.analysis.suggesting.evidence import WrittenLabel
-from rosprivacy.analysis.suggesting.label_questions import LISTED, NOTHING, TYPED_AS, questions
+from rosprivacy.analysis.suggesting.evidence import SOURCE, WrittenLabel
+from rosprivacy.analysis.suggesting.label_questions import LISTED, NOTHING, TYPED_AS, questions, reached_kinds
 from rosprivacy.analysis.suggesting.outdated_reasons import grounds_of
+from rosprivacy.analysis.suggesting.screens import screens
 from rosprivacy.analysis.written_names import did_you_mean, literal, nearest
-from rosprivacy.ingest.labels.label_file import parse_labels
+from rosprivacy.ingest.labels.label_file import STANDARD, parse_labels
 from rosprivacy.ingest.suggestion_rules.accepting import NewLabel, with_labels
 from rosprivacy.ingest.suggestion_rules.comments import refusal, with_refusals
 from rosprivacy.labelling.conversation import NO, by_likeness
@@ -31,7 +32,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
     from rosprivacy.analysis.model import Element
-    from rosprivacy.analysis.suggesting.label_questions import LabelQuestion, Row
+    from rosprivacy.analysis.suggesting.label_questions import LabelQuestion, Reply, Row
+    from rosprivacy.analysis.suggesting.screens import Screen, ScreenLine
     from rosprivacy.labelling.suggesting import Suggested
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.result import Result
@@ -42,12 +44,76 @@ FROM_AND_TO = 2
 
 def asked_now(suggestions: Suggested) -> tuple[LabelQuestion, ...]:
     """Return what a person is asked under the labels that there are; no list of channels would close a finding."""
+    return tuple(_without_closing(one, suggestions.result) for one in _questions(suggestions))
+
+
+def _questions(suggestions: Suggested) -> tuple[LabelQuestion, ...]:
     result = suggestions.result
-    graph = result.analysis.graph
-    hierarchy = result.vocabulary.hierarchy
-    read = traffic(graph, result.bound)
-    made = questions(suggestions.proposals, result.analysis, result.bound, read, hierarchy, refused_in(result).says)
-    return tuple(_without_closing(one, result) for one in made)
+    read, hierarchy = traffic(result.analysis.graph, result.bound), result.vocabulary.hierarchy
+    return questions(suggestions.proposals, result.analysis, result.bound, read, hierarchy, refused_in(result).says)
+
+
+def screens_now(suggestions: Suggested) -> tuple[Screen, ...]:
+    """Return the screens that a person is shown under the labels that there are."""
+    result = suggestions.result
+    return screens(
+        _questions(suggestions), suggestions.proposals, reached_kinds(result.analysis), result.vocabulary.hierarchy
+    )
+
+
+def off_screens(suggestions: Suggested) -> int:
+    """Return how many elements can be asked about as lists, and are on no screen."""
+    asked = {row.element.identity for question in _questions(suggestions) for row in question.rows}
+    return len(asked - {screen.element.identity for screen in screens_now(suggestions)})
+
+
+def without_channels(result: Result) -> tuple[str, ...]:
+    """Return the nodes that have no channel but standard ones, and of which nobody says anything.
+
+    Nothing can be asked about them: what they do with data, they do outside ROS, such as who reads files of logs.
+    """
+    graph, labels = result.analysis.graph, result.bound.elements
+    busy = {vertex for vertex, said in labels.items() if any(not one.shipped for one in said)}
+    for flow in graph.flows:
+        for vertex, other in ((flow.source, flow.target), (flow.target, flow.source)):
+            if not any(one.place.file == STANDARD for one in labels.get(other, ())):
+                busy.add(vertex)
+    return tuple(one.name for vertex, one in enumerate(graph.elements) if one.is_node and vertex not in busy)
+
+
+def unanswered_sources(suggestions: Suggested) -> tuple[str, ...]:
+    """Return the nodes that perhaps bring in data that no label says of them: an answer knows nothing of it."""
+    return tuple(dict.fromkeys(one.label.element.name for one in suggestions.proposals if one.label.role == SOURCE))
+
+
+def with_lines(file: str, lines: Sequence[ScreenLine], person: str, day: str, settings: Settings) -> LabelLines:
+    """Return a label file with the lines of a screen that a person has ticked, as an answer to a question writes them.
+
+    Raises
+    ------
+    InputErrors
+        If the file is no label file, or cannot be changed without losing something.
+    """
+    text, vocabulary = _begun(file, settings)
+    note = _answered_by(person, day)
+    labels = [_label(reply, note) for line in lines for reply in line.replies]
+    done = with_labels(file, text, labels, vocabulary)
+    return LabelLines(file, done.text, done.count, done.remarks)
+
+
+def with_refusal(file: str, labels: Iterable[WrittenLabel], person: str, day: str, settings: Settings) -> LabelLines:
+    """Return a label file that remembers a no to some labels.
+
+    Raises
+    ------
+    InputErrors
+        If the file is no label file, or has no room for comments.
+    """
+    text, vocabulary = _begun(file, settings)
+    lines = [refusal(label, person, day) for label in labels]
+    new = with_refusals(text, lines)
+    check_room(file, text, new, vocabulary)
+    return LabelLines(file, new, len(lines))
 
 
 def with_answer(file: str, question: LabelQuestion, key: str, person: str, day: str, settings: Settings) -> LabelLines:
@@ -58,15 +124,11 @@ def with_answer(file: str, question: LabelQuestion, key: str, person: str, day: 
     InputErrors
         If the file is no label file, or cannot be changed without losing something.
     """
-    text, vocabulary = _begun(file, settings)
     if key == NO:
-        lines = [refusal(label, person, day) for row in question.rows for label in row.refused]
-        new = with_refusals(text, lines)
-        check_room(file, text, new, vocabulary)
-        return LabelLines(file, new, len(lines))
-    done = with_labels(
-        file, text, list(_labels(question, key, f"answered by {person} on {day}{_in_list(question)}")), vocabulary
-    )
+        return with_refusal(file, (label for row in question.rows for label in row.refused), person, day, settings)
+    text, vocabulary = _begun(file, settings)
+    note = f"{_answered_by(person, day)}{_in_list(question)}"
+    done = with_labels(file, text, list(_labels(question, key, note)), vocabulary)
     return LabelLines(file, done.text, done.count, done.remarks)
 
 
@@ -95,8 +157,17 @@ def _labels(question: LabelQuestion, key: str, note: str) -> Iterator[NewLabel]:
     for row in question.rows:
         reply = row.reply(key)
         if reply:
-            why = f": {grounds_of(reply.reasons)}" if reply.reasons else ""
-            yield NewLabel(*reply.label, f"{note}{why}")
+            yield _label(reply, note)
+
+
+def _label(reply: Reply, note: str) -> NewLabel:
+    """What a reply writes, with who said it and why."""
+    why = f": {grounds_of(reply.reasons)}" if reply.reasons else ""
+    return NewLabel(*reply.label, f"{note}{why}")
+
+
+def _answered_by(person: str, day: str) -> str:
+    return f"answered by {person} on {day}"
 
 
 def _in_list(question: LabelQuestion) -> str:

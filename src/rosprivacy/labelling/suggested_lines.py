@@ -15,8 +15,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from rosprivacy.analysis.errors import InputError, LabelError, shown
+from rosprivacy.analysis.kernel.ranks import in_words
 from rosprivacy.analysis.kernel.search import present, search
 from rosprivacy.analysis.kernel.states import Net
+from rosprivacy.analysis.model import TYPE_LINE
 from rosprivacy.analysis.suggesting.evidence import WrittenLabel
 from rosprivacy.analysis.suggesting.label_questions import one_line
 from rosprivacy.clock import today
@@ -240,9 +242,9 @@ def _limits_said(accepted: Sequence[NewLabel], files: Iterable[Labels], vocabula
             (one, f"{shown(flow.source)} -> {shown(flow.target)}") for flow in file.flows for one in flow.statements
         ]
         there = [
-            f"{one.role} of {name} (line {one.place.line})"
+            f"{in_words(one) if one.role == TYPE_LINE else one.role} of {name} (line {one.place.line})"
             for one, name in said
-            if one.role in LIMITING and any(_limits(one, label, vocabulary) for label in accepted)
+            if one.role in (*LIMITING, TYPE_LINE) and any(_limits(one, label, vocabulary) for label in accepted)
         ]
         if there:
             what = ", ".join(dict.fromkeys(kind for label in accepted for kind in _kinds(label)))
@@ -251,6 +253,8 @@ def _limits_said(accepted: Sequence[NewLabel], files: Iterable[Labels], vocabula
 
 def _limits(statement: Statement, label: NewLabel, vocabulary: Vocabulary) -> bool:
     """Whether a statement may take away data that a label is about."""
+    if statement.role == TYPE_LINE:
+        return True
     if statement.role == "only":
         kinds = [vocabulary.find(kind) for kind in _kinds(label)]
         through = set(statement.categories)

@@ -54,7 +54,10 @@ if TYPE_CHECKING:
     Indices = NDArray[np.int64]
 
 
-MOST_SHOWN = 200  # robots, for what is open on them: all are counted, and of a large fleet nobody reads all
+MOST_WHOLE = 1_000  # robots that differ: of so many all are shown, so that the answer is that in memory
+MOST_SHOWN = (
+    200  # robots of a larger fleet, for what is open on them: all are counted, and of a large fleet nobody reads all
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +72,8 @@ class Task:
         Names of categories; None for all.
     today
         As of ``Options``.
+    written
+        Whether the rows of every robot are written, too, which are made of few.
     """
 
     fleet: Fleet
@@ -78,6 +83,12 @@ class Task:
     hierarchy: Hierarchy
     categories: Collection[str] | None = None
     today: str = ""
+    written: bool = False
+
+    @property
+    def whole(self) -> bool:
+        """Whether all robots are shown: then the answer is that in memory, row by row."""
+        return not self.written and sum(len(group.placed) for group in self.groups) <= MOST_WHOLE
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +102,8 @@ class Found:
     groups
         Patterns, without ways.
     units
-        Names of the units in which ways of these lie, and of one for each kind of open element.
+        Names of the units that are shown: all; of a large fleet those in which ways of these lie, and of one for each
+        kind of open element.
     examples
         Names of units: with these, data of every source gets to one leak of each name that it gets to.
     leaking
@@ -301,7 +313,7 @@ class _Run:
             lacking=lacking,
             groups=groups,
             deviants=different(shares, opened.at, self._likeness),
-            units=frozenset(needed),
+            units=frozenset(unit.values() if self._task.whole else needed),
             examples=frozenset(needed | crossed.examples | classes.all_bringers()),
             leaking=frozenset(r for r, some in shares.items() if not all(share.dismissed for share in some)),
             counts=replace(counts, flows=counts.flows + _flows_between(report)),

@@ -10,13 +10,13 @@ from contextlib import chdir, suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import FleetError, InputError, InputErrors, reason
 from rosprivacy.analysis.files_read import note
 from rosprivacy.analysis.findings.findings import Options
 from rosprivacy.analysis.model import IN_PARTS, Diagnostic, Place, Severity
-from rosprivacy.answering import concluded
+from rosprivacy.answering import answer, concluded
 from rosprivacy.assumptions import named_files, types_read
 from rosprivacy.clock import judged_on
 from rosprivacy.ingest.fleet.alike_robots import alike
@@ -25,12 +25,12 @@ from rosprivacy.ingest.fleet.joins import OF_FLEET
 from rosprivacy.ingest.labels.countries import countries
 from rosprivacy.ingest.labels.label_file import read_labels
 from rosprivacy.ontology.vocabulary import load
-from rosprivacy.parts.distributed import Task, analyse_in_parts
+from rosprivacy.parts.distributed import MOST_WHOLE, Task, analyse_in_parts
 from rosprivacy.parts.kept_parts import kept_parts
 from rosprivacy.parts.parquet import check_new, write
 from rosprivacy.parts.processes import processes
 from rosprivacy.parts.session import scatter, session
-from rosprivacy.parts.shown_robots import shown
+from rosprivacy.parts.shown_robots import place_shown, shown
 from rosprivacy.parts.unit_rows import Plan
 from rosprivacy.parts.units import crossing_lines, split
 from rosprivacy.question import in_contexts, question_of
@@ -38,7 +38,7 @@ from rosprivacy.system import System
 from rosprivacy.systems.robot_reader import RobotReader
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
     from rosprivacy.ingest.fleet.dds_domains import Member
     from rosprivacy.ingest.fleet.fleet_file import Fleet, Robot
@@ -72,6 +72,7 @@ def run_on_spark(file: str, settings: Settings, master: str | None = None, resul
     """
     task, question = task_of(file, settings, SPARK)
     if results:
+        task = replace(task, written=True)
         check_new(results)
         _check_whole(task)
     with session(master) as spark:
@@ -106,11 +107,6 @@ def run_in_processes(file: str, settings: Settings, resume: str | None = None) -
 
 def task_of(file: str, settings: Settings, engine: str) -> tuple[Task, Question]:
     """Read a fleet file, and return what is analysed and what is asked."""
-    if settings.decisions:
-        raise InputError(
-            "--decisions", 0, f"--engine {engine} takes no decisions into account",
-            "leave them out, or analyse in memory",
-        )  # fmt: skip
     plain = replace(settings, progress=unchanged, today=settings.today or judged_on(os.environ))
     question = question_of(plain)
     fleet = read_fleet(file, question.vocabulary, include_root=settings.include_root, bounds=settings.bounds)
@@ -119,6 +115,9 @@ def task_of(file: str, settings: Settings, engine: str) -> tuple[Task, Question]
         fleet, alike(fleet), settings.view, partial(file_reader, plain, str(Path.cwd()), fleet.root),
         question.vocabulary.hierarchy, question.categories_asked, question.today,
     )  # fmt: skip
+    if settings.decisions and not task.whole:
+        what = f"--engine {engine} takes no decisions about more than {MOST_WHOLE:,} robots that differ"
+        raise InputError("--decisions", 0, what, "leave them out, or analyse in memory")
     return task, question
 
 
@@ -179,36 +178,56 @@ def _check_whole(task: Task) -> None:
 
 
 def result(task: Task, whole: Found, question: Question, engine: str) -> Result:
-    """Look for the ways of what is shown, and put together what a report says."""
+    """Look for the ways of what is shown, and put together what a report says.
+
+    Of a fleet that is shown as a whole, types and decisions count as in memory.
+    """
     _note_what_workers_read(whole)
-    sample = shown(task, whole, question.settings.paths, question.settings.max_paths)
-    rests_on = {
-        **({"countries_as_of": countries().as_of} if whole.report.countries else {}),
-        **named_files(sorted(whole.report.sources), sorted(whole.report.labels), question.settings),
+    placed, members = place_shown(task, whole)
+    report = whole.report
+    policies = {policy.file: policy for member in members.values() for policy in member.policies}
+    labels = {file.file: file for member in members.values() for file in member.files}
+    system = System(
+        placed.graph, placed.bound, question.vocabulary,
+        report.diagnostics if task.whole else (*report.diagnostics, *_left_out(whole, engine, question)),
+        _rests_on(task, whole, question.settings, engine),
+        tuple(policies.values()), tuple(labels.values()), whole.likeness, is_fleet=True,
+    )  # fmt: skip
+    limited = bool(report.by_type) or (report.typed and question.type_limits is not None)
+    if task.whole and (limited or question.decisions):
+        return answer(system, question)
+    sample = shown(task, whole, placed, question.settings.paths, question.settings.max_paths)
+    counts = None if task.whole else whole.counts  # counts say that there are robots beside those of the graph
+    return concluded(system, question, sample.analysis, sample.view, Options(), counts)
+
+
+def _rests_on(task: Task, whole: Found, settings: Settings, engine: str) -> dict[str, Any]:
+    """The files that an answer rests on, and what computed it."""
+    report = whole.report
+    return {
+        **({"countries_as_of": countries().as_of} if report.countries else {}),
+        **named_files(sorted(report.sources), sorted(report.labels), settings),
+        **types_read(sorted(report.types, key=lambda file: file.file)),
         "fleet": [{"file": name, "sha256": digest} for name, digest in task.fleet.sources],
         "engine": engine,
-        **types_read(sorted(whole.report.types, key=lambda file: file.file)),
-        **({"type_limits": None} if whole.report.typed else {}),
+        **({"type_limits": None} if report.typed and not task.whole else {}),
     }
+
+
+def _left_out(whole: Found, engine: str, question: Question) -> Iterator[Diagnostic]:
+    """What the answer about a large fleet does not say, or does not take into account."""
+    place = Place(f"--engine {engine}", 0)
+    yield from whole.report.by_type
+    if whole.report.typed and question.type_limits:
+        unlimited = "message types limit nothing in parts: in memory there can be fewer findings"
+        yield Diagnostic(place, Severity.NOTICE, unlimited)
     bounds = (
         f"analysed in parts, {whole.open:,} open elements in the whole fleet: ways and distances are the shortest "
         "among the robots that are shown, and what is told element by element is told of these: open elements, "
         "unknown ends, what is denied, sanitized, derived, taken away, stated of purposes and bases, or not stated, "
         "and what the answer hangs on"
     )
-    place = Place(f"--engine {engine}", 0)
-    said = whole.report.diagnostics
-    if whole.report.typed and question.type_limits:
-        unlimited = "message types limit nothing in parts: in memory there can be fewer findings"
-        said += (Diagnostic(place, Severity.NOTICE, unlimited),)
-    said += (Diagnostic(place, Severity.WARNING, bounds, IN_PARTS),)
-    policies = {policy.file: policy for member in sample.members.values() for policy in member.policies}
-    labels = {file.file: file for member in sample.members.values() for file in member.files}
-    system = System(
-        sample.placed.graph, sample.placed.bound, question.vocabulary, said, rests_on,
-        tuple(policies.values()), tuple(labels.values()), whole.likeness, is_fleet=True,
-    )  # fmt: skip
-    return concluded(system, question, sample.analysis, sample.view, Options(), whole.counts)
+    yield Diagnostic(place, Severity.WARNING, bounds, IN_PARTS)
 
 
 def file_reader(settings: Settings, folder: str, root: str) -> Read:

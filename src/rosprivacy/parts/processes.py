@@ -9,6 +9,7 @@ from __future__ import annotations
 import multiprocessing
 import os
 import pickle
+import shutil
 import signal
 import sys
 from concurrent.futures import ProcessPoolExecutor
@@ -117,7 +118,7 @@ def processes(
     """
     context = multiprocessing.get_context("spawn")  # a copy of this process would have its threads' locks, too
     with TemporaryDirectory(prefix="rosprivacy-parts-") as folder, environment(SAFE_PATH):
-        pool = ProcessPoolExecutor(_processors(), context, _begin)
+        pool = ProcessPoolExecutor(_processors(), context, _begin, (folder,))
         try:
             yield partial(_scattered, pool, Path(folder), progress, resumed)
         finally:
@@ -145,14 +146,18 @@ def _processors() -> int:
     return len(os.sched_getaffinity(0)) if sys.platform == "linux" else os.cpu_count() or 1
 
 
-def _begin() -> None:
-    """A process of the pool ends with the one that it works for, which alone says what Ctrl+C does."""
+def _begin(folder: str) -> None:
+    """A process of the pool ends with the one that it works for, which alone says what Ctrl+C does.
+
+    Where that one was killed, it removes the folder of the run, which nobody else would.
+    """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     parent = multiprocessing.parent_process()
     assert parent is not None
 
     def end_with_it() -> None:
         parent.join()
+        shutil.rmtree(folder, ignore_errors=True)
         os._exit(1)
 
     Thread(target=end_with_it, daemon=True).start()

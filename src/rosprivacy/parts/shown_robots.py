@@ -30,40 +30,40 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.fleet.fleet_file import Fleet
     from rosprivacy.ingest.fleet.fleet_graph import Placed
     from rosprivacy.parts.distributed import Found, Task
-    from rosprivacy.parts.workers import Read
+    from rosprivacy.parts.workers import Read, Report
 
 Choice = dict[int, set[tuple[str, int, int, bool]]]
 
 
 @dataclass(frozen=True, slots=True)
 class ShownRobots:
-    """What a report is made of.
-
-    Attributes
-    ----------
-    members
-        Those of the graph, by id of the first robot of each group.
-    """
+    """What a report tells of the robots that are shown, beside their graph."""
 
     analysis: Analysis
     view: FleetView
-    placed: Placed
-    members: dict[str, Member]
 
 
-def shown(task: Task, whole: Found, paths: str, max_paths: int) -> ShownRobots:
-    """Look for the ways of what is shown.
-
-    Notes
-    -----
-    A way is a shortest one among the robots that are placed here: those at its ends, those that bring data to what is
-    shared, and what is shared.
-    """
+def place_shown(task: Task, whole: Found) -> tuple[Placed, dict[str, Member]]:
+    """Place the robots that are shown; return them also by id of the first robot of each group."""
     fixed, units = split(task.groups)
     needed = whole.units or {unit.name for unit in units[:1]}
     groups = [*fixed, *(group for unit in units if unit.name in needed for group in unit.groups)]
     placed, members = place_groups(task.fleet, groups, task.reader(), task.view, whole.shared)
-    placed = replace(placed, bound=surrounded(placed, whole.report.contexts))
+    return replace(placed, bound=surrounded(placed, whole.report)), members
+
+
+def shown(task: Task, whole: Found, placed: Placed, paths: str, max_paths: int) -> ShownRobots:
+    """Look for the ways of what is shown.
+
+    Parameters
+    ----------
+    placed
+        The robots that are shown.
+
+    Notes
+    -----
+    A way is a shortest one among these: those at its ends, those that bring data to what is shared, and what is shared.
+    """
 
     def choose(spread: Spread, kinds: Sequence[Concern], mask: int) -> Choice:
         del kinds, mask
@@ -83,7 +83,7 @@ def shown(task: Task, whole: Found, paths: str, max_paths: int) -> ShownRobots:
     analysis = replace(analysis, verdict=whole.verdict, emitted=whole.emitted, lacking=whole.lacking, diagnostics=told)
     known = {row.channel.identity: row for row in (*whole.closed, *analysis.closed_by_shipped)}
     analysis = replace(analysis, closed_by_shipped=tuple(known[key] for key in sorted(known)))
-    return ShownRobots(analysis, view, placed, members)
+    return ShownRobots(analysis, view)
 
 
 def place_groups(
@@ -97,9 +97,14 @@ def place_groups(
     return replace(placed, bound=replace(placed.bound, outside=outside)), members
 
 
-def surrounded(placed: Placed, contexts: Iterable[tuple[str, str, str]]) -> Bound:
-    """Return what is said, with the contexts of robots that are not placed: a finding stands for these too."""
+def surrounded(placed: Placed, report: Report) -> Bound:
+    """Return what is said, with the surroundings of robots that are not placed: a finding stands for these too."""
+    return replace(placed.bound, elsewhere=by_name(report.contexts), scopes=by_name(report.scopes))
+
+
+def by_name(rows: Iterable[tuple[str, str, str]]) -> dict[tuple[str, str], frozenset[str]]:
+    """Return what is said of elements of one kind and name together."""
     said: dict[tuple[str, str], set[str]] = defaultdict(set)
-    for kind, name, context in sorted(contexts):
-        said[kind, name].add(context)
-    return replace(placed.bound, elsewhere={key: frozenset(names) for key, names in said.items()})
+    for kind, name, fact in sorted(rows):
+        said[kind, name].add(fact)
+    return {key: frozenset(facts) for key, facts in said.items()}

@@ -14,13 +14,15 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 import numpy as np
 
-from rosprivacy.analysis.errors import InputErrors
+from rosprivacy.analysis.contexts import scopes_of_sources
+from rosprivacy.analysis.errors import InputErrors, shown
 from rosprivacy.analysis.findings.closures import closed_by_shipped
 from rosprivacy.analysis.findings.concerns import concerns
 from rosprivacy.analysis.findings.open_questions import Grounds, grounds, open_bits
 from rosprivacy.analysis.fleet.counts import Counts, counted
 from rosprivacy.analysis.kernel.arrays import of_elements
 from rosprivacy.analysis.kernel.spreading import emitted, fill, meaning
+from rosprivacy.analysis.model import BY_TYPE_OPEN, TYPE_LINE, Diagnostic, Severity
 from rosprivacy.analysis.non_ros import on_day, unanswered
 from rosprivacy.ingest.fleet.fleet_graph import Some, likeness, place_some
 from rosprivacy.ingest.fleet.joins import let_out
@@ -30,7 +32,7 @@ from rosprivacy.parts.part_patterns import PartEnd, PartSource, Within
 from rosprivacy.parts.units import HUB, Lines, Piece, crossing_lines, naming_lines, units_piece
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -40,7 +42,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.kernel.spread import Spread
-    from rosprivacy.analysis.model import Diagnostic, Element, Place
+    from rosprivacy.analysis.model import Element, Place
     from rosprivacy.ingest.fleet.dds_domains import Member
     from rosprivacy.ingest.fleet.fleet_file import Fleet, Robot
     from rosprivacy.ingest.fleet.joins import Met
@@ -76,12 +78,16 @@ class Report:
         Where the flows of the fleet file begin and end.
     contexts
         (kind, name, context) of its elements: a pattern stands for robots that are not shown, too.
+    scopes
+        (kind, name, whether the GDPR applies) of its sources, for the same reason.
     types
         Files of observed message types, without what they say of channels.
     typed
         Whether the message type of any channel is known.
     letting_out
         Robots at which data is let out or kept, if it gets there.
+    by_type
+        That lines ``only: by-type`` do not hold, where not all robots are shown.
     """
 
     problems: tuple[InputError, ...] = ()
@@ -96,9 +102,11 @@ class Report:
     restated: tuple[Place, ...] = ()
     met: frozenset[Met] = frozenset()
     contexts: frozenset[tuple[str, str, str]] = frozenset()
+    scopes: frozenset[tuple[str, str, str]] = frozenset()
     types: frozenset[TypesFile] = frozenset()
     typed: bool = False
     letting_out: frozenset[str] = frozenset()
+    by_type: tuple[Diagnostic, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,10 +166,24 @@ def report_of(placed: Some, members: Sequence[Member]) -> Report:
             for element, where in placed.part.surroundings.items()
             for context in where.contexts
         ),
+        scopes=frozenset(
+            (element.kind, element.name, scope)
+            for element, scope in scopes_of_sources(placed.part.elements, placed.part.surroundings)
+        ),
         types=frozenset(replace(file, channels=()) for member in members for file in member.types),
         typed=any(placed.part.types.values()),
         letting_out=let_out(placed.part.elements.items()),
+        by_type=tuple(dict.fromkeys(_lines_that_do_not_hold(placed))),
     )
+
+
+def _lines_that_do_not_hold(placed: Some) -> Iterator[Diagnostic]:
+    """Say of each line ``only: by-type`` that it closes nothing in parts, where types limit nothing."""
+    for element, said in placed.part.elements.items():
+        for one in said:
+            if one.role == TYPE_LINE:
+                what = f"{shown(element.name)}: only: by-type does not hold in parts; write only: [Kinds]"
+                yield Diagnostic(one.place, Severity.WARNING, what, BY_TYPE_OPEN)
 
 
 def joined(reports: Iterable[Report]) -> Report:

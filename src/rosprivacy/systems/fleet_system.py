@@ -208,13 +208,17 @@ def _system(
     )  # fmt: skip
 
 
-def rows_of_fleet(system: FleetSystem, question: Question, result: Result) -> FleetRows:
+def rows_of_fleet(
+    system: FleetSystem, question: Question, result: Result, *, without_standard: bool = False
+) -> FleetRows:
     """Return the rows of all robots for the database; with each goes what its part of the answer rests on.
 
     Parameters
     ----------
     result
         With every finding, or those of ``most_across``, about all categories.
+    without_standard
+        Whether the channels that only the standard file speaks of are left out.
     """
     elements, first = system.graph.elements, system.likeness.second
     files_of: dict[str, tuple[Diagnostic, ...]] = {element.robot: () for element in elements}
@@ -242,4 +246,5 @@ def rows_of_fleet(system: FleetSystem, question: Question, result: Result) -> Fl
         beyond=beyond_of(result),
         most_across=question.most_across,
         counts=None if question.most_across is None else across,
+        without_standard=without_standard,
     )

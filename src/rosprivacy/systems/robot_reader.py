@@ -14,20 +14,22 @@ from rosprivacy.ingest.deployed.exposures import with_exposed
 from rosprivacy.ingest.fleet.alike_robots import digest
 from rosprivacy.ingest.fleet.dds_domains import Member, stripped
 from rosprivacy.ingest.labels.add_non_ros import extended, told_of_bags
-from rosprivacy.ingest.labels.binding import join, remarks
+from rosprivacy.ingest.labels.binding import GraphNames, join, remarks
 from rosprivacy.ingest.labels.label_file import OURS, read_labels
+from rosprivacy.ingest.labels.strange_file import strange_files
 from rosprivacy.ingest.mitigation.deny_lines import with_denied
 from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, PolicyChange, changed
 from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.ingest.policies.joint_policies import OF_ONE_ROBOT, joint_warnings, merging_notices
 from rosprivacy.ingest.policies.namespaces import notices, pushed
 from rosprivacy.ingest.policies.wildcards import careful_warnings
+from rosprivacy.ingest.scan.reviewed_code import with_reviewed_code
 from rosprivacy.ingest.types.channel_types import matching_nothing
 from rosprivacy.systems.granted import read_granted
 from rosprivacy.systems.robot_system import read_types_files, with_types
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from rosprivacy.analysis.model import Diagnostic, Grant, Policy
     from rosprivacy.ingest.fleet.fleet_file import Robot
@@ -145,18 +147,22 @@ class RobotReader:
         types = tuple(self.types[name] for name in sorted(set(robot.types)))
         written = full if robot.strip else {}
         diagnostics += matching_nothing(whole, types, written)
-        bound, missing = join(whole, files, settings.bounds, robot.surroundings)
-        self._refuse(missing)
+        names = GraphNames(whole)
+        bound, missing = join(whole, files, settings.bounds, robot.surroundings, names)
+        self._refuse(missing, strange_files(files, names.matching, names.by_kind))
+        bound, of_code = with_reviewed_code(whole, bound, files, policies)
         bound = with_exposed(whole, with_types(whole, bound, types, written), policies)
+        diagnostics += of_code
         diagnostics += outdated_reasons(whole, bound)
         return Member(
             robot, policies, whole, bound, full, graph.profiles, tuple(files), tuple(dict.fromkeys(diagnostics)),
             types, robot.add,
         )  # fmt: skip
 
-    def _refuse(self, missing: list[InputError]) -> None:
+    def _refuse(self, missing: list[InputError], about_files: Iterable[InputError] = ()) -> None:
+        """Raise what is missing, and before it what is to be told of whole files, where nothing is tried."""
         if missing and not self._tried.denied:
-            raise InputErrors(missing)
+            raise InputErrors([*about_files, *missing])
         self.missing += missing
 
     def _read_labels(self, robot: Robot) -> list[Labels]:

@@ -5,13 +5,14 @@ In: the names of files. Out: ``System``, whose labels can be replaced.
 
 from __future__ import annotations
 
+import os
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.errors import InputError, InputErrors
+from rosprivacy.analysis.errors import InputError, InputErrors, shown
 from rosprivacy.analysis.model import (
     MERGED,
     REFUSED_NAME,
@@ -26,19 +27,20 @@ from rosprivacy.answering import answer
 from rosprivacy.assumptions import files_read, remembered, types_read
 from rosprivacy.ingest.deployed.exposures import with_exposed
 from rosprivacy.ingest.labels.add_non_ros import extend, extended, told_of_bags
-from rosprivacy.ingest.labels.binding import GraphNames, bind, join, remarks
-from rosprivacy.ingest.labels.label_file import Labels, read_labels, unknown_categories
+from rosprivacy.ingest.labels.binding import GraphNames, bind, join, misnamed, remarks
+from rosprivacy.ingest.labels.label_file import LabelErrors, Labels, read_labels, unknown_categories
 from rosprivacy.ingest.labels.pins import PIN_OF_NOTHING
 from rosprivacy.ingest.labels.stated_facts import in_order
 from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, PolicyChange, changed
 from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.ingest.policies.joint_policies import joint_warnings, merging_notices
 from rosprivacy.ingest.policies.wildcards import careful_warnings
+from rosprivacy.ingest.scan.reviewed_code import with_reviewed_code
 from rosprivacy.ingest.types import types_path
 from rosprivacy.ingest.types.channel_types import channel_types, matching_nothing
 from rosprivacy.question import question_of
 from rosprivacy.system import System
-from rosprivacy.systems.granted import Read, read_granted
+from rosprivacy.systems.granted import Read, code_roots, read_granted, scanned_types
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -93,8 +95,10 @@ def system_reader(
     settings = question.settings
     graphs = read_graphs(settings)
     (policies_read, remarks), types = read_system(policies, settings, graphs), observed_types(settings, graphs)
+    types = (*types, *scanned_types(policies))
     if not types:
         remarks += tuple(_unread_types(policies_read))
+    remarks += tuple(_unread_code(policies, policies_read))
 
     def read(change: PolicyChange) -> System:
         there = changed(policies_read, change)
@@ -114,12 +118,24 @@ def _unread_types(policies: Iterable[Policy]) -> Iterator[Diagnostic]:
             yield Diagnostic(Place(name, 0), Severity.WARNING, message)
 
 
+def _unread_code(names: Iterable[str], policies: Iterable[Policy]) -> Iterator[Diagnostic]:
+    """Say in which folders source code lies beside policies: these say what is granted, and only they are read."""
+    read = {folder for policy in policies if policy.checkout for folder in policy.checkout[0]}
+    folders = (name for name in names if name not in read and os.path.isdir(name))  # noqa: PTH112 - by its text
+    for name in code_roots(folders, granted=True):
+        message = f"source code of ROS 2 lies in {shown(name)}, and is not read: rosprivacy scan reads it"
+        yield Diagnostic(Place(name, 0), Severity.WARNING, message)
+
+
 def _under(
     labels: tuple[str | Labels, ...], *, graph: FlowGraph, read: Read, types: Types, settings: Settings,
     vocabulary: Vocabulary, unlabelled: _Whole | None = None,
 ) -> System:  # fmt: skip
     """Put policies that were read under labels; their graph is made once, and lasts for all labels."""
-    files = read_label_files(labels, vocabulary, settings)
+    try:
+        files = read_label_files(labels, vocabulary, settings)
+    except LabelErrors as error:
+        raise with_misnamed(error, graph) from None
     unlabelled = unlabelled or _Whole(graph)
     names = unlabelled.names_under(files)
     bound = bind(names.graph, files, settings.bounds, names=names)
@@ -129,6 +145,11 @@ def _under(
         _under, graph=graph, read=read, types=types, settings=settings, vocabulary=vocabulary, unlabelled=unlabelled
     )
     return replace(system, under=again)
+
+
+def with_misnamed(error: LabelErrors, graph: FlowGraph) -> InputErrors:
+    """Return all problems of label files: of how they are written, and names in them that match nothing of a graph."""
+    return InputErrors([*error.errors, *misnamed(GraphNames(graph), error.labels)])
 
 
 class _Whole:
@@ -159,8 +180,9 @@ def _joined(
     )
     said += careful_warnings(graph.careful)
     rests_on = {**files_read(policies, files, settings), **types_read(types)}
+    bound, of_code = with_reviewed_code(graph, bound, files, policies)
     bound = with_exposed(graph, with_types(graph, bound, types), policies)
-    said += tuple(outdated_reasons(graph, bound))
+    said += of_code + tuple(outdated_reasons(graph, bound))
     said = tuple(dict.fromkeys(said))  # several enclaves share what is said of their governance
     return System(graph, bound, vocabulary, said, rests_on, policies, tuple(files), types=types)
 
@@ -214,13 +236,22 @@ def lenient_system(
     return replace(system, diagnostics=told), [*missing, *more]
 
 
-def robot_of(name: str, result: Result) -> RobotRows:
-    """Return the rows of a robot for the database; what the answer rests on goes with it."""
+def robot_of(name: str, result: Result, *, without_standard: bool = False) -> RobotRows:
+    """Return the rows of a robot for the database; what the answer rests on goes with it.
+
+    Parameters
+    ----------
+    without_standard
+        Whether the channels that only the standard file speaks of are left out.
+    """
     from rosprivacy.ingest.neo4j_graph.fleet_rows import robot_rows  # noqa: PLC0415
     from rosprivacy.robot_doubts import doubt_lines  # noqa: PLC0415
 
     more = remembered(result.assumptions, result.diagnostics, doubt_lines(result.doubts))
-    return robot_rows(name, result.analysis, result.bound, result.vocabulary, more, beyond_of(result))
+    return robot_rows(
+        name, result.analysis, result.bound, result.vocabulary, more, beyond_of(result),
+        without_standard=without_standard,
+    )  # fmt: skip
 
 
 def beyond_of(result: Result) -> Beyond | None:
@@ -290,6 +321,7 @@ def standard_channels(graph: FlowGraph, vocabulary: Vocabulary, settings: Settin
 def read_label_files(labels: tuple[str | Labels, ...], vocabulary: Vocabulary, settings: Settings) -> list[Labels]:
     """Read the standard channels' file and the user's, if not read before, with the problems of all of them."""
     files: list[Labels] = []
+    unread: list[Labels] = []
     problems: list[InputError] = []
     read = {file.file for file in labels if isinstance(file, Labels)}
     standard = [name for name in (settings.standard_channels,) if name and name not in read]
@@ -312,6 +344,7 @@ def read_label_files(labels: tuple[str | Labels, ...], vocabulary: Vocabulary, s
             )
         except InputErrors as error:
             problems += error.errors
+            unread += error.labels if isinstance(error, LabelErrors) else ()
     if problems:
-        raise InputErrors(problems)
+        raise LabelErrors(problems, tuple(unread))
     return files

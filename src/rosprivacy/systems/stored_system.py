@@ -10,13 +10,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from rosprivacy.analysis.model import Diagnostic, Place, Severity
+from rosprivacy.analysis.text import counted
 from rosprivacy.answering import answer
 from rosprivacy.assumptions import put_together
 from rosprivacy.ingest.neo4j_graph.fleet_rows import MOST_ACROSS
 from rosprivacy.ingest.neo4j_graph.ids import LABELS_OF_CATEGORIES, schema_names
 from rosprivacy.ingest.neo4j_graph.read_back import Stored, read_stored
 from rosprivacy.ingest.neo4j_graph.robot_facts import HINT, ROBOTS, diagnostics_of, of_other_schemas
-from rosprivacy.ingest.neo4j_graph.schema import CARRIES, FLOWS_TO, KIND_LABELS
+from rosprivacy.ingest.neo4j_graph.schema import CARRIES, DATABASE, FLOWS_TO, KIND_LABELS
 from rosprivacy.ingest.neo4j_graph.write_back import write_back
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.queries.run import check_names, run
@@ -100,10 +102,21 @@ def stored_system(driver: Driver, vocabulary: Vocabulary) -> StoredSystem:
     """Read everything that is in a database."""
     stored = read_stored(driver, vocabulary)
     said, rests_on = put_together(stored.robots.values())
+    said += _left_out(stored.robots)
     return StoredSystem(
         stored.graph, stored.bound, vocabulary, said, rests_on,
         likeness=stored.likeness, is_fleet=len(stored.robots) > 1, stored=stored,
     )  # fmt: skip
+
+
+def _left_out(robots: Mapping[str, Mapping[str, Any]]) -> tuple[Diagnostic, ...]:
+    """That standard channels are not there, and in no count, because ``load`` was told to leave them out."""
+    robots_without = sum(bool(robot.get("without_standard")) for robot in robots.values())
+    if not robots_without:
+        return ()
+    what = "channels that only the standard file speaks of are not in the database: no count has them, "
+    what += f"nor what the answer hangs on; --without-standard was said of {counted(robots_without, 'robot')}"
+    return (Diagnostic(Place(DATABASE, 0), Severity.NOTICE, what),)
 
 
 def answer_unwritten(driver: Driver, settings: Settings) -> Result:

@@ -84,10 +84,10 @@ class TestPlainBesidePseudonymised:
             ([plain], [(True, False, False), (False, True, True), (False, False, False)]),
             ([hidden, recorder], [to_cloud, (False, False, True)]),
         ):
-            Path("decisions.yaml").unlink(missing_ok=True)
+            Path("decisions.jsonl").unlink(missing_ok=True)
             why = ("--reason", "x", "--owner", "y", "--legal-basis", "6(1)(f)")
             assert cli("decide", "accept", *accepted, "--report", "r.json", *why).returncode == 0
-            after = analysis(cli, "--decisions", "decisions.yaml")
+            after = analysis(cli, "--decisions", "decisions.jsonl")
             keys = ("pseudonymised", "dismissed", "accepted")
             assert [tuple(finding[key] for key in keys) for finding in after["findings"]] == expected
             assert after["verdict"] == "leak"
@@ -121,7 +121,7 @@ class TestRestrictions:
         assert {finding["category"] for finding in document["findings"]} == {"PersonalData"}
         assert document["assumptions"]["may_be_asked"] == {"PersonalData": ["Biometric"]}
         lines = cli(*ANALYZE, "-c", "Biometric").stdout.splitlines()
-        assert any(line.startswith("1. PersonalData (may be Biometric): /camera -> /uplink   [") for line in lines)
+        assert any(line.startswith("1. /uplink: PersonalData (may be Biometric), from /camera   [") for line in lines)
         document = analysis(cli, "-c", "Location")
         assert [category["name"] for category in document["categories"]] == ["PersonalData"]
 

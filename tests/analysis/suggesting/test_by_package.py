@@ -55,7 +55,7 @@ def test_the_name_and_half_of_the_interfaces_are_likely_in_any_namespace() -> No
         ("/v/usb_cam", MAY, "its name, 1 of 3 of its interfaces"),
     ]
     assert all(one.reason.startswith("package usb_cam 0.8.1: it publishes what the camera films") for one in found)
-    assert {str(one.place) for one in found} == {"rosprivacy:packages/usb_cam.yaml:16"}
+    assert {str(one.place) for one in found} == {"rosprivacy:packages/usb_cam.yaml:19"}
 
 
 HALF, THIRD = "its name, 2 of 3 of its interfaces", "its name, 1 of 3 of its interfaces"

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.model import Statement
 
+WORSE = {("no-leak-found", "undetermined"), ("no-leak-found", "leak"), ("undetermined", "leak")}
 KINDS = st.sets(st.sampled_from([*PARENTS])).map(lambda names: tuple(sorted(names)))
 
 
@@ -30,6 +31,15 @@ def pinned(draw: st.DrawFn) -> System:
         kinds = draw(KINDS)
         system.said[vertex] = [s._replace(pinned=kinds) if s.to_be_seen and not s.shipped else s for s in said]
     return system
+
+
+@st.composite
+def changed(draw: st.DrawFn) -> tuple[System, System]:
+    """The same labels, and how they hold where the code of some nodes is another than they were said of."""
+    system = draw(ranked())
+    nodes = {v for v in range(system.nodes - len(system.outside)) if draw(st.booleans())}
+    said = {v: [s._replace(pinned=()) for s in said] if v in nodes else said for v, said in system.said.items()}
+    return system, replace(system, said=said)
 
 
 def facts_of(system: System, found: Analysis) -> object:
@@ -104,3 +114,30 @@ def test_with_fewer_pins_no_data_and_no_question_is_gone(system: System, data: s
     assert all(kinds <= now for kinds, now in zip(there(found), there(after), strict=True))
     asked, now = ({(q.element, kind) for q in one.open for kind in q.categories} for one in (found, after))
     assert asked <= now | {(f.leak, f.category) for f in after.findings}  # a glob took the leak back: it is there again
+
+
+@given(changed())
+def test_labels_of_other_code_say_what_brute_force_says(systems: tuple[System, System]) -> None:
+    _, system = systems
+    found, brute = analysed(system), system.brute()
+    if found is None:
+        return
+    brute.spread(brute.sources())
+    assert sent(system, found) == brute.along
+    assert findings_and_questions(system, found) == those_of_brute_force(brute)
+
+
+@given(changed())
+def test_with_labels_of_other_code_no_data_no_finding_and_no_question_is_gone(systems: tuple[System, System]) -> None:
+    """What adds data holds, and what takes it away or calls it reviewed does not."""
+    found, after = map(analysed, systems)
+    if found is None:
+        return
+    assert after is not None
+    assert all(kinds <= now for kinds, now in zip(there(found), there(after), strict=True))
+    ways, now = ({(f.kind, f.category, f.source, f.leak) for f in one.findings} for one in (found, after))
+    assert ways <= now
+    asked, open_now = ({(q.element, kind) for q in one.open for kind in q.categories} for one in (found, after))
+    assert asked <= open_now
+    if found.verdict != after.verdict:
+        assert (found.verdict, after.verdict) in WORSE

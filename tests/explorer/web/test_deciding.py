@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from lxml import html
 
+from rosprivacy.analysis.decisions import Choice
 from rosprivacy.ingest.decisions.decisions_file import parse_decisions
 from rosprivacy.ontology.vocabulary import load
 from tests.helpers.daily import one_in
@@ -51,7 +52,7 @@ def test_a_decision_is_written_at_once_and_shown(begun: Explorer, tmp_path: Path
     client = begun.client()
     finding = begun.session.findings[0]
     form = html.fromstring(client.get(f"/?finding={finding.id}").text).get_element_by_id("decide")
-    assert [one.get("value") for one in form.xpath(".//button")] == ["accept", "mitigate", "delegate", "avoid"]
+    assert [one.get("value") for one in form.xpath(".//button")] == list(Choice)
     answer = decide(begun, client, **SIGNED, legal_basis="6(1)(f); 9(2)(h)", ticket="X-1")
     assert answer.status_code == 303
     there = client.get(answer.headers["location"]).text
@@ -113,3 +114,32 @@ def test_a_full_disk_or_a_closed_folder_is_told(begun: Explorer, tmp_path: Path)
     assert answer.status_code == 422
     assert "d.yaml" in answer.text
     assert begun.session.version == 0
+
+
+def test_an_acceptance_without_an_end_is_asked_again_and_then_written(explore: Explore, tmp_path: Path) -> None:
+    """What was filled in stays; what else is missing is asked again, too; and it is an entry of a log."""
+    log = tmp_path / "d.jsonl"
+    begun = explore(BARE, copied(FACTORY / "run2.labels.yaml", tmp_path), decisions=log)
+    client, endless = begun.client(), {**SIGNED, "expires": ""}
+    answer = decide(begun, client, **endless)
+    assert (answer.status_code, log.exists()) == (409, False)
+    form = html.fromstring(answer.text).get_element_by_id("decide")
+    fields = {field.get("name"): field.get("value") for field in form.xpath(".//input")}
+    assert (fields["reason"], fields["owner"], fields["lacks"]) == (SIGNED["reason"], SIGNED["owner"], "NO_END")
+    assert decide(begun, client, **endless, lacks=fields["lacks"]).status_code == 303
+    decided = begun.session.result.decided
+    assert decided
+    assert decided.decisions.head
+    assert len(log.read_text("utf-8").splitlines()) == 1
+
+
+def test_a_condition_is_confirmed_from_the_page(explore: Explore, tmp_path: Path) -> None:
+    begun = explore(BARE, copied(FACTORY / "run2.labels.yaml", tmp_path), decisions=tmp_path / "d.jsonl")
+    client, finding = begun.client(), begun.session.findings[0]
+    fields = {**SIGNED, "choice": "accept-on-condition", "condition": "a contract"}
+    assert decide(begun, client, **fields).status_code == 303
+    assert finding.id in {each.id for each in begun.session.findings if each.stands}
+    form = html.fromstring(client.get(f"/?finding={finding.id}").text).get_element_by_id("decide")
+    assert form.xpath(".//button")[0].get("value") == "confirm"
+    assert decide(begun, client, choice="confirm", reason="signed", owner="A. Lee").status_code == 303
+    assert finding.id not in {each.id for each in begun.session.findings if each.stands}

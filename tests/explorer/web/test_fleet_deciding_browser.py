@@ -42,7 +42,7 @@ def test_one_robot_is_accepted_and_then_those_that_are_alike(browser: WebDriver,
                 break
         assert one.endswith(" only")
         reader.tab_to("#decide [name=reason]")
-        reader.press(*"inside", Keys.TAB, *"A. Lee", Keys.ENTER)
+        reader.accept()
         assert reader.version == 1
         assert f"accepted, {one}" in reader.text("#message")
         assert accepted(hospital, decisions) == 1
@@ -52,7 +52,7 @@ def test_one_robot_is_accepted_and_then_those_that_are_alike(browser: WebDriver,
         reader.press("o")
         reader.tab_to("#decide [name=reason]")  # of those that are chosen beforehand
         many = str(browser.execute_script(chosen))
-        reader.press(*"inside", Keys.TAB, *"A. Lee", Keys.ENTER)
+        reader.accept()
         assert reader.version == 2
         assert f"accepted, {many}" in reader.text("#message")
         whole = rosprivacy.analyze_fleet(hospital, decisions=decisions)

@@ -184,6 +184,17 @@ def reviewing(visitor: Visitor, questions: int = 14) -> None:
         visitor.get(f"/?at={at}")
 
 
+def screens(visitor: Visitor, more: int = 25) -> None:
+    """Go through what is suggested, one element a screen, back, and to the end."""
+    keys = ("take", "back", "undo", "take", "no", "undo", "no", *["take"] * more, "undo", "x")
+    said = [{"tick": "1"}, {"tick": "99"}, {"key": "take", "by": ""}, *({"key": key, "by": "A. Lee"} for key in keys)]
+    for fields in said:
+        (form,) = visitor.get("/?ask=1").xpath("//form[@class='screen']")
+        visitor.submit(form, **fields)
+    visitor.post("/label", element=visitor.elements()[0], role="leak", about="Video")
+    visitor.get("/?ask=1")
+
+
 def stored(visitor: Visitor) -> None:
     """Look at what is in a database, and ask a server that is gone."""
     visitor.get("/")
@@ -212,6 +223,7 @@ STORIES: dict[str, tuple[Callable[[Visitor], None], str, str, dict[str, Any]]] =
     "review": (reviewing, CARE, "new.labels.yaml", {"review": True}),
     "review-fleet": (reviewing, "fleet.yaml", "fleet.yaml", {"fleet": True, "review": True, "language": "de"}),
     "read-only": (deciding, FACTORY, "run1.labels.yaml", {"read_only": True}),
+    "screens": (screens, CARE, "new.labels.yaml", {"language": "de"}),
     "stored": (stored, FACTORY, "run2.labels.yaml", {"stored": True}),
 }
 OF_STORY = {CARE: "care-home", FACTORY: "factory", "fleet.yaml": "fleet"}

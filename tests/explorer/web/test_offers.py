@@ -47,7 +47,7 @@ def opened(explore: Explore, robot: Path, **how: object) -> Explorer:
 def test_what_could_close_a_finding_has_no_key_and_no_button(explore: Explore, robot: Path) -> None:
     page = battery(opened(explore, robot).client())
     by_hand = page.cssselect(".offer")[0]
-    assert "It perhaps carries nothing of: video" in by_hand.text_content()
+    assert "carries nothing of video of persons (may)" in by_hand.text_content()
     assert [one.text_content() for one in by_hand.cssselect("li")] == [FINDING.format("", "")]
     assert not by_hand.cssselect("button, input")
     assert not page.cssselect("[data-key=a]")
@@ -139,11 +139,11 @@ def test_a_row_says_what_is_surest_and_a_list_with_a_likely_source_is_not_folded
     page = html.fromstring(client.get("/").text)
     rows = rows_of(page)
     assert rows[0][0] == page.xpath("string(//h2[@id='h-element']/bdi)") == "/camera", "it is in hand first"
-    assert rows[0][1].endswith("perhaps brings in: video of persons")
+    assert rows[0][1].endswith("brings in video of persons (likely)")
     assert open_elements(explorer.site.standing)[0].element.name == "/camera", "a review begins with it, too"
     told = [one.xpath("string(.//p/b)") for one in page.cssselect(".offer")]
-    assert told.index("It perhaps brings in: video of persons") == 0
-    assert "It perhaps brings in: body pose" in told[1:]
+    assert told.index("brings in video of persons (likely)") == 0
+    assert "brings in body pose (may)" in told[1:]
     assert label(client, node("/mapper"), "source", brings="HomeMap").status_code == 303
     assert not folded(html.fromstring(client.get("/").text)), "the camera is likely a source"
     assert label(client, node("/camera"), "source", brings="Video").status_code == 303
@@ -163,3 +163,59 @@ def test_that_a_node_lets_data_out_is_told_although_a_glob_calls_it_a_conduit(
     (tmp_path / "labels.yaml").write_text(said, "utf-8")
     page = html.fromstring(opened(explore, tmp_path).client().get("/").text)
     assert [name for name, _ in rows_of(page)] == (["/cloud_uploader"] if told else [])  # nothing gets to the recorder
+
+
+CAMERA = {"camera": (["/camera/image_raw"], []), "box": ([], ["/camera/image_raw"])}
+IN_FLEET = ("m_1", "node", "/camera")
+TYPED = "labels: 1\ntopics: {/camera/image_raw: {types: [sensor_msgs/msg/Image]}}\n"
+
+
+def ticks_of_camera(client: TestClient) -> html.FormElement:
+    page = html.fromstring(client.get(f"/?at={element_id(IN_FLEET)}").text)
+    (form,) = (form for form in page.forms if form.get("class") == "ticks")
+    return form
+
+
+@pytest.fixture
+def camera(robot: Path) -> Path:
+    (robot / "robot.policy.xml").write_text(policy_of(CAMERA), "utf-8")
+    (robot / "labels.yaml").write_text(TYPED, "utf-8")
+    said = "fleet: 1\nmodels:\n  m: {policies: [robot.policy.xml], labels: [labels.yaml]}\nrobots:\n  m_1: {model: m}\n"
+    (robot / "fleet.yaml").write_text(said, "utf-8")
+    return robot
+
+
+def said_of_camera(explorer: Explorer) -> object:
+    return explorer.session.entry_for(explorer.site.standing.elements[element_id(IN_FLEET)])
+
+
+def test_what_is_ticked_is_taken_as_one_answer(explore: Explore, camera: Path) -> None:
+    """Of a fleet, which has no screens: what is likely is ticked, the rest stays open, one undo takes it back."""
+    explorer = explore(camera / "fleet.yaml", camera / "fleet.yaml", fleet=True)
+    client = explorer.client()
+    form = ticks_of_camera(client)
+    boxes = {one.text_content().strip(): one.cssselect("input")[0] for one in form.cssselect("label")}
+    ticked = [text for text, box in boxes.items() if box.get("checked") is not None]
+    assert len(ticked) == 1 < len(boxes), boxes
+    assert ticked[0].startswith("brings in video of persons")
+    assert client.post("/offers", data=dict(form.form_values())).status_code == 303
+    assert said_of_camera(explorer) == {"source": ["Video"]}
+    assert explorer.session.version == 1
+    assert explorer.session.undo()
+    assert said_of_camera(explorer) is None
+
+
+def test_several_ticks_are_one_label_and_none_can_hide_a_leak(explore: Explore, camera: Path) -> None:
+    explorer = explore(camera / "fleet.yaml", camera / "fleet.yaml", fleet=True)
+    client = explorer.client()
+    form = ticks_of_camera(client)
+    fields = {name: value for name, value in form.form_values() if name != "offer"}
+    offers = [box.get("value") for box in form.cssselect("input[type=checkbox]")]
+    assert client.post("/offers", data={**fields, "offer": offers}).status_code == 303
+    roles = said_of_camera(explorer)
+    assert isinstance(roles, dict)
+    assert set(roles) <= {"source", "leak", "derives"}
+    assert len(roles["source"]) > 1
+    for wrong in ([], ["99"], ["x"]):
+        fields["version"] = str(explorer.session.version)
+        assert client.post("/offers", data={**fields, "offer": wrong}).status_code == 422

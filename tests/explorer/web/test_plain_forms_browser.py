@@ -65,3 +65,16 @@ def test_an_answer_undo_and_save_work_without_scripts(plain: WebDriver, tmp_path
         assert explorer.session.unsaved == 0
         assert labels.read_text("utf-8") != said
         plain.get("about:blank")
+
+
+def test_a_screen_is_answered_without_scripts(plain: WebDriver, tmp_path: Path) -> None:
+    labels = tmp_path / "new.labels.yaml"
+    with explorers.served(BARE, labels) as explorer:
+        chrome.open_page(plain, explorer.door.link)
+        plain.get(f"http://127.0.0.1:{explorer.door.port}/?ask=1")
+        plain.find_element("css selector", "[name=by]").send_keys("Ada")
+        pressed(plain, ".screen [data-key=n]", explorer)
+        assert "# not: " in labels.read_text("utf-8")
+        pressed(plain, ".screen [data-key=u]", explorer)
+        assert "# not: " not in labels.read_text("utf-8")
+        plain.get("about:blank")

@@ -50,7 +50,7 @@ def test_a_finding_is_closed_on_trial_and_accepted_by_keys_alone(browser: WebDri
         assert "Trial 1" in reader.text("#rows")
         reader.press("o")
         reader.focus("#decide [name=reason]")
-        reader.press(*"inside", Keys.TAB, *"A. Lee", Keys.ENTER)
+        reader.accept()
         assert reader.version == 1
         assert "Written to" in reader.text("#message")
         assert "decision: accept" in decisions.read_text("utf-8")
@@ -79,7 +79,7 @@ def test_axe_finds_nothing_in_findings_decisions_and_trials(browser: WebDriver, 
         reader.press("o")
         reader.pane("element")
         reader.focus("#decide [name=reason]")
-        reader.press(*"inside", Keys.TAB, *"A. Lee", Keys.ENTER)
+        reader.accept()
         assert "Written to" in reader.text("#message")
         for key in ("", "o"):  # the message, and a finding beside what is accepted
             reader.press(*key)

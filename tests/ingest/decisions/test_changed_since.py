@@ -36,7 +36,20 @@ def decided(cli: Cli, tmp_path: Path) -> Path:
     (tmp_path / "l.yaml").write_text(LABELS)
     cli("analyze", "p.xml", "-l", "l.yaml", "-f", "json", "-o", "r.json", cwd=tmp_path)
     (finding,) = json.loads((tmp_path / "r.json").read_text())["findings"]
-    assert cli("decide", "accept", finding["id"], "--report", "r.json", *SIGNED, cwd=tmp_path).returncode == 0
+    assert (
+        cli(
+            "decide",
+            "accept",
+            finding["id"],
+            "--report",
+            "r.json",
+            *SIGNED,
+            "--decisions",
+            "decisions.yaml",
+            cwd=tmp_path,
+        ).returncode
+        == 0
+    )
     return tmp_path
 
 

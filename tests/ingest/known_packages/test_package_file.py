@@ -78,6 +78,33 @@ def test_a_file_says_what_its_nodes_do() -> None:
     ]
 
 
+SCANNED = GOOD.replace(
+    "    says:",
+    """    components: ["face_blur::Blur"]
+    further: {publishes: {~/faces: null, ../mask: sensor_msgs/msg/Image}}
+    parameters: {image_topic: image_raw, "in?.topic": {subscribes: {"*": sensor_msgs/msg/Image}}}
+    rest: the formats of its pictures
+    makes: [inner/face_blur]
+    says:""",
+).replace("about: Blurs faces.", "about: Blurs faces.\npackages: [face_blur_ros]")
+
+
+def test_a_file_says_what_a_scan_needs_of_a_node_whose_code_is_not_there() -> None:
+    Path("p.yaml").write_text(SCANNED, "utf-8")
+    package = read_package("p.yaml", load())
+    (node,) = package.nodes
+    assert package.packages == ("face_blur_ros",)
+    assert [(one.name, one.parameter) for one in node.interfaces if one.parameter] == [("image_raw", "image_topic")]
+    assert node.further == (
+        Interface("publishes", "~/faces"),
+        Interface("publishes", "../mask", "sensor_msgs/msg/Image"),
+        Interface("subscribes", "*", "sensor_msgs/msg/Image", "in?.topic"),
+    )
+    assert (node.rest, node.makes) == ("the formats of its pictures", ("inner/face_blur",))
+    assert node.components == ("face_blur::Blur",)
+    assert "face_blur::Blur" not in node.names  # no node of a graph is called so
+
+
 def test_all_problems_are_told_at_their_lines() -> None:
     text = GOOD.replace("face_blur, face_blur_*", "/ns/face_blur").replace("FaceImage: anonymise", "FaceImage: hide")
     text = text.replace("image_raw: sensor_msgs/msg/Image", "image_raw: std_srvs/srv/Empty")
@@ -101,7 +128,8 @@ def test_all_problems_are_told_at_their_lines() -> None:
     [
         ("", "p.yaml:1: the file is empty"),
         ("[]", "p.yaml:1: a file of a package is a map"),
-        ("labels: 1", "p.yaml:1: no 'package: 1'"),
+        ("x: 1", "p.yaml:1: no 'package: 1'"),
+        ("labels: 1", "p.yaml:1: this is a label file"),
         ("package: 2", "p.yaml:1: package format '2'"),
         ("package: 1", "p.yaml:1: no 'about'"),
         (GOOD.replace("[face_blur, face_blur_*]", "[]"), "p.yaml:7: names is empty"),
@@ -111,6 +139,11 @@ def test_all_problems_are_told_at_their_lines() -> None:
         (GOOD.replace("{FaceImage: anonymise}", "[FaceImage]"), "p.yaml:13: a sanitizer states its method"),
         (GOOD.replace("{from: Video, to: Presence}", "{from: Video}"), "p.yaml:19: a derivation without from or to"),
         (GOOD.replace("sources:\n  - {", "sources: []\nx:\n  - {"), "p.yaml:4: sources is empty"),
+        (SCANNED.replace("image_topic: image_raw", "image_topic: nope"), "p.yaml:15: 'nope' is no channel of the node"),
+        (SCANNED.replace("image_topic: image", "image topic: image"), "p.yaml:15: 'image topic' is not the name of a"),
+        (SCANNED.replace("inner/face_blur", "inner/mask"), "p.yaml:8: inner/mask is made and not described"),
+        (SCANNED.replace("face_blur::Blur", "face blur"), "p.yaml:13: a component cannot be 'face blur'"),
+        (SCANNED.replace("further: {publishes", "further: {shows"), "p.yaml:14: unknown key 'shows'"),
     ],
 )
 def test_what_is_wrong_is_refused(text: str, told: str) -> None:
@@ -129,9 +162,12 @@ def test_the_schema_takes_what_the_reader_takes_and_refuses_the_rest() -> None:
     )
     jsonschema.Draft202012Validator.check_schema(schema)
     validator = jsonschema.Draft202012Validator(schema)
-    good = yaml.load(GOOD.replace(": null", ": "), yaml.BaseLoader) | {"package": 1}  # noqa: S506 - plain values only
-    good["nodes"][0]["subscribes"]["anything"] = None
-    validator.validate(good)
+    for text in (SCANNED, GOOD):
+        good = yaml.load(text.replace("anything: null", "anything: "), yaml.BaseLoader)  # noqa: S506 - plain values only
+        good |= {"package": 1}
+        good["nodes"][0]["subscribes"]["anything"] = None
+        good["nodes"][0].get("further", {}).get("publishes", {}).update({"~/faces": None})
+        validator.validate(good)
     for key in ("name", "about", "sources", "nodes"):
         assert not validator.is_valid({name: value for name, value in good.items() if name != key})
     claims = [{"conduit": "all"}, {"leak": ["Video"], "why": "x"}, {"source": ["Video"], "conduit": "all", "why": "x"}]

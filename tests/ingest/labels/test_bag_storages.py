@@ -162,7 +162,7 @@ def test_no_answer_rests_on_half_a_bag(robot: Path, cli: Cli, harm: str) -> None
         ("bag: nowhere", "bag .*nowhere: bag not found; correct the path"),
         ("bag: ../out", r"'../out' leaves the folder .*; move the file inside it, or widen with --include-root"),
         ("bag: link", "'link' leaves the folder"),
-        ("bag: l.yaml", "bag .*l.yaml: not called as a bag"),
+        ("bag: l.yaml", "bag .*l.yaml: this is a label file, and not a bag"),
         ("bag: empty", "bag .*empty: a folder without a bag"),
         ("bag: [run]", "bag takes a path, not 'a list'"),
         ("bag: ''", "bag takes a path"),

@@ -100,7 +100,7 @@ def test_an_overlapping_kind_is_followed_and_marked_where_the_other_is_asked_for
     assert disclosed(cli, "-c", name) == (1, {"ContactData"})
     done = cli("analyze", "p.xml", "-l", "l.yaml", "-c", name, "-f", "json")
     assert json.loads(done.stdout)["assumptions"]["may_be_asked"] == {"ContactData": [name]}
-    assert f"ContactData (may be {name}): /camera" in cli("analyze", "p.xml", "-l", "l.yaml", "-c", name).stdout
+    assert f"ContactData (may be {name}), from /camera" in cli("analyze", "p.xml", "-l", "l.yaml", "-c", name).stdout
     assert disclosed(cli, "-c", "Voice")[1] == set()  # shares none
 
 

@@ -225,7 +225,7 @@ def test_a_session_of_the_explorer_keeps_them(tmp_path: Path) -> None:
 
 def test_the_example_of_the_documentation(cli: Cli, tmp_path: Path) -> None:
     """docs/labels.md: what ``--pin`` writes is what is shown, and the new node is open."""
-    (shown,) = [block for block in blocks(ROOT / "docs" / "labels.md", "yaml") if "pins:" in block]
+    (shown,) = [block for block in blocks(ROOT / "docs" / "labels.md", "yaml") if "pins:\n  nodes" in block]
     (tmp_path / "robot.labels.yaml").write_text(shown[: shown.index("pins:")])
     (tmp_path / "robot.policy.xml").write_text(SEEN)
     (command,) = [one for one in blocks(ROOT / "docs" / "labels.md", "console") if "--pin" in one]

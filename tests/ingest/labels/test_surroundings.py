@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import pytest
+
 import rosprivacy
+from rosprivacy.analysis.errors import InputErrors
 from tests.helpers.fleet_files import policy
 
 if TYPE_CHECKING:
@@ -84,3 +87,48 @@ def test_a_fleet_file_states_it_of_all_of_a_model_and_of_a_robot(tmp_path: Path)
     videos = [f for f in document["findings"] if f["category"] == "Video"]
     (video,) = {tuple(sorted(one["context"] for one in f["in_context"])) for f in videos}
     assert video == ("care", "school", "workplace")  # of the robots that the pattern stands for
+
+
+GROUNDS = [
+    ("", None),
+    ("country: NO", None),
+    ("country: US", "open"),
+    ("country: US\ngdpr: {established: no}", "open"),
+    ("country: CH\ngdpr: {targeted: false}", "open"),
+    ("country: US\ngdpr: {established: no, targeted: no}", "denied"),
+    ("country: US\ngdpr: {established: no, targeted: yes}", None),
+    ("country: US\ngdpr: {established: yes}", None),
+    ("country: FR\ngdpr: {established: no, targeted: no}", None),
+]
+
+
+@pytest.mark.parametrize(("top", "scope"), GROUNDS)
+def test_outside_the_eea_whether_the_gdpr_applies_is_a_question(tmp_path: Path, top: str, scope: str | None) -> None:
+    """GDPR, Article 3: one of two grounds affirms it; only both denied deny it. Findings keep their kinds and ids."""
+    document, plain = told(tmp_path, top=top), told(tmp_path)
+    rows: list[dict[str, object]] = document["findings"]  # type: ignore[assignment]
+    assert {row.get("gdpr") for row in rows} == {scope}
+    assert {row.get("gdpr") for row in document["surroundings"]} <= {scope}  # type: ignore[attr-defined]
+    assert [(row["id"], row["kind"]) for row in rows] == [(f["id"], f["kind"]) for f in plain["findings"]]  # type: ignore[attr-defined]
+    assert document["verdict"] == plain["verdict"]
+
+
+def test_of_robots_of_one_finding_the_plainest_answer_counts(tmp_path: Path) -> None:
+    """A finding of a fleet stands for all its robots: nothing is denied of it that holds of one of them."""
+    told(tmp_path)
+    fleet = "fleet: 1\ngdpr: {{established: no, targeted: no}}\nmodels: {{m: {{policies: p.xml, labels: l.yaml}}}}\n"
+    fleet += "robots:\n  a: {{model: m, country: US}}\n  b: {{model: m, country: {country}}}\n"
+    scopes = {}
+    for country, more in (("BR", ""), ("DE", ""), ("JP", "  c: {model: m, country: CA, gdpr: {targeted: yes}}\n")):
+        (tmp_path / "f.yaml").write_text(fleet.format(country=country) + more, "utf-8")
+        document = rosprivacy.analyze_fleet(str(tmp_path / "f.yaml")).document()
+        scopes[country] = {f.get("gdpr") for f in document["findings"]}
+    assert scopes == {"BR": {"denied"}, "DE": {None}, "JP": {None}}
+
+
+def test_strange_grounds_are_problems(tmp_path: Path) -> None:
+    with pytest.raises(InputErrors) as problems:
+        told(tmp_path, top="gdpr: {established: perhaps, targetted: yes}")
+    assert [error.line for error in problems.value.errors] == [2, 2]
+    with pytest.raises(InputErrors):
+        told(tmp_path, top="gdpr: no")

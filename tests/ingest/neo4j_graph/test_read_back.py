@@ -15,7 +15,7 @@ from rosprivacy.analysis.findings.findings import analyse
 from rosprivacy.analysis.kernel.ranks import decided
 from rosprivacy.analysis.model import GLOB, NAME, Place, Statement
 from rosprivacy.ingest.labels.entries import EXACT
-from rosprivacy.ingest.neo4j_graph.fleet_rows import robot_rows
+from rosprivacy.ingest.neo4j_graph.fleet_rows import robot_rows, standard_only
 from rosprivacy.ingest.neo4j_graph.loading import load
 from rosprivacy.ingest.neo4j_graph.read_back import read_stored
 from rosprivacy.ingest.neo4j_graph.relationship_facts import HAND
@@ -56,6 +56,12 @@ def same_from_the_database(driver: Driver, result: Any) -> Any:
     return stored
 
 
+def answer_of(case: Path) -> Any:
+    """The answer in memory of a case; names of files are relative to the examples."""
+    stated = json.loads((case / "case.json").read_text("utf-8"))
+    return rosprivacy.analyze(stated["policies"], stated["labels"], **stated.get("options", {}))
+
+
 def ways(result: Any) -> set[tuple[str, ...]]:
     return {(f.category, *(element.name for element in f.witness)) for f in result.analysis.findings}
 
@@ -65,12 +71,61 @@ def test_the_document_is_that_of_the_files(
     driver: Driver, case: Path, examples: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(examples)
-    given = json.loads((case / "case.json").read_text("utf-8"))
-    result = rosprivacy.analyze(given["policies"], given["labels"], **given.get("options", {}))
+    result = answer_of(case)
     load(driver, [robot_of("r", result)], VOCABULARY)
     before = dump(driver, without=("digest", "version"))
     same_from_the_database(driver, result)
     assert dump(driver, without=("digest", "version")) == before
+
+
+@pytest.mark.parametrize("case", one_in(4, CASES), ids=lambda path: str(path.name))
+def test_without_standard_channels_the_answer_is_the_same(
+    driver: Driver, case: Path, examples: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Rule S13: nothing goes on from a channel that only the standard file speaks of."""
+    monkeypatch.chdir(examples)
+    result = answer_of(case)
+    rows = robot_of("r", result, without_standard=True)
+    hidden = standard_only(result.analysis, result.bound)
+    assert len(rows.elements) == len(result.analysis.graph.elements) - len(hidden)
+    load(driver, [rows], VOCABULARY)
+    document, whole = answer_stored(driver, Settings()).document(), result.document()
+    for part in ("verdict", "findings", "open", "doubts", "roles", "outside", "derivations"):
+        assert document[part] == whole[part], part
+    assert of_people(document["hangs_on"]) == of_people(whole["hangs_on"])
+    notice = [said for said in document["diagnostics"] if "--without-standard" in said["message"]]
+    assert len(notice) == 1
+
+
+def of_people(hangs_on: list[Any] | None) -> list[Any]:
+    """What an answer hangs on without lines of the standard file."""
+    return [row for row in hangs_on or () if not row["file"].startswith("rosprivacy:")]
+
+
+def test_most_of_the_example_are_standard_channels(driver: Driver) -> None:
+    """And what is left is in the database, with every finding, and without a flow that ends nowhere."""
+    before = dump_of(driver, without_standard=False)
+    after = dump_of(driver, without_standard=True)
+    assert len(after["elements"]) < len(before["elements"]) / 2
+    assert after["elements"] < before["elements"]
+    assert after["findings"] == before["findings"]
+    assert {end for flow in after["flows"] for end in flow} <= after["elements"]
+    assert after["flows"] == {flow for flow in before["flows"] if set(flow) <= after["elements"]}
+
+
+def dump_of(driver: Driver, *, without_standard: bool) -> dict[str, set[Any]]:
+    """Ids of elements and findings, and ends of flows, of the care home."""
+    load(driver, [robot_of("r", care_home(), without_standard=without_standard)], VOCABULARY)
+    rows = {
+        "elements": "MATCH (e:Element) WHERE NOT e:Intake RETURN e.id",
+        "findings": "MATCH (f:Finding) RETURN f.id",
+        "flows": "MATCH (a)-[:FLOWS_TO]->(b) RETURN [a.id, b.id]",
+    }
+    answers = {name: driver.execute_query(query).records for name, query in rows.items()}
+    return {
+        name: {tuple(value) if isinstance(value, list) else value for (value,) in map(tuple, records)}
+        for name, records in answers.items()
+    }
 
 
 @pytest.mark.parametrize(

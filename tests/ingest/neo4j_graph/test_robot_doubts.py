@@ -67,7 +67,7 @@ EACH = {
     "clock": (
         "undetermined",
         [
-            f"breaks standard-closes: only the standard file closes the way to a leak {PLACE}",
+            f"breaks standard-closes: only the standard file closes a way out {PLACE}",
             "rides no-reader: /shout ends at no known reader",
         ],
     ),

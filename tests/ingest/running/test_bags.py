@@ -138,12 +138,12 @@ def test_a_database_that_is_made_to_harm_is_refused_or_incomplete(tmp_path: Path
 
 
 def test_what_a_message_holds_cannot_be_asked_for(tmp_path: Path) -> None:
-    from rosprivacy.ingest.running.sqlite_file import _guard
+    from rosprivacy.ingest.running.sqlite_file import guard
 
     (file,) = read_bag(str(rosbag2(tmp_path / "run", "sqlite3"))).files
     with sqlite3.connect(f"file:{file}?mode=ro&immutable=1", uri=True) as database:
         assert database.execute("SELECT data FROM messages").fetchone() == (SECRET * 5,)
-        _guard(database)
+        guard(database)
         assert database.execute("SELECT timestamp FROM messages LIMIT 1").fetchone() == (START,)
         for asked in ("SELECT data FROM messages", "PRAGMA user_version", "ATTACH 'x' AS y", "DELETE FROM topics"):
             with pytest.raises(sqlite3.DatabaseError, match=r"not authorized|prohibited"):

@@ -108,7 +108,10 @@ def test_what_is_no_such_file_is_refused_with_all_its_lines() -> None:
         "bad.yaml:6: /b takes a list, not a map; write [{type: …}]",
         "bad.yaml:7: type takes text of at most 500 characters, not '7'; observe again, or correct it",
         "bad.yaml:7: unknown key 'writer'; did you mean 'writers'?",
-        "bad.yaml:8: unknown key 'writers'; one of type, hash, servers, clients, first, last",
+        (
+            "bad.yaml:8: unknown key 'writers'; one of type, hash, servers, clients, first, last, definition, request, "
+            "response"
+        ),
         "none.yaml: file not found; correct the path",
     ]
 

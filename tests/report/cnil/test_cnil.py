@@ -25,7 +25,7 @@ from rosprivacy.documents import document_of
 from rosprivacy.ingest.neo4j_graph.loading import load as load_robots
 from rosprivacy.ontology.vocabulary import Vocabulary, load
 from rosprivacy.private_neo4j import connection
-from rosprivacy.report.catalogs.words import plain
+from rosprivacy.report.catalogs.words import Words, plain, reason_text
 from rosprivacy.report.cnil import told
 from rosprivacy.report.cnil.pia import cnil_pia
 from rosprivacy.settings import Settings
@@ -274,10 +274,14 @@ KEPT = NonRosFacts(retention=((EVERY, parse("P30D")),), country="DE", encrypted=
         (
             {"cloud": NonRosFacts(country="US", transfer="standard-clauses")},
             227,
-            "external-system cloud: country: US; basis of a transfer: standard-clauses",
+            "external-system cloud: country: US; basis of a transfer: standard contractual clauses",
         ),
-        ({"cloud": NonRosFacts(country="DE", area="eea")}, 227, "in the EEA: no transfer to a third country"),
-        ({"cloud": NonRosFacts(country="CH", area="adequate")}, 227, "CH, adequacy decision (Article 45 GDPR)"),
+        (
+            {"cloud": NonRosFacts(country="DE", area="eea")},
+            227,
+            "country: DE, in the EEA: no transfer to a third country is stated",
+        ),
+        ({"cloud": NonRosFacts(country="CH", area="adequate")}, 227, "CH: adequacy decision (Article 45)"),
     ],
 )
 def test_what_people_state_of_storages_and_recipients_is_told(
@@ -298,6 +302,29 @@ def test_encryption_is_a_measure_and_its_lack_a_threat() -> None:
 
 def test_without_a_processor_its_question_stays_without_an_answer() -> None:
     assert 226 not in with_facts({"nas": NonRosFacts(operator="us")}).answers
+
+
+@pytest.mark.parametrize("language", ["en", "de", "fr"])
+def test_a_threat_tells_the_whole_reason(tmp_path: Path, language: str) -> None:
+    """Of a transfer without a basis the legal sentence stands to its end."""
+    long = "a_name_that_is_long_and_says_where_in_the_house_the_thing_stands"
+    (tmp_path / "p.xml").write_text(policy("camera>/image", "sender</image"))
+    (tmp_path / "l.yaml").write_text(f"""labels: 1
+nodes: {{/camera: {{source: [Video]}}, /sender: conduit}}
+channels: {{/image: sensitive}}
+elements: {{{long}: {{kind: external-system, country: US, recipient: processor, transfer: none}}}}
+flows: [{{from: /sender, to: {long}}}]
+""")
+    document = document_of(rosprivacy.analyze(tmp_path / "p.xml", tmp_path / "l.yaml"))
+    words = told.Told(Words(language), document.vocabulary.categories)
+    answers = cnil_pia(document, CREATED, language)["answers"]
+    threats = "\n".join(next(one for one in answers if one["reference_to"] == 322)["data"]["list"])
+    reasons = [finding.why for finding in document.analysis.findings if finding.why]
+    assert reasons
+    for reason in reasons:
+        sentence = plain(reason_text(reason, words.words, words.data))
+        assert f"; {' '.join(map(told.harmless, sentence.split(' ')))} (" in threats
+    assert all(finding.id in threats for finding in document.analysis.findings)
 
 
 def test_persons_that_labels_name_are_told() -> None:

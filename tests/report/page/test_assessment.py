@@ -7,8 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+import rosprivacy
 from rosprivacy.analysis.errors import InputError, InputErrors
-from rosprivacy.report.page.assessment import FORMAT, Answers, read_answers
+from rosprivacy.report.catalogs.words import Words
+from rosprivacy.report.page.assessment import FORMAT, Answers, criteria, read_answers
+from rosprivacy.report.page.index import Index
+from tests.helpers.fleet_files import policy
 from tests.helpers.graphs import hospital
 from tests.helpers.pages import page, texts, told
 from tests.helpers.paths import ROOT
@@ -42,6 +46,17 @@ def test_every_flow_that_is_not_dismissed_has_its_risks_and_all_that_article_35_
     for what in ("purpose", "necessity", "risks", "measures", "residual", "advice", "views", "consultation"):
         assert f"sign.{what}" in there
     assert {f"criterion.{number}" for number in range(1, 10)} <= set(there)
+
+
+def test_what_tells_where_persons_are_monitors_them_as_what_sees_them_does(tmp_path: Path) -> None:
+    """WP 248, criterion 3: a lidar, and what collects identifiers of passing devices; keys that are typed do not."""
+    kinds = {"camera": "Video", "lidar": "LaserScan", "wifi": "WirelessDeviceId", "keys": "OperatorInput"}
+    (tmp_path / "p.xml").write_text(policy(*(f"{name}>/{name}<" for name in kinds)), "utf-8")
+    nodes = ", ".join(f"/{name}: {{source: [{kind}]}}" for name, kind in kinds.items())
+    (tmp_path / "l.yaml").write_text(f"labels: 1\nnodes: {{{nodes}}}\n", "utf-8")
+    index = Index(rosprivacy.analyze(tmp_path / "p.xml", tmp_path / "l.yaml").document(), Words("en"))
+    third = criteria(index)[2].shows
+    assert [name for name in kinds if f"/{name}" in third] == ["camera", "lidar", "wifi"]
 
 
 def test_of_a_fleet_the_key_is_the_pattern_which_decisions_name_too() -> None:

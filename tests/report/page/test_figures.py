@@ -18,6 +18,7 @@ from rosprivacy.report.finding_facts import in_order
 from rosprivacy.report.page import figures as module
 from rosprivacy.report.page.figures import (
     DRAWS,
+    HIDDEN,
     SAYS,
     Figures,
     Inline,
@@ -32,11 +33,12 @@ from rosprivacy.report.page.html import html
 from rosprivacy.report.page.outline import outline
 from rosprivacy.report.pictures import dot as dot_module
 from rosprivacy.report.pictures import graphviz
-from rosprivacy.report.pictures.looks import ROLE_LOOKS
+from rosprivacy.report.pictures.looks import LINE_LOOKS, ROLE_LOOKS
 from rosprivacy.report.pictures.privacy import ReachedElements
 from rosprivacy.report.pictures.views import FindingViews, finding_view
 from rosprivacy.report.redact import redacted
 from tests.helpers.graphs import care_home, factory
+from tests.helpers.pages import LANGUAGES
 from tests.helpers.pictures import hostile, of_findings
 from tests.helpers.reports import care
 
@@ -217,16 +219,24 @@ def test_what_has_no_alias_has_no_name() -> None:
     assert len(picture.keys) == len(picture.boxes)
 
 
-def test_the_legend_explains_every_role_in_both_languages() -> None:
-    for language in ("en", "de"):
-        looks = page_legend(Words(language))
-        assert len(looks) == len(ROLE_LOOKS) + 4
+def test_the_legend_can_explain_every_role_in_each_language() -> None:
+    every = {*ROLE_LOOKS, *LINE_LOOKS, HIDDEN}
+    for language in LANGUAGES:
+        looks = page_legend(Words(language), every)
+        assert len(looks) == len(ROLE_LOOKS) + 5
         assert len({words for _, _, words in looks}) == len({look for look, _, _ in looks}) == len(looks)
+
+
+def test_the_legend_of_a_page_has_what_is_in_its_pictures_and_no_more() -> None:
     result = care_home()
     told = outline(result.document(), "en")
-    page = lxml_html.document_fromstring(html(told, figures(document_of(result, (PATHS,)), told)))
+    drawn = figures(document_of(result, (PATHS,)), told)
+    page = lxml_html.document_fromstring(html(told, drawn))
     samples = page.xpath("//div[@class='legend']//li")
-    assert [sample.text_content().strip() for sample in samples] == [w for *_, w in page_legend(Words("en"))]
+    words = [sample.text_content().strip() for sample in samples]
+    assert words == [said for *_, said in page_legend(Words("en"), drawn.looks)]
+    assert Words("en")("phrase.look.source") in words
+    assert Words("en")("phrase.look.open") not in words  # all is reviewed in the care home
     assert all(sample.find("svg").get("aria-hidden") == "true" for sample in samples)
 
 

@@ -16,8 +16,9 @@ from rosprivacy.analysis.errors import InputError
 from rosprivacy.analysis.model import REASONS
 from rosprivacy.ingest.labels.countries import countries
 from rosprivacy.report.catalogs.words import Words, table
-from rosprivacy.report.page.article30 import record
+from rosprivacy.report.page.article30 import record, record_of_processors
 from rosprivacy.report.page.markdown import markdown
+from rosprivacy.report.page.notice import notice
 from tests.helpers.fleet_files import policy
 from tests.helpers.graphs import care_home, hospital
 from tests.helpers.languages import OTHERS, english_in, users_texts
@@ -103,10 +104,12 @@ def test_no_page_that_tells_changes_has_english(language: str) -> None:
 
 
 @pytest.mark.parametrize("language", OTHERS)
-def test_no_record_has_english(language: str, tmp_path: Path) -> None:
+def test_no_record_and_no_notice_has_english(language: str, tmp_path: Path) -> None:
     for document in (hospital().document(), reasons(tmp_path), with_decisions(with_outside(care()))):
-        rows = csv.reader(io.StringIO(record(document, language)), delimiter=";")
+        records = record(document, language) + record_of_processors(document, language)
+        rows = csv.reader(io.StringIO(records), delimiter=";")
         text = "\n".join(cell for row in rows for cell in row)
+        text += notice(document, language).replace("\\", "")
         assert english_in(text, language, [*users_texts(document), "residents", "staff", "visitors"]) == []
 
 

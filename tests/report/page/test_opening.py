@@ -12,9 +12,9 @@ from tests.helpers.pages import page, texts, told
 from tests.helpers.reports import care, decide, fleet, run, with_decisions, with_outside
 
 if TYPE_CHECKING:
-    from rosprivacy.report.page.opening import ToDecide
+    from rosprivacy.report.page.flows import ToDecide
 
-FACTS = ["Whose data", "Provisions", "Legal basis", "Recipient", "Who decides", "State"]
+FACTS = ["whose", "law", "basis", "owner", "state"]
 
 
 def flow(row: ToDecide) -> tuple[str, str, str]:
@@ -30,25 +30,24 @@ def test_the_report_begins_with_what_is_to_be_decided_the_worst_first() -> None:
         ("voice", "/microphone", "/uplink"),
         ("video of persons (pseudonymised)", "/camera", "/recorder"),
     ]
-    assert opening.sentences == (
-        "Face template, voice can get to /uplink; video of persons (pseudonymised) can get to /recorder.",
+    assert opening.gist == (
+        "Face template, voice can get to /uplink; video of persons (pseudonymised) can get to /recorder."
     )
     first = dict(opening.rows[0].facts)
     assert list(first) == FACTS
-    assert first["Whose data"] == "residents, staff, visitors"
-    assert first["Provisions"] == "Article 6; GDPR Art. 9(1) biometric data"
-    assert first["Legal basis"] == "none recorded"
-    assert first["Who decides"] == "nobody is named"
-    assert first["State"] == "to assess"
+    assert first["whose"] == "residents, staff, visitors"
+    assert first["law"] == "Article 6; GDPR Art. 9(1) biometric data"
+    assert (first["basis"], first["owner"]) == ("", "")
+    assert first["state"] == "to assess"
 
 
-def test_a_page_links_each_row_to_its_paths() -> None:
+def test_a_page_links_each_line_of_a_card_to_its_paths() -> None:
     root = page(care())
     (first, *_) = root.xpath("//main/section")
     assert first.get("id") == "decide"
-    rows = first.xpath(".//ol[@class='decide']/li")
-    assert [row.xpath(".//a/@href") for row in rows] == [
-        [f"#{entry.anchor}" for entry in row.entries] for row in told(care()).opening.rows
+    lines = first.xpath(".//ol[@class='decide']/li/ul/li")
+    assert [line.xpath(".//a/@href") for line in lines] == [
+        [f"#{entry.anchor}" for entry in line.entries] for card in told(care()).opening.cards for line in card.lines
     ]
 
 
@@ -58,7 +57,7 @@ def test_one_flow_that_is_two_findings_is_decided_once() -> None:
     assert len(cloud) == 1
     assert cloud[0].kinds == ("disclosure", "transfer to a third country")
     assert len(cloud[0].entries) == 2
-    assert dict(cloud[0].facts)["Provisions"] == "Article 6; GDPR Art. 9(1); chapter V (Articles 44 to 49)"
+    assert dict(cloud[0].facts)["law"] == "Article 6; GDPR Art. 9(1); chapter V (Articles 44 to 49)"
     assert report.opening.headline == "You have to decide 3 things"
 
 
@@ -74,12 +73,12 @@ def test_every_finding_that_is_neither_accepted_nor_dismissed_is_in_a_row() -> N
 def test_what_is_decided_stands_last_and_is_not_counted_as_waiting() -> None:
     report = told(with_decisions(care()))
     assert report.opening.headline == "You have to decide 1 thing"
-    assert report.opening.sentences[1] == "1 more is decided and not yet carried out."
+    assert report.opening.sentences[0] == "1 more is decided and not yet carried out."
     assert [(row.data, row.waits) for row in report.opening.rows] == [
         ("voice", True), ("video of persons (pseudonymised)", False),
     ]  # fmt: skip
     facts = dict(report.opening.rows[1].facts)
-    assert (facts["State"], facts["Who decides"]) == ("to be mitigated", "robot team")
+    assert (facts["state"], facts["owner"]) == ("to be mitigated", "robot team")
 
 
 def test_a_decision_that_is_over_is_to_be_made_again() -> None:
@@ -87,7 +86,7 @@ def test_a_decision_that_is_over_is_to_be_made_again() -> None:
     decide(document, 0, owner="somebody", legal_basis=["6(1)(c)"], expires="2020-01-01", state="expired")
     row = told(document).opening.rows[0]
     assert row.waits
-    assert dict(row.facts)["State"] == "accepted; expired: it no longer counts"
+    assert dict(row.facts)["state"] == "accepted; expired: it no longer counts"
 
 
 def test_a_decision_about_what_has_changed_since_is_to_be_made_again() -> None:
@@ -95,7 +94,7 @@ def test_a_decision_about_what_has_changed_since_is_to_be_made_again() -> None:
     decide(document, 0, choice="mitigate", changed=[{"what": "path", "before": "a", "now": "b"}])
     row = told(document).opening.rows[0]
     assert row.waits
-    assert dict(row.facts)["State"] == "to be mitigated; changed since"
+    assert dict(row.facts)["state"] == "to be mitigated; changed since"
 
 
 def test_a_decision_about_one_robot_does_not_decide_for_its_likes() -> None:
@@ -107,7 +106,7 @@ def test_a_decision_about_one_robot_does_not_decide_for_its_likes() -> None:
     document["decisions"][0]["target"] = {"robot": "carrier_01", "leak": "fleet cloud"}
     row = next(row for row in told(document).opening.rows if row.leak == "hospital:fleet cloud")
     assert row.waits
-    assert dict(row.facts)["State"] == "to be mitigated, for carrier_01 only, to assess"
+    assert dict(row.facts)["state"] == "to be mitigated, for carrier_01 only, to assess"
 
 
 def test_what_nobody_reviewed_is_told_beside_it() -> None:  # S11
@@ -136,20 +135,20 @@ def test_many_are_counted_and_those_below_told() -> None:
         document["findings"].append(more | {"id": f"{number:016x}", "leak": {**more["leak"], "name": f"/to{number}"}})
     opening = told(document).opening
     assert opening.headline == "You have to decide 23 things"
-    assert len(opening.rows) == 12
-    assert opening.remainder == "11 more are listed below, among the paths to assess."
-    assert "face template can get to r0:/to0, r1:/to1, r2:/to2, and 17 more;" in opening.sentences[0]
+    assert (len(opening.rows), len(opening.cards), len(opening.shown)) == (23, 22, 12)
+    assert opening.remainder == "10 more places where data gets out are listed below, among the paths to assess."
+    assert "face template can get to r0:/to0, r1:/to1, r2:/to2, and 17 more;" in opening.gist
 
 
 def test_a_transfer_that_rests_on_article_6_alone_says_what_it_lacks() -> None:
     document = dict(hospital().document())
     row = next(row for row in told(document).opening.rows if row.leak == "hospital:fleet cloud")
-    assert dict(row.facts)["Legal basis"] == "6(1)(e), 9(2)(h), 9(3), none of chapter V"
+    assert dict(row.facts)["basis"] == "6(1)(e), 9(2)(h), 9(3), none of chapter V"
     (stated,) = [r for r in document["processed_for"] if r["element"]["name"] == "fleet cloud"]
     based = {**stated, "legal_bases": [*stated["legal_bases"], "46(2)(c)"]}
     document["processed_for"] = [based if r is stated else r for r in document["processed_for"]]
     row = next(row for row in told(document).opening.rows if row.leak == "hospital:fleet cloud")
-    assert "none of chapter V" not in dict(row.facts)["Legal basis"]
+    assert "none of chapter V" not in dict(row.facts)["basis"]
 
 
 def test_the_view_of_the_report_is_explained_first() -> None:

@@ -7,6 +7,7 @@ from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from importlib.resources import files
 from io import BytesIO
+from itertools import combinations
 from typing import TYPE_CHECKING, Any
 from unicodedata import bidirectional, normalize
 
@@ -123,6 +124,23 @@ def test_the_first_decision_lies_within_the_first_screen(
     chrome.open_page(browser, pages[name].as_uri(), width=width)
     first = browser.execute_script("return document.querySelector('ol.decide > li').getBoundingClientRect().toJSON()")
     assert 0 < first["top"] < first["bottom"] <= height
+
+
+@pytest.mark.parametrize("width", [DESKTOP, PHONE])
+@pytest.mark.parametrize("name", ["all-en", "fleet-en", "hospital-de"])
+def test_links_of_a_card_can_be_met_by_a_finger(
+    browser: WebDriver, pages: dict[str, Path], name: str, width: int
+) -> None:
+    """Each takes 24 pixels each way, as WCAG 2.2 has it (2.5.8), and none lies on another."""
+    chrome.open_page(browser, pages[name].as_uri(), width=width)
+    boxes = browser.execute_script(
+        "return [...document.querySelectorAll('ol.decide a')].map((link) => link.getBoundingClientRect().toJSON())"
+    )
+    assert boxes
+    assert [box for box in boxes if min(box["width"], box["height"]) < 24] == []
+    for one, other in combinations(boxes, 2):
+        beside = one["right"] <= other["left"] or other["right"] <= one["left"]
+        assert beside or one["bottom"] <= other["top"] or other["bottom"] <= one["top"]
 
 
 @pytest.mark.parametrize("name", ["care-en", "all-en", "open-de", "hospital-de", "hostile-en"])

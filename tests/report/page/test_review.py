@@ -87,4 +87,4 @@ def test_what_can_wait_is_what_the_terminal_says(cli: Cli, folder: Path) -> None
     text = cli("analyze", "p.xml", "-l", "l.yaml", cwd=folder).stdout
     assert "   1 can wait: from there" in text
     assert "   1 are lifecycle or other infrastructure channels" in text
-    assert "only past it: 4 other open elements and 1 leak" in text
+    assert "only past it: 4 other open elements and 1 way out" in text

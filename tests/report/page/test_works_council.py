@@ -25,9 +25,8 @@ def test_every_group_with_every_place_is_there_as_in_the_report(language: str) -
         for group in report.persons.rights:
             assert group.name in text
             for place in group.places:
-                assert all(said in text for said in (place.name, place.data, place.retention, place.recipient))
-        for row in report.inventory.cleanings:
-            assert row.name in text
+                cells = (place.name, place.data, place.retention, place.recipient, *place.measures)
+                assert all(cell in text for cell in cells)
 
 
 def test_it_says_what_is_open_and_what_was_decided() -> None:

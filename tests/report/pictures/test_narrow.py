@@ -134,4 +134,4 @@ def test_title_and_verdict_stand_on_top(tmp_path: Path, cli: Cli) -> None:
     cli(*FLEET, "-o", file)
     words = re.findall(r"<text[^>]* y=\"([-\d.]+)\"[^>]*>([^<]*)<", file.read_text("utf-8"))
     top = min(words, key=lambda word: float(word[0]))[1]
-    assert top.replace("\xa0", " ").endswith("data can reach a leak")
+    assert top.replace("\xa0", " ").endswith("data can get out")

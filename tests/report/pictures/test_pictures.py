@@ -218,7 +218,7 @@ def test_hostile_names_come_through_the_command_line(cli: Cli, tmp_path: Path) -
 def test_the_description_tells_the_ways_to_people_who_do_not_see_the_picture() -> None:
     root = check_svg(drawn(views.privacy_view(PathsToLeaks(factory(2).analysis)), "svg").data)
     assert root.get("role") == "img"
-    assert root[0].text == "Where Video can go (declared): data can reach a leak"
+    assert root[0].text == "Where Video can go (declared): data can get out"
     assert "Video: /safety_camera to /safety_video to /archive_server." in str(root[1].text)
 
 

@@ -79,7 +79,7 @@ def test_sanitizers_that_end_the_data_and_mundane_channels_are_gone_and_said() -
     assert not names_of(picture.boxes) & {"/filter", "/filtered_safety_video", "/new_pose", "/stop_arm"}
     assert any("/filter, which ends what comes to it" in note for note in picture.notes)
     assert any("carry none of it" in note for note in picture.notes)
-    assert "no path to a leak found" in picture.title
+    assert "no way out found" in picture.title
 
 
 def test_what_gets_to_where_it_is_said_to_be_cleaned_is_drawn_and_ends_in_a_bar() -> None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.model import BY_TYPE
 from rosprivacy.explorer.edits import ROLES
 from rosprivacy.explorer.web import forms
 from rosprivacy.ingest.labels.keywords import NO_KIND
@@ -82,8 +83,14 @@ def limit_of(entry: Any) -> tuple[str, ...]:
 
     >>> limit_of({"only": ["Location"], "note": "seen"}), limit_of("sensitive")
     (('Location',), ())
+
+    A line about its type names no kind:
+
+    >>> limit_of({"only": "by-type"})
+    ()
     """
-    return tuple(_as_list(entry.get("only"))) if isinstance(entry, dict) else ()
+    limit = entry.get("only") if isinstance(entry, dict) else None
+    return () if limit == BY_TYPE else tuple(_as_list(limit))
 
 
 def _within(limit: tuple[str, ...], answer: FormAnswer, label: dict[str, Any]) -> dict[str, Any]:
@@ -147,8 +154,8 @@ def _without(now: Any, answer: FormAnswer) -> dict[str, Any]:
 
 
 def _without_answer(value: Any, answer: FormAnswer) -> Any:
-    """Kinds that are said, without those of an answer; that none is said stays, until one is."""
-    if value is True or value == NO_KIND:
+    """Kinds that are said, without those of an answer; a word in their place stays."""
+    if value is True or value in (NO_KIND, BY_TYPE):
         return value
     if isinstance(value, dict):
         return {kind: how for kind, how in value.items() if kind not in answer.kinds}

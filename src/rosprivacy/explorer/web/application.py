@@ -10,6 +10,7 @@ from contextlib import suppress
 from importlib.resources import files
 from itertools import count
 from threading import RLock
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, cast
 
 from starlette.applications import Starlette
@@ -18,23 +19,32 @@ from starlette.responses import HTMLResponse, JSONResponse, PlainTextResponse, R
 from starlette.routing import Route
 
 from rosprivacy.analysis.errors import RosPrivacyError, shown
+from rosprivacy.analysis.legal import UNFOUNDED
+from rosprivacy.explorer.deciding import How
 from rosprivacy.explorer.edited_file import Conflict
+from rosprivacy.explorer.suggestion_screens import SuggestionScreens
 from rosprivacy.explorer.web import forms
 from rosprivacy.explorer.web.answered_entries import label_of, limit_of, made_by
+from rosprivacy.explorer.web.element_pane import answer_of, tickable
 from rosprivacy.explorer.web.finding_pane import finding_pane, scope_in, scope_in_words
 from rosprivacy.explorer.web.guard import Guard
 from rosprivacy.explorer.web.page import Message, draw_picture, page_of, render_page
 from rosprivacy.explorer.web.panes import ROBOT, ROBOT_OR_MODEL, Pane, title_of, titles_of
+from rosprivacy.explorer.web.screen_pane import KEY_OF, screen_pane, told_of_key
 from rosprivacy.explorer.web.standing import Standing
 from rosprivacy.explorer.web.trial_forms import TOGETHER, KeptTrials, kept_trials, offers_at, trial_pane, tried_in
 from rosprivacy.explorer.web.view import trial_in, view_of
+from rosprivacy.ingest.decisions.decisions_file import REQUIRED
 from rosprivacy.labelling.knowledge import what_is_known
 from rosprivacy.labelling.suggesting_on_demand import Suggester
+from rosprivacy.report.finding_facts import gaps_of
+from rosprivacy.report.page.finding_entries import gap_in_words
+from rosprivacy.report.page.index import Index
 from rosprivacy.report.pictures.page_pictures import Pictures, style_sheet
 from rosprivacy.report.pictures.phrases import Phrases
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Mapping
 
     from starlette.requests import Request
     from starlette.types import ASGIApp
@@ -57,16 +67,24 @@ STATIC = {
 }
 PICTURE = "picture.css"  # of which the pictures themselves know what it says
 MOST_NAMED = 5  # files in a message
+NO_FIELDS: Mapping[str, str] = MappingProxyType(dict.fromkeys((*How.__annotations__, "lacks", "whose"), ""))
 DONE, PROBLEM = "done", "problem"
 READING = ("/try", "/drop")  # what is tried is kept in memory only
 
 
 class Outcome(NamedTuple):
-    """What came of a request: a status of HTTP, what a person is told, and the trial that is looked at then."""
+    """What came of a request: a status of HTTP, what a person is told, and the trial that is looked at then.
+
+    Attributes
+    ----------
+    filled
+        Fields of a form that is asked again, as a person filled them in.
+    """
 
     status: int
     message: Message | None = None
     trial: str = ""
+    filled: Mapping[str, str] = NO_FIELDS
 
 
 class Site:
@@ -90,6 +108,8 @@ class Site:
         self._suggester = Suggester(what_is_known(session.uncounted.vocabulary, settings))
         self._standing = Standing(session, self._suggester)
         self._trials = KeptTrials(session, self._suggester)
+        knowledge = self._suggester.knowledge
+        self._screens = SuggestionScreens(session, knowledge, settings) if SuggestionScreens.fit(session) else None
         self._phrases = Phrases.of_report(words, titles_of(session.uncounted.vocabulary, words))
         self._pictures = Pictures(self._phrases)
         self._by = ""
@@ -98,7 +118,8 @@ class Site:
     def application(self) -> ASGIApp:
         """Return what a server runs."""
         posts: dict[str, Callable[[EditForm], Outcome]] = {
-            "/label": self._label, "/undo": self._undo, "/redo": self._redo, "/save": self._save, "/merge": self._merge,
+            "/label": self._label, "/offers": self._take_offers, "/screen": self._press,
+            "/undo": self._undo, "/redo": self._redo, "/save": self._save, "/merge": self._merge,
             "/resume": self._resume, "/forget": self._forget, "/try": self._try, "/drop": self._drop,
             "/decide": self._decide,
         }  # fmt: skip
@@ -165,14 +186,16 @@ class Site:
     def _page(self, query: str, outcome: Outcome | None = None) -> Response:
         with self._lock:
             standing, view, problem = self._looked_at(query)
+            screen, why_not = self._screen(view)
+            view = view._replace(at=screen.at if screen else view.at, ask=screen is not None)
             page = page_of(standing, view, self._words)
-            new = problem or self._message or self._changed_on_disk()
+            new = problem or why_not or self._message or self._changed_on_disk()
             message, self._message = outcome.message if outcome else new, None
             text = render_page(
                 page,
                 self._words,
                 draw_picture(self._pictures, standing, page),
-                self._side(standing, page),
+                self._side(standing, page, screen),
                 read_only=self.door.read_only,
                 message=message,
                 left=self.session.history.unsaved_from_before,
@@ -180,15 +203,27 @@ class Site:
                 inputs=self._changed_inputs(),
                 by=self._by,
                 asks=self.asks,
+                filled=outcome.filled if outcome else NO_FIELDS,
             )
         return HTMLResponse(text, outcome.status if outcome else 200)
 
-    def _side(self, standing: Standing, page: Pane) -> Pane:
+    def _screen(self, view: PageView) -> tuple[Pane | None, Message | None]:
+        """The screen about an element, where suggestions are gone through; why there is none."""
+        if not view.ask or self._screens is None:
+            return None, None
+        try:
+            return screen_pane(self._screens, self.standing, view, self._by, self._words), None
+        except RosPrivacyError as error:  # of a file that somebody changed
+            return None, self._refused(error)
+
+    def _side(self, standing: Standing, page: Pane, screen: Pane | None) -> Pane:
         """What stands beside the system: the finding in hand, the trial that is looked at, what can be tried here."""
         view, words = page.view, self._words
         finding = standing.findings.get(view.finding)
         can_try = page.pane and not (finding or view.trial or self.session.is_stored)
         return Pane(
+            screen=screen,
+            has_screens=self._screens is not None and not view.trial,
             finding=finding_pane(standing, finding, view, words) if finding else None,
             trial=trial_pane(self.standing, self._trials, view, words) if view.trial else None,
             offers=offers_at(standing, standing.elements[page.pane.id], words) if can_try else None,
@@ -261,6 +296,43 @@ class Site:
         self._by = answer.by or self._by
         return Outcome(200, self._answered(answer, now, self._words(f"explorer.answer.{answer.role}")))
 
+    def _take_offers(self, form: EditForm) -> Outcome:
+        """Take the suggestions that are ticked, as one answer."""
+        standing = self.standing
+        element = forms.element_in(form, standing.elements)
+        offers = tickable(standing.suggestions.of(element.identity))
+        numbers = {str(number): offer for number, offer in enumerate(offers)}
+        alone = form.choice("whose", ROBOT_OR_MODEL) == ROBOT
+        label = self.session.entry_for(element, only_this_robot=alone)
+        ticked = form.several("offer")
+        if not ticked or not numbers.keys() >= set(ticked):
+            raise forms.FormError("Tick what is so.")
+        for number in ticked:
+            label = label_of(answer_of(numbers[number], element), label)
+        self.session.answer_for(element, cast("Label", label), only_this_robot=alone)
+        what = self._words("explorer.offers.ticked")
+        text = self._words("explorer.changed", what=f"{shown(element.full_name)} – {what}")
+        return Outcome(200, Message(DONE, text))
+
+    def _press(self, form: EditForm) -> Outcome:
+        """Take a key on the screen about an element, as the terminal does; an answer is written at once."""
+        screens = self._screens
+        if screens is None:
+            raise forms.FormError("There are no screens here.")
+        if screens.waits:
+            raise forms.FormError("Save first what was said elsewhere.")
+        if form.number("turn") != screens.turn:
+            return Outcome(409, Message(PROBLEM, self._words("explorer.stale")))
+        if form.value("tick"):
+            looked = screens.look()
+            lines = [str(at) for at, _ in enumerate(looked.screen.lines, 1)] if looked else []
+            screens.tick(int(form.choice("tick", lines)) - 1)
+            return Outcome(200, told_of_key(screens, "", self._words, changed=False))
+        key = KEY_OF[form.choice("key", KEY_OF)]
+        self._by = form.words("by") or self._by
+        changed = screens.press(key, self._by)
+        return Outcome(200, told_of_key(screens, key, self._words, changed=changed))
+
     def _answered(self, answer: FormAnswer, before: Any, role: str) -> Message:
         """Tell what was answered, and what was said that it takes away: a limit, or derivations."""
         text = self._words("explorer.changed", what=f"{shown(answer.element.full_name)} – {role}")
@@ -329,12 +401,30 @@ class Site:
         finding, choice, how = forms.decision_in(form, self.standing.findings)
         scope = scope_in(form, self.session, self.standing.findings[finding])
         whose = scope_in_words(self.session, scope, self._words)  # before it is decided, as it was chosen
+        if self.session.decisions_file and (missing := self._lacks(finding, choice, how, form)):
+            return missing
         robots, to_robots = scope.robots or None, scope.to_robots or None
         self.session.decide(scope.finding.id, choice, robots=robots, to_robots=to_robots, **how)
         self._by = how["owner"] or self._by
         what = self._words.row(filter(None, (self._words(f"decision.{choice}"), whose)))
         text = self._words("explorer.decided.to", file=shown(str(self.session.decisions_file)), what=what)
         return Outcome(200, Message(DONE, text))
+
+    def _lacks(self, finding: str, choice: str, how: How, form: EditForm) -> Outcome | None:
+        """Ask again before an acceptance is written that has no ground or no end, once for the same."""
+        signed = REQUIRED.get(choice)  # of an acceptance; without all of it, it is refused
+        if not signed or not all(form.value(key) for key in signed):
+            return None
+        document = self.standing.document
+        rows = [row for row in document["findings"] if row["id"] == finding]
+        gaps = [gap for gap in gaps_of(how, rows) if gap.lack in UNFOUNDED]
+        names = " ".join(gap.lack.name for gap in gaps)
+        if names == form.value("lacks"):
+            return None
+        index = Index({**document, "findings": rows}, self._words)
+        notes = tuple(gap_in_words(gap, index) for gap in gaps)
+        fields = {**{key: form.value(key) for key in NO_FIELDS}, "lacks": names}
+        return Outcome(409, Message(PROBLEM, self._words("explorer.decide.again"), notes), filled=fields)
 
 
 async def _static(request: Request) -> Response:

@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import Confidence
-from rosprivacy.analysis.suggesting.evidence import written
+from rosprivacy.analysis.suggesting.evidence import DERIVATION, HIDING, NEVER, written
+from rosprivacy.analysis.suggesting.screens import is_ticked_beforehand
 from rosprivacy.explorer.edits import element_id
+from rosprivacy.explorer.suggestion_screens import SuggestionScreens
 from rosprivacy.explorer.web import forms
 from rosprivacy.explorer.web.panes import ROBOT, Pane, robot_or_model, stands_for, title_of
 from rosprivacy.ingest.suggestion_rules.accepting import LIMITING, could_close
@@ -57,6 +59,7 @@ def element_pane(standing: Standing, element: Element, view: PageView, words: Wo
         ways=tuple(_ways(standing, element, asked or here, view, words)),
         about=_about(standing, carried, asked or [kind for kind in here if not _ends(standing, at, kind)], words),
         offers=tuple(_offer(offer, standing, words) for offer in offers if _is_whole(offer)),
+        ticks=_ticks(offers, standing, words),
         roles=tuple((role, KEYS[role]) for role in forms.roles_of(element) if role != forms.NOTHING or labelled),
         kinds=_all_kinds(standing, words),
         brings=next((offer.label.kind for offer in offers if offer.label.role == forms.SOURCE), "PersonalData"),
@@ -114,18 +117,66 @@ def is_likely_source(offer: LabelProposal) -> bool:
     return offer.label.role == forms.SOURCE and offer.confidence is not Confidence.MAY
 
 
+def tickable(offers: Iterable[LabelProposal]) -> tuple[LabelProposal, ...]:
+    """Return the offers that can be taken together, as on a screen of ``suggest --ask``: none can hide a leak."""
+    return tuple(offer for offer in offers if offer.label.role not in HIDING)
+
+
+def answer_of(offer: LabelProposal, element: Element) -> forms.FormAnswer:
+    """Return the answer that takes an offer."""
+    label = offer.label
+    return forms.FormAnswer(element, form_role(label.role), (label.kind,) if label.kind else (), to=label.to)
+
+
+def form_role(role: str) -> str:
+    """Return what a form calls the role of a suggestion."""
+    return {DERIVATION: forms.DERIVES, NEVER: forms.MUNDANE}.get(role, role)
+
+
+def suggestion_in_words(offer: LabelProposal, standing: Standing, words: Words) -> str:
+    """Return what a suggestion says, and how sure it is."""
+    label = offer.label
+    data = title_of(label.kind, standing.vocabulary, words)
+    to = title_of(label.to, standing.vocabulary, words) if label.to else ""
+    told = words(f"explorer.tick.{form_role(label.role)}", data=data, to=to)
+    return confidence_beside(told, offer.confidence, words)
+
+
+def confidence_beside(statement: str, confidence: Confidence | None, words: Words) -> str:
+    """Return what is suggested, with how sure it is.
+
+    >>> from rosprivacy.report.catalogs.words import IN_ENGLISH
+    >>> confidence_beside("lets out voices", Confidence.LIKELY, IN_ENGLISH)
+    'lets out voices (likely)'
+    """
+    sure = words(f"explorer.tick.{confidence}" if confidence else "explorer.tick.unsaid")
+    return words("explorer.tick", told=statement, sure=sure)
+
+
+def _ticks(offers: Iterable[LabelProposal], standing: Standing, words: Words) -> tuple[Pane, ...]:
+    """Lines that are taken together; none where screens ask about elements."""
+    if SuggestionScreens.fit(standing.session):
+        return ()
+    return tuple(_tick(number, offer, standing, words) for number, offer in enumerate(tickable(offers)))
+
+
+def _tick(number: int, offer: LabelProposal, standing: Standing, words: Words) -> Pane:
+    """A line that can be ticked; what is sure is."""
+    ticked = is_ticked_beforehand(offer.label.role, offer.confidence)
+    return Pane(number=number, told=suggestion_in_words(offer, standing, words), ticked=ticked)
+
+
 def _offer(offer: LabelProposal, standing: Standing, words: Words) -> Pane:
     """What could be said, with reasons; the fields are those of the form."""
     label = offer.label
-    role = {"derivation": forms.DERIVES, "never": forms.MUNDANE}.get(label.role, label.role)
-    to = title_of(label.to, standing.vocabulary, words) if label.to else ""
+    role = form_role(label.role)
     fields = [("role", role), ("about" if role != forms.SOURCE else "brings", label.kind or forms.EVERY)]
     fields += [("method", str(label.method.value))] if label.method else []
     fields += [("makes", label.to)] if label.to else []
     entry = written(label).roles
     closes = could_close(entry, _findings(standing, words), standing.vocabulary)
     return Pane(
-        told=words(f"explorer.offer.{role}", data=title_of(label.kind, standing.vocabulary, words), to=to),
+        told=suggestion_in_words(offer, standing, words),
         reasons=words.first([shown(reason.reason) for reason in offer.evidence], REASONS),
         fields=tuple(fields),
         takes=not LIMITING.isdisjoint(entry),  # data away

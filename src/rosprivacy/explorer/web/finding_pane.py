@@ -14,6 +14,7 @@ from rosprivacy.analysis.model import ARTICLE_10
 from rosprivacy.explorer.edits import element_id
 from rosprivacy.explorer.web.panes import Pane, robots_in_words
 from rosprivacy.explorer.web.trial_forms import flow_id, line_id, lines_of
+from rosprivacy.ingest.decisions.decision_log import CONFIRM, is_log
 from rosprivacy.report.naming import name
 from rosprivacy.report.page.closing import change_told, proposal_told
 from rosprivacy.report.page.finding_entries import finding_entries
@@ -53,7 +54,7 @@ def finding_pane(standing: Standing, finding: Finding, view: PageView, words: Wo
         hops=tuple(_hops(finding, entry, standing, view)),
         closes=_closes(standing, finding, index) if view.closes and can_close else None,
         ask=view._replace(closes=not view.closes).address,
-        choices=tuple(choice.value for choice in Choice),
+        choices=(*([CONFIRM] if is_log(session.decisions_file or "") and _is_conditional(row) else ()), *Choice),
         file=session.decisions_file or "",
         element=view.to(element_id(finding.leak.identity)).address,
         can_try=can_try,
@@ -61,6 +62,10 @@ def finding_pane(standing: Standing, finding: Finding, view: PageView, words: Wo
         can_decide=can_try,
         robots=_choices(session, finding, words) if can_try else Pane(offered=(), more=0),
     )
+
+
+def _is_conditional(row: Mapping[str, Any]) -> bool:
+    return (row.get("decision") or {}).get("choice") == Choice.CONDITIONAL
 
 
 def _law(row: Mapping[str, Any], index: Index) -> Iterable[str]:

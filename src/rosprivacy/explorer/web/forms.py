@@ -13,6 +13,7 @@ from urllib.parse import parse_qsl
 from rosprivacy.analysis.decisions import Choice
 from rosprivacy.analysis.model import Method
 from rosprivacy.analysis.text import printable
+from rosprivacy.ingest.decisions.decision_log import CONFIRM
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
@@ -24,6 +25,7 @@ MOST_FIELDS = 1_000
 LONGEST = {
     "note": 500,
     "reason": 500,
+    "condition": 500,
     "by": 100,
     "owner": 100,
     "ticket": 200,
@@ -194,9 +196,10 @@ def decision_in(form: EditForm, findings: Collection[str]) -> tuple[str, str, Ho
     bases = tuple(base.strip() for base in re.split("[,;]", form.words("legal_basis")) if base.strip())
     how: How = {
         "reason": form.words("reason"),
+        "condition": form.words("condition"),
         "owner": form.words("owner"),
         "expires": form.words("expires"),
         "ticket": form.words("ticket"),
         "legal_basis": bases,
     }
-    return form.choice("finding", findings), form.choice("choice", [choice.value for choice in Choice]), how
+    return form.choice("finding", findings), form.choice("choice", [*Choice, CONFIRM]), how

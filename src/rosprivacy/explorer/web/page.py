@@ -17,7 +17,7 @@ from rosprivacy.analysis.findings.witness import Witness
 from rosprivacy.analysis.model import DISCLOSURE
 from rosprivacy.explorer.edits import element_id
 from rosprivacy.explorer.questions import GROUPS
-from rosprivacy.explorer.web.element_pane import element_pane, is_likely_source
+from rosprivacy.explorer.web.element_pane import element_pane, is_likely_source, suggestion_in_words
 from rosprivacy.explorer.web.forms import METHODS
 from rosprivacy.explorer.web.panes import Pane, stands_for, title_of
 from rosprivacy.explorer.web.view import ALL
@@ -100,10 +100,11 @@ def render_page(page: Pane, words: Words, picture: PagePicture, side: Pane, *, r
         What stands beside the system: the finding in hand, trials, what can be tried.
     **fields
         What else the template names: ``message``; ``left`` and ``remarks`` of the session; ``inputs``, that files are
-        not what was read; ``by``, who gave the last answer; ``asks``, whether there is a database that can be asked.
+        not what was read; ``by``, who gave the last answer; ``asks``, whether there is a database that can be asked;
+        ``filled``, fields of a form that is asked again.
     """
     view: PageView = page.view
-    after = view.to("")._replace(find="").address  # after an answer, the next question is looked at
+    after = view.to("")._replace(find="", ask=view.ask).address  # after an answer, the next question is looked at
     kept = [("hide", kind) for kind in view.hidden]
     kept += [("draw", ALL)] if view.whole else []
     kept += [("trial", view.trial)] if view.trial else []
@@ -144,6 +145,7 @@ def page_of(standing: Standing, view: PageView, words: Words) -> Pane:
         groups=groups,
         pane=element_pane(standing, element, view, words) if element else None,
         view=view,
+        ask=view.to("")._replace(find="", ask=True).address,
         unsaved=history.unsaved,
         can_undo=history.can_undo,
         can_redo=history.can_redo,
@@ -162,7 +164,7 @@ def _switches(standing: Standing, view: PageView, words: Words) -> tuple[Pane, .
             name=kind,
             title=title_of(kind, standing.vocabulary, words),
             on=kind not in view.hidden,
-            key=str(number) if number <= DIGITS else "",
+            key=str(number) if number <= DIGITS and not view.ask else "",
             address=view.switched(kind).address,
         )
         for number, kind in enumerate(standing.analysis.emitted, 1)
@@ -213,8 +215,7 @@ def _suggested(standing: Standing, view: PageView, words: Words) -> Pane:
     surest += (offer for offer in standing.suggestions.although_a_glob() if _gets_data(offer, standing))
     rows: dict[tuple[str, str, str], Pane] = {}
     for offer in surest:
-        title = title_of(offer.label.kind, standing.vocabulary, words)
-        text = words(f"explorer.perhaps.{offer.label.role}", data=title)
+        text = suggestion_in_words(offer, standing, words)
         rows.setdefault(offer.label.element.identity, _row(offer.label.element, text, standing, view, words))
     return _group(SUGGESTED, tuple(rows.values()), sure=any(map(is_likely_source, surest)))
 

@@ -35,6 +35,8 @@ class PageView(NamedTuple):
         Whether it is told what would close the finding.
     trial
         Name of the trial that is looked at; empty for how it stands.
+    ask
+        Whether suggestions are gone through, one element a screen.
     """
 
     at: str = ""
@@ -44,6 +46,7 @@ class PageView(NamedTuple):
     finding: str = ""
     closes: bool = False
     trial: str = ""
+    ask: bool = False
 
     @property
     def address(self) -> str:
@@ -55,6 +58,7 @@ class PageView(NamedTuple):
         pairs = [("at", self.at), *(("hide", kind) for kind in self.hidden), ("find", self.find)]
         pairs += [("draw", ALL)] if self.whole else []
         pairs += [("finding", self.finding), ("closes", "1" if self.closes else ""), ("trial", self.trial)]
+        pairs += [("ask", "1" if self.ask else "")]
         query = urlencode([(key, value) for key, value in pairs if value])
         return f"/?{query}" if query else "/"
 
@@ -64,13 +68,13 @@ class PageView(NamedTuple):
         >>> PageView(finding="0123456789abcdef", find="cam").to("e1").address
         '/?at=e1&find=cam'
         """
-        return self._replace(at=element, finding="", closes=False)
+        return self._replace(at=element, finding="", closes=False, ask=False)
 
     def switched(self, kind: str) -> PageView:
         """Return the view with a kind of data switched off, or on again.
 
         >>> PageView(hidden=("Video",)).switched("Video")
-        PageView(at='', hidden=(), find='', whole=False, finding='', closes=False, trial='')
+        PageView(at='', hidden=(), find='', whole=False, finding='', closes=False, trial='', ask=False)
         """
         if kind in self.hidden:
             return self._replace(hidden=tuple(one for one in self.hidden if one != kind))
@@ -105,7 +109,8 @@ def view_of(
     find = next((value for key, value in said if key == "find"), "")
     finding = next((value for key, value in said if key == "finding" and value in findings), "")
     closes = bool(finding) and ("closes", "1") in said
-    return PageView(at, tuple(hidden), find[:FOUND_BOUND], ("draw", ALL) in said, finding, closes, trial)
+    ask = ("ask", "1") in said and not (finding or trial)
+    return PageView(at, tuple(hidden), find[:FOUND_BOUND], ("draw", ALL) in said, finding, closes, trial, ask)
 
 
 def _answer_text(query: str) -> list[tuple[str, str]]:

@@ -43,9 +43,9 @@ function put(page, keep) {
   document.title = page.title;
   one("#find").value = one("#find", page).value;
   one("#list").scrollTop = scrolled;
-  if (keep !== "element") one("#element").scrollTop = 0;
+  if (keep !== "tick") one("#element").scrollTop = 0;
   ready();
-  if (keep === "none" && held) one(`[data-key="${CSS.escape(held)}"]`)?.focus();
+  if ((keep === "none" || keep === "tick") && held) one(`[data-key="${CSS.escape(held)}"]`)?.focus();
   focusNext(keep);
   const head = one("#head h1").textContent;
   const message = one("#message").textContent.trim();
@@ -55,12 +55,23 @@ function put(page, keep) {
 }
 
 function focusNext(keep) {
+  const screen = one(".screen");
+  if (screen) return focusScreen(screen, keep);
   if (keep === "row" && matchMedia("(max-width: 60rem)").matches) return pane("element");
   if (keep === "answer" && matchMedia("(max-width: 60rem)").matches) pane("element");
   if (keep === "none") return;
   const next = one("#rows [aria-current]");
   next?.focus({ preventScroll: true });
   next?.scrollIntoView({ block: "nearest" });
+}
+
+// Enter takes what is ticked on a screen, and follows no link of the list.
+function focusScreen(screen, keep) {
+  if (keep === "tick" && screen.contains(document.activeElement)) return;
+  screen.focus({ preventScroll: true });
+  if (keep === "tick" || !matchMedia("(max-width: 60rem)").matches) return;
+  pane("element");
+  (one("#message").textContent.trim() ? one("#message") : screen).scrollIntoView({ block: "start" });
 }
 
 // What the page has only with this script.
@@ -79,7 +90,7 @@ document.addEventListener("submit", (event) => {
   const whose = form.matches(".offer") && one("#answers [name=whose]:checked"); // as a person chose it below
   if (whose) fields.set("whose", whose.value);
   const address = new URL(form.getAttribute("action"), location.href);
-  if (method === "post") return void ask(address, { method: "POST", body: fields }, "answer");
+  if (method === "post") return void ask(address, { method: "POST", body: fields }, event.submitter?.name === "tick" ? "tick" : "answer");
   address.search = fields;
   ask(address, {}, "row");
 });
@@ -125,6 +136,7 @@ document.addEventListener("keydown", (event) => {
     one("#find").focus();
     return one("#find").select(); // what was looked for before is typed over
   }
+  if (event.key === "Enter" && event.target.closest("a, button:not([role=checkbox]), summary")) return; // it presses that
   if (event.key === "j" || event.key === "k") return step(event.key === "j" ? 1 : -1);
   if (press(event.key)) event.preventDefault(); // else the letter goes on into what is focused now
 });

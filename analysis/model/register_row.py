@@ -1,0 +1,140 @@
+"""A row of the register of processing, and what lies on its ways (GDPR, Articles 5, 6, 9, 10, 26, 28, 30, 44 to 49)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from rosprivacy.analysis.durations import Duration
+    from rosprivacy.analysis.model.element import Element
+
+
+class Derivation(NamedTuple):
+    """That an element on the way makes one kind of data of another."""
+
+    element: Element
+    made_of: str
+    target: str
+
+
+class Measure(NamedTuple):
+    """That an element on the way cleans data, of this kind or of one that this kind is made of.
+
+    Attributes
+    ----------
+    category
+        The kind that it cleans.
+    method, stated
+        As of the sanitizer.
+    everywhere
+        Whether every way passes it, or one that differs only in the robot; else some ways lead past.
+    """
+
+    element: Element
+    category: str
+    method: str
+    stated: bool
+    everywhere: bool
+
+
+class Cell(StrEnum):
+    """A field of a row of which something is for a person to complete."""
+
+    CONTROLLERS = "controllers"
+    OFFICERS = "officers"
+    PURPOSES = "purposes"
+    SUBJECTS = "subjects"
+    BASES = "bases"
+    SPECIAL_BASES = "special_bases"
+    CRIMINAL_BASES = "criminal_bases"
+    OPERATOR = "operator"
+    RECIPIENT = "recipient"
+    CONTRACT = "contract"
+    COUNTRY = "country"
+    SAFEGUARDS = "safeguards"
+    RETENTION = "retention"
+    ENCRYPTED = "encrypted"
+
+
+class RowState(StrEnum):
+    """What is decided about the findings of a row."""
+
+    NO_FINDING = "no-finding"
+    OPEN = "open"
+    ACCEPTED = "accepted"
+    DISMISSED = "dismissed"
+
+
+@dataclass(frozen=True, slots=True)
+class RegisterRow:
+    """A kind of data at a place where it leaves or rests.
+
+    Attributes
+    ----------
+    id
+        16 hexadecimal digits made from the kind and the places, or from the sources where there is no place.
+    places
+        Elements of one kind and name, of several robots if all else is the same; none where data leave nowhere.
+    pseudonymised
+        Whether the kind gets there in this form only.
+    article9
+        The verdict under Article 9(1), where the sources work.
+    sources, derivations, measures
+        What lies on the ways. Who recognises persons or judges them is no measure, whatever it drops.
+    subjects
+        Whose data get there, as labels say of the sources.
+    contexts, countries
+        Where the sources work.
+    purposes, controllers, officers
+        As stated of the place, else of who makes the kind, of the sources, of the robot.
+    bases, special_bases, criminal_bases, safeguards
+        Under Articles 6, 9(2) and (3), 10, and 45 to 49; those that valid decisions record, too.
+    operator, recipient, contract, country, area, transfer, backups, encrypted
+        Of the place, as in ``NonRosFacts``.
+    retention
+        How long the place keeps the kind.
+    look_at
+        Names of the provisions to look at that the kind or a context calls for, of the Union and of these countries.
+    findings
+        Ids of the findings that end there.
+    to_complete
+        The fields of which something is not known.
+    """
+
+    id: str
+    category: str
+    places: tuple[Element, ...]
+    pseudonymised: bool
+    article9: str
+    sources: tuple[Element, ...]
+    derivations: tuple[Derivation, ...]
+    measures: tuple[Measure, ...]
+    subjects: tuple[str, ...]
+    contexts: tuple[str, ...]
+    countries: tuple[str, ...]
+    purposes: tuple[str, ...]
+    controllers: tuple[str, ...]
+    officers: tuple[str, ...]
+    bases: tuple[str, ...]
+    special_bases: tuple[str, ...]
+    criminal_bases: tuple[str, ...]
+    safeguards: tuple[str, ...]
+    operator: str
+    recipient: str
+    contract: str
+    country: str
+    area: str
+    transfer: str
+    retention: tuple[Duration, ...]
+    backups: Duration | bool | None
+    encrypted: bool | None
+    look_at: tuple[str, ...]
+    findings: tuple[str, ...]
+    state: RowState
+    to_complete: tuple[Cell, ...]
+
+    def without_all_subjects(self) -> RegisterRow:
+        """Return the row where data of more sources than these get to the places, or leave nowhere."""
+        return replace(self, to_complete=tuple(cell for cell in Cell if cell in (*self.to_complete, Cell.SUBJECTS)))

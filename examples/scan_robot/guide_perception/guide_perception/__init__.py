@@ -1,0 +1,1 @@
+"""What the guide sees and hears."""

@@ -1,0 +1,86 @@
+"""How long a report is: what a reader has to read is short, and what it rests on stands once, in an appendix."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from markdown_it import MarkdownIt
+
+from rosprivacy.report.finding_facts import looked_at
+from rosprivacy.report.naming import line, text
+from rosprivacy.report.page.markdown import markdown
+from tests.helpers.graphs import hospital
+from tests.helpers.pages import LANGUAGES, told
+from tests.helpers.reports import care, office
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+BODY, APPENDIX = 3_000, 5_500
+
+
+@pytest.fixture(params=["care", "fleet", "office"])
+def system(request: pytest.FixtureRequest, tmp_path: Path) -> dict[str, Any]:
+    if request.param == "office":
+        return office(tmp_path)
+    return care() if request.param == "care" else dict(hospital().document())
+
+
+def words(written: str) -> int:
+    """How many words there are; bars and dashes of tables are none."""
+    return sum(any(c.isalnum() for c in word) for word in written.split())
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_the_body_is_short_and_the_appendix_has_its_bound(system: dict[str, Any], language: str) -> None:
+    body, _, appendix = markdown(told(system, language)).partition("\n# ")
+    assert words(body) <= BODY * (1.2 if language == "fr" else 1)  # French says the same in more words
+    assert words(appendix) <= APPENDIX * (1.2 if language == "fr" else 1)
+
+
+def test_every_id_policy_line_and_provision_is_there(system: dict[str, Any]) -> None:
+    report = told(system)
+    written = re.sub(r"\\(.)", r"\1", markdown(report))
+    shown = {entry.id for entry in report.entries}
+    findings = [finding for finding in system["findings"] if finding["id"] in shown]
+    assert shown
+    assert [finding["id"] for finding in findings if finding["id"] not in written] == []
+    steps = [step for finding in findings for step in finding["steps"]]
+    assert {line(grant) for step in steps for grant in step["policy"][:4] if line(grant) not in written} == set()
+    stated = [row for kind in system["categories"] for row in (*kind["law"], *kind.get("in_context", ()))]
+    provisions: list[Mapping[str, Any]] = [*stated, *looked_at(system)]
+    assert {said for row in provisions for said in texts_of(row) if said not in written} == set()
+
+
+NARROWER = "if the data are of a narrower kind"  # said in other words
+
+
+def texts_of(row: Mapping[str, Any]) -> list[str]:
+    """What a provision is called, says and asks for."""
+    told_so = "condition" in row and not row["condition"].startswith(NARROWER)
+    return [text(row, field, "en") for field in ("provision", "meaning", *(["condition"] if told_so else []))]
+
+
+def test_a_sentence_about_a_provision_stands_once(system: dict[str, Any]) -> None:
+    written = re.sub(r"\\(.)", r"\1", markdown(told(system)))
+    for row in looked_at(system):
+        assert written.count(text(row, "meaning", "en")) == 1
+
+
+def test_every_table_is_one(system: dict[str, Any]) -> None:
+    blocks = MarkdownIt("commonmark").enable("table").parse(markdown(told(system)))
+    assert [block.content for block in blocks if block.type == "inline" and block.content.startswith("|")] == []
+
+
+def test_two_findings_along_one_path_tell_it_once() -> None:
+    report = told(dict(hospital().document()))
+    again = [entry for entry in report.entries if entry.same_way]
+    assert again
+    by_number = {entry.number: entry for entry in report.entries}
+    for entry in again:
+        assert entry.same_way
+        first = by_number[entry.same_way[0]]
+        assert (first.hops, first.same_way, first.anchor) == (entry.hops, None, entry.same_way[1])
