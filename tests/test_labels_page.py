@@ -51,7 +51,7 @@ def carried(result: Result) -> dict[str, set[str]]:
 def test_each_block_has_a_test() -> None:
     assert set(BLOCKS) == {
         "Label files", "Where the system works", "Outside ROS", "Who, why, on which basis",
-        "A glob answers for what you have seen", "By type",
+        "A glob answers for what you have seen", "A label ages", "By type",
     }  # fmt: skip
     assert len(ROWS) == PAGE.count("| no-leak-found |") + PAGE.count("| leak |\n") + PAGE.count("| error |")
 
@@ -161,3 +161,16 @@ def test_who_why_and_on_which_basis() -> None:
     assert "6(1)(d)" in str(said["/microphone"])
     assert "standard-clauses" in str([facts.transfer for facts in result.analysis.outside.values()])
     assert "Haven Care Home gGmbH" in json.dumps(result.document(), ensure_ascii=False)
+
+
+def test_a_label_ages() -> None:
+    Path("p.xml").write_text(policy("/camera>/image", "/blur>/clean</image", "/uplink</clean"), "utf-8")
+    nodes = {
+        "/camera": {"source": ["Video"]},
+        "/blur": {"sanitizer": {"Video": "anonymise"}},
+        "/uplink": {"leak": ["Video"]},
+    }
+    pins = yaml.safe_load(BLOCKS["A label ages"])
+    Path("l.yaml").write_text(json.dumps({"labels": 1, "nodes": nodes, **pins}), "utf-8")
+    result = rosprivacy.analyze("p.xml", ["l.yaml"], categories=())
+    assert "code-not-read" in {doubt.name for doubt in result.doubts}

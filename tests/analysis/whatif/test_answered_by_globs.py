@@ -109,8 +109,11 @@ def test_with_fewer_pins_no_data_and_no_question_is_gone(system: System, data: s
         return
     pins = pins_of(system, found).items()
     some = {v: [kind for kind in sorted(kinds) if data.draw(st.booleans())] for v, kinds in pins}
-    after = analysed(with_pins(system, some))
-    assert after is not None
+    doubted = with_pins(system, some)
+    after = analysed(doubted)
+    if after is None:  # what kept two other labels apart no longer counts: an error names both
+        assert doubted.brute().refused()
+        return
     assert all(kinds <= now for kinds, now in zip(there(found), there(after), strict=True))
     asked, now = ({(q.element, kind) for q in one.open for kind in q.categories} for one in (found, after))
     assert asked <= now | {(f.leak, f.category) for f in after.findings}  # a glob took the leak back: it is there again
@@ -133,7 +136,9 @@ def test_with_labels_of_other_code_no_data_no_finding_and_no_question_is_gone(sy
     found, after = map(analysed, systems)
     if found is None:
         return
-    assert after is not None
+    if after is None:  # what kept two other labels apart no longer counts: an error names both
+        assert systems[1].brute().refused()
+        return
     assert all(kinds <= now for kinds, now in zip(there(found), there(after), strict=True))
     ways, now = ({(f.kind, f.category, f.source, f.leak) for f in one.findings} for one in (found, after))
     assert ways <= now
