@@ -22,6 +22,7 @@ VERSIONS = {
 # Where the address stands: as it is, or as the two last parts of it in 'uses:'.
 ADDRESSED = (
     "README.md", "CITATION.cff", "mkdocs.yml", "ros2privacy/README.md", "ros2privacy/package.xml", "docs/formats.md",
+    "docs/editors.md", "docs/labels.schema.json", "docs/fleet.schema.json", "docs/project.schema.json",
     "examples/ci/privacy.yml", ".github/ISSUE_TEMPLATE/config.yml",
 )  # fmt: skip
 
