@@ -400,6 +400,16 @@ def test_the_first_hour_goes_as_its_page_says(cli: Cli, tmp_path: Path) -> None:
     assert {file.name for file in tmp_path.iterdir()} >= {"robot.types.yaml", "rosprivacy.toml", "report.html"}
 
 
+@pytest.mark.slow
+def test_what_it_finds_is_what_its_commands_print(cli: Cli) -> None:
+    page = ROOT / "docs" / "what-it-finds.md"
+    commands, printed = blocks(page, "console"), blocks(page, "text")
+    for command, shown in zip(commands, printed, strict=True):
+        lines = iter(cli(*command.split()[1:], cwd=ROOT).stdout.splitlines())
+        for line in shown.splitlines():  # in this order
+            assert line == "…" or line in lines, line
+
+
 def test_every_id_in_the_readme_is_of_the_system_that_it_analyses() -> None:
     folder = ROOT / "examples" / "factory"
     document = rosprivacy.analyze(str(folder / "before.policy.xml"), str(folder / "run2.labels.yaml")).document()
