@@ -12,6 +12,7 @@ import json
 import re
 import shlex
 import shutil
+import tomllib
 from enum import StrEnum
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -26,8 +27,11 @@ from rosprivacy.cli.app import program
 from rosprivacy.cli.exit_code import CODES
 from rosprivacy.cli.inputs import WRITTEN
 from rosprivacy.cli.options import QUESTION_PANEL, READ
+from rosprivacy.cli.project_file import project_schema
+from rosprivacy.ingest.fleet.fleet_schema import fleet_schema
 from rosprivacy.ingest.labels.keywords import CHANNEL, KEYWORDS, NODE, rows
 from rosprivacy.ingest.labels.label_file import read_labels
+from rosprivacy.ingest.labels.label_schema import label_schema
 from rosprivacy.ingest.lint import RULES
 from rosprivacy.ingest.neo4j_graph.schema import NODES, RELATIONSHIPS, Property
 from rosprivacy.ontology.vocabulary import TOP, load
@@ -271,6 +275,20 @@ def categories_page(text: str) -> str:
     return re.sub(r"```text\n.*?```", lambda _: tree, text, count=1, flags=re.DOTALL)
 
 
+def editor_schema(name: str, earlier: str) -> str:
+    """The schema of a file that users write, with the address that a catalogue of schemas names it by."""
+    del earlier
+    address = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["urls"]["Repository"]
+    schema = EDITOR_SCHEMAS[name]()
+    identified = {"$schema": schema.pop("$schema"), "$id": f"{address}/raw/main/docs/{name}.schema.json", **schema}
+    return json.dumps(identified, ensure_ascii=False, indent=1) + "\n"
+
+
+EDITOR_SCHEMAS: dict[str, Callable[[], dict[str, Any]]] = {
+    "labels": lambda: label_schema(load().categories.values()),
+    "fleet": lambda: fleet_schema(load().categories.values()),
+    "project": project_schema,
+}
 GENERATED: dict[Path, Callable[[str], str]] = {
     ARCHITECTURE: lambda text: with_parts(text, house=house()),
     CATEGORIES: categories_page,
@@ -284,6 +302,7 @@ GENERATED: dict[Path, Callable[[str], str]] = {
     SECURITY: security_page,
     contract.PAGE: lambda _: contract.page(),
     **{contract.file_of(name): partial(schema_text, document) for name, document in contract.DOCUMENTS.items()},
+    **{contract.file_of(name): partial(editor_schema, name) for name in EDITOR_SCHEMAS},
 }
 
 
@@ -379,6 +398,16 @@ def test_the_first_hour_goes_as_its_page_says(cli: Cli, tmp_path: Path) -> None:
     (shown,) = blocks(page, "text")
     assert shown in answers[0]
     assert {file.name for file in tmp_path.iterdir()} >= {"robot.types.yaml", "rosprivacy.toml", "report.html"}
+
+
+@pytest.mark.slow
+def test_what_it_finds_is_what_its_commands_print(cli: Cli) -> None:
+    page = ROOT / "docs" / "what-it-finds.md"
+    commands, printed = blocks(page, "console"), blocks(page, "text")
+    for command, shown in zip(commands, printed, strict=True):
+        lines = iter(cli(*command.split()[1:], cwd=ROOT).stdout.splitlines())
+        for line in shown.splitlines():  # in this order
+            assert line == "…" or line in lines, line
 
 
 def test_every_id_in_the_readme_is_of_the_system_that_it_analyses() -> None:
