@@ -30,16 +30,37 @@ class About:
         How many paths share no flow.
     robots
         Of a pattern on a fleet: its robots; where data gets from one robot to another, all of the fleet.
+    findings, pseudonymised
+        Of a row of the register: ids of its findings, those of data in this form only apart.
     """
 
     view: str = ""
     path: tuple[str, ...] = ()
     disjoint_paths: int = 0
     robots: frozenset[str] = frozenset()
+    findings: frozenset[str] = frozenset()
+    pseudonymised: frozenset[str] = frozenset()
 
-    def knew(self, ends: Iterable[str]) -> bool:
-        """Whether the robots of two ends were there; an end on none is empty. Where none are remembered, all were."""
-        return not self.robots or {robot for robot in ends if robot} <= self.robots
+    @classmethod
+    def of_row(cls, findings: Iterable[tuple[str, bool]]) -> About:
+        """Return what a decision about a row is made about: its findings, each with whether it is pseudonymised."""
+        forms = dict(findings)
+        plain, hidden = (frozenset(one for one, form in forms.items() if form is some) for some in (False, True))
+        return cls(findings=plain, pseudonymised=hidden)
+
+    def knew(self, ends: Iterable[str], finding: str = "", *, hidden: bool = False) -> bool:
+        """Whether the robots of two ends, and a finding, were there; where none are remembered, all were.
+
+        Parameters
+        ----------
+        ends
+            Names of robots; an end on none is empty.
+        hidden
+            Whether data get there in pseudonymised form only; what was known as it is was known in this form, too.
+        """
+        known = self.findings | self.pseudonymised if hidden else self.findings
+        there = finding in known or not (self.findings or self.pseudonymised)
+        return there and (not self.robots or {robot for robot in ends if robot} <= self.robots)
 
 
 class ChangedAspect(NamedTuple):
@@ -104,5 +125,7 @@ def as_written(about: About) -> Mapping[str, object]:
         "path": list(about.path),
         "disjoint_paths": about.disjoint_paths,
         "robots": sorted(about.robots),
+        "findings": sorted(about.findings),
+        "pseudonymised": sorted(about.pseudonymised),
     }
     return {key: value for key, value in said.items() if value}

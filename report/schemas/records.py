@@ -286,6 +286,7 @@ class Target(TypedDict, total=False):
     """What a decision says that it is about."""
 
     id: str
+    row: Annotated[str, "Of the register: the findings that end there."]
     category: str
     source: str
     leak: str

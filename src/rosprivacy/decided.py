@@ -121,6 +121,7 @@ def accepts(decisions: Decisions | None, likeness: Likeness = NO_ROBOTS) -> Call
 def in_fleet(case: Case, likeness: Likeness) -> Case:
     """Return a case with its pattern and robots; where it stands for more than itself it has no id of its own."""
     ends = case.source, case.leak
+    case = case._replace(row="") if likeness.robots else case.in_row()
     pattern = pattern_of(case.kind, case.category, *ends, likeness, plain_also=case.plain_also)
     source, leak = (end.robot if likeness.is_robot(end.robot) else "" for end in ends)
     own = case.id if likeness.alone(*ends) else ""

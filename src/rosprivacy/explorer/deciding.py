@@ -214,14 +214,14 @@ def _subject(result: Result, finding: Finding) -> Mapping[str, str]:
     """What a log keeps of a finding; one that the document of a fleet shows on another robot is known by its id."""
     document = result.document()
     row = next((row for row in document["findings"] if row["id"] == finding.id), {"id": finding.id})
-    return subject(document, row)
+    return subject(document, finding=row)
 
 
 def _check_meaning(decisions: Decisions, scope: Scope, likeness: Likeness, entry: Mapping[str, Any]) -> None:
     """See that the entry decides what it was made about: no other decides it, too, and it is not over."""
     written = entry["id"], set(entry.get("robots", ())), set(entry.get("from_robots", ()))
     for case in _cases(scope, likeness, decisions.told_apart):
-        foremost = decisions.foremost(case)
+        foremost = [entry for some in decisions.foremost(case) for entry in some]
         other = next((each for each in foremost if (each.id, set(each.robots), set(each.from_robots)) != written), None)
         if other or not foremost:
             why = f"line {other.place.line} decides it, too" if other else "the entry would not be about it"
