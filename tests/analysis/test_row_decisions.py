@@ -120,7 +120,7 @@ def entries(draw: st.DrawFn, rows: dict[str, str]) -> list[Entry]:
 
 
 @given(cases(), st.data())
-@settings(deadline=None, max_examples=300)
+@settings(deadline=None, max_examples=120)
 def test_a_finding_is_accepted_only_where_its_row_is(system: System, data: st.DataObject) -> None:
     before = analysed(system.system)
     if before is None or not before.findings:
@@ -149,7 +149,7 @@ def test_a_finding_is_accepted_only_where_its_row_is(system: System, data: st.Da
 
 
 @given(cases(), st.data())
-@settings(deadline=None, max_examples=100)
+@settings(deadline=None, max_examples=40)
 def test_a_row_is_accepted_as_all_of_its_findings_one_by_one(system: System, data: st.DataObject) -> None:
     before = analysed(system.system)
     if before is None or not before.findings:

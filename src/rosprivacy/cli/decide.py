@@ -207,14 +207,14 @@ def decide(
         text, remarks = text_in(decisions), []
         for target in targets:
             finding = (findings or {}).get(target.get("id", ""))
-            about = [finding] if finding else [(findings or {})[one] for one in (row or {}).get("findings", ())]
+            meant = [finding] if finding else _in_row(row, findings or {})
             what = f"the acceptance of {target.get('id') or target.get('row', 'a pattern')}"
-            remarks += [f"{what} {gap}" for gap in _gaps(choice, facts, about)]
-            made_about = _made_about_row(about) if row else _made_about(finding)
+            remarks += [f"{what} {gap}" for gap in _gaps(choice, facts, meant)]
+            made_about = _made_about_row(meant) if row else _made_about(finding)
             whole = {**target, **entry, **({} if choice in IN_A_LOG else made_about)}
             section = DOUBTS if in_doubt or target.get("id") in doubts else FINDINGS
             remark = _remark(finding) or _doubt_remark(doubts.get(target.get("id", "")))
-            facts_then = subject(document, finding=finding, row=row) if document and about else None
+            facts_then = subject(document, finding=finding, row=row) if document and meant else None
             there = provenance(decisions.parent, facts_then)
             text = with_recorded(str(decisions), text, whole, remark, vocabulary, section, there)
         if (ids or "row" in pattern) and not report:
@@ -349,6 +349,11 @@ def _row(document: Mapping[str, Any], written: str, report: str) -> Mapping[str,
         hint = f"copy one: {', '.join(list(rows)[:5])}" if rows else "the report has no finding"
         raise InputErrors([DecisionError(report, 0, f"{shown(written)!r} {which} of the report", hint)])
     return dict(rows[fitting[0]])
+
+
+def _in_row(row: Mapping[str, Any] | None, findings: Mapping[str, dict[str, Any]]) -> list[dict[str, Any]]:
+    """The findings of a report that end in a row."""
+    return [findings[one] for one in row["findings"] if one in findings] if row else []
 
 
 def _made_about_row(findings: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
