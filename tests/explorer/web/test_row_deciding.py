@@ -10,7 +10,7 @@ from lxml import html
 
 from rosprivacy.report.catalogs.words import Words
 from tests.helpers.explorers import Explorer, version
-from tests.helpers.reports import policy
+from tests.helpers.rows import ANSWERS, at, written
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -20,54 +20,18 @@ if TYPE_CHECKING:
 
     Explore = Callable[..., Explorer]
 
-NODES = {
-    "door_camera": (["video"], []),
-    "hall_camera": (["video"], []),
-    "greeter": (["faces"], ["video"]),
-    "teleop": ([], ["video"]),
-    "recorder": ([], ["faces"]),
-    "scanner": ([], []),
-}
-LABELS: dict[str, Any] = {
-    "labels": 1,
-    "country": "DE",
-    "purpose": "greeting of visitors",
-    "nodes": {
-        "/door_camera": {"source": ["Video"], "subjects": ["visitors"]},
-        "/hall_camera": {"source": ["Video"], "subjects": ["staff"]},
-        "/greeter": {"derives": [{"from": "Video", "to": "FaceTemplate"}]},
-        "/teleop": "conduit",
-        "/recorder": "conduit",
-        "/scanner": {"source": ["ContactData"], "leak": ["ContactData"]},
-    },
-    "elements": {
-        "cabin": {
-            "kind": "person", "country": "TN", "operator": "Example Teleop", "recipient": "processor",
-            "transfer": "derogation",
-        },
-        "archive": {"kind": "storage", "country": "DE", "operator": "Example Cloud", "recipient": "processor"},
-    },
-    "flows": [{"from": "/teleop", "to": "cabin"}, {"from": "/recorder", "to": "archive"}],
-}  # fmt: skip
 SIGNED = {"choice": "accept", "reason": "agreed", "owner": "A. Lee", "expires": "2999-12-31", "about": "row"}
 GROUND = {"ground": "6(1)(f)"}
-ANSWERS = {"answer-confirm.occasional": "once a year", "answer-confirm.processor": "DMS 12"}
 
 
 @pytest.fixture
-def files(tmp_path: Path) -> list[Path]:
-    (tmp_path / "p.xml").write_text(policy(NODES), "utf-8")
-    (tmp_path / "l.json").write_text(json.dumps(LABELS), "utf-8")
-    return [tmp_path / "p.xml", tmp_path / "l.json"]
+def files(tmp_path: Path) -> tuple[Path, Path]:
+    return written(tmp_path)
 
 
 @pytest.fixture
-def begun(explore: Explore, files: list[Path], tmp_path: Path) -> Explorer:
+def begun(explore: Explore, files: tuple[Path, Path], tmp_path: Path) -> Explorer:
     return explore(*files, decisions=tmp_path / "d.jsonl")
-
-
-def at(explorer: Explorer, place: str) -> list[str]:
-    return [finding.id for finding in explorer.session.findings if finding.leak.name == place]
 
 
 @pytest.fixture
@@ -172,7 +136,7 @@ def test_what_no_form_says_is_refused(
 
 
 @pytest.mark.parametrize("language", ["en", "de", "fr"])
-def test_a_review_decides_rows_too(explore: Explore, files: list[Path], tmp_path: Path, language: str) -> None:
+def test_a_review_decides_rows_too(explore: Explore, files: tuple[Path, Path], tmp_path: Path, language: str) -> None:
     begun, words = explore(*files, decisions=tmp_path / "d.jsonl", review=True, language=language), Words(language)
     client, (finding, other) = begun.client(), at(begun, "cabin")
     summary = html.fromstring(client.get("/?step=summary").text)
@@ -194,7 +158,7 @@ def test_a_review_decides_rows_too(explore: Explore, files: list[Path], tmp_path
     assert words("state.accepted") in html.fromstring(client.get("/?step=summary").text).text_content()
 
 
-def test_a_review_without_a_file_of_decisions_says_how_to_name_one(explore: Explore, files: list[Path]) -> None:
+def test_a_review_without_a_file_of_decisions_says_how_to_name_one(explore: Explore, files: tuple[Path, Path]) -> None:
     begun = explore(*files, review=True)
     shown = html.fromstring(begun.client().get(f"/?step=decide&finding={at(begun, 'cabin')[0]}").text)
     assert not shown.xpath("//form[@id='decide']")

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING
 
 import pytest
 
 from rosprivacy.report.catalogs.words import Words
-from tests.explorer.web.test_row_deciding import ANSWERS, LABELS, NODES, at
 from tests.helpers import browser as chrome
 from tests.helpers import explorers
 from tests.helpers.browser import WIDTHS
 from tests.helpers.page_reader import Reader, served
-from tests.helpers.reports import policy
+from tests.helpers.rows import ANSWERS, at, written
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -27,9 +25,7 @@ TOO_WIDE = "h1, h2, h3, p, li, dd, fieldset, button, label"
 
 @pytest.fixture
 def files(tmp_path: Path) -> tuple[Path, Path]:
-    (tmp_path / "p.xml").write_text(policy(NODES), "utf-8")
-    (tmp_path / "l.json").write_text(json.dumps(LABELS), "utf-8")
-    return tmp_path / "p.xml", tmp_path / "l.json"
+    return written(tmp_path)
 
 
 def fill(browser: WebDriver, fields: dict[str, str]) -> None:
