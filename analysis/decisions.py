@@ -403,7 +403,7 @@ def decided(
 
 def _changed(entry: Decision, findings: Iterable[str], now: Mapping[str, About]) -> tuple[ChangedAspect, ...]:
     """What is not as it was; of an entry that lists robots, on one of these."""
-    there = findings if entry.robots else (entry.id,)
+    there = findings if entry.robots else (entry.id or entry.row,)
     return next((found for one in there if (found := changes(entry.made_about, now.get(one)))), ())
 
 

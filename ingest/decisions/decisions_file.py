@@ -40,8 +40,9 @@ CONDITION = "condition"
 OF_DOUBTS = ("id", "doubt", "element", "robot", "file")
 DOUBT_KEYS = (*OF_DOUBTS, "decision", *TEXTS, "date", "expires", "note", "history")
 KEYS = (*TARGET, "decision", *TEXTS, CONDITION, "legal_basis", "date", "expires", "note", "history", "made_about")
-REMEMBERED = ("view", "path", "disjoint_paths", "robots", "findings", "pseudonymised")
-REMEMBERED_LISTS = ("path", "robots", "findings", "pseudonymised")
+REMEMBERED = ("view", "disjoint_paths", "path", "stated", "robots", "findings", "pseudonymised")
+IN_ORDER = ("path", "stated")
+REMEMBERED_LISTS = REMEMBERED[2:]
 REQUIRED: Mapping[str, tuple[str, ...]] = {  # what a person signs
     Choice.ACCEPT: ("reason", "owner"),
     Choice.CONDITIONAL: ("reason", "owner", CONDITION),
@@ -182,8 +183,8 @@ class DecisionsReader(FileReader):
             lists = {key: tuple(self._names(known[key], key)) for key in REMEMBERED_LISTS if key in known}
             view = self._text(known["view"], "view") if "view" in known else ""
             count = self._count(known["disjoint_paths"]) if "disjoint_paths" in known else 0
-            sets = {key: frozenset(names) for key, names in lists.items() if key != "path"}
-            return About(view, lists.get("path", ()), count, **sets)
+            sets = {key: frozenset(names) for key, names in lists.items() if key not in IN_ORDER}
+            return About(view, lists.get("path", ()), count, stated=lists.get("stated", ()), **sets)
         return None
 
     def _names(self, value: Value, key: str) -> Iterator[str]:

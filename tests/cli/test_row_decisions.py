@@ -10,6 +10,7 @@ import pytest
 from tests.helpers.command import refused
 from tests.helpers.fleet_files import policy
 from tests.helpers.paths import ROOT
+from tests.helpers.rows import written
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -59,6 +60,7 @@ def test_a_row_is_decided_with_all_findings_that_end_there(cli: Cli, folder: Pat
     assert accepted(document) == [True, True]
     (listed,) = document["decisions"]
     assert listed["target"] == {"row": row["id"]}
+    assert not any("changed" in finding["decision"] for finding in document["findings"])
     assert sorted(listed["findings"]) == sorted(row["findings"])
     about = json.loads((folder / "decisions.jsonl").read_text())["about"]
     assert {"row", "policies", "labels", "law"} == about.keys()
@@ -116,3 +118,22 @@ def test_a_row_of_another_robot_is_orphaned(cli: Cli, folder: Path) -> None:
     document = report(cli, folder)
     assert accepted(document) == [False, False]
     assert any("orphaned" in one["message"] for one in document["diagnostics"])
+
+
+def test_what_is_stated_of_the_place_now_is_compared_to_what_was(cli: Cli, tmp_path: Path) -> None:
+    policy_file, labels = written(tmp_path)
+    policy_file.rename(tmp_path / "p.xml")
+    labels.rename(tmp_path / "l.yaml")
+    rows = {row["places"][0]["name"]: row["id"] for row in report(cli, tmp_path)["register"] if row["findings"]}
+    decide(cli, tmp_path, "accept", "--row", rows["cabin"], "--report", "r.json")
+    before = {finding["id"]: finding for finding in report(cli, tmp_path)["findings"] if finding["accepted"]}
+    assert not any("changed" in finding["decision"] for finding in before.values())
+    text = (tmp_path / "l.yaml").read_text("utf-8")
+    (tmp_path / "l.yaml").write_text(text.replace('"TN"', '"IN"'), "utf-8")
+    after = [finding for finding in report(cli, tmp_path)["findings"] if finding["id"] in before]
+    for finding in after:
+        assert finding["accepted"]  # the kind of data and the place are the same: a person has to look again
+        (change,) = finding["decision"]["changed"]
+        assert change["what"] == "stated"
+        assert ("country: TN" in change["before"], "country: IN" in change["now"]) == (True, True)
+    assert len(after) == 2

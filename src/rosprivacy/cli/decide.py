@@ -210,7 +210,7 @@ def decide(
             meant = [finding] if finding else _in_row(row, findings or {})
             what = f"the acceptance of {target.get('id') or target.get('row', 'a pattern')}"
             remarks += [f"{what} {gap}" for gap in _gaps(choice, facts, meant)]
-            made_about = _made_about_row(meant) if row else _made_about(finding)
+            made_about = _made_about_row(row, meant) if row else _made_about(finding)
             whole = {**target, **entry, **({} if choice in IN_A_LOG else made_about)}
             section = DOUBTS if in_doubt or target.get("id") in doubts else FINDINGS
             remark = _remark(finding) or _doubt_remark(doubts.get(target.get("id", "")))
@@ -356,11 +356,12 @@ def _in_row(row: Mapping[str, Any] | None, findings: Mapping[str, dict[str, Any]
     return [findings[one] for one in row["findings"] if one in findings] if row else []
 
 
-def _made_about_row(findings: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
+def _made_about_row(row: Mapping[str, Any], findings: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
     """The findings that end in a row now: a finding that comes later is not decided."""
-    from rosprivacy.analysis.remembered import About, as_written
+    from rosprivacy.analysis.remembered import About, as_written, stated_of
 
-    return {"made_about": as_written(About.of_row((one["id"], one["pseudonymised"]) for one in findings))}
+    about = About.of_row(((one["id"], one["pseudonymised"]) for one in findings), stated_of(row))
+    return {"made_about": as_written(about)}
 
 
 def _made_about(finding: Mapping[str, Any] | None) -> dict[str, Any]:

@@ -20,7 +20,7 @@ from rosprivacy.analysis.decisions import Choice, State
 from rosprivacy.analysis.errors import DecisionError, InputErrors, shown
 from rosprivacy.analysis.files_read import one_run
 from rosprivacy.analysis.fleet.likeness import NO_ROBOTS, pattern_id
-from rosprivacy.analysis.remembered import About, as_written
+from rosprivacy.analysis.remembered import About, as_written, stated_of
 from rosprivacy.clock import judged_on, today
 from rosprivacy.decided import about_today, in_fleet
 from rosprivacy.decision_record import parse_recorded, provenance, subject, with_recorded
@@ -172,7 +172,7 @@ def record_row(file: str | None, result: Result, row: str, ruling: Ruling, judge
     findings = [each for each in result.analysis.findings if each.id in ids]
     if not findings:
         raise _refused(file, f"{shown(row)!r} is no row in which a finding ends", "take the id of one that there is")
-    about = About.of_row((each.id, each.pseudonymised) for each in findings)
+    about = About.of_row(((each.id, each.pseudonymised) for each in findings), stated_of(entry_of_row or {}))
     entry = {"row": row, **_entry(ruling), "made_about": as_written(about)}
 
     def check(decisions: Decisions) -> None:
