@@ -66,6 +66,24 @@ def test_a_row_is_decided_with_all_findings_that_end_there(cli: Cli, folder: Pat
     assert {"row", "policies", "labels", "law"} == about.keys()
 
 
+def test_a_decisions_file_holds_rows_too(cli: Cli, tmp_path: Path) -> None:
+    written(tmp_path)
+    yaml = ("--decisions", "d.yaml")
+    analyze = ("analyze", "p.xml", "-l", "l.json", "-f", "json", "-o", "r.json")
+    cli(*analyze, cwd=tmp_path)
+    rows = json.loads((tmp_path / "r.json").read_text())["register"]
+    row = next(row for row in rows if row["places"] and row["places"][0]["name"] == "cabin")
+    decide(cli, tmp_path, "accept", "--row", row["id"], "--report", "r.json", *yaml)
+    decide(
+        cli, tmp_path, "accept", "--row", row["id"], "--report", "r.json", *yaml, "--ticket", "T-1"
+    )  # anew, in place
+    assert (tmp_path / "d.yaml").read_text("utf-8").count(f"row: {row['id']}") == 1
+    cli(*analyze, *yaml, cwd=tmp_path)
+    document = json.loads((tmp_path / "r.json").read_text())
+    assert {finding["id"] for finding in document["findings"] if finding["accepted"]} == set(row["findings"])
+    assert not any("changed" in (finding["decision"] or {}) for finding in document["findings"])
+
+
 def test_a_finding_that_comes_later_is_not_decided_with_the_row(cli: Cli, folder: Path) -> None:
     (folder / "l.yaml").write_text(LABELS % "conduit: [Video]")
     (row,) = report(cli, folder)["register"]
