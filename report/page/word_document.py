@@ -158,10 +158,11 @@ def laid_out(document: Document, title: str, language: str, date: str) -> None:
 def numbered(footer: Paragraph, title: str, date: str) -> None:
     """Write on each page what the document is, of which day, and which page of how many it is."""
     footer.add_run(f"{blanked(title)[:100]} · {date} · ")
+    paragraph: _Element = footer._p  # noqa: SLF001 - python-docx has no word for it
     for field, after in (("PAGE", " / "), ("NUMPAGES", "")):
         counted = OxmlElement("w:fldSimple")
         counted.set(qn("w:instr"), field)
-        footer._p.append(counted)  # noqa: SLF001 - python-docx has no word for it
+        paragraph.append(counted)
         footer.add_run(after)
     for run in footer.runs:
         run.font.size = Pt(8)
