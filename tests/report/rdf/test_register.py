@@ -135,11 +135,14 @@ def test_a_lawful_transfer_is_told_with_its_safeguard(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("stated", "answers"),
     [
-        (f"{LAWFUL}, legal_basis: ['46(2)(c)']", {("US", "46(2)(c)", "false"), ("US", "standard-clauses", "false")}),
-        ("country: CH", {("CH", "", "false")}),
-        ("country: US, transfer: none", {("US", "none", "true")}),
-        ("country: TN, transfer: derogation", {("TN", "derogation", "true")}),
-        ("note: nothing is known", {("", "", "true")}),
+        (
+            f"{LAWFUL}, legal_basis: ['46(2)(c)']",
+            {("US", "partly", "46(2)(c)", "false"), ("US", "partly", "standard-clauses", "false")},
+        ),
+        ("country: CH", {("CH", "adequate", "", "false")}),
+        ("country: US, transfer: none", {("US", "partly", "none", "true")}),
+        ("country: TN, transfer: derogation", {("TN", "third", "derogation", "true")}),
+        ("note: nothing is known", {("", "", "", "true")}),
         ("country: FR", set()),
     ],
 )
