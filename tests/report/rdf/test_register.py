@@ -25,6 +25,7 @@ from rosprivacy.report.rdf.findings import rdf_graph
 from rosprivacy.report.rdf.terms import DPV, RP
 from tests.helpers.answers import answer_of
 from tests.helpers.concerned import VOCABULARY, Case, cases
+from tests.helpers.fleet_files import policy
 from tests.helpers.graphs import hospital
 from tests.helpers.linked_data import answered, problems, questions
 from tests.helpers.linked_rows import comparable, rows_told
@@ -102,6 +103,21 @@ def test_each_row_of_a_fleet_is_told_cell_by_cell() -> None:
     assert problems(graph) == ""
 
 
+def test_places_that_differ_only_in_the_robot_are_all_told(tmp_path: Path) -> None:
+    """Two models whose robots have a screen of one name: one row, two places."""
+    models = ""
+    for model, camera in (("small", "camera"), ("large", "periscope")):
+        (tmp_path / f"{model}.xml").write_text(policy(f"{camera}>/image", "screen</image"), "utf-8")
+        nodes = f"{{/{camera}: {{source: [Video]}}, /screen: {{leak: [Video]}}}}"
+        (tmp_path / f"{model}.yaml").write_text(f"labels: 1\nnodes: {nodes}\n", "utf-8")
+        models += f"  {model}: {{policies: {model}.xml, labels: {model}.yaml}}\n"
+    robots = "robots: {a: {model: small}, b: {model: large}}\n"
+    (tmp_path / "fleet.yaml").write_text(f"fleet: 1\nmodels:\n{models}{robots}", "utf-8")
+    graph = check_rows(document_of(rosprivacy.analyze_fleet(tmp_path / "fleet.yaml")))
+    assert len({*graph.objects(only_row(graph), RP.place)}) == 2
+    assert problems(graph) == ""
+
+
 def archive(folder: Path, stated: str, subjects: str = "[visitors]") -> rosprivacy.Result:
     (folder / "p.xml").write_text(POLICY, "utf-8")
     (folder / "l.yaml").write_text(LABELS.format(facts=stated, subjects=subjects), "utf-8")
@@ -160,6 +176,26 @@ def test_a_basis_of_a_transfer_has_the_term_of_its_point_where_it_is_one(tmp_pat
     graph = check_rows(document_of(archive(tmp_path, f"country: TN, {basis}")))
     terms = {str(one).removeprefix(str(GDPR)) for one in graph.objects(only_row(graph), DPV.hasLegalBasis)}
     assert terms == ({EXACT[stated]} if EXACT[stated] else set())
+
+
+def test_bases_of_which_dpv_has_no_term_are_told_as_they_are_stated(tmp_path: Path) -> None:
+    graph = check_rows(document_of(archive(tmp_path, "country: DE, legal_basis: ['6(1)(f)', '9(2)(h)', '9(3)', '10']")))
+    row = only_row(graph)
+    assert {str(one) for one in graph.objects(row, RP.statedLegalBasis)} == {"6(1)(f)", "9(2)(h)", "9(3)", "10"}
+    assert {*graph.objects(row, DPV.hasLegalBasis)} == {GDPR["A6-1-f"], GDPR["A9-2-h"]}
+
+
+def test_a_measure_that_some_ways_lead_past_is_told_as_one(tmp_path: Path) -> None:
+    (tmp_path / "p.xml").write_text(
+        policy("camera>/image<", "blur>/blurred</image", "uplink></image,/blurred"), "utf-8"
+    )
+    nodes = "{/camera: {source: [Video]}, /blur: {sanitizer: {Video: pseudonymise}}, /uplink: {leak: [Video]}}"
+    (tmp_path / "l.yaml").write_text(f"labels: 1\nnodes: {nodes}\n", "utf-8")
+    graph = check_rows(document_of(rosprivacy.analyze(tmp_path / "p.xml", tmp_path / "l.yaml")))
+    (measure,) = graph.objects(only_row(graph), DPV.hasTechnicalMeasure)
+    assert {*graph.objects(measure, RP.everywhere)} == {Literal(lexical_or_value=False)}
+    assert {*graph.objects(measure, RDF.type)} == {DPV.Pseudonymisation}
+    assert problems(graph) == ""
 
 
 def test_what_nobody_states_gives_no_triple_and_is_to_be_completed(tmp_path: Path) -> None:
