@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 DOCS = Path(__file__).resolve().parent
 TEMPLATE, WORDS = "ontology.md.j2", "linked-data.md"
-FILES = ("categories.ttl", "law.ttl", "other_law.ttl", "contexts.ttl", "elements.ttl")
+FILES = ("categories.ttl", "law.ttl", "other_law.ttl", "contexts.ttl", "persons.ttl", "elements.ttl")
 RP = Namespace("https://w3id.org/rosprivacy#")
 LANGUAGES = ("en", "de", "fr")
 NAMES = (SKOS.prefLabel, DCTERMS.title)
@@ -29,6 +29,7 @@ GROUPS = (
     ("Kinds of personal data", (SKOS.Concept,)),
     ("Provisions", (RP.LegalProvision,)),
     ("Contexts", (RP.Context, RP.Sharpening, RP.Situation)),
+    ("Groups of persons", (RP.PersonGroup,)),
     ("Roles, elements and findings", (RDFS.Class, RP.PossibleActivity)),
     ("Methods, data types, identity factors, verdicts", (RP.Method, RP.DataType, RP.IdentityFactor, RP.Verdict)),
     ("Further terms", ()),

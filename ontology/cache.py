@@ -13,13 +13,13 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.model import Category, Legal, Pointer, Situation
+from rosprivacy.analysis.model import Category, Legal, PersonGroup, Pointer, Situation
 from rosprivacy.ontology.pointed import Pointed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-FORMAT = 11  # one more when what is kept, or what is refused, changes
+FORMAT = 12  # one more when what is kept, or what is refused, changes
 
 
 def default_folder() -> Path:
@@ -86,9 +86,10 @@ def _legal(rows: Iterable[Any]) -> tuple[Legal, ...]:
 
 
 def _pointed(row: list[Any]) -> Pointed:
-    provisions, situations, at_stake = row
+    provisions, situations, at_stake, groups = row
     return Pointed(
         tuple(Pointer(*each) for each in provisions),
         tuple(Situation(*_frozen(each)) for each in situations),
         tuple((kind, tuple(names)) for kind, names in at_stake),
+        tuple(PersonGroup(*_frozen(each)) for each in groups),
     )

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from rdflib import DCTERMS, RDF, RDFS, SKOS, Graph, Namespace, URIRef
 
 from rosprivacy.analysis.errors import InputErrors, OntologyError, shown
-from rosprivacy.analysis.model import ARTICLE_10, CONCERNS, Category, Legal, Pointer, Situation
+from rosprivacy.analysis.model import ARTICLE_10, CONCERNS, Category, Legal, PersonGroup, Pointer, Situation
 from rosprivacy.ontology.iris import PUBLISHED, STORED, as_stored
 from rosprivacy.ontology.pointed import EVERY_SYSTEM, Pointed
 
@@ -195,6 +195,7 @@ def pointed_of(graph: Graph) -> Pointed:
     """Return the provisions that anything is pointed at (rp:lookAt), and what points at them beside categories."""
     kinds = sorted(set(graph.subjects(RDF.type, RP.FindingKind)), key=str)
     at_stake = {kind: sorted(graph.objects(kind, RP.provision), key=str) for kind in kinds}
+    groups = graph.subjects(RDF.type, RP.PersonGroup)
     named = {*graph.objects(None, RP.lookAt), *(one for several in at_stake.values() for one in several)}
     situations = {*graph.subjects(RDF.type, RP.Context), *graph.subjects(RDF.type, RP.Situation)}
     stakes = (
@@ -205,6 +206,21 @@ def pointed_of(graph: Graph) -> Pointed:
         tuple(_pointer(graph, one) for one in sorted(named, key=lambda one: _identifier(graph, one))),
         tuple(sorted((_situation(graph, one) for one in situations), key=lambda one: one.name)),
         tuple(sorted(stakes)),
+        tuple(_group(graph, one) for one in sorted(groups, key=str)),
+    )
+
+
+def _group(graph: Graph, subject: Node) -> PersonGroup:
+    title = first_texts(graph, subject, SKOS.prefLabel)
+    words = {*graph.objects(subject, SKOS.prefLabel), *graph.objects(subject, SKOS.altLabel)}
+    return PersonGroup(
+        name=local_name(str(subject)),
+        term=str(graph.value(subject, SKOS.exactMatch)),
+        title=title.get(ENGLISH, ""),
+        words=tuple(sorted({str(word).casefold() for word in words})),
+        vulnerable=graph.value(subject, RP.vulnerable) is not None,
+        look_at=tuple(sorted(_identifier(graph, at) for at in graph.objects(subject, RP.lookAt))),
+        translations=_translated(title=title),
     )
 
 

@@ -33,7 +33,7 @@ REMEMBERED = 8  # vocabularies that are remembered, and what was made for them: 
 P = ParamSpec("P")
 T = TypeVar("T")
 TOP = "PersonalData"
-SHIPPED = ("categories.ttl", "law.ttl", "other_law.ttl", "contexts.ttl", "elements.ttl", "dpv.ttl")
+SHIPPED = ("categories.ttl", "law.ttl", "other_law.ttl", "contexts.ttl", "persons.ttl", "elements.ttl", "dpv.ttl")
 PREFIXES = {
     "rp:": STORED,
     "dpv:": "https://w3id.org/dpv#",
@@ -56,7 +56,7 @@ class Vocabulary(NamedTuple):
     sources
         (file, SHA-256) of users' own ontologies.
     pointed
-        Law to look at beside what is followed, and the contexts that point at it.
+        Law to look at beside what is followed, and the contexts and groups of persons that point at it.
     """
 
     categories: Mapping[str, Category]

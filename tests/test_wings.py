@@ -34,6 +34,7 @@ SAME_PART = {
     "stated": {"report/schemas", "report/document"},  # what is stated: its keys, and how they are made
     "register": {
         "analysis/findings",
+        "report/rdf",
         "report/schemas",
         "report/document",
     },  # how rows are made, their keys, and how they are told

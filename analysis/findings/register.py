@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.model import Bound, Element, Surroundings
 
-    Law = Callable[[str, tuple[str, ...], tuple[str, ...]], tuple[str, ...]]
+    Law = Callable[[str, tuple[str, ...], tuple[str, ...], tuple[str, ...]], tuple[str, ...]]
 
 
 class Statements(NamedTuple):
@@ -56,7 +56,7 @@ class Statements(NamedTuple):
     contexts
         Where sources work, and the kinds of data.
     law
-        (Kind, contexts, countries) -> names of the provisions to look at.
+        (Kind, contexts, countries, groups of persons) -> names of the provisions to look at.
     decided
         Id of a finding -> legal bases that a valid decision records.
     second
@@ -85,7 +85,7 @@ def register(analysis: Analysis, stated: Statements) -> tuple[RegisterRow, ...]:
     >>> from rosprivacy.analysis.example import CATEGORIES, factory
     >>> from rosprivacy.analysis.findings.findings import analyse
     >>> graph, bound, hierarchy = factory()
-    >>> stated = Statements(bound, (), Contexts({}, CATEGORIES), hierarchy, lambda kind, contexts, countries: ())
+    >>> stated = Statements(bound, (), Contexts({}, CATEGORIES), hierarchy, lambda kind, *where: ())
     >>> for row in register(analyse(graph, bound, hierarchy), stated):
     ...     print(row.category, row.places[0].name, [measure.element.name for measure in row.measures], row.state)
     FaceTemplate /archive [] open
@@ -200,6 +200,7 @@ class _Rows:
         contexts = tuple(sorted({one for some, _ in where for one in some}))
         countries = tuple(sorted({country for _, country in where if country}))
         groups = [self._stated.bound.subjects.get(vertex, ()) for vertex in ways.sources]
+        subjects = tuple(sorted({group for groups in groups for group in groups}))
         kind = self._stated.contexts.categories[category]
         law = tuple((one.name, one.verdict) for one in (*kind.law, *revealed(kind, contexts)))
         case = THIRD_COUNTRY if facts and transferred(facts) else STATED
@@ -223,7 +224,7 @@ class _Rows:
                 dict.fromkeys(one._replace(element=self._first(one.element)) for one in ways.derivations)
             ),
             measures=tuple(dict.fromkeys(one._replace(element=self._first(one.element)) for one in ways.measures)),
-            subjects=tuple(sorted({group for groups in groups for group in groups})),
+            subjects=subjects,
             contexts=contexts,
             countries=countries,
             purposes=_distinct(row.purposes for row in processing),
@@ -242,7 +243,7 @@ class _Rows:
             retention=kept,
             backups=stated.backups,
             encrypted=stated.encrypted,
-            look_at=self._stated.law(category, contexts, countries),
+            look_at=self._stated.law(category, contexts, countries, subjects),
             findings=tuple(finding.id for finding in findings),
             state=_state(findings),
             to_complete=tuple(cell for cell in Cell if cell in open_cells),

@@ -156,6 +156,34 @@ class Situation(NamedTuple):
     translations: Mapping[str, Mapping[str, str]] = {}
 
 
+class PersonGroup(NamedTuple):
+    """A group of persons that labels may name in their own words, such as children.
+
+    Attributes
+    ----------
+    name
+        Short name, the IRI's last part.
+    term
+        IRI of the group in DPV.
+    words
+        All that it is called in any language, in small letters, sorted.
+    vulnerable
+        Whether it is among the vulnerable persons of criterion 7 of WP 248 rev.01; else a person has to say.
+    look_at
+        Names of the provisions to look at where data are about the group, sorted.
+    translations
+        Language -> ``title`` in it.
+    """
+
+    name: str
+    term: str
+    title: str
+    words: tuple[str, ...]
+    vulnerable: bool = False
+    look_at: tuple[str, ...] = ()
+    translations: Mapping[str, Mapping[str, str]] = {}
+
+
 class Category(NamedTuple):
     """A kind of personal data.
 

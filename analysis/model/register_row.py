@@ -117,7 +117,8 @@ class RegisterRow:
     retention
         How long the place keeps the kind.
     look_at
-        Names of the provisions to look at that the kind or a context calls for, of the Union and of these countries.
+        Names of the provisions to look at that the kind, a context or the persons call for, of the Union and of these
+        countries.
     findings
         Ids of the findings that end there.
     to_complete

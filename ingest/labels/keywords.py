@@ -223,7 +223,8 @@ KEYWORDS: tuple[Keyword, ...] = (
         states=read_subjects,
         docs="""
 `subjects: [residents, staff]` | whom the data of a source are about, in your words; reports show it, no flow changes
-  by it
+  by it. Words of [the closed list](../ontology/persons.ttl) (children, patients, staff, Kinder, enfants, …) have a term
+  of DPV in [linked data](linked-data.md), and children point at their law
 """,
     ),
     Keyword(

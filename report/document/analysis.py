@@ -26,6 +26,7 @@ from rosprivacy.report.document.register import register_entry
 from rosprivacy.report.document.stated import (
     category_entry,
     inventory,
+    known_groups,
     pointers,
     situations,
     surroundings,
@@ -128,10 +129,11 @@ def _analysis(document: Document) -> AnalysisDocument:
         "subjects": [
             {"element": element_dict(element), "subjects": list(groups)} for element, groups in document.subjects
         ],
+        "persons": known_groups(document),
         "register": [register_entry(row) for row in document.register or ()],
         "surroundings": surroundings(document),
         "contexts": situations(vocabulary, contexts),
-        "look_at": pointers(vocabulary, analysis.emitted, contexts),
+        "look_at": pointers(document),
         "sanitizers": _sanitizers(document),
         "derivations": _derivations(document.derivations),
         "unreached": _unreached(analysis),

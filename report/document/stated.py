@@ -6,6 +6,7 @@ there with its country, and who shows it chooses by the countries that are state
 
 from __future__ import annotations
 
+from collections import defaultdict
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.contexts import article9_in, revealed
@@ -14,7 +15,7 @@ from rosprivacy.analysis.non_ros import DEFAULT_ROLES, limited, not_stated
 from rosprivacy.report.document.records import element_dict
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Mapping
+    from collections.abc import Collection, Mapping
 
     from rosprivacy.analysis.answer import Analysis, Finding
     from rosprivacy.analysis.findings.processed import Processed
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
         NonRosEntry,
         NonRosNotKnown,
         NonRosStated,
+        PersonGroupEntry,
         PointerEntry,
         ProcessedEntry,
         ProcessingEntry,
@@ -111,9 +113,35 @@ def situations(vocabulary: Vocabulary, contexts: Collection[str]) -> list[Contex
     ]
 
 
-def pointers(vocabulary: Vocabulary, categories: Iterable[str], contexts: Collection[str]) -> list[PointerEntry]:
-    """Return the provisions to look at, with the categories and contexts that call for each; every system with none."""
-    emitted = [vocabulary.categories[name] for name in categories]
+def known_groups(document: Document) -> list[PersonGroupEntry]:
+    """Return the groups of the closed list that the words of labels stand for, with these words."""
+    words = sorted({stated for _, groups in document.subjects for stated in groups})
+    pointed = document.vocabulary.pointed
+    stated_as = {group.name: [word for word in words if pointed.group_of(word) == group] for group in pointed.groups}
+    return [
+        {
+            "name": group.name,
+            "title": group.title,
+            "vulnerable": group.vulnerable,
+            "subjects": stated_as[group.name],
+            "translations": _texts(group.translations),
+        }
+        for group in pointed.groups
+        if stated_as[group.name]
+    ]
+
+
+def pointers(document: Document) -> list[PointerEntry]:
+    """Return the provisions to look at, with the categories and contexts that call for each; every system with none.
+
+    What the persons of a source call for, the kinds that it brings in do.
+    """
+    vocabulary = document.vocabulary
+    emitted = [vocabulary.categories[name] for name in document.analysis.emitted]
+    persons: dict[str, set[str]] = defaultdict(set)
+    for source, groups in document.subjects:
+        for category in document.brought_in.get(source, ()):
+            persons[category].update(groups)
     return [
         {
             "provision": pointer.name,
@@ -130,7 +158,7 @@ def pointers(vocabulary: Vocabulary, categories: Iterable[str], contexts: Collec
             "contexts": list(where),
             "translations": _texts(pointer.translations),
         }
-        for pointer, kinds, where in vocabulary.pointed.rows(emitted, contexts)
+        for pointer, kinds, where in vocabulary.pointed.rows(emitted, document.contexts.everywhere, persons)
     ]
 
 

@@ -165,8 +165,12 @@ def _combines(index: Index) -> str:
 
 
 def _subjects(index: Index) -> str:
-    groups = sorted({group for said in index.subjects.values() for group in said})
-    return index.words("criterion.subjects", names=_row(groups, index)) if groups else ""
+    """Whom labels name: those of the closed list that the guidelines call vulnerable, then all others."""
+    known = index.document.get("persons", ())
+    vulnerable = {fit(word) for group in known if group["vulnerable"] for word in group["subjects"]}
+    groups = {group for said in index.subjects.values() for group in said}
+    said = {"criterion.vulnerable": groups & vulnerable, "criterion.subjects": groups - vulnerable}
+    return "; ".join(index.words(key, names=_row(sorted(names), index)) for key, names in said.items() if names)
 
 
 GENERAL = (  # what Article 35(7) asks for of the whole, 35(2), 35(9), 36, and who answers for it

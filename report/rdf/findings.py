@@ -1,4 +1,4 @@
-"""Findings -> RDF: each with its path and its law, and the possible process that it is about (``process.py``).
+"""Findings and register -> RDF: each finding with its path, its law and the possible process that it is about.
 
 In: a ``Document``. Out: an rdflib graph without time or chance in it (rule S14),
 which ``serialise.py`` writes. Nothing here is a legal verdict: a provision is one that a person has to look at.
@@ -18,7 +18,9 @@ from rosprivacy.analysis.errors import shown
 from rosprivacy.report.document.analysis import json_document
 from rosprivacy.report.document.contents import required
 from rosprivacy.report.naming import count_elements
+from rosprivacy.report.rdf.individuals import Individuals
 from rosprivacy.report.rdf.process import Processes, changes, kinds_along, label_of, legal_of
+from rosprivacy.report.rdf.register import register_triples
 from rosprivacy.report.rdf.terms import (
     DPV,
     RISK,
@@ -60,7 +62,7 @@ ROLES = {
 
 
 def rdf_graph(document: Document, when: datetime | None = None, base: str | None = None) -> Graph:
-    """Return the findings of an analysis, its verdict and where they come from, as RDF.
+    """Return the findings of an analysis, its register and verdict, and where they come from, as RDF.
 
     Parameters
     ----------
@@ -76,13 +78,14 @@ def rdf_graph(document: Document, when: datetime | None = None, base: str | None
 
     Notes
     -----
-    Takes time linear in the hops of all witnesses and paths.
+    Takes time linear in the hops of all witnesses and paths, and the cells of the register.
     """
     analysis, entries = document.analysis, json_document(document)
     names = names_of(entries, base)
     files = by_path(entries["assumptions"], names)
     things = Things(document, names, files)
-    findings = _Findings.of(document, names, things)
+    individuals = Individuals(document, names, things)
+    findings, answer = _Findings.of(individuals), names.of("analysis", digest_of(entries))
     graph = Graph(bind_namespaces="none")
     for prefix, namespace in PREFIXES.items():
         graph.bind(prefix, str(namespace))
@@ -91,7 +94,9 @@ def rdf_graph(document: Document, when: datetime | None = None, base: str | None
     for finding in analysis.findings:
         for triple in findings.triples(finding):
             graph.add(triple)
-    for triple in type_triples(document, names.of("analysis", digest_of(entries)), files, things):
+    for triple in register_triples(answer, individuals):
+        graph.add(triple)
+    for triple in type_triples(document, answer, files, things):
         graph.add(triple)
     for triple in things.descriptions():
         graph.add(triple)
@@ -127,12 +132,13 @@ class _Findings:
     processes: Processes
 
     @classmethod
-    def of(cls, document: Document, names: IndividualNames, things: Things) -> _Findings:
+    def of(cls, individuals: Individuals) -> _Findings:
+        document, names, things = individuals.document, individuals.names, individuals.things
         analysis = document.analysis
         unstated = frozenset((element.shown_as, category) for element, category in analysis.unstated)
         unreviewed = frozenset((q.element.shown_as, category) for q in analysis.open for category in q.categories)
         processed = {(row.element, row.category): row for row in required(document.processing).by_kind}
-        processes = Processes(document, names, things, unstated, processed)
+        processes = Processes(individuals, unstated, processed)
         return cls(document, names, things, unreviewed, processes)
 
     def triples(self, finding: Finding) -> Iterator[Triple]:

@@ -14,9 +14,8 @@ from rdflib import RDF, RDFS, Literal
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.findings.processed import Processed
-from rosprivacy.analysis.model import NonRosFacts
-from rosprivacy.analysis.non_ros import EVERY, INSIDE, retention_of
-from rosprivacy.report.rdf.terms import DPV, RISK, RP, Triple, about, below, duration, foreign, legal_basis, text
+from rosprivacy.analysis.non_ros import EVERY, retention_of
+from rosprivacy.report.rdf.terms import DPV, RISK, RP, Triple, about, below, duration, legal_basis, text
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping
@@ -24,11 +23,9 @@ if TYPE_CHECKING:
     from rdflib import URIRef
 
     from rosprivacy.analysis.answer import Finding
-    from rosprivacy.analysis.model import Element, Legal
+    from rosprivacy.analysis.model import Element, Legal, NonRosFacts
     from rosprivacy.ontology.vocabulary import Vocabulary
-    from rosprivacy.report.document.contents import Document
-    from rosprivacy.report.rdf.terms import IndividualNames
-    from rosprivacy.report.rdf.things import Things
+    from rosprivacy.report.rdf.individuals import Individuals
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,33 +83,11 @@ def legal_of(finding: Finding, vocabulary: Vocabulary) -> tuple[tuple[Legal, tup
     return tuple((legal, tuple(legal.stated_of.split(", "))) for legal in vocabulary.categories[finding.category].law)
 
 
-def foreign_terms(category: str, vocabulary: Vocabulary) -> tuple[str, ...]:
-    """Return the IRIs of other vocabularies for a category: its own, or those of its nearest broader ones; sorted."""
-    for level in _levels(category, vocabulary):
-        categories = [vocabulary.categories[name] for name in level]
-        found = {iri for known in categories for iri in (*known.same_as, *known.within)}
-        if found:
-            return tuple(sorted(found))
-    return ()
-
-
-def _levels(category: str, vocabulary: Vocabulary) -> Iterator[list[str]]:
-    """A category, then its broader ones by distance."""
-    distances = vocabulary.hierarchy.ancestors[category]
-    for distance in sorted(set(distances.values())):
-        yield sorted(name for name in distances if distances[name] == distance)
-
-
-ALWAYS = "always"
 STORED = "storage-limitation"
 OPEN = "unprotected-channel"
 OF_KIND = {
     "disclosure": DPV.Disclose, STORED: DPV.Store, "third-country-transfer": DPV.CrossBorderTransfer,
     OPEN: DPV.Disclose,
-}  # fmt: skip
-PARTIES = {
-    "controller": DPV.DataController, "joint-controller": DPV.JointDataControllers, "processor": DPV.DataProcessor,
-    "third-party": DPV.ThirdParty,
 }  # fmt: skip
 AT_LEAK = {"storage": DPV.Store, "external-system": DPV.Transfer}
 
@@ -129,50 +104,34 @@ class Processes:
         (element, category) -> purposes, legal bases and who is responsible, as stated.
     """
 
-    document: Document
-    names: IndividualNames
-    things: Things
+    individuals: Individuals
     unstated: frozenset[tuple[object, str]]
     processed: Mapping[tuple[Element, str], Processed]
 
     def triples(self, finding: Finding, changed: list[ChangeFact]) -> Iterator[Triple]:
         """Everything about the process of a finding."""
-        iri, source = self.names.process(finding), self.things.element(finding.source)
+        iri = self.individuals.names.process(finding)
         yield from about(
             iri,
             (RDF.type, [DPV.Process]),
             (RDFS.label, [text(f"possible: {label_of(finding)}")]),
             (DPV.hasActivityStatus, [RP.PossibleActivity]),
-            (DPV.hasDataSource, [source]),
             (DPV.hasLegalBasis, self._bases(finding)),
         )
         yield from self._why(iri, finding)
         yield RP.PossibleActivity, RDF.type, DPV.ActivityStatus
-        yield source, RDF.type, DPV.DataSource
-        yield from self._data(iri, finding)
+        yield from self.individuals.sources(iri, [finding.source])
+        yield from self.individuals.data(iri, finding.category, pseudonymised=finding.pseudonymised)
         yield from self._doing(iri, finding, derived=any(change.derives for change in changed))
         for number, change in enumerate((change for change in changed if change.pseudonymises), 1):
             yield from self._measure(iri, below(iri, "measure", number), change)
-        yield from self._persons(iri, finding)
+        yield from self.individuals.persons(iri, self.individuals.things.subjects(finding.source))
         yield from self._leak(iri, finding)
-
-    def _data(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:
-        """The data as one thing that is of our kind, of DPV's, and pseudonymised: not several kinds side by side."""
-        data, category = below(iri, "data"), self.document.vocabulary.categories[finding.category]
-        form = "pseudonymised: " if finding.pseudonymised else ""
-        yield iri, DPV.hasPersonalData, data
-        yield from about(
-            data,
-            (RDF.type, [DPV.PersonalData, *self.things.categories([finding.category])]),
-            (RDF.type, map(foreign, foreign_terms(finding.category, self.document.vocabulary))),
-            (RDF.type, [DPV.PseudonymisedData] if finding.pseudonymised else []),
-            (RDF.type, [DPV.SpecialCategoryPersonalData] if category.article9 == ALWAYS else []),
-            (RDFS.label, [text(form + shown(category.title), "en")]),
-        )
 
     def _bases(self, finding: Finding) -> list[URIRef]:
         """The legal bases that label files state or a valid decision records; no word of whether they fit."""
-        decision = self.document.decided.valid(finding) if self.document.decided and finding.accepted else None
+        decided = self.individuals.document.decided
+        decision = decided.valid(finding) if decided and finding.accepted else None
         recorded = decision.legal_basis if decision else ()
         return [term for basis in (*recorded, *self._processed(finding).bases) for term in legal_basis(basis)]
 
@@ -181,25 +140,10 @@ class Processes:
         return self.processed.get((finding.leak, finding.category)) or Processed(finding.leak, finding.category)
 
     def _why(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:
-        """Who is responsible and what for, as label files state it (GDPR, Article 30(1)(a) and (b))."""
-        said = self._processed(finding)
-        for what, texts, relation, kind in (
-            ("controller", said.controllers, DPV.hasDataController, DPV.DataController),
-            ("officer", said.officers, DPV.hasDataProtectionOfficer, DPV.DataProtectionOfficer),
-            ("purpose", said.purposes, DPV.hasPurpose, DPV.Purpose),
-        ):
-            for one in texts:
-                thing = self.names.of(what, one)
-                yield iri, relation, thing
-                yield from about(thing, (RDF.type, [kind]), (RDFS.label, [text(shown(one))]))
-        yield from about(iri, (RP.statedLegalBasis, map(text, said.bases)), (RP.notStated, map(text, said.missing)))
-
-    def _persons(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:
-        """Whose data they are, as labels of the source name them (GDPR, Article 30(1)(c))."""
-        for group in self.things.subjects(finding.source):
-            persons = self.names.of("subject", group)
-            yield iri, DPV.hasDataSubject, persons
-            yield from about(persons, (RDF.type, [DPV.DataSubject]), (RDFS.label, [text(shown(group))]))
+        """Who is responsible, what for and on which basis, as label files state it (GDPR, Article 30(1)(a) and (b))."""
+        known = self._processed(finding)
+        yield from self.individuals.responsible(iri, known.controllers, known.officers, known.purposes)
+        yield from about(iri, (RP.statedLegalBasis, map(text, known.bases)), (RP.notStated, map(text, known.missing)))
 
     def _doing(self, iri: URIRef, finding: Finding, *, derived: bool) -> list[Triple]:
         """What is done with the data, and what could come of it."""
@@ -221,38 +165,25 @@ class Processes:
             measure,
             (RDF.type, [DPV.Pseudonymisation]),
             (RDFS.label, [text(f"pseudonymisation at {shown(change.element.name)}", "en")]),
-            (RP.at, [self.things.element(change.element)]),
-            (RP.cleans, self.things.categories(names)),
+            (RP.at, [self.individuals.things.element(change.element)]),
+            (RP.cleans, self.individuals.things.categories(names)),
             (RP.stated, [Literal(not unstated)]),
         )
 
     def _leak(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:
-        """Who receives the data, and how they are kept: whoever stands behind a leak, as software receives nothing."""
-        leak = finding.leak
-        facts, name, at = self.document.outside.get(leak, NonRosFacts()), shown(leak.name), self.things.element(leak)
+        """Who receives the data, and how they are kept."""
         if finding.kind != STORED:
-            recipient = self.names.of("recipient", *leak.identity)
-            anybody = (
-                f"whoever reads {name} on the network"
-                if finding.kind == OPEN
-                else f"whoever receives what {name} lets out"
-            )
-            label = shown(facts.operator) if facts.operator else anybody
-            yield iri, DPV.hasRecipient, recipient
-            role = PARTIES.get(facts.recipient)
-            yield from about(recipient, (RDF.type, [DPV.Recipient, *([role] if role else [])]))
-            yield from about(recipient, (RDFS.label, [text(label)]), (RP.at, [at]))
-            yield from self._country(recipient, leak)
-        if leak.kind == "storage":
+            yield from self.individuals.recipient(iri, finding.leak, on_network=finding.kind == OPEN)
+        if finding.leak.kind == "storage":
             yield from self._retention(iri, finding)
 
     def _retention(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:
         """How long a storage keeps the category, and its backups after that: a condition of its own (rule S9)."""
-        leak, facts = finding.leak, self.document.analysis.outside.get(finding.leak)
+        leak, facts = finding.leak, self.individuals.document.analysis.outside.get(finding.leak)
         of = () if facts is None or _alike_for_all(facts) else (finding.category,)
         name, what = shown(leak.name), shown(finding.category) if of else "data"
-        kept = retention_of(facts, finding.category, self.document.vocabulary.hierarchy) if facts else []
-        whole = self.names.of("storage-duration", *leak.identity, *of)
+        kept = retention_of(facts, finding.category, self.individuals.document.vocabulary.hierarchy) if facts else []
+        whole = self.individuals.names.of("storage-duration", *leak.identity, *of)
         yield from self._condition(iri, whole, finding, f"{name} keeps {what}", [str(one) for one in kept])
         if kept and facts and facts.backups:
             more = [] if facts.backups is True else [str(facts.backups)]
@@ -271,20 +202,10 @@ class Processes:
             condition,
             (RDF.type, [DPV.StorageDuration]),
             (RDFS.label, [text(label)]),
-            (RP.at, [self.things.element(finding.leak)]),
+            (RP.at, [self.individuals.things.element(finding.leak)]),
             (RP.stated, [Literal(bool(durations))]),
             (DPV.hasDuration, [duration(one) for one in durations]),
         )
-
-    def _country(self, recipient: URIRef, leak: Element) -> Iterator[Triple]:
-        """Where a recipient is, and whether that is a third country (GDPR, chapter V)."""
-        facts = self.document.analysis.outside.get(leak)
-        if facts is None or not facts.country:
-            return
-        country = self.names.of("country", facts.country)
-        third = [DPV.ThirdCountry] if facts.area != INSIDE else []
-        yield recipient, DPV.hasCountry, country
-        yield from about(country, (RDF.type, [DPV.Country, *third]), (RP.country, [text(facts.country)]))
 
 
 def _alike_for_all(facts: NonRosFacts) -> bool:

@@ -39,11 +39,12 @@ PARTS = {
     "line": ("file", "", "enclave", "node"), "file": ("", "file"),
     "controller": ("controller",), "officer": ("officer",), "subject": ("persons",), "purpose": ("purpose",),
 }  # fmt: skip
-NAMELESS = ("finding", "process", "run", "analysis", "tool", "country")  # ids, hashes, versions, numbers
+NAMELESS = ("finding", "process", "row", "run", "analysis", "tool", "country")  # ids, hashes, versions, numbers
 SAFE_PREDICATES = {
     RP.id, RP.kind, RP.leg, RP.by, RP.outcome, RP.view, RP.severity, RP.sha256, RP.readAs, RP.version, RP.verdict,
     RP.condition, RP.context, RP.country, RP.operatorRole, RP.transferBasis, RP.encrypted, RP.retention,
-    RP.statedLegalBasis, RP.notStated, RDFS.comment, DPV.hasDuration, PROV.generatedAtTime, PROV.endedAtTime,
+    RP.statedLegalBasis, RP.statedSafeguard, RP.notStated, RP.toComplete, RP.state, RP.area, RP.article9, RP.method,
+    RP.sourceCountry, RDFS.comment, DPV.hasDuration, PROV.generatedAtTime, PROV.endedAtTime,
 }  # fmt: skip
 NAME_PREDICATES = {
     RP.robot: "robot", RP.onRobot: "robot", RP.file: "file", RP.enclave: "enclave", RP.profile: "node",
@@ -161,15 +162,18 @@ class _Redaction:
             source, leak = (self._replacement(self.whole.value(finding, end)) for end in (RP.dataSource, RP.leak))
             ends = f"{local_name(str(self.whole.value(finding, RP.category)))}: {source} -> {leak}"
             return ends if kind == "finding" else f"possible: {ends}"
+        if kind == "row" and len(parts) == 1:
+            places = sorted({self._replacement(place) for place in self.whole.objects(subject, RP.place)})
+            return " -> ".join([f"possible: {local_name(str(self.whole.value(subject, RP.category)))}", *places[:1]])
         if kind in ("controller", "officer", "subject"):
             return unquote(str(self._iri(subject)).rpartition(":")[2])
-        return str(label) if kind in ("tool", "process") else LEFT_OUT  # of a process: its data
+        return str(label) if kind in ("tool", "process", "row") else LEFT_OUT  # its data, how long they are kept
 
     def _label_at(self, kind: str, at: Node, label: str) -> str:
         name, alias = shown(str(self.whole.value(at, RP.name))), self._replacement(at)
         if kind == "storage-duration":
             return alias + label.removeprefix(name) if label.startswith(f"{name} ") else LEFT_OUT
-        if kind == "process":
-            return f"pseudonymisation at {alias}"
+        if kind in ("process", "row"):
+            return f"{label.partition(' ')[0]} at {alias}"  # what is done there
         operator = self.whole.value(at, RP.operator)
         return self._value("operator", str(operator)) if operator else f"whoever receives what {alias} lets out"

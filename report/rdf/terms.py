@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import Finding
     from rosprivacy.analysis.model import Element, Grant
+    from rosprivacy.analysis.model.register_row import RegisterRow
 
 Triple = tuple["Node", "Node", "Node"]
 
@@ -35,6 +36,8 @@ RP = Namespace(PUBLISHED)
 
 DPV_CLASSES = (
     "ActivityStatus",
+    "Anonymisation",
+    "Collect",
     "Country",
     "CrossBorderTransfer",
     "DataController",
@@ -51,9 +54,10 @@ DPV_CLASSES = (
     "PseudonymisedData",
     "Purpose",
     "Recipient",
-    "Store",
     "SpecialCategoryPersonalData",
     "StorageDuration",
+    "Store",
+    "TechnicalMeasure",
     "ThirdCountry",
     "ThirdParty",
     "Transfer",
@@ -67,7 +71,9 @@ DPV_PROPERTIES = (
     "hasDataSubject",
     "hasDuration",
     "hasLegalBasis",
+    "hasOrganisationalMeasure",
     "hasPersonalData",
+    "hasProcess",
     "hasProcessing",
     "hasPurpose",
     "hasRecipient",
@@ -83,10 +89,16 @@ BASES = (
     *(f"A46-2-{letter}" for letter in "abcdef"),
     *(f"A49-1-{letter}" for letter in "abcdefg"),
 )
+# Bases of a transfer as labels call them -> the one point that each is; the others are of several, or of none.
+TRANSFERS = {
+    "adequacy": "A45-3", "public-instrument": "A46-2-a", "binding-corporate-rules": "A46-2-b",
+    "code-of-conduct": "A46-2-e", "certification": "A46-2-f",
+}  # fmt: skip
+TOOLS = ("StandardContractualClauses",)
 RISKS = ("DataRisk", "Reidentification", "UnwantedDisclosureData")
 # Closed: a term that is not listed is an AttributeError, and a test holds the lists against the files of DPV 2.3.
 DPV = ClosedNamespace("https://w3id.org/dpv#", [*DPV_CLASSES, *DPV_PROPERTIES])
-EU_GDPR = ClosedNamespace("https://w3id.org/dpv/legal/eu/gdpr#", list(BASES))
+EU_GDPR = ClosedNamespace("https://w3id.org/dpv/legal/eu/gdpr#", [*BASES, *TOOLS])
 RISK = ClosedNamespace("https://w3id.org/dpv/risk#", list(RISKS))
 
 _DURATION = re.compile(r"-?P(?=.)(\d+Y)?(\d+M)?(\d+D)?(T(?=.)(\d+H)?(\d+M)?(\d+(\.\d+)?S)?)?", re.ASCII)
@@ -164,6 +176,10 @@ class IndividualNames:
     def process(self, finding: Finding) -> URIRef:
         """Return the IRI of the possible process that a finding is about."""
         return self.of("process", finding.id)
+
+    def row(self, row: RegisterRow) -> URIRef:
+        """Return the IRI of a row of the register, made from its id."""
+        return self.of("row", row.id)
 
     def line(self, grant: Grant) -> URIRef:
         """Return the IRI of a policy line as it applies to a profile."""

@@ -41,6 +41,7 @@ from rosprivacy.report.schemas.stated import (
     FactsOfElements,
     NonRosEntry,
     OverruledEntry,
+    PersonGroupEntry,
     PointerEntry,
     RolesEntry,
     SanitizerEntry,
@@ -401,6 +402,10 @@ class Answered(HangsOn, FactsOfElements):
     ]
     roles: Annotated[NotRequired[list[RolesEntry]], "What labels say of nodes, per category."]
     subjects: Annotated[list[SubjectsEntry], "Whom the data of sources are about, as labels say."]
+    persons: Annotated[
+        NotRequired[list[PersonGroupEntry]],
+        "The groups of the closed list that these words stand for; other words stand for none of it.",
+    ]
     register: Annotated[
         NotRequired[list[RegisterEntry]],
         "The register of processing: each kind of data at each place where it leaves or rests, whether that is a "

@@ -64,6 +64,17 @@ class ContextEntry(TypedDict):
 
 
 @closed
+class PersonGroupEntry(TypedDict):
+    """A group of the closed list of persons, such as children, that words of labels stand for."""
+
+    name: str
+    title: str
+    vulnerable: Annotated[bool, "Whether criterion 7 of WP 248 rev.01 names it; else a person has to say."]
+    subjects: Annotated[list[str], "These words."]
+    translations: Annotated[Texts, texts("title"), "Language, and texts in it."]
+
+
+@closed
 class PointerEntry(TypedDict):
     """A provision to look at beside what is followed into paths."""
 

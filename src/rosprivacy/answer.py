@@ -212,10 +212,12 @@ class Answer:
         alone = (row.places and all(likeness.is_robot(place.robot) for place in row.places) for row in rows)
         return tuple(row if some else row.without_all_subjects() for row, some in zip(rows, alone, strict=True))
 
-    def _law(self, category: str, contexts: Collection[str], countries: Collection[str]) -> tuple[str, ...]:
-        """Return the provisions to look at that a kind or a context calls for, of the Union and of some countries."""
+    def _law(
+        self, category: str, contexts: Collection[str], countries: Collection[str], persons: Collection[str]
+    ) -> tuple[str, ...]:
+        """Return the provisions that a kind, a context or persons call for, of the Union and of some countries."""
         kind = self.vocabulary.categories[category]
-        rows = self.vocabulary.pointed.rows([kind], contexts)
+        rows = self.vocabulary.pointed.rows([kind], contexts, {category: persons})
         return tuple(law.name for law, kinds, where in rows if (kinds or where) and law.country in ("", *countries))
 
     def fleet_counts(self, view: FleetView) -> Counts:

@@ -1,7 +1,8 @@
-"""Linked data as tests read it: by a strict parser, and against the shapes of exported files."""
+"""Linked data as tests read it: by a strict parser, against the shapes of exported files, by the page's questions."""
 
 from __future__ import annotations
 
+import re
 from functools import cache
 
 import pyoxigraph
@@ -10,6 +11,8 @@ from rdflib import Graph
 
 from tests.helpers.paths import ROOT
 
+PAGE = ROOT / "docs" / "linked-data.md"
+QUESTION = re.compile(r"(```sparql\n(.*?)```\n)\n(?:\|[^\n]*\n)*\n?", re.DOTALL)
 SYNTAX = {"turtle": pyoxigraph.RdfFormat.TURTLE, "json-ld": pyoxigraph.RdfFormat.JSON_LD}
 
 
@@ -29,3 +32,13 @@ def strict(text: str | bytes, form: str) -> Graph:
     triples = pyoxigraph.parse(text.encode() if isinstance(text, str) else text, SYNTAX[form])
     lines = "".join(f"{quad.triple} .\n" for quad in triples)
     return Graph().parse(data=lines, format="nt")
+
+
+def questions() -> list[str]:
+    """The SPARQL questions of the page, in order."""
+    return [query for _, query in QUESTION.findall(PAGE.read_text("utf-8"))]
+
+
+def answered(graph: Graph, query: str) -> list[tuple[str, ...]]:
+    """The rows of an answer as texts; what is not bound is empty."""
+    return [tuple("" if value is None else str(value) for value in row) for row in graph.query(query)]  # type: ignore[union-attr]

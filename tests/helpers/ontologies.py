@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from rdflib.term import Node
 
 FOLDER = ROOT / "ontology"
-SHIPPED = ("categories", "law", "other_law", "contexts", "elements", "dpv")
+SHIPPED = ("categories", "law", "other_law", "contexts", "persons", "elements", "dpv")
 RP = Namespace("https://w3id.org/rosprivacy#")
 
 

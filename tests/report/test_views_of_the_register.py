@@ -1,4 +1,4 @@
-"""Records, notice, works council's page and CNIL file say what the register says, cell by cell.
+"""Records, notice, works council's page, CNIL file and linked data say what the register says, cell by cell.
 
 First on random systems, then on systems of which people state a lot.
 
@@ -24,9 +24,11 @@ from rosprivacy.report.cnil.pia import METHODS, cnil_pia
 from rosprivacy.report.document.analysis import json_document
 from rosprivacy.report.page import article30, look_at, notice, persons
 from rosprivacy.report.page.index import Index
+from rosprivacy.report.rdf.findings import rdf_graph
 from tests.helpers.answers import answer_of
 from tests.helpers.concerned import VOCABULARY, Case, cases
 from tests.helpers.fleet_files import policy
+from tests.helpers.linked_rows import comparable, rows_told
 from tests.helpers.paths import ROOT
 from tests.helpers.systems import analysed
 
@@ -134,6 +136,7 @@ def check_views(facts: Document) -> None:
     check_notice(document)
     check_rights(document)
     check_law(document)
+    assert rows_told(rdf_graph(facts)) == {row["id"]: comparable(row) for row in rows}
     file = cnil_pia(facts, "2026-01-01")
     check_kinds(document, file)
     check_places(document, file)

@@ -59,6 +59,31 @@ def test_what_tells_where_persons_are_monitors_them_as_what_sees_them_does(tmp_p
     assert [name for name in kinds if f"/{name}" in third] == ["camera", "lidar", "wifi"]
 
 
+@pytest.mark.parametrize(
+    ("stated", "vulnerable", "others"),
+    [
+        ("[children, staff, passers-by]", "children, staff", "passers-by"),
+        ("[Kinder]", "Kinder", ""),
+        ("[residents]", "", "residents"),
+    ],
+)
+def test_known_groups_are_vulnerable_and_of_others_a_person_has_to_say(
+    tmp_path: Path, stated: str, vulnerable: str, others: str
+) -> None:
+    """WP 248, criterion 7; children point at recital 38 and Article 6(1)(f), in the law of the kinds about them."""
+    (tmp_path / "p.xml").write_text(policy("camera>/image<", "mic>/audio<"), "utf-8")
+    nodes = f"/camera: {{source: [Video], subjects: {stated}}}, /mic: {{source: [Voice]}}"
+    (tmp_path / "l.yaml").write_text(f"labels: 1\nnodes: {{{nodes}}}\n", "utf-8")
+    document = rosprivacy.analyze(tmp_path / "p.xml", tmp_path / "l.yaml").document()
+    words = Words("en")
+    said = {"criterion.vulnerable": vulnerable, "criterion.subjects": others}
+    assert criteria(Index(document, words))[6].shows == "; ".join(words(k, names=n) for k, n in said.items() if n)
+    law = {row["provision"]: row["categories"] for row in document["look_at"]}
+    children = any(group["name"] == "Children" for group in document["persons"])
+    for provision in ("GDPR Recital 38", "GDPR Art. 6(1)(f) legitimate interests"):
+        assert law.get(provision) == (["Video"] if children else None)
+
+
 def test_of_a_fleet_the_key_is_the_pattern_which_decisions_name_too() -> None:
     document = dict(hospital().document())
     first = told(document).opening.rows[0].entries[0]

@@ -65,7 +65,7 @@ def test_two_robots_with_a_camera_stay_two_when_their_files_are_put_together(
     }
     assert len(cameras) == 2
     assert clouds == {"US", country}
-    assert len(set(both.subjects(RDF.type, RP.Finding))) == len(set(both.subjects(RDF.type, DPV.Process))) == 4
+    assert len(set(both.subjects(RDF.type, RP.Finding))) == len(set(both.objects(None, RP.concerns))) == 4
     assert problems(both) == ""
 
 
