@@ -24,6 +24,8 @@ from tests.helpers.graphs import care_home, rows_of
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from rdflib.term import Node
 
     from rosprivacy.private_neo4j.connection import Connection
@@ -33,7 +35,7 @@ CONDITION = (
     "is (Article 4(14), recital 51); a template that is kept to recognise somebody again usually is"
 )
 CARE = "examples/care-home/care-home"
-PAGE = ROOT / "docs" / "linked-data.md"
+PAGE, MORE = ROOT / "docs" / "linked-data.md", ROOT / "tests" / "report" / "rdf" / "more_questions.md"
 QUESTION = re.compile(r"(```sparql\n(.*?)```\n)\n(?:\|[^\n]*\n)*\n?", re.DOTALL)
 
 
@@ -50,7 +52,7 @@ def graph() -> Graph:
 
 
 def questions() -> list[str]:
-    return [query for _, query in QUESTION.findall(PAGE.read_text("utf-8"))]
+    return [query for file in (PAGE, MORE) for _, query in QUESTION.findall(file.read_text("utf-8"))]
 
 
 def answered(graph: Graph, query: str) -> list[tuple[str, ...]]:
@@ -112,8 +114,9 @@ def test_there_are_six_questions_and_each_has_an_answer(graph: Graph) -> None:
     assert all(answered(graph, query) for query in questions())
 
 
-def test_the_answers_are_those_of_the_page() -> None:
-    text = PAGE.read_text("utf-8")
+@pytest.mark.parametrize("file", [PAGE, MORE], ids=lambda file: str(file.name))
+def test_the_answers_are_those_of_the_page(file: Path) -> None:
+    text = file.read_text("utf-8")
     assert text == page(text), "python -m tests.report.rdf.test_linked_data"
 
 
@@ -179,4 +182,5 @@ def test_the_words_of_the_page_are_those_of_the_shapes() -> None:
 
 
 if __name__ == "__main__":
-    PAGE.write_text(page(PAGE.read_text("utf-8")), "utf-8")
+    for file in (PAGE, MORE):
+        file.write_text(page(file.read_text("utf-8")), "utf-8")
