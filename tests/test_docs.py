@@ -1,12 +1,11 @@
 """The documentation says what is true: its commands run, its label files are read, its option tables are the code's.
 
 ``python -m tests.test_docs`` writes what is generated anew: ``docs/reference/``, the JSON schemas of the documents, and
-the parts of other pages that stand between marks.
+the tables of ``docs/labels.md`` that stand between marks.
 """
 
 from __future__ import annotations
 
-import ast
 import doctest
 import json
 import re
@@ -18,18 +17,14 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 import rosprivacy
-from rosprivacy.analysis.model import NON_ROS, RANKS
+from rosprivacy.analysis.model import NON_ROS
 from rosprivacy.ingest.labels.keywords import CHANNEL, KEYWORDS, NODE, rows
 from rosprivacy.ingest.labels.label_file import read_labels
-from rosprivacy.ingest.lint import RULES
 from rosprivacy.ontology.vocabulary import load
-from rosprivacy.report.catalogs.words import IN_ENGLISH
-from rosprivacy.report.page.edpb_questions import QUESTIONS, Origin
-from tests.fuzzing import record
 from tests.fuzzing.targets import TARGETS
 from tests.helpers import contract, reference
 from tests.helpers.docs import blocks
-from tests.helpers.house import MODULES, PACKAGE, ROOMS, WINGS
+from tests.helpers.house import MODULES
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
@@ -40,13 +35,9 @@ if TYPE_CHECKING:
 
 ARCHITECTURE = ROOT / "docs" / "architecture.md"
 LABELS = ROOT / "docs" / "labels.md"
-LINT = ROOT / "docs" / "lint.md"
-EDPB = ROOT / "docs" / "edpb.md"
-DECISIONS = ROOT / "docs" / "decisions.md"
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md")), ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md"]
 NEEDS_SERVER = ("load", "query", "db", "explore")  # their tests are those of the database; the last is one itself
 SECURITY = ROOT / "docs" / "security.md"
-FUZZED = ROOT / "tests" / "fuzzing" / "record.json"
 PAGES.append(ROOT / "SECURITY.md")
 
 
@@ -57,42 +48,6 @@ def with_parts(text: str, **parts: str) -> str:
         text = f"{before}<!-- {name}: written by python -m tests.test_docs -->\n{part}<!-- end -->\n"
         text += after.split("<!-- end -->\n", 1)[1]
     return text
-
-
-def lint_page(text: str) -> str:
-    rows = [f"| `{rule.name}` | {rule.severity} | {rule.about} | {rule.why} |" for rule in RULES.values()]
-    head = ["| rule | severity | broken by | what comes of it |", "| --- | --- | --- | --- |"]
-    return with_parts(text, rules="\n".join([*head, *rows, ""]).replace("*", r"\*").replace("<", "&lt;"))
-
-
-def security_page(text: str) -> str:
-    return with_parts(text, fuzzing=record.table(json.loads(FUZZED.read_text("utf-8"))))
-
-
-def edpb_page(text: str) -> str:
-    """The page with the questions of the EDPB's template: how many by origin, and where each answer comes from."""
-    counts = [
-        f"| {IN_ENGLISH(f'edpb.origin.{origin}')} | {sum(one.origin is origin for one in QUESTIONS)} |"
-        for origin in Origin
-    ]
-    rows = []
-    for one in QUESTIONS:
-        fields = (*one.columns, *([one.answer] if one.answer else []), *(f"risk.….{field}" for field in one.risks))
-        about = ", ".join([*([one.fact] if one.fact else []), *(f"`{field}`" for field in fields)])
-        rows.append(f"| {one.number} | {IN_ENGLISH(one.words)} | {IN_ENGLISH(f'edpb.origin.{one.origin}')} | {about} |")
-    head = ["| part | question | answer | columns of the register, what the analysis says, fields of the assessment |"]
-    parts = ["| answer | questions |", "| --- | --- |", *counts, "", *head, "| --- | --- | --- | --- |", *rows, ""]
-    return with_parts(text, questions="\n".join(parts))
-
-
-def decisions_page(text: str) -> str:
-    """The page with the table of doubts: each sort with its rank, and what to do."""
-    rows = [
-        f"| `{name}` | {rank} | {IN_ENGLISH(f'doubt.{name}.title')} | {IN_ENGLISH(f'doubt.{name}.do')} |"
-        for name, rank in RANKS.items()
-    ]
-    head = ["| doubt | rank | what it is | what to do |", "| --- | --- | --- | --- |"]
-    return with_parts(text, doubts="\n".join([*head, *rows, ""]))
 
 
 def labels_page(text: str) -> str:
@@ -110,27 +65,6 @@ def labels_page(text: str) -> str:
     return with_parts(text, nodes=nodes, channels=channels, facts="\n".join([*facts, ""]))
 
 
-def house() -> str:
-    """The rooms and their wings, with what each of them says of itself and may import."""
-    rows = []
-    for room in (*ROOMS, "rosprivacy"):
-        folder = PACKAGE if room == "rosprivacy" else ROOT / room
-        others = "every room" if room == "rosprivacy" else ", ".join(sorted(ROOMS[room])) or "no other room"
-        rows.append(house_row(folder, others))
-        ladder = sorted((len(below), wing, sorted(below - {""})) for wing, below in WINGS[room].items())
-        for _, wing, below in ladder:
-            if wing and (folder / wing / "__init__.py").is_file():
-                rows.append(house_row(folder / wing, f"of its room: {', '.join(below) or 'no other wing'}"))
-                inner = sorted(file.parent for file in (folder / wing).rglob("*/__init__.py"))
-                rows += [house_row(one, "as its wing") for one in inner]
-    return "\n".join(["| folder | what it is | may import |", "| --- | --- | --- |", *rows, ""])
-
-
-def house_row(folder: Path, may: str) -> str:
-    said = (ast.get_docstring(ast.parse((folder / "__init__.py").read_text("utf-8"))) or "").split("\n\n")[0]
-    return f"| `{folder.relative_to(ROOT)}/` | {' '.join(said.split()).replace('``', '`')} | {may} |"
-
-
 def page_text(make: Callable[[], str], earlier: str) -> str:
     """A page of the reference, whatever stood there before."""
     del earlier
@@ -144,12 +78,7 @@ def schema_text(document: Any, earlier: str) -> str:
 
 
 GENERATED: dict[Path, Callable[[str], str]] = {
-    ARCHITECTURE: lambda text: with_parts(text, house=house()),
-    DECISIONS: decisions_page,
-    EDPB: edpb_page,
     LABELS: labels_page,
-    LINT: lint_page,
-    SECURITY: security_page,
     **{file: partial(page_text, make) for file, make in reference.pages().items()},
     **{contract.file_of(name): partial(schema_text, document) for name, document in contract.DOCUMENTS.items()},
 }
@@ -163,7 +92,7 @@ def test_what_is_generated_is_that_of_the_program(file: Path) -> None:
 
 def test_the_house_names_every_folder() -> None:
     folders = {f"`{file.parent.relative_to(ROOT)}/`" for file in MODULES.values()}
-    assert folders <= set(re.findall(r"`[\w/]+/`", ARCHITECTURE.read_text("utf-8")))
+    assert folders <= set(re.findall(r"`[\w/]+/`", reference.house()))
 
 
 def test_what_the_architecture_names_is_there() -> None:
@@ -268,7 +197,7 @@ def test_the_ontologies_that_are_shown_are_read(block: str, tmp_path: Path) -> N
 
 
 def test_the_record_of_the_fuzzing_has_each_reader() -> None:
-    targets = json.loads(FUZZED.read_text("utf-8"))["targets"]
+    targets = json.loads(reference.FUZZED.read_text("utf-8"))["targets"]
     assert {name for name, counts in targets.items() if counts["inputs"]} == TARGETS.keys()
 
 

@@ -6,6 +6,8 @@ person has to read.
 
 from __future__ import annotations
 
+import ast
+import json
 from enum import StrEnum
 from functools import cache, partial
 from itertools import groupby
@@ -14,17 +16,23 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from rosprivacy.analysis.bounds import BOUNDS, COUNTED
+from rosprivacy.analysis.model import RANKS
 from rosprivacy.cli.app import program
 from rosprivacy.cli.exit_code import CODES
 from rosprivacy.cli.inputs import WRITTEN
 from rosprivacy.cli.options import QUESTION_PANEL, READ
 from rosprivacy.formats import FORMATS
+from rosprivacy.ingest.lint import RULES
 from rosprivacy.ingest.neo4j_graph.schema import NODES, RELATIONSHIPS, Property
 from rosprivacy.ontology.vocabulary import TOP, load
 from rosprivacy.queries.library import pack
+from rosprivacy.report.catalogs.words import IN_ENGLISH
 from rosprivacy.report.document.tables import TABLES
+from rosprivacy.report.page.edpb_questions import QUESTIONS, Origin
 from rosprivacy.report.text import categories
+from tests.fuzzing import record
 from tests.helpers import contract
+from tests.helpers.house import PACKAGE, ROOMS, WINGS
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
@@ -32,6 +40,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 FOLDER = ROOT / "docs" / "reference"
+FUZZED = ROOT / "tests" / "fuzzing" / "record.json"
 WRITTEN_BY = "Written by `python -m tests.test_docs` from the program; do not edit.\n"
 COMMANDS = """\
 A command line has a command, what it reads, and options: `rosprivacy analyze robot.policy.xml -l labels.yaml`.
@@ -74,6 +83,15 @@ Each line has the name, the English title, the identity factors, and what Articl
 [Kinds of data](../categories.md) explains these.
 
 """
+DOUBTS = """\
+What breaks makes the verdict undetermined at best. What rides is named in the verdict's sentence.
+[Decisions](../decisions.md#doubts) tells how a person accepts one.
+
+"""
+LINT = "[`rosprivacy lint`](../lint.md) looks for these.\n\n"
+EDPB = "`rosprivacy report --format edpb-dpia` writes them ([the page of it](../edpb.md)).\n\n"
+HOUSE = "Every folder of the program. [Architecture](../architecture.md) tells how data goes through them.\n\n"
+FUZZING = "How it is done, and what must hold of each input: [security](../security.md#fuzzing).\n\n"
 
 
 def pages() -> dict[Path, Callable[[], str]]:
@@ -85,6 +103,11 @@ def pages() -> dict[Path, Callable[[], str]]:
         "queries": queries,
         "formats": formats,
         "categories": kinds_of_data,
+        "doubts": doubts,
+        "lint": lint,
+        "edpb": edpb,
+        "house": house,
+        "fuzzing": fuzzing,
         "documents": lambda: contract.index(WRITTEN_BY),
         **{f"commands/{name}": partial(command_page, name) for name in command_group()},
         **{f"documents/{name}": partial(contract.page, name, WRITTEN_BY) for name in contract.DOCUMENTS},
@@ -112,6 +135,11 @@ def index() -> str:
         ("[Graph](graph.md)", "labels, relationships and properties in Neo4j"),
         ("[Queries](queries.md)", "the questions that come with the program, with their parameters"),
         ("[Kinds of data](categories.md)", "the tree of all kinds that come with the program"),
+        ("[Doubts](doubts.md)", "what is not known, with its rank and what to do"),
+        ("[Lint](lint.md)", "the rules, and what comes of breaking them"),
+        ("[The EDPB's template](edpb.md)", "its questions, and where each answer comes from"),
+        ("[The house](house.md)", "the folders of the program, and what each may import"),
+        ("[Fuzzing](fuzzing.md)", "the record of hostile inputs"),
     )
     return page("Reference", table(("page", "what it has"), rows))
 
@@ -234,3 +262,61 @@ def formats() -> str:
 def kinds_of_data() -> str:
     """The tree as the program prints it."""
     return page("All kinds of data", KINDS, f"```text\n{categories.tree(load(), TOP)}```\n")
+
+
+def doubts() -> str:
+    """Each sort of doubt with its rank, and what to do."""
+    rows = (
+        (f"`{name}`", str(rank), IN_ENGLISH(f"doubt.{name}.title"), IN_ENGLISH(f"doubt.{name}.do"))
+        for name, rank in RANKS.items()
+    )
+    return page("Doubts", DOUBTS, table(("doubt", "rank", "what it is", "what to do"), rows))
+
+
+def lint() -> str:
+    """The rules of ``rosprivacy lint``."""
+    rows = ((f"`{rule.name}`", rule.severity, as_text(rule.about), as_text(rule.why)) for rule in RULES.values())
+    return page("Lint", LINT, table(("rule", "severity", "broken by", "what comes of it"), rows))
+
+
+def as_text(text: str) -> str:
+    return text.replace("*", r"\*").replace("<", "&lt;")
+
+
+def edpb() -> str:
+    """The questions of the EDPB's template: how many by origin, and where each answer comes from."""
+    origins = {origin: IN_ENGLISH(f"edpb.origin.{origin}") for origin in Origin}
+    counts = ((title, str(sum(one.origin is origin for one in QUESTIONS))) for origin, title in origins.items())
+    rows = []
+    for one in QUESTIONS:
+        fields = (*one.columns, *([one.answer] if one.answer else []), *(f"risk.….{field}" for field in one.risks))
+        about = ", ".join([*([one.fact] if one.fact else []), *(f"`{field}`" for field in fields)])
+        rows.append((one.number, IN_ENGLISH(one.words), origins[one.origin], about))
+    head = ("part", "question", "answer", "columns of the register, what the analysis says, fields of the assessment")
+    return page("The EDPB's template", EDPB, table(("answer", "questions"), counts), "\n", table(head, rows))
+
+
+def house() -> str:
+    """The rooms and their wings, with what each of them says of itself and may import."""
+    rows = []
+    for room in (*ROOMS, "rosprivacy"):
+        folder = PACKAGE if room == "rosprivacy" else ROOT / room
+        others = "every room" if room == "rosprivacy" else ", ".join(sorted(ROOMS[room])) or "no other room"
+        rows.append(house_row(folder, others))
+        ladder = sorted((len(below), wing, sorted(below - {""})) for wing, below in WINGS[room].items())
+        for _, wing, below in ladder:
+            if wing and (folder / wing / "__init__.py").is_file():
+                rows.append(house_row(folder / wing, f"of its room: {', '.join(below) or 'no other wing'}"))
+                inner = sorted(file.parent for file in (folder / wing).rglob("*/__init__.py"))
+                rows += [house_row(one, "as its wing") for one in inner]
+    return page("The house", HOUSE, table(("folder", "what it is", "may import"), rows))
+
+
+def house_row(folder: Path, may: str) -> tuple[str, str, str]:
+    first = (ast.get_docstring(ast.parse((folder / "__init__.py").read_text("utf-8"))) or "").split("\n\n")[0]
+    return f"`{folder.relative_to(ROOT)}/`", " ".join(first.split()).replace("``", "`"), may
+
+
+def fuzzing() -> str:
+    """The record of the last run that was kept."""
+    return page("Fuzzing", FUZZING, record.table(json.loads(FUZZED.read_text("utf-8"))))
