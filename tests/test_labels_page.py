@@ -33,6 +33,12 @@ MORE_ROWS = [
     ('nodes: {"/up*": {leak: [Video]}, /uplink: {conduit: [PersonalData]}}', "leak"),
     ('nodes: {"/up*": {leak: [PersonalData]}, /uplink: {leak: {none: [Video]}, conduit: [Video]}}', "no-leak-found"),
     ("nodes: {/uplink: {leak: [PersonalData], conduit: [Video]}}", "leak"),
+    ("nodes: {/uplink: {leak: [Video], conduit: [Video]}}", "error"),
+    ('{nodes: {/uplink: {leak: [Video]}}, channels: {"/vid*": mundane, /video: {only: [Video]}}}', "leak"),
+    (
+        "{nodes: {/camera: {source: {Video: [/video]}}, /uplink: {leak: [Video]}}, channels: {/video: mundane}}",
+        "error",
+    ),
     ("nodes: {/camera: {source: [ContactData]}, /uplink: {leak: [Location], conduit: [ContactData]}}", "leak"),
     ('nodes: {/camera: {source: [Video]}, "/cam*": {sanitizer: {Video: drop}}, /uplink: {leak: [Video]}}', "leak"),
     ('{nodes: {/uplink: {leak: [Video]}}, channels: {"/vid*": sensitive, "*ideo": {sensitive: [Video]}}}', "leak"),

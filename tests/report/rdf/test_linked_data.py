@@ -78,8 +78,8 @@ def under_article_9(graph: Graph) -> set[tuple[str, ...]]:
 
 
 def marked(graph: Graph) -> set[tuple[str, ...]]:
-    """By the page's shape: what pyshacl marks, and what the marked value says."""
-    (shape,) = re.findall(r"```turtle\n(.*?)```", PAGE.read_text("utf-8"), re.DOTALL)
+    """By the shape of the questions: what pyshacl marks, and what the marked value says."""
+    (shape,) = re.findall(r"```turtle\n(.*?)```", MORE.read_text("utf-8"), re.DOTALL)
     _, report, _ = pyshacl.validate(graph, shacl_graph=Graph().parse(data=shape, format="turtle"))
     assert isinstance(report, Graph)
     return {row(graph, finding, law) for finding, law in results(report)}
