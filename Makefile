@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 
 LOCK := uv pip compile --quiet --upgrade --universal --python-version 3.11 --generate-hashes --no-emit-index-url \
-	--no-annotate --custom-compile-command 'make locks' pyproject.toml -
+	--no-annotate --custom-compile-command 'make locks'
 
 .PHONY: demo test fuzz locks clean
 
@@ -33,10 +33,12 @@ $(VENV)/installed-dev: pyproject.toml
 	$(BIN)/python -m pip install --editable '.[$(EXTRAS)]'
 	touch $@ $(VENV)/installed
 
-# What the GitHub Action and the image install, with the hashes of all files, and what builds rosprivacy itself. Needs uv.
+# What the GitHub Action and the image install, with the hashes of all files, what builds rosprivacy itself, and the
+# tools of a release. Needs uv.
 locks:
-	echo 'setuptools>=77' | $(LOCK) --output-file requirements.lock
-	printf 'setuptools>=77\nneo4j-rust-ext>=5.26\n' | $(LOCK) --output-file docker/requirements.lock
+	echo 'setuptools>=77' | $(LOCK) pyproject.toml - --output-file requirements.lock
+	printf 'setuptools>=77\nneo4j-rust-ext>=5.26\n' | $(LOCK) pyproject.toml - --output-file docker/requirements.lock
+	printf 'build\ncheck-wheel-contents\ncyclonedx-bom\npip\ntwine\n' | $(LOCK) - --output-file .ci/release.lock
 
 clean:
 	rm -rf $(VENV) build dist

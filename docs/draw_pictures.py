@@ -1,4 +1,4 @@
-"""Draw the pictures of ``views.md``, by the commands that stand there; needs the corpus.
+"""Draw the pictures of the pages, by the commands that stand there; needs the corpus.
 
     python docs/draw_pictures.py [NAME…]
 
@@ -60,6 +60,7 @@ SYSTEMS = {
     "factory-filtered": System(EXAMPLES / "factory", ("after.policy.xml", "-l", "run4.labels.yaml")),
     "care-home": System(EXAMPLES / "care-home", ("care-home.policy.xml", "-l", "care-home.labels.yaml")),
     "fleet": System(EXAMPLES / "fleet", ("--fleet", "fleet.yaml")),
+    "scan-robot": System(EXAMPLES, ("scan_robot", "-l", "scan_robot/guide.labels.yaml")),
     "turtlebot3": System(CORPUS, (TB3, "-l", TB3_LABELS)),
 }
 NEAR = "--around /turtlebot3_laserscan --fold --no-loose-ends"
@@ -74,6 +75,7 @@ PICTURES = (
     Drawing("fleet-ros-all", "fleet", "--fold --cluster robot"),
     Drawing("fleet-privacy", "fleet", "--show privacy --categories Video --fold --cluster robot --direction down"),
     Drawing("fleet-privacy-all", "fleet", "--show privacy --fold --cluster robot"),
+    Drawing("scan-robot-privacy", "scan-robot", "--show privacy --fold"),
     Drawing("turtlebot3-ros", "turtlebot3", NEAR),
     Drawing("turtlebot3-ros-all", "turtlebot3", "--fold"),
     Drawing("turtlebot3-privacy", "turtlebot3", "--show privacy --fold --most 16 --direction down"),

@@ -4,7 +4,7 @@ from setuptools import setup
 
 setup(
     name="ros2privacy",
-    version="0.1.0",
+    version="0.2.0",
     packages=["ros2privacy"],
     python_requires=">=3.8",
     data_files=[

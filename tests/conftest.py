@@ -97,6 +97,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     Of the whole suite without these, of a test with many rows a third is run: CI and who names a file run all.
     """
     left_out = {mark for mark in ("slow", "thorough") if not config.getoption(f"--{mark}")}
+    left_out |= set() if os.environ.get("ROSPRIVACY_PIA") else {"pia"}
     chosen = [item for item in items if left_out.isdisjoint(item.keywords)]
     if "slow" in left_out and config.args_source is pytest.Config.ArgsSource.TESTPATHS:
         chosen = list(sampled(chosen))

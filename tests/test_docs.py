@@ -11,6 +11,7 @@ import json
 import re
 import shlex
 import shutil
+import tomllib
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -18,8 +19,11 @@ import pytest
 
 import rosprivacy
 from rosprivacy.analysis.model import NON_ROS
+from rosprivacy.cli.project_file import project_schema
+from rosprivacy.ingest.fleet.fleet_schema import fleet_schema
 from rosprivacy.ingest.labels.keywords import CHANNEL, KEYWORDS, NODE, rows
 from rosprivacy.ingest.labels.label_file import read_labels
+from rosprivacy.ingest.labels.label_schema import label_schema
 from rosprivacy.ontology.vocabulary import load
 from tests.fuzzing.targets import TARGETS
 from tests.helpers import contract, reference
@@ -77,10 +81,25 @@ def schema_text(document: Any, earlier: str) -> str:
     return contract.text(document)
 
 
+def editor_schema(name: str, earlier: str) -> str:
+    """The schema of a file that users write, with the address that a catalogue of schemas names it by."""
+    del earlier
+    address = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["urls"]["Repository"]
+    schema = EDITOR_SCHEMAS[name]()
+    identified = {"$schema": schema.pop("$schema"), "$id": f"{address}/raw/main/docs/{name}.schema.json", **schema}
+    return json.dumps(identified, ensure_ascii=False, indent=1) + "\n"
+
+
+EDITOR_SCHEMAS: dict[str, Callable[[], dict[str, Any]]] = {
+    "labels": lambda: label_schema(load().categories.values()),
+    "fleet": lambda: fleet_schema(load().categories.values()),
+    "project": project_schema,
+}
 GENERATED: dict[Path, Callable[[str], str]] = {
     LABELS: labels_page,
     **{file: partial(page_text, make) for file, make in reference.pages().items()},
     **{contract.file_of(name): partial(schema_text, document) for name, document in contract.DOCUMENTS.items()},
+    **{contract.file_of(name): partial(editor_schema, name) for name in EDITOR_SCHEMAS},
 }
 
 
@@ -176,6 +195,16 @@ def test_the_first_hour_goes_as_its_page_says(cli: Cli, tmp_path: Path) -> None:
     (shown,) = blocks(page, "text")
     assert shown in answers[0]
     assert {file.name for file in tmp_path.iterdir()} >= {"robot.types.yaml", "rosprivacy.toml", "report.html"}
+
+
+@pytest.mark.slow
+def test_what_it_finds_is_what_its_commands_print(cli: Cli) -> None:
+    page = ROOT / "docs" / "what-it-finds.md"
+    commands, printed = blocks(page, "console"), blocks(page, "text")
+    for command, shown in zip(commands, printed, strict=True):
+        lines = iter(cli(*command.split()[1:], cwd=ROOT).stdout.splitlines())
+        for line in shown.splitlines():  # in this order
+            assert line == "…" or line in lines, line
 
 
 def test_every_id_in_the_readme_is_of_the_system_that_it_analyses() -> None:

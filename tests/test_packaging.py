@@ -60,6 +60,14 @@ def test_the_wheel_holds_every_module_and_data_file(built: Path) -> None:
 
 
 @pytest.mark.slow
+def test_package_indexes_take_what_is_built(built: Path) -> None:
+    for check in (["twine", "check", "--strict", *built.iterdir()], ["check_wheel_contents", *built.glob("*.whl")]):
+        command = [sys.executable, "-m", *map(str, check)]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stdout + done.stderr
+
+
+@pytest.mark.slow
 def test_the_main_job_runs_in_a_fresh_environment(built: Path, tmp_path: Path) -> None:
     (wheel,) = built.glob("*.whl")
     environment = {k: v for k, v in os.environ.items() if not k.startswith(("PYTHON", "VIRTUAL_ENV"))}

@@ -15,6 +15,7 @@ from rosprivacy.analysis.non_ros import INSIDE
 from rosprivacy.report import row_texts
 from rosprivacy.report.catalogs.words import plain, reason_text
 from rosprivacy.report.cnil.inventory import purposes_of
+from rosprivacy.report.cnil.person_answers import PersonAnswers
 from rosprivacy.report.cnil.told import NAMES, Html, bullets, escaped, harmless, joined, paragraph, prose, strong
 from rosprivacy.report.document.register import register_entry
 from rosprivacy.report.finding_facts import making
@@ -29,12 +30,14 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Element
     from rosprivacy.analysis.model.register_row import RegisterRow
     from rosprivacy.report.cnil.inventory import Kind
+    from rosprivacy.report.cnil.person_answers import AssessedPath
     from rosprivacy.report.cnil.told import Told
 
 
 SHOWN = 50  # findings shown with their path, recipients
 THREATS = 100
 PROCESSOR = "processor"
+NO_ANSWERS = PersonAnswers()
 STORED = "storage-limitation"  # the kind of findings whose end is a storage, told under 'Kept in'
 
 
@@ -54,6 +57,8 @@ class AnswerFacts:
         The words of the reader.
     processed
         What is stated of purposes and legal bases where data begin and end.
+    people, paths
+        What people answered in the fields of a report, and the paths that they may have answered about.
     """
 
     analysis: Analysis
@@ -62,6 +67,8 @@ class AnswerFacts:
     register: tuple[RegisterRow, ...]
     words: Told
     processed: tuple[Processed, ...] = ()
+    people: PersonAnswers = NO_ANSWERS
+    paths: tuple[AssessedPath, ...] = ()
 
     def leaving(self) -> list[RegisterRow]:
         """Return the rows whose data leave or rest somewhere."""
@@ -96,7 +103,9 @@ def _data_of(kind: Kind, facts: AnswerFacts) -> Iterator[Html]:
     yield paragraph(told.pair(strong(name), told.prose(category.text("definition", told.words.language))))
     of_kind = [row for row in facts.register if row.category == category.name]
     stored = [
-        f"{told.name(place)} ({facts.retention(row) or told('cnil.kept.unstated')})"
+        joined(
+            escaped(told.name(place)), Html(" ("), prose(facts.retention(row) or told("cnil.kept.unstated")), Html(")")
+        )
         for row in facts.stored()
         for place in row.places
         if row in of_kind
@@ -108,7 +117,7 @@ def _data_of(kind: Kind, facts: AnswerFacts) -> Iterator[Html]:
             *(told.line("cnil.made", _derivations(element, of, told)) for element, of in kind.derivations),
             *_law(kind, told),
             told.line("cnil.recipients", _recipients(kind, told)),
-            told.line("cnil.kept", told.names_shown(stored) or told("cnil.kept.none")),
+            told.line("cnil.kept", told.row(stored[:NAMES], len(stored)) or told("cnil.kept.none")),
             *_persons(of_kind, told),
             *purposes_of(facts.processed, category.name, told),
             told(_open_of(list(purposes_of(facts.processed, category.name, told)), unnamed=unnamed)),
@@ -230,8 +239,8 @@ def processors(facts: AnswerFacts) -> Html:
 def _named_processor(row: RegisterRow, words: Told) -> Html:
     who = row.operator or words("cnil.processor.unnamed")
     where = f" ({row.country})" if row.country else ""
-    on = words.line("cnil.contract.stated", escaped(row.contract)) if row.contract else words("cnil.contract")
-    return joined(words("cnil.processor", who=escaped(f"{who}{where}")), Html("; "), on)
+    on = words.line("cnil.contract.stated", prose(row.contract)) if row.contract else words("cnil.contract")
+    return joined(words("cnil.processor", who=prose(f"{who}{where}")), Html("; "), on)
 
 
 def transfers(facts: AnswerFacts) -> Html:
@@ -280,7 +289,7 @@ def _threat(finding: Finding, facts: AnswerFacts) -> str:
         what = told.bare("cnil.threat", data=data, **ends)
     why = f"; {harmless(plain(reason_text(finding.why, told.words, told.data)))}" if finding.why else ""
     accepted = facts.accepted.get(finding.id)
-    decided = f", {told.bare('cnil.accepted', why=accepted)}" if accepted else ""
+    decided = f", {harmless(plain(told.words('cnil.accepted', why=accepted)))}" if accepted else ""
     return f"{what}{why} ({told.bare('cnil.threat.id', id=finding.id)}{decided})"
 
 
@@ -314,7 +323,7 @@ def _law(kind: Kind, words: Told) -> Iterator[Html]:
             condition = legal.text("condition", language)
             in_full = words.pair(verdict, words.prose(condition)) if condition else verdict
             as_of = words("cnil.law.as.of", date=escaped(words.words.date(legal.as_of)))
-            yield words.line("cnil.law", Html(f"{escaped(legal.text('name', language))} ({in_full}), {as_of}"))
+            yield words.line("cnil.law", Html(f"{prose(legal.text('name', language))} ({in_full}), {as_of}"))
     revealed = list(dict.fromkeys(legal.text("name", language) for legal in kind.law if legal.verdict == MAY_REVEAL))
     if revealed:
         yield words.line("cnil.reveals", words.names_shown(revealed))
@@ -347,4 +356,4 @@ def _way(finding: Finding, facts: AnswerFacts) -> Html:
 
 
 def _stated(key: str, value: str, words: Told) -> Html:
-    return words.line(key, escaped(value) if value else words("not.stated"))
+    return words.line(key, prose(value) if value else words("not.stated"))

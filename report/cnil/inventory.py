@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.findings.processed import BASIS, PURPOSE
 from rosprivacy.analysis.legal import strongest_first
-from rosprivacy.report.cnil.told import Html, bullets, escaped, joined, paragraph, strong
+from rosprivacy.report.cnil.told import Html, bullets, escaped, joined, paragraph, prose, strong
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -114,8 +114,8 @@ def responsible(rows: Rows, words: Told) -> Html:
     """Return the answer to 112: who is responsible, and the data-protection officers."""
     controllers = dict.fromkeys(one for row in rows for one in row.controllers)
     officers = dict.fromkeys(one for row in rows for one in row.officers)
-    said = [words.pair(words("cnil.controller"), escaped(one)) for one in controllers]
-    said += [words.pair(words("cnil.officer"), escaped(one)) for one in officers]
+    said = [words.pair(words("cnil.controller"), prose(one)) for one in controllers]
+    said += [words.pair(words("cnil.officer"), prose(one)) for one in officers]
     return joined(bullets(said), paragraph(words("cnil.responsible.open"))) if said else Html("")
 
 
@@ -143,7 +143,7 @@ def _by_kind(rows: Rows, kinds: Iterable[Kind], words: Told, statement: Callable
 
 def _stated(row: Processed, texts: Iterable[str], fact: str, words: Told, say: Callable[[str], str]) -> Html:
     """What is stated of one end, and whether more is to be completed; empty where nothing is."""
-    stated = [escaped(say(one)) for one in texts]
+    stated = [prose(say(one)) for one in texts]
     more = [words("record.open")] if stated and fact in row.missing else []
     return Html("; ".join([*stated, *more]))
 
@@ -154,4 +154,4 @@ def purposes_of(rows: Rows, category: str, words: Told) -> Iterator[Html]:
     texts = dict.fromkeys(one for row in here for one in row.purposes)
     if texts:
         more = [words("record.open")] if any(PURPOSE in row.missing for row in here) else []
-        yield words.line("cnil.purposes", Html("; ".join([*map(escaped, texts), *more])))
+        yield words.line("cnil.purposes", Html("; ".join([*map(prose, texts), *more])))

@@ -120,8 +120,11 @@ class Told:
 
     def names_shown(self, names: Collection[str]) -> Html:
         """Return names in a row, and how many more there are than the most that are named."""
-        row = ", ".join(escaped(name) for name in islice(names, NAMES))
-        more = len(names) - NAMES
+        return self.row([escaped(name) for name in islice(names, NAMES)], len(names))
+
+    def row(self, parts: list[Html], number: int) -> Html:
+        """Return pieces in a row, and how many it lacks."""
+        row, more = ", ".join(parts), number - len(parts)
         return Html(f"{row} {self('more', n=more)}" if more > 0 else row)
 
     def rows(self, rows: list[Html], number: int) -> Html:

@@ -65,7 +65,7 @@ class Style(NamedTuple):
     base
         What the IRIs of linked data begin with; by default a UUID of the system.
     assessment
-        File of the answers that an earlier report saved; of a page, Markdown and Word.
+        File of the answers that an earlier report saved; of a page, Markdown, Word and the CNIL's tool.
     """
 
     verbose: bool = False
@@ -204,11 +204,15 @@ def _sarif(document: Document, _: Style) -> Iterator[str]:
 
 def _cnil_pia(document: Document, style: Style) -> str:
     """Without ``SOURCE_DATE_EPOCH`` the file is dated now, since the tool wants a date (rule S14)."""
+    from rosprivacy.report.cnil.person_answers import PersonAnswers
     from rosprivacy.report.cnil.pia import cnil_pia
     from rosprivacy.report.json_text import as_text
 
+    given = _answers(style)
+    source = f"{given.file[-120:]} (sha256 {given.sha256[:12]})" if given else ""
+    people = PersonAnswers(given.texts, source) if given else PersonAnswers()
     created = (source_date(os.environ) or datetime.now(UTC)).isoformat(timespec="milliseconds")
-    return as_text(cnil_pia(document, created.replace("+00:00", "Z"), style.language))
+    return as_text(cnil_pia(document, created.replace("+00:00", "Z"), style.language, people))
 
 
 def _article30(document: Document, style: Style) -> str:
@@ -339,7 +343,7 @@ FORMATS = {
         OutputFormat("json", ".json", _short_json, both_views=True, asks=IN_JSON),
         OutputFormat("json1", ".json", _json, both_views=True),
         OutputFormat("sarif", ".sarif", _sarif, both_views=True, asks=(POSITIONS,)),
-        OutputFormat("cnil-pia", ".json", _cnil_pia, ("language",), asks=(REGISTER, PROCESSING)),
+        OutputFormat("cnil-pia", ".json", _cnil_pia, ("language", "assessment"), asks=(REGISTER, PROCESSING)),
         OutputFormat("turtle", ".ttl", _linked_data("turtle"), _LINKED),
         OutputFormat("json-ld", ".jsonld", _linked_data("json-ld"), _LINKED),
         OutputFormat("html", ".html", _html, _REPORT, both_views=True, page="a page", asks=(*_PAGE, PATHS)),

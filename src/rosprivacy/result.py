@@ -156,7 +156,7 @@ class Result(Answer):
         base
             Of linked data: what the IRIs of elements and findings begin with; by default a UUID of the system.
         assessment
-            Of a report: file of the answers that an earlier page saved.
+            Of a report or a file for the CNIL's tool: file of the answers that an earlier page saved.
 
         Raises
         ------

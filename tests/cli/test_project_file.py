@@ -7,12 +7,16 @@ import json
 import os
 import shutil
 from pathlib import Path
-from typing import TYPE_CHECKING
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any
 
+import jsonschema
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from rosprivacy.analysis.errors import InputErrors
-from rosprivacy.cli.project_file import KEYS, nearest_project, read_project
+from rosprivacy.cli.project_file import KEYS, nearest_project, project_schema, read_project
 from tests.helpers.command import cli, refused
 
 if TYPE_CHECKING:
@@ -153,6 +157,28 @@ def test_it_states_nothing_that_decides_where_to_read_or_write() -> None:
     assert {*KEYS} == {
         "policies", "fleet", "labels", "types", "decisions", "baseline", "domain", "lang", "fail-on",
     }  # fmt: skip
+
+
+@given(
+    st.dictionaries(
+        st.sampled_from([*KEYS, "other"]),
+        st.sampled_from(["p", "", 0, -1, True, None, "de", "leak", ["p"], ["p", 3], ["leak", "never"], ["x"], {}]),
+    )
+)
+def test_the_schema_for_editors_accepts_what_is_read(table: dict[str, Any]) -> None:
+    jsonschema.Draft202012Validator.check_schema(project_schema())
+    table = {key: value for key, value in table.items() if value is not None}
+    with TemporaryDirectory() as folder:
+        file = Path(folder, "rosprivacy.toml")
+        lines = [f"{key} = {'{}' if value == {} else json.dumps(value)}" for key, value in table.items()]
+        file.write_text("\n".join(lines), "utf-8")
+        try:
+            read_project(file)
+        except InputErrors:
+            read = False
+        else:
+            read = True
+    assert jsonschema.Draft202012Validator(project_schema()).is_valid(table) == read, table
 
 
 def test_the_search_ends(home: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

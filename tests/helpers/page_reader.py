@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from tests.helpers.explorers import Explorer
 
-SECONDS = 20
+SECONDS = 90
 MOST_TABS = 200
 PANES = ("list", "picture", "element")
 CURRENT = "const a = document.querySelector('#rows [aria-current] .name'); return a ? a.textContent : ''"

@@ -191,7 +191,7 @@ class Written(NamedTuple):
         typer.Option(
             metavar="FILE.json",
             show_default=False,
-            help="Of a report: fill in the answers that the page of an earlier report saved.",
+            help="Of a report or a file for the CNIL's tool: fill in the answers that an earlier page saved.",
             rich_help_panel=WRITTEN,
         ),
     ] = None

@@ -59,12 +59,20 @@ def init(
     by: Annotated[
         str | None, typer.Option(metavar="NAME", help="Who answers, the author of the label file.", show_default=False)
     ] = None,
+    schema: Annotated[bool, typer.Option("--schema", help="Print the JSON Schema of project files.")] = False,
 ) -> None:
     """Begin a project in this folder: a project file, and a label file with what brings data in or lets it out.
 
     POLICY is a policy, a folder, a keystore, or a text of `ros2 node info`. What runs is written as a policy with its
     types. No file that is there is changed.
     """
+    if schema:
+        from rosprivacy.cli.output import emit
+        from rosprivacy.cli.project_file import project_schema
+        from rosprivacy.report.json_text import as_text
+
+        emit(as_text(project_schema()), None)
+        return
     inputs = inputs if inputs.policies or ros2 else inputs._replace(policies=_policies_here())
     if not (ros2 or inputs.policies):
         from rosprivacy.cli.folder_notice import folder_notice

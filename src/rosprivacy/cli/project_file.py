@@ -185,13 +185,13 @@ class _Reader:
 
     def value(self, key: str, value: Any) -> Any:
         """Return what a key states; None, and a problem, if it states nothing that there is."""
-        read = KEYS.get(key)
-        if read is None:
+        known = KEYS.get(key)
+        if known is None:
             near = nearest(key, KEYS)
             hint = did_you_mean(near, f"a project file states {', '.join(KEYS)}; all else is said on the command line")
             self.problem(key, f"unknown key {shown(repr(key))}", hint)
             return None
-        return read(self, key, value)
+        return known.read(self, key, value)
 
     def file(self, key: str, value: Any) -> str | None:
         """One file below the folder of the project file."""
@@ -239,17 +239,45 @@ class _Reader:
         return known
 
 
-KEYS: dict[str, Callable[[_Reader, str, Any], Any]] = {
-    "policies": _Reader.files,
-    "fleet": _Reader.file,
-    "labels": _Reader.files,
-    "types": _Reader.files,
-    "decisions": _Reader.file,
-    "baseline": _Reader.file,
-    "domain": _Reader.number,
-    "lang": _Reader.language,
-    "fail-on": _Reader.failures,
+class _Key(NamedTuple):
+    """What a key may state: how it is read, its JSON Schema, and what it means, for editors."""
+
+    read: Callable[[_Reader, str, Any], Any]
+    schema: Mapping[str, Any]
+    description: str
+
+
+FILE = {"type": "string", "minLength": 1}
+FILES = {"anyOf": [FILE, {"type": "array", "items": FILE}]}
+CODES = {"enum": [each.value for each in FailOn]}
+KEYS = {
+    "policies": _Key(_Reader.files, FILES, "Policies, folders, keystores or globs, below this folder."),
+    "fleet": _Key(_Reader.file, FILE, "A fleet file, in place of policies."),
+    "labels": _Key(_Reader.files, FILES, "Label files; rosprivacy:infrastructure is one that comes with the program."),
+    "types": _Key(_Reader.files, FILES, "Files of message types."),
+    "decisions": _Key(_Reader.file, FILE, "The log of decisions."),
+    "baseline": _Key(_Reader.file, FILE, "A saved analysis, with which rosprivacy diff compares."),
+    "domain": _Key(_Reader.number, {"type": "integer", "minimum": 0}, "The DDS domain."),
+    "lang": _Key(_Reader.language, {"enum": [each.value for each in Language]}, "Of what people read."),
+    "fail-on": _Key(
+        _Reader.failures,
+        {"anyOf": [CODES, {"type": "array", "items": CODES}]},
+        "What rosprivacy analyze fails on.",
+    ),
 }
+
+
+def project_schema() -> dict[str, Any]:
+    """Return the JSON Schema of project files (draft 2020-12), for editors; a pyproject.toml has it below its table."""
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "rosprivacy project file",
+        "description": "What a folder says once of its system, so that commands need not be told it each time.",
+        "type": "object",
+        "additionalProperties": False,
+        "properties": {name: {**key.schema, "description": key.description} for name, key in KEYS.items()},
+        "not": {"required": ["policies", "fleet"]},
+    }
 
 
 def _check_trust(file: Path) -> None:

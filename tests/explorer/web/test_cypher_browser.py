@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from rosprivacy.private_neo4j.connection import Connection
 
 pytestmark = [pytest.mark.browser, pytest.mark.database, pytest.mark.slow, pytest.mark.xdist_group("neo4j")]
-SECONDS = 20
+SECONDS = 90
 HOSTILE = "<img src=x onerror=alert(1)>\"'</textarea></svg><script>alert(1)</script>"
 ROWS = "return document.querySelectorAll('tbody tr').length"
 SMALL = """

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from tests.helpers.explorers import Explorer
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
-SECONDS = 20
+SECONDS = 90
 
 
 @pytest.fixture

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from selenium.webdriver.chrome.webdriver import WebDriver
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
-SECONDS = 20
+SECONDS = 90
 MOST = 40  # questions of the factory
 ROLE = "return document.activeElement.name === 'role' ? document.activeElement.value : ''"
 AT = "return document.activeElement.name || document.activeElement.tagName"

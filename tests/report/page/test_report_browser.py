@@ -203,7 +203,7 @@ def test_search_and_filters_find_what_they_should(browser: WebDriver, pages: dic
     fill(browser, "words", "nothing has this")
     assert shown(browser) == []
     browser.find_element("css selector", "#filters button").click()
-    WebDriverWait(browser, 10).until(lambda _: len(shown(browser)) == 4)  # fields are empty after the event only
+    WebDriverWait(browser, 60).until(lambda _: len(shown(browser)) == 4)  # fields are empty after the event only
 
 
 def test_a_link_to_what_is_filtered_away_shows_it_again(browser: WebDriver, pages: dict[str, Path]) -> None:
@@ -245,7 +245,7 @@ def test_answers_are_saved_to_a_file_that_the_next_report_reads(
         browser.find_element("css selector", f"textarea[data-field='{key}']").send_keys(text)
     browser.find_element("id", "save").click()
     file = tmp_path / "assessment.json"
-    WebDriverWait(browser, 10).until(lambda _: file.is_file())
+    WebDriverWait(browser, 60).until(lambda _: file.is_file())
     answers = read_answers(str(file))
     assert answers.texts == typed
     again = tmp_path / "again.html"
