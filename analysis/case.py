@@ -20,6 +20,8 @@ class Case(NamedTuple):
         On a fleet, the id of the pattern that it belongs to.
     plain_also
         As of ``Finding``.
+    row
+        Of the register of one robot: the row that it ends in; empty on a fleet, where robots are named instead.
     robots
         On a fleet, the robots that data begins on and gets to; an end that is on no robot is empty.
     """
@@ -32,6 +34,7 @@ class Case(NamedTuple):
     pseudonymised: bool
     pattern: str = ""
     plain_also: bool = False
+    row: str = ""
     robots: tuple[str, str] = ("", "")
 
     @property
@@ -44,5 +47,11 @@ class Case(NamedTuple):
     def of(cls, finding: Finding) -> Case:
         """Return the case that a finding is."""
         ends = finding.source, finding.leak
-        plain_also = finding.plain_also
-        return cls(finding.id, finding.kind, finding.category, *ends, finding.pseudonymised, plain_also=plain_also)
+        case = cls(finding.id, finding.kind, finding.category, *ends, finding.pseudonymised)
+        return case._replace(plain_also=finding.plain_also).in_row()
+
+    def in_row(self) -> Case:
+        """Return the case with its row; of one robot that is made from the kind and the place alone."""
+        from rosprivacy.analysis.model.register_row import row_id  # noqa: PLC0415 - light start
+
+        return self._replace(row=row_id(self.category, [self.leak]))

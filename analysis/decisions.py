@@ -1,8 +1,9 @@
 """What people have decided about findings: which decision holds for which, until when, and what is missing (S10, S12).
 
 In: decisions as a file states them, findings. Out: per finding the decision that holds, per decision what it is about.
-A decision about a finding outranks one about a pattern, and of two patterns the one that spells out more counts. An
-expired decision decides nothing, and nor does what it outranks: a person has to look again.
+A decision about a finding, or about the row of the register where it ends, outranks one about a pattern; where there
+are both, both have to accept. Of two patterns the one that spells out more counts. An expired decision decides nothing,
+and nor does what it outranks: a person has to look again.
 """
 
 from __future__ import annotations
@@ -83,6 +84,8 @@ class Decision:
     ----------
     id
         Of a finding, or of a pattern of findings on a fleet; empty where names and globs say what it is about.
+    row
+        Id of a row of the register: it is about the findings that end there.
     category
         A name; it stands for the narrower ones too.
     source, leak
@@ -112,6 +115,7 @@ class Decision:
     choice: Choice
     place: Place
     id: str = ""
+    row: str = ""
     category: str = ""
     source: str = ""
     leak: str = ""
@@ -143,7 +147,7 @@ class Decision:
             and (alone or self._is_on(case.leak.robot))
             and self._is_from(case.source.robot)
             and not (names_robots and case.across and not names_sources)
-            and (self.made_about is None or self.made_about.knew(case.robots))
+            and (self.made_about is None or self.made_about.knew(case.robots, case.id, hidden=case.pseudonymised))
         )
 
     def _is_on(self, robot: str) -> bool:
@@ -161,6 +165,7 @@ class Decision:
         """Whether all that it names but robots is as in a case."""
         return (
             self.id in ("", case.id, case.pattern)
+            and self.row in ("", case.row)
             and self.kind in ("", case.kind)
             and (not self.category or hierarchy.distance(case.category, self.category) is not None)
             and _covers(self.source, case.source.name)
@@ -257,27 +262,39 @@ class Decisions:
 
     @cached_property
     def _by_id(self) -> dict[str, list[int]]:
-        """Id that entries name, empty for patterns -> their numbers."""
+        """Id of a finding or row that entries name, empty for patterns -> their numbers."""
         found: dict[str, list[int]] = {}
         for number, entry in enumerate(self.entries):
-            found.setdefault(entry.id, []).append(number)
+            found.setdefault(entry.id or entry.row, []).append(number)
         return found
 
     def near(self, case: Case) -> list[tuple[int, Decision]]:
         """The entries that name no id, or one of a case's, with their numbers: no other can be about it."""
-        numbers = {number for name in ("", case.id, case.pattern) for number in self._by_id.get(name, ())}
+        numbers = {number for name in ("", case.id, case.pattern, case.row) for number in self._by_id.get(name, ())}
         return [(number, self.entries[number]) for number in sorted(numbers)]
 
-    def foremost(self, case: Case) -> list[Decision]:
-        """The decisions of the highest rank about a case, in the order of the file."""
+    def foremost(self, case: Case) -> tuple[list[Decision], ...]:
+        """The decisions of the highest rank about a case, in the order of the file: those by a row apart."""
         about = [entry for _, entry in self.near(case) if entry.about(case, self.hierarchy)]
-        highest = max((entry.rank(case, self.hierarchy) for entry in about), default=())
-        return [entry for entry in about if entry.rank(case, self.hierarchy) == highest]
+        by_row = [entry for entry in about if entry.row]
+        others = [entry for entry in about if not entry.row and (entry.id or not by_row)]
+        return tuple(self._highest(some, case) for some in (others, by_row) if some)
+
+    def _highest(self, about: Iterable[Decision], case: Case) -> list[Decision]:
+        ranked = [(entry.rank(case, self.hierarchy), entry) for entry in about]
+        highest = max(rank for rank, _ in ranked)
+        return [entry for rank, entry in ranked if rank == highest]
 
     def on(self, case: Case) -> Decision | None:
         """The decision about a case, valid or not; None if there is none, or several of one rank that differ."""
         foremost = self.foremost(case)
-        return foremost[0] if len({entry.choice for entry in foremost}) == 1 else None
+        if not foremost or any(len({entry.choice for entry in some}) > 1 for some in foremost):
+            return None
+        return next((some[0] for some in foremost if not self.lets_stay(some[0])), foremost[0][0])
+
+    def lets_stay(self, decision: Decision) -> bool:
+        """Whether a decision is an acceptance, and valid."""
+        return decision.choice is Choice.ACCEPT and self.state(decision) is State.VALID
 
     def told_apart(self, robot: str) -> tuple[bool, ...]:
         """Return which entries that name robots mean this one: robots are alike only if all do so alike."""
@@ -289,7 +306,7 @@ class Decisions:
     def accepts(self, case: Case) -> bool:
         """Whether a valid decision accepts a case (rule S10)."""
         decision = self.on(case)
-        return decision is not None and decision.choice is Choice.ACCEPT and self.state(decision) is State.VALID
+        return decision is not None and self.lets_stay(decision)
 
 
 @dataclass(frozen=True, slots=True)
@@ -362,13 +379,12 @@ def decided(
     cases = [(finding, case_of(finding)) for finding in findings]
     on: dict[str, Decision] = {}
     for finding, case in cases:
-        foremost = decisions.foremost(case)
-        other = next((entry for entry in foremost if entry.choice != foremost[0].choice), None)
-        if other:
-            what = f"to {other.choice} {finding.id} contradicts line {foremost[0].place.line}: to {foremost[0].choice}"
-            raise DecisionError(other.place.file, other.place.line, what, "make one more specific, or remove it")
-        if foremost:
-            on[finding.id] = foremost[0]
+        for first, *more in decisions.foremost(case):
+            if other := next((entry for entry in more if entry.choice != first.choice), None):
+                what = f"to {other.choice} {finding.id} contradicts line {first.place.line}: to {first.choice}"
+                raise DecisionError(other.place.file, other.place.line, what, "make one more specific, or remove it")
+        if decision := decisions.on(case):
+            on[finding.id] = decision
     ids: list[set[str]] = [set() for _ in decisions.entries]
     for finding, case in cases:
         for number, entry in decisions.near(case):
@@ -387,7 +403,7 @@ def decided(
 
 def _changed(entry: Decision, findings: Iterable[str], now: Mapping[str, About]) -> tuple[ChangedAspect, ...]:
     """What is not as it was; of an entry that lists robots, on one of these."""
-    there = findings if entry.robots else (entry.id,)
+    there = findings if entry.robots else (entry.id or entry.row,)
     return next((found for one in there if (found := changes(entry.made_about, now.get(one)))), ())
 
 
@@ -410,7 +426,7 @@ def _diagnostics(
         message = f"by its day, {asked}, fewer decisions have expired than today, {today}; the later day counts"
         yield Diagnostic(Place("SOURCE_DATE_EPOCH", 0), Severity.WARNING, message)
     for entry, ids, state, lost in zip(joined.decisions.entries, joined.about, joined.states, former, strict=True):
-        what = f"the decision to {entry.choice} {entry.id or 'a pattern'}"
+        what = f"the decision to {entry.choice} {entry.id or entry.row or 'a pattern'}"
         if lost:
             count = "1 finding" if lost == 1 else f"{lost} findings"
             did = "accepted before" if entry.choice is Choice.ACCEPT else "decided before"

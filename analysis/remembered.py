@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
+STATED = ("operator", "recipient", "contract", "country", "transfer", "encrypted")  # of a place
 MOST_NAMED = 5  # robots in a message
 
 
@@ -30,16 +31,50 @@ class About:
         How many paths share no flow.
     robots
         Of a pattern on a fleet: its robots; where data gets from one robot to another, all of the fleet.
+    findings, pseudonymised
+        Of a row of the register: ids of its findings, those of data in this form only apart.
+    stated
+        Of a row: what was stated of its place, of ``stated_of``.
     """
 
     view: str = ""
     path: tuple[str, ...] = ()
     disjoint_paths: int = 0
     robots: frozenset[str] = frozenset()
+    findings: frozenset[str] = frozenset()
+    pseudonymised: frozenset[str] = frozenset()
+    stated: tuple[str, ...] = ()
 
-    def knew(self, ends: Iterable[str]) -> bool:
-        """Whether the robots of two ends were there; an end on none is empty. Where none are remembered, all were."""
-        return not self.robots or {robot for robot in ends if robot} <= self.robots
+    @classmethod
+    def of_row(cls, findings: Iterable[tuple[str, bool]], stated: tuple[str, ...]) -> About:
+        """Return what a decision about a row is made about: its findings, each with whether it is pseudonymised."""
+        forms = dict(findings)
+        plain, hidden = (frozenset(one for one, form in forms.items() if form is some) for some in (False, True))
+        return cls(findings=plain, pseudonymised=hidden, stated=stated)
+
+    def knew(self, ends: Iterable[str], finding: str = "", *, hidden: bool = False) -> bool:
+        """Whether the robots of two ends, and a finding, were there; where none are remembered, all were.
+
+        Parameters
+        ----------
+        ends
+            Names of robots; an end on none is empty.
+        hidden
+            Whether data get there in pseudonymised form only; what was known as it is was known in this form, too.
+        """
+        known = self.findings | self.pseudonymised if hidden else self.findings
+        there = finding in known or not (self.findings or self.pseudonymised)
+        return there and (not self.robots or {robot for robot in ends if robot} <= self.robots)
+
+
+def stated_of(place: Mapping[str, object]) -> tuple[str, ...]:
+    """Return what is stated of a place where data leave or rest, in texts to compare.
+
+    >>> stated_of({"country": "TN", "recipient": "processor", "operator": "", "encrypted": False}), stated_of({})
+    (('recipient: processor', 'country: TN', 'encrypted: False'), ('-',))
+    """
+    said = tuple(f"{key}: {place[key]}" for key in STATED if place.get(key) not in ("", None))
+    return said or ("-",)
 
 
 class ChangedAspect(NamedTuple):
@@ -67,6 +102,7 @@ def _changes(before: About, now: About) -> Iterator[ChangedAspect]:
         "view": (before.view, now.view),
         "path": (" -> ".join(before.path), " -> ".join(now.path)),
         "disjoint_paths": (str(before.disjoint_paths or ""), str(now.disjoint_paths or "")),
+        "stated": ("; ".join(before.stated), "; ".join(now.stated)),
     }
     yield from (
         ChangedAspect(aspect, then, today)
@@ -104,5 +140,8 @@ def as_written(about: About) -> Mapping[str, object]:
         "path": list(about.path),
         "disjoint_paths": about.disjoint_paths,
         "robots": sorted(about.robots),
+        "findings": sorted(about.findings),
+        "pseudonymised": sorted(about.pseudonymised),
+        "stated": list(about.stated),
     }
     return {key: value for key, value in said.items() if value}

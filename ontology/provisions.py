@@ -10,7 +10,7 @@ from functools import cache
 from importlib.resources import files
 from typing import TYPE_CHECKING
 
-from rdflib import DCTERMS, RDF, RDFS, SKOS
+from rdflib import DCTERMS, RDF, RDFS, SKOS, URIRef
 
 from rosprivacy.ontology.turtle import ENGLISH, RP, first_texts, read
 
@@ -57,6 +57,21 @@ def law() -> Graph:
     return read(text, "the shipped law")
 
 
+def grounds(language: str = ENGLISH) -> dict[str, Provision]:
+    """Return what processing can rest on: each point of Articles 6(1) and 9(2) of the GDPR.
+
+    >>> grounds("de")["6(1)(f)"].title, len(grounds())
+    ('berechtigte Interessen', 16)
+    """
+    graph = law()
+    found = {
+        f"{article}({subject.removeprefix(str(above))[1:]})": subject
+        for article, above in (("6(1)", RP["GDPR-6-1"]), ("9(2)", RP["GDPR-9-2"]))
+        for subject in sorted(map(str, graph.subjects(RP.partOf, above)))
+    }
+    return {article: _provision(graph, URIRef(subject), language) for article, subject in found.items()}
+
+
 def provisions(language: str = ENGLISH) -> tuple[Provision, ...]:
     """Return all of them, in the order of their identifiers.
 
@@ -66,15 +81,7 @@ def provisions(language: str = ENGLISH) -> tuple[Provision, ...]:
     graph = law()
     subjects = set(graph.subjects(RDF.type, RP.LegalProvision))
     return tuple(
-        Provision(
-            _text(graph, subject, DCTERMS.bibliographicCitation, language),
-            _text(graph, subject, DCTERMS.title, language),
-            _text(graph, subject, SKOS.definition, language),
-            str(graph.value(subject, RP.asOf)),
-            str(graph.value(subject, RDFS.seeAlso) or ""),
-            graph.value(subject, RP.confirmed) is None,
-            str(graph.value(subject, RP.adopted) or ""),
-        )
+        _provision(graph, subject, language)
         for subject in sorted(subjects, key=lambda subject: str(graph.value(subject, RP.identifier)))
     )
 
@@ -88,6 +95,18 @@ def is_old(as_of: str, today: str) -> bool:
     year, month, day = map(int, as_of.split("-"))
     years, months = divmod(month - 1 + MONTHS, 12)
     return today > f"{year + years}-{months + 1:02}-{day:02}"
+
+
+def _provision(graph: Graph, subject: Node, language: str) -> Provision:
+    return Provision(
+        _text(graph, subject, DCTERMS.bibliographicCitation, language),
+        _text(graph, subject, DCTERMS.title, language),
+        _text(graph, subject, SKOS.definition, language),
+        str(graph.value(subject, RP.asOf)),
+        str(graph.value(subject, RDFS.seeAlso) or ""),
+        graph.value(subject, RP.confirmed) is None,
+        str(graph.value(subject, RP.adopted) or ""),
+    )
 
 
 def _text(graph: Graph, subject: Node, predicate: Node, language: str) -> str:

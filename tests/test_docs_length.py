@@ -22,8 +22,8 @@ IN_ALL = 30_000
 EACH = 1_050
 PAGES = sorted(page for page in DOCS.rglob("*.md") if not page.is_relative_to(reference.FOLDER))
 AT_MOST = {  # pages of another length than EACH; a new one needs a reason as good as theirs
-    "database.md": 1_980,
-    "decisions.md": 1_650,
+    "database.md": 1_930,
+    "decisions.md": 1_850,
     "labels.md": 2_250,
     "linked-data.md": 1_750,
     "method.md": 1_550,

@@ -8,7 +8,6 @@ nobody knows is groups in ``to_complete``. Source: GDPR, Articles 5, 6, 9, 10, 2
 
 from __future__ import annotations
 
-import hashlib
 from collections import defaultdict
 from dataclasses import replace
 from functools import cache
@@ -21,7 +20,7 @@ from rosprivacy.analysis.kernel.search import search
 from rosprivacy.analysis.kernel.states import Net, derived_bits
 from rosprivacy.analysis.legal import CHAPTER_V, GROUPS, Lack, gaps, group_of
 from rosprivacy.analysis.model import NOWHERE, STATED, THIRD_COUNTRY, NonRosFacts
-from rosprivacy.analysis.model.register_row import Cell, RegisterRow, RowState
+from rosprivacy.analysis.model.register_row import Cell, RegisterRow, RowState, row_id
 from rosprivacy.analysis.non_ros import (
     ADEQUATE,
     DEROGATION,
@@ -214,7 +213,7 @@ class _Rows:
             *([Cell.RETENTION] if not kept or stated.backups is True else []),
         }
         return RegisterRow(
-            id=_id(category, places or sources),
+            id=row_id(category, places or sources),
             category=category,
             places=places,
             pseudonymised=bool(places) and self._pseudonymised(category, vertices),
@@ -320,11 +319,6 @@ def _state(findings: Collection[Finding]) -> RowState:
     if any(finding.accepted for finding in findings):
         return RowState.ACCEPTED
     return RowState.DISMISSED if findings else RowState.NO_FINDING
-
-
-def _id(category: str, ends: Iterable[Element]) -> str:
-    parts = [category, *(part for end in sorted(end.identity for end in ends) for part in end)]
-    return hashlib.sha256("\0".join(parts).encode("utf-8", "surrogateescape")).hexdigest()[:16]
 
 
 def _distinct(rows: Iterable[Iterable[str]]) -> tuple[str, ...]:

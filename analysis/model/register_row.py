@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import hashlib
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from rosprivacy.analysis.durations import Duration
     from rosprivacy.analysis.model.element import Element
 
@@ -67,6 +70,24 @@ class RowState(StrEnum):
     DISMISSED = "dismissed"
 
 
+def row_id(category: str, ends: Iterable[Element]) -> str:
+    """Return the id of the row of a kind of data at its places, or of its sources where there is no place.
+
+    Returns
+    -------
+    16 hexadecimal digits, the same for the same kind and places, whatever is stated of them.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.model import Element
+    >>> row_id("Video", [Element("storage", "disk")]), row_id("Voice", [Element("storage", "disk")])
+    ('d8fe0ef97d4b673d', '72e2cfb593a63be9')
+    """
+    identities = sorted({end.identity for end in ends})
+    text = "\0".join([category, *(part for identity in identities for part in identity)])
+    return hashlib.sha256(text.encode("utf-8", "surrogateescape")).hexdigest()[:16]
+
+
 @dataclass(frozen=True, slots=True)
 class RegisterRow:
     """A kind of data at a place where it leaves or rests.
@@ -74,7 +95,7 @@ class RegisterRow:
     Attributes
     ----------
     id
-        16 hexadecimal digits made from the kind and the places, or from the sources where there is no place.
+        Of ``row_id``.
     places
         Elements of one kind and name, of several robots if all else is the same; none where data leave nowhere.
     pseudonymised

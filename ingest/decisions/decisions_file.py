@@ -31,7 +31,8 @@ if TYPE_CHECKING:
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 TOP = ("decisions", "findings", "doubts", "note")
-NAMES = ("id", "category", "source", "leak", "robot", "from_robot", "kind")
+NAMES = ("id", "row", "category", "source", "leak", "robot", "from_robot", "kind")
+IDS = (("id", "a finding"), ("row", "a row of the register"))
 LISTS = ("robots", "from_robots")  # of robots, by their full names
 TARGET = (*NAMES, *LISTS, "pseudonymised")
 TEXTS = ("reason", "owner", "ticket")
@@ -39,7 +40,9 @@ CONDITION = "condition"
 OF_DOUBTS = ("id", "doubt", "element", "robot", "file")
 DOUBT_KEYS = (*OF_DOUBTS, "decision", *TEXTS, "date", "expires", "note", "history")
 KEYS = (*TARGET, "decision", *TEXTS, CONDITION, "legal_basis", "date", "expires", "note", "history", "made_about")
-REMEMBERED = ("view", "path", "disjoint_paths", "robots")
+REMEMBERED = ("view", "disjoint_paths", "path", "stated", "robots", "findings", "pseudonymised")
+IN_ORDER = ("path", "stated")
+REMEMBERED_LISTS = REMEMBERED[2:]
 REQUIRED: Mapping[str, tuple[str, ...]] = {  # what a person signs
     Choice.ACCEPT: ("reason", "owner"),
     Choice.CONDITIONAL: ("reason", "owner", CONDITION),
@@ -169,16 +172,19 @@ class DecisionsReader(FileReader):
     def _made_about(self, entries: dict[str, Value]) -> About | None:
         """What was there when it was decided; ``rosprivacy decide --report`` writes it."""
         value = entries["made_about"]
-        if "id" not in entries:
-            self.problem(value.line, "made_about without an id", "remove it: names and globs are about what there is")
+        if not entries.keys() & {"id", "row"}:
+            self.problem(
+                value.line, "made_about without an id or a row", "remove it: names and globs are about what there is"
+            )
         elif value.kind != "map":
             self.problem(value.line, f"made_about is a map, not a {value.kind}", "remove it, or decide anew")
         else:
             known = self.values_of(value, REMEMBERED)
-            lists = {key: tuple(self._names(known[key], key)) for key in ("path", "robots") if key in known}
+            lists = {key: tuple(self._names(known[key], key)) for key in REMEMBERED_LISTS if key in known}
             view = self._text(known["view"], "view") if "view" in known else ""
             count = self._count(known["disjoint_paths"]) if "disjoint_paths" in known else 0
-            return About(view, lists.get("path", ()), count, frozenset(lists.get("robots", ())))
+            sets = {key: frozenset(names) for key, names in lists.items() if key not in IN_ORDER}
+            return About(view, lists.get("path", ()), count, stated=lists.get("stated", ()), **sets)
         return None
 
     def _names(self, value: Value, key: str) -> Iterator[str]:
@@ -204,17 +210,19 @@ class DecisionsReader(FileReader):
         return Choice.MITIGATE
 
     def _target(self, item: Value, entries: dict[str, Value], texts: dict[str, Any]) -> None:
-        if not any(texts.get(key) for key in ("id", "category", "source", "leak")):
-            self.problem(item.line, "a decision about everything", "name an id, a category, a source or a leak")
-        if texts.get("id"):
-            line = entries["id"].line
-            if not is_id(texts["id"]):
-                self.problem(line, f"id {shown(texts['id'])!r}", "copy the 16 digits and letters of a finding")
+        if not any(texts.get(key) for key in ("id", "row", "category", "source", "leak")):
+            self.problem(item.line, "a decision about everything", "name an id, a row, a category, a source or a leak")
+        exact = {key: entries[key].line for key, _ in IDS if texts.get(key)}
+        for key, thing in IDS:
+            if key in exact and not is_id(texts[key]):
+                self.problem(exact[key], f"{key} {shown(texts[key])!r}", f"copy the 16 digits and letters of {thing}")
+        if exact:
+            line, names = max(exact.values()), " ".join(texts[key] for key in exact)
             form = entries["pseudonymised"].text if "pseudonymised" in entries else ""
             robots = (frozenset(texts.get(key, ())) for key in LISTS)
-            first = self.ids.setdefault((texts["id"], form, *robots), line)
+            first = self.ids.setdefault((*exact, names, form, *robots), line)
             if first != line:
-                self.problem(line, f"{texts['id']} again, first in line {first}", "keep one")
+                self.problem(line, f"{names} again, first in line {first}", "keep one")
         for one, several in (("robot", "robots"), ("from_robot", "from_robots")):
             if one in entries and several in entries:
                 self.problem(entries[several].line, f"{one} and {several}", "keep one of the two")
@@ -222,7 +230,7 @@ class DecisionsReader(FileReader):
             texts["category"] = self.category_of_name(self.vocabulary, texts["category"], entries["category"].line)
 
     def _text(self, value: Value, key: str) -> str:
-        if value.kind == "number" and key in ("id", "ticket"):  # 1234567812345678 is an id too
+        if value.kind == "number" and key in ("id", "row", "ticket"):  # 1234567812345678 is an id too
             return value.text
         if value.kind != "text" or not value.text.strip():
             self.problem(value.line, f"{key} takes text, not {_a(value)}", "write it, or remove the key")

@@ -99,7 +99,7 @@ def _logged(step: LoggedStep) -> LoggedEntry:
 
 def _target(entry: Decision) -> Target:
     """What an entry says that it is about."""
-    keys = ("id", "category", "source", "leak", "robot", "from_robot", "kind")
+    keys = ("id", "row", "category", "source", "leak", "robot", "from_robot", "kind")
     target = cast("Target", {key: getattr(entry, key) for key in keys if getattr(entry, key)})
     if entry.robots:
         target["robots"] = list(entry.robots)

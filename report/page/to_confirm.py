@@ -99,7 +99,7 @@ def row_questions(index: Index, entries: Iterable[PathEntry]) -> RowQuestions:
     entries = list(entries)
     rows = _by_weight(index)
     by_id = {finding: entry for entry in entries for finding in (entry.id, *entry.alike)}
-    to_confirm = ((key, "", row) for row in rows for key in _to_confirm(row))
+    to_confirm = ((key, "", row) for row in rows for key in questions_of(row))
     foremost = ((key, remark, row) for row in rows for key, remark in _foremost(row, index))
     resting = (
         (RESTS, index.words.row(map(index.words.duration, row["retention"])), row) for row in filter(_rests, rows)
@@ -126,8 +126,8 @@ def _by_weight(index: Index) -> list[Row]:
     return [dict(row) for row in in_order(weighed, index.document)]
 
 
-def _to_confirm(row: Row) -> Iterator[str]:
-    """Keys of the questions that a row asks."""
+def questions_of(row: Mapping[str, Any]) -> Iterator[str]:
+    """Yield the keys of the questions that a row of the register asks."""
     if row["area"] not in (INSIDE, ADEQUATE):
         stated = {row["transfer"], *map(transfer_of, row["safeguards"])}
         if stated.difference(NO_SAFEGUARD):

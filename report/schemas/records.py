@@ -105,9 +105,9 @@ class StepEntry(TypedDict):
 
 
 class ChangedSince(TypedDict):
-    """What is not as it was when a decision was made: view, path, disjoint_paths or robots."""
+    """What is not as it was when a decision was made: view, path, disjoint_paths, robots, or what is stated."""
 
-    what: Annotated[str, one_of("view", "path", "disjoint_paths", "robots")]
+    what: Annotated[str, one_of("view", "path", "disjoint_paths", "robots", "stated")]
     before: str
     now: str
 
@@ -286,6 +286,7 @@ class Target(TypedDict, total=False):
     """What a decision says that it is about."""
 
     id: str
+    row: Annotated[str, "Of the register: the findings that end there."]
     category: str
     source: str
     leak: str

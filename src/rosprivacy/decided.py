@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.analysis.fleet.patterns import FleetView
     from rosprivacy.analysis.legal import Verdicts
-    from rosprivacy.analysis.model import Diagnostic, Doubt
+    from rosprivacy.analysis.model import Diagnostic, Doubt, Element
     from rosprivacy.analysis.remembered import About
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.settings import Settings
@@ -88,8 +88,9 @@ def doubts_decided(
 
 
 def about_today(analysis: Analysis, view: FleetView | None) -> dict[str, About]:
-    """Return what a decision would be made about today: of each finding by its id, of a fleet of each pattern."""
-    from rosprivacy.analysis.remembered import About  # noqa: PLC0415 - light start
+    """Return what a decision would be made about today, by id: of each finding and row, of a fleet of each pattern."""
+    from rosprivacy.analysis.model.register_row import row_id  # noqa: PLC0415 - light start
+    from rosprivacy.analysis.remembered import About, stated_of  # noqa: PLC0415
 
     def about(finding: Finding, robots: Iterable[str] = ()) -> About:
         path = tuple(element.name for element in finding.witness)
@@ -97,9 +98,18 @@ def about_today(analysis: Analysis, view: FleetView | None) -> dict[str, About]:
 
     found = {finding.id: about(finding) for finding in analysis.findings}
     if view is None:
-        return found
+        return found | {
+            row_id(finding.category, [finding.leak]): About(stated=stated_of(_stated(analysis, finding.leak)))
+            for finding in analysis.findings
+        }
     everywhere = {robot for robots in view.likeness.members.values() for robot in robots}
     return found | {p.id: about(p.finding, everywhere if p.across else p.robots) for p in view.patterns}
+
+
+def _stated(analysis: Analysis, place: Element) -> Mapping[str, object]:
+    """What is stated of a place outside ROS; nothing of a node."""
+    facts = analysis.outside.get(place)
+    return facts._asdict() if facts else {}
 
 
 def law_of(vocabulary: Vocabulary, categories: Iterable[str], contexts: Collection[str] = ()) -> dict[str, Verdicts]:
@@ -121,6 +131,7 @@ def accepts(decisions: Decisions | None, likeness: Likeness = NO_ROBOTS) -> Call
 def in_fleet(case: Case, likeness: Likeness) -> Case:
     """Return a case with its pattern and robots; where it stands for more than itself it has no id of its own."""
     ends = case.source, case.leak
+    case = case._replace(row="") if likeness.robots else case.in_row()
     pattern = pattern_of(case.kind, case.category, *ends, likeness, plain_also=case.plain_also)
     source, leak = (end.robot if likeness.is_robot(end.robot) else "" for end in ends)
     own = case.id if likeness.alone(*ends) else ""

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 IDENTITY = ("git", "-c", "user.useConfigOnly=true", "var", "GIT_AUTHOR_IDENT")  # only what a person set
-NO_FACTS = frozenset({"decision", "paths", "paths_bounded", "robots", "view"})  # of a finding, or of how it was asked
+NO_FACTS = frozenset({"decision", "paths", "paths_bounded", "robots", "view", "state"})  # or of how it was asked
 
 
 def with_recorded(
@@ -67,11 +67,21 @@ def provenance(folder: Path, about: Mapping[str, Any] | None = None) -> dict[str
     return {"account": _account(folder), "when": now(os.environ), **({"about": about} if about else {})}
 
 
-def subject(document: Mapping[str, Any], finding: Mapping[str, Any]) -> dict[str, str]:
-    """Return what a decision about a finding is made about: hashes of its facts and of what they were read from."""
+def subject(document: Mapping[str, Any], **facts: Mapping[str, Any] | None) -> dict[str, str]:
+    """Return what a decision is made about: hashes of its facts and of what they were read from.
+
+    Parameters
+    ----------
+    facts
+        Of the document: ``finding``, and the ``row`` of the register; None for what is not decided about.
+    """
     assumptions = document["assumptions"]
     return {
-        "finding": digest({key: value for key, value in finding.items() if key not in NO_FACTS}),
+        **{
+            what: digest({key: value for key, value in some.items() if key not in NO_FACTS})
+            for what, some in facts.items()
+            if some
+        },
         "policies": _digest_of_files(assumptions.get("policies", ())),
         "labels": _digest_of_files(assumptions["labels"]),
         "law": assumptions["law_as_of"],

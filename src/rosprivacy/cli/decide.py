@@ -17,7 +17,7 @@ from rosprivacy.cli.options import Ontologies, complete_category
 from rosprivacy.cli.output import emit
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 PATTERN = "A pattern of findings"  # a panel of help
 DOUBT = "A doubt"
@@ -93,6 +93,15 @@ class DecisionFacts(NamedTuple):
 class FindingPattern(NamedTuple):
     """Which findings are meant, where no id names them."""
 
+    row: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ID",
+            help="Of a row of the register: the findings that end there.",
+            show_default=False,
+            rich_help_panel=PATTERN,
+        ),
+    ] = None
     category: Annotated[
         str | None,
         typer.Option(
@@ -188,6 +197,8 @@ def decide(
     document = read_earlier(str(report)).document if report else None
     findings = _findings(document) if document else None
     doubts = _doubts(document) if document else {}
+    row = _row(document, pattern["row"], str(report)) if document and "row" in pattern else None
+    pattern |= {"row": row["id"]} if row else {}
     targets = _targets(ids, None if findings is None else findings | doubts, str(report)) if ids else [pattern]
     entry, vocabulary = _entry(choice, facts), load(ontologies=tuple(ontology or ()))
     names = "; ".join(", ".join(f"{key} {shown(str(value))}" for key, value in target.items()) for target in targets)
@@ -196,14 +207,17 @@ def decide(
         text, remarks = text_in(decisions), []
         for target in targets:
             finding = (findings or {}).get(target.get("id", ""))
-            what = f"the acceptance of {target.get('id', 'a pattern')}"
-            remarks += [f"{what} {gap}" for gap in _gaps(choice, facts, finding)]
-            whole = {**target, **entry, **({} if choice in IN_A_LOG else _made_about(findings, target))}
+            meant = [finding] if finding else _in_row(row, findings or {})
+            what = f"the acceptance of {target.get('id') or target.get('row', 'a pattern')}"
+            remarks += [f"{what} {gap}" for gap in _gaps(choice, facts, meant)]
+            made_about = _made_about_row(row, meant) if row else _made_about(finding)
+            whole = {**target, **entry, **({} if choice in IN_A_LOG else made_about)}
             section = DOUBTS if in_doubt or target.get("id") in doubts else FINDINGS
-            remark = _remark(findings, target) or _doubt_remark(doubts.get(target.get("id", "")))
-            there = provenance(decisions.parent, subject(document, finding) if document and finding else None)
+            remark = _remark(finding) or _doubt_remark(doubts.get(target.get("id", "")))
+            facts_then = subject(document, finding=finding, row=row) if document and meant else None
+            there = provenance(decisions.parent, facts_then)
             text = with_recorded(str(decisions), text, whole, remark, vocabulary, section, there)
-        if ids and not report:
+        if (ids or "row" in pattern) and not report:
             remarks.append("the ids were not checked; --report FILE checks them against an analysis")
         if not is_log(str(decisions)):
             remarks.append(f"{shown(str(decisions))} is no log, so that nobody sees who changes it: {TAKE_OVER}")
@@ -217,7 +231,7 @@ def _default_log() -> Path:
     return former if former.exists() and not log.exists() else log
 
 
-def _gaps(choice: Decide, facts: DecisionFacts, finding: Mapping[str, Any] | None) -> Iterator[str]:
+def _gaps(choice: Decide, facts: DecisionFacts, findings: Sequence[Mapping[str, Any]]) -> Iterator[str]:
     """What an acceptance lacks, as far as the report tells what it is about."""
     from rosprivacy.ingest.reading.legal_basis import legal_basis
     from rosprivacy.report.finding_facts import gaps_of
@@ -226,7 +240,7 @@ def _gaps(choice: Decide, facts: DecisionFacts, finding: Mapping[str, Any] | Non
         return
     bases = [legal_basis(basis) or "" for basis in facts.legal_basis or ()]
     decision = {"legal_basis": bases, "expires": facts.expires}
-    yield from map(str, gaps_of(decision, [finding] if finding else []))
+    yield from map(str, gaps_of(decision, findings))
 
 
 def _as_pattern(options: FindingPattern | DoubtPattern) -> dict[str, str]:
@@ -264,7 +278,7 @@ def _check_target(ids: list[str] | None, pattern: Mapping[str, str]) -> None:
     if ids and pattern:
         raise typer.BadParameter("name findings by their ids, or a pattern of them, not both")
     if not ids and not pattern:
-        raise typer.BadParameter("name an id, or a pattern: --category, --source, --leak, --doubt")
+        raise typer.BadParameter("name an id, or a pattern: --row, --category, --source, --leak, --doubt")
 
 
 def _check_words(choice: Decide, facts: DecisionFacts, decisions: Path) -> None:
@@ -323,11 +337,37 @@ def _all_of(pattern: dict[str, Any], robots: list[str]) -> dict[str, Any]:
     return {"pseudonymised": pseudonymised, "robots": robots if pattern["across"] else pattern["robots"]}
 
 
-def _made_about(findings: dict[str, dict[str, Any]] | None, target: dict[str, Any]) -> dict[str, Any]:
+def _row(document: Mapping[str, Any], written: str, report: str) -> Mapping[str, Any]:
+    """The row of the register that is meant by an id or its beginning; there has to be something to decide."""
+    if "fleet" in document:
+        hint = "decide about its findings, by their ids"
+        raise InputErrors([DecisionError(report, 0, "rows are decided about on one robot, and this is a fleet", hint)])
+    rows = {row["id"]: row for row in document.get("register", ()) if row["findings"]}
+    fitting = [one for one in rows if one.startswith(written)] if len(written) >= SHORTEST else []
+    if len(fitting) != 1:
+        which = f"begins {len(fitting)} ids of rows" if fitting else "is no row in which a finding ends"
+        hint = f"copy one: {', '.join(list(rows)[:5])}" if rows else "the report has no finding"
+        raise InputErrors([DecisionError(report, 0, f"{shown(written)!r} {which} of the report", hint)])
+    return dict(rows[fitting[0]])
+
+
+def _in_row(row: Mapping[str, Any] | None, findings: Mapping[str, dict[str, Any]]) -> list[dict[str, Any]]:
+    """The findings of a report that end in a row."""
+    return [findings[one] for one in row["findings"] if one in findings] if row else []
+
+
+def _made_about_row(row: Mapping[str, Any], findings: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
+    """The findings that end in a row now: a finding that comes later is not decided."""
+    from rosprivacy.analysis.remembered import About, as_written, stated_of
+
+    about = About.of_row(((one["id"], one["pseudonymised"]) for one in findings), stated_of(row))
+    return {"made_about": as_written(about)}
+
+
+def _made_about(finding: Mapping[str, Any] | None) -> dict[str, Any]:
     """What is there now, for later runs to compare to; nothing of a pattern by names, or without a report."""
     from rosprivacy.analysis.remembered import About, as_written
 
-    finding = (findings or {}).get(target.get("id", ""))
     if finding is None:
         return {}
     path = tuple(element["name"] for element in finding["witness"])
@@ -346,9 +386,8 @@ def _chosen(findings: dict[str, dict[str, Any]], written: str, report: str) -> d
     return {"id": one, **({"pseudonymised": True} if findings[one].get("pseudonymised") is True else {})}
 
 
-def _remark(findings: dict[str, dict[str, Any]] | None, target: dict[str, Any]) -> str:
+def _remark(finding: Mapping[str, Any] | None) -> str:
     """What a person reads beside an id."""
-    finding = (findings or {}).get(target.get("id", ""))
     if finding is None:
         return ""
     return f"{finding['category']}: {finding['source']['name']} -> {finding['leak']['name']}"

@@ -1,9 +1,9 @@
-"""What a person decides about a finding of a session, into the decisions file that the session was begun with.
+"""What a person decides about a finding or a row of a session, into the decisions file that the session began with.
 
-In: a finding as it is found now, of a fleet with robots, and an entry. Out: the file with it. What others wrote
-meanwhile stays: the file is read anew each time, and one writer works at a time. Nothing is written unless the file
-then says of these robots what was decided, and the answer can be made of it. On a fleet a decision is about exactly the
-robots that are named, whoever joins later (rule S10).
+In: a finding as it is found now, of a fleet with robots, or a row of the register, and an entry. Out: the file with it.
+What others wrote meanwhile stays: the file is read anew each time, and one writer works at a time. Nothing is written
+unless the file then says of these robots, or of all that ends in the row, what was decided, and the answer can be made
+of it. On a fleet a decision is about exactly the robots that are named, whoever joins later (rule S10).
 """
 
 from __future__ import annotations
@@ -16,29 +16,30 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypedDict
 
 from rosprivacy.analysis.case import Case
-from rosprivacy.analysis.decisions import State
+from rosprivacy.analysis.decisions import Choice, State
 from rosprivacy.analysis.errors import DecisionError, InputErrors, shown
 from rosprivacy.analysis.files_read import one_run
 from rosprivacy.analysis.fleet.likeness import NO_ROBOTS, pattern_id
-from rosprivacy.analysis.remembered import as_written
+from rosprivacy.analysis.remembered import About, as_written, stated_of
 from rosprivacy.clock import judged_on, today
 from rosprivacy.decided import about_today, in_fleet
 from rosprivacy.decision_record import parse_recorded, provenance, subject, with_recorded
 from rosprivacy.ingest.decisions.decision_log import is_log
 from rosprivacy.ingest.decisions.decision_writer import text_in
-from rosprivacy.ingest.decisions.decisions_file import REQUIRED, is_date
+from rosprivacy.ingest.decisions.decisions_file import LISTS, REQUIRED, is_date
 from rosprivacy.report.atomic import editing, write_texts
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.answer import Finding
-    from rosprivacy.analysis.decisions import Decisions
+    from rosprivacy.analysis.decisions import Decision, Decisions
     from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.result import Result
 
     RobotNames = Collection[str] | None  # robots, by id; None for all that are alike
 
+CHANGE_IT = "change or remove that entry, and begin again"
 ENDS = 2  # robots of one kind that are enough to see what holds between any two
 
 
@@ -138,27 +139,66 @@ def record(
     judge
         Makes the answer under what the file will say, before it is written.
     """
-    if file is None:
-        raise _refused("", "there is no decisions file", "name one when the session begins")
+    file = _checked(file, ruling)
     about = next((each for each in result.analysis.findings if each.id == finding), None)
     if about is None:
         raise _refused(file, f"{shown(finding)!r} is no finding", "take the id of one that is found now")
-    _check(file, ruling)
     likeness = result.fleet.likeness if result.fleet else NO_ROBOTS
     scope = _scope_of(scopes(result.analysis.findings, likeness, about), file, *robots)
     entry = {**_target(scope, likeness), **_entry(ruling), "made_about": _made_about(result, scope.finding)}
     remark = f"{about.category}: {about.source.name} -> {about.leak.name}"  # what a person reads beside an id
+
+    def check(decisions: Decisions) -> None:
+        _check_meaning(decisions, _cases(scope, likeness, decisions.told_apart), entry)
+        judge(decisions)
+
+    _write(file, result, entry, remark, lambda: _subject(result, scope.finding), check)
+
+
+def record_row(file: str | None, result: Result, row: str, ruling: Ruling, judge: Callable[[Decisions], None]) -> None:
+    """Write a decision about a row of the register of one robot: about the findings that end there now.
+
+    Parameters
+    ----------
+    judge
+        As of ``record``.
+    """
+    file = _checked(file, ruling)
+    if result.fleet:
+        raise _refused(file, "rows are decided about on one robot", "decide about the finding, on its robots")
+    document = result.document()
+    entry_of_row = next((each for each in document["register"] if each["id"] == row), None)
+    ids = entry_of_row["findings"] if entry_of_row else ()
+    findings = [each for each in result.analysis.findings if each.id in ids]
+    if not findings:
+        raise _refused(file, f"{shown(row)!r} is no row in which a finding ends", "take the id of one that there is")
+    about = About.of_row(((each.id, each.pseudonymised) for each in findings), stated_of(entry_of_row or {}))
+    entry = {"row": row, **_entry(ruling), "made_about": as_written(about)}
+
+    def check(decisions: Decisions) -> None:
+        _check_meaning(decisions, map(Case.of, findings), entry)
+        judge(decisions)
+
+    _write(file, result, entry, "", lambda: subject(document, row=entry_of_row), check)
+
+
+def _write(
+    file: str, result: Result, entry: Mapping[str, Any], remark: str, about: Callable[[], Mapping[str, str]],
+    check: Callable[[Decisions], None],
+) -> None:  # fmt: skip
+    """Write an entry, if the file then says what it should."""
     path = Path(file)
     with one_run(), editing(path):
-        facts = provenance(path.parent, _subject(result, scope.finding)) if is_log(file) else {}
+        facts = provenance(path.parent, about()) if is_log(file) else {}
         text = with_recorded(file, text_in(path), entry, remark, result.vocabulary, facts=facts)
-        decisions = parse_recorded(file, text, result.vocabulary, judged_on(os.environ))
-        _check_meaning(decisions, scope, likeness, entry)
-        judge(decisions)
+        check(parse_recorded(file, text, result.vocabulary, judged_on(os.environ)))
         write_texts([(path, text)], edited=path)
 
 
-def _check(file: str, ruling: Ruling) -> None:
+def _checked(file: str | None, ruling: Ruling) -> str:
+    """The decisions file, where there is one, and the decision can be one."""
+    if file is None:
+        raise _refused("", "there is no decisions file", "name one when the session begins")
     if ruling.expires and not is_date(ruling.expires):
         raise _refused(file, f"{shown(ruling.expires)!r} is not a date", "write YYYY-MM-DD")
     if ruling.expires and ruling.expires < today(os.environ):
@@ -166,6 +206,7 @@ def _check(file: str, ruling: Ruling) -> None:
     for name in REQUIRED.get(ruling.choice, ()):
         if not getattr(ruling, name):
             raise _refused(file, f"an acceptance without {name}", f"say the {name}: it is what a person signs")
+    return file
 
 
 def _scope_of(scopes: Sequence[Scope], file: str, robots: RobotNames, to_robots: RobotNames) -> Scope:
@@ -214,21 +255,34 @@ def _subject(result: Result, finding: Finding) -> Mapping[str, str]:
     """What a log keeps of a finding; one that the document of a fleet shows on another robot is known by its id."""
     document = result.document()
     row = next((row for row in document["findings"] if row["id"] == finding.id), {"id": finding.id})
-    return subject(document, row)
+    return subject(document, finding=row)
 
 
-def _check_meaning(decisions: Decisions, scope: Scope, likeness: Likeness, entry: Mapping[str, Any]) -> None:
-    """See that the entry decides what it was made about: no other decides it, too, and it is not over."""
-    written = entry["id"], set(entry.get("robots", ())), set(entry.get("from_robots", ()))
-    for case in _cases(scope, likeness, decisions.told_apart):
+def _check_meaning(decisions: Decisions, cases: Iterable[Case], entry: Mapping[str, Any]) -> None:
+    """See that the entry decides what it was made about: none of the same sort decides it, too, and it is not over.
+
+    An acceptance counts only where what names the row, and what names the finding, both accept.
+    """
+    for case in cases:
         foremost = decisions.foremost(case)
-        other = next((each for each in foremost if (each.id, set(each.robots), set(each.from_robots)) != written), None)
-        if other or not foremost:
-            why = f"line {other.place.line} decides it, too" if other else "the entry would not be about it"
-            raise _refused(decisions.file, why, "change or remove that entry, and begin again")
-        if decisions.state(foremost[0]) is State.EXPIRED:
-            over = f"{foremost[0].expires} is over: it would decide nothing"
+        if not foremost:
+            raise _refused(decisions.file, "the entry would not be about it", CHANGE_IT)
+        own = next((some for some in foremost if any(_is_written(each, entry) for each in some)), foremost[0])
+        other = next((each for each in own if not _is_written(each, entry)), None)
+        if not other and own[0].choice is Choice.ACCEPT:
+            beside = (each for some in foremost if some is not own for each in some)
+            other = next((each for each in beside if not decisions.lets_stay(each)), None)
+        if other:
+            raise _refused(decisions.file, f"line {other.place.line} decides it, too", CHANGE_IT)
+        if decisions.state(own[0]) is State.EXPIRED:
+            over = f"{own[0].expires} is over: it would decide nothing"
             raise _refused(decisions.file, over, "name a day to come")
+
+
+def _is_written(decision: Decision, entry: Mapping[str, Any]) -> bool:
+    names = decision.id == entry.get("id", "") and decision.row == entry.get("row", "")
+    lists = ((set(getattr(decision, key)), set(entry.get(key, ()))) for key in LISTS)
+    return names and all(has == said for has, said in lists)
 
 
 def _cases(scope: Scope, likeness: Likeness, kind_of: Callable[[str], object]) -> Iterator[Case]:

@@ -15,7 +15,7 @@ from rosprivacy.analysis.errors import FleetError, InputErrors, LabelError, show
 from rosprivacy.analysis.fleet.likeness import NO_ROBOTS
 from rosprivacy.decided import judged
 from rosprivacy.explorer import questions
-from rosprivacy.explorer.deciding import Ruling, Scope, record, scopes
+from rosprivacy.explorer.deciding import Ruling, Scope, record, record_row, scopes
 from rosprivacy.explorer.edits import Edit, entry_of, place_of, section_of
 from rosprivacy.explorer.effects import Change, compared
 from rosprivacy.explorer.fleet_files import FleetFiles
@@ -532,6 +532,24 @@ class Session:
         with self.history.lock, self.history.undone_if_it_fails():
             ruling = Ruling(choice, **how)
             record(self.decisions_file, self.result, finding, ruling, (robots, to_robots), self._judge)
+
+    def decide_row(self, row: str, choice: str, **how: Unpack[How]) -> None:
+        """Write a decision about a row of the register of one robot: about the findings that end there now.
+
+        Parameters
+        ----------
+        row
+            Its id.
+        choice, **how
+            As of ``decide``.
+
+        Raises
+        ------
+        InputErrors
+            As of ``decide``; and if the session is of a fleet.
+        """
+        with self.history.lock, self.history.undone_if_it_fails():
+            record_row(self.decisions_file, self.result, row, Ruling(choice, **how), self._judge)
 
     def scopes(self, finding: Finding) -> tuple[Scope, ...]:
         """Return what can be decided about at once, of a fleet: the robots of a finding, and others that have it."""

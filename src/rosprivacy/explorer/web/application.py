@@ -10,7 +10,6 @@ from contextlib import suppress
 from importlib.resources import files
 from itertools import count
 from threading import RLock
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, cast
 
 from starlette.applications import Starlette
@@ -19,12 +18,11 @@ from starlette.responses import HTMLResponse, JSONResponse, PlainTextResponse, R
 from starlette.routing import Route
 
 from rosprivacy.analysis.errors import RosPrivacyError, shown
-from rosprivacy.analysis.legal import UNFOUNDED
-from rosprivacy.explorer.deciding import How
 from rosprivacy.explorer.edited_file import Conflict
 from rosprivacy.explorer.suggestion_screens import SuggestionScreens
 from rosprivacy.explorer.web import forms
 from rosprivacy.explorer.web.answered_entries import label_of, limit_of, made_by
+from rosprivacy.explorer.web.decision_form import NO_FIELDS, asked_again, posted_decision
 from rosprivacy.explorer.web.element_pane import answer_of, tickable
 from rosprivacy.explorer.web.finding_pane import finding_pane, scope_in, scope_in_words
 from rosprivacy.explorer.web.guard import Guard
@@ -34,12 +32,8 @@ from rosprivacy.explorer.web.screen_pane import KEY_OF, screen_pane, told_of_key
 from rosprivacy.explorer.web.standing import Standing
 from rosprivacy.explorer.web.trial_forms import TOGETHER, KeptTrials, kept_trials, offers_at, trial_pane, tried_in
 from rosprivacy.explorer.web.view import trial_in, view_of
-from rosprivacy.ingest.decisions.decisions_file import REQUIRED
 from rosprivacy.labelling.knowledge import what_is_known
 from rosprivacy.labelling.suggesting_on_demand import Suggester
-from rosprivacy.report.finding_facts import gaps_of
-from rosprivacy.report.page.finding_entries import gap_in_words
-from rosprivacy.report.page.index import Index
 from rosprivacy.report.pictures.page_pictures import Pictures, style_sheet
 from rosprivacy.report.pictures.phrases import Phrases
 
@@ -67,7 +61,6 @@ STATIC = {
 }
 PICTURE = "picture.css"  # of which the pictures themselves know what it says
 MOST_NAMED = 5  # files in a message
-NO_FIELDS: Mapping[str, str] = MappingProxyType(dict.fromkeys((*How.__annotations__, "lacks", "whose"), ""))
 DONE, PROBLEM = "done", "problem"
 READING = ("/try", "/drop")  # what is tried is kept in memory only
 
@@ -397,34 +390,26 @@ class Site:
         return Outcome(200, Message(DONE, self._words("explorer.trial.dropped", name=name)))
 
     def _decide(self, form: EditForm) -> Outcome:
-        """Write a decision about a finding into the file that the command named."""
-        finding, choice, how = forms.decision_in(form, self.standing.findings)
-        scope = scope_in(form, self.session, self.standing.findings[finding])
-        whose = scope_in_words(self.session, scope, self._words)  # before it is decided, as it was chosen
-        if self.session.decisions_file and (missing := self._lacks(finding, choice, how, form)):
-            return missing
-        robots, to_robots = scope.robots or None, scope.to_robots or None
-        self.session.decide(scope.finding.id, choice, robots=robots, to_robots=to_robots, **how)
-        self._by = how["owner"] or self._by
-        what = self._words.row(filter(None, (self._words(f"decision.{choice}"), whose)))
-        text = self._words("explorer.decided.to", file=shown(str(self.session.decisions_file)), what=what)
+        """Write a decision about a finding, or about its row, into the file that the command named."""
+        document, words = self.standing.document, self._words
+        posted = posted_decision(form, document, self.standing.findings)
+        if self.session.decisions_file and (lacks := asked_again(form, posted, document, words)):
+            again = Message(PROBLEM, words("explorer.decide.again"), lacks.notes)
+            return Outcome(409, again, filled=lacks.fields)
+        if posted.row and posted.whole:
+            whose = words.count(len(posted.about), "explorer.row.all")
+            self.session.decide_row(posted.row["id"], posted.choice, **posted.words(words))
+        else:
+            scope = scope_in(form, self.session, self.standing.findings[posted.finding])
+            whose = scope_in_words(self.session, scope, words)  # before it is decided, as it was chosen
+            robots, to_robots = scope.robots or None, scope.to_robots or None
+            self.session.decide(
+                scope.finding.id, posted.choice, robots=robots, to_robots=to_robots, **posted.words(words)
+            )
+        self._by = posted.how["owner"] or self._by
+        what = words.row(filter(None, (words(f"decision.{posted.choice}"), whose)))
+        text = words("explorer.decided.to", file=shown(str(self.session.decisions_file)), what=what)
         return Outcome(200, Message(DONE, text))
-
-    def _lacks(self, finding: str, choice: str, how: How, form: EditForm) -> Outcome | None:
-        """Ask again before an acceptance is written that has no ground or no end, once for the same."""
-        signed = REQUIRED.get(choice)  # of an acceptance; without all of it, it is refused
-        if not signed or not all(form.value(key) for key in signed):
-            return None
-        document = self.standing.document
-        rows = [row for row in document["findings"] if row["id"] == finding]
-        gaps = [gap for gap in gaps_of(how, rows) if gap.lack in UNFOUNDED]
-        names = " ".join(gap.lack.name for gap in gaps)
-        if names == form.value("lacks"):
-            return None
-        index = Index({**document, "findings": rows}, self._words)
-        notes = tuple(gap_in_words(gap, index) for gap in gaps)
-        fields = {**{key: form.value(key) for key in NO_FIELDS}, "lacks": names}
-        return Outcome(409, Message(PROBLEM, self._words("explorer.decide.again"), notes), filled=fields)
 
 
 async def _static(request: Request) -> Response:

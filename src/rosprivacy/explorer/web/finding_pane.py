@@ -13,6 +13,7 @@ from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import ARTICLE_10
 from rosprivacy.explorer.edits import element_id
 from rosprivacy.explorer.web.panes import Pane, robots_in_words
+from rosprivacy.explorer.web.row_pane import row_pane
 from rosprivacy.explorer.web.trial_forms import flow_id, line_id, lines_of
 from rosprivacy.ingest.decisions.decision_log import CONFIRM, is_log
 from rosprivacy.report.naming import name
@@ -51,6 +52,7 @@ def finding_pane(standing: Standing, finding: Finding, view: PageView, words: Wo
         id=finding.id,
         entry=entry,  # as the report tells it
         law=tuple(_law(row, index)),
+        row=row_pane(document, row, words),
         hops=tuple(_hops(finding, entry, standing, view)),
         closes=_closes(standing, finding, index) if view.closes and can_close else None,
         ask=view._replace(closes=not view.closes).address,

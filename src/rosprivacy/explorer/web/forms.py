@@ -32,6 +32,7 @@ LONGEST = {
     "legal_basis": 200,
     "expires": 10,
     "name": 60,
+    "answer": 300,  # to a question of a row
 }
 EVERY = "*"  # in the place of kinds of data
 SOURCE, LEAK, SANITIZER, CONDUIT = "source", "leak", "sanitizer", "conduit"
@@ -118,10 +119,10 @@ class EditForm:
         return int(value)
 
     def words(self, name: str) -> str:
-        """Return a text of one line."""
-        value = " ".join(self.value(name).split())
-        if len(value) > LONGEST[name]:
-            raise FormError(f"The field {name} has at most {LONGEST[name]} letters.")
+        """Return a text of one line; fields are as long as the first word of their name says."""
+        value, most = " ".join(self.value(name).split()), LONGEST[name.partition("-")[0]]
+        if len(value) > most:
+            raise FormError(f"The field {name} has at most {most} letters.")
         if printable(value) != value:
             raise FormError(f"The field {name} has signs that cannot be printed.")
         return value
@@ -182,18 +183,27 @@ def _about(form: EditForm, kinds: Collection[str], *, may_be_every: bool) -> tup
     return about
 
 
-def decision_in(form: EditForm, findings: Collection[str]) -> tuple[str, str, How]:
+def decision_in(form: EditForm, findings: Collection[str], grounds: Collection[str] = ()) -> tuple[str, str, How]:
     """Return about which of the findings a form decides, what, and its words.
 
     Where it is written is no matter of the form: that is the file which the command named.
 
+    Parameters
+    ----------
+    grounds
+        Legal bases that can be ticked, as ``6(1)(f)``.
+
     Examples
     --------
-    >>> form = EditForm(b"finding=00112233445566ff&choice=accept&reason=why&owner=A.+Lee&legal_basis=6(1)(f),+9(2)(h)")
-    >>> decision_in(form, ["00112233445566ff"])[2]["legal_basis"]
-    ('6(1)(f)', '9(2)(h)')
+    >>> form = EditForm(b"finding=00112233445566ff&choice=accept&owner=A.+Lee&ground=6(1)(f)&legal_basis=9(2)(h),+9(3)")
+    >>> decision_in(form, ["00112233445566ff"], ["6(1)(f)"])[2]["legal_basis"]
+    ('6(1)(f)', '9(2)(h)', '9(3)')
     """
-    bases = tuple(base.strip() for base in re.split("[,;]", form.words("legal_basis")) if base.strip())
+    ticked = form.several("ground")
+    if not set(ticked) <= set(grounds):
+        raise FormError("The form has no ground that can be chosen here.")
+    further = (base.strip() for base in re.split("[,;]", form.words("legal_basis")))
+    bases = tuple(dict.fromkeys([*ticked, *filter(None, further)]))
     how: How = {
         "reason": form.words("reason"),
         "condition": form.words("condition"),

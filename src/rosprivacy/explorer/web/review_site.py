@@ -27,7 +27,9 @@ from rosprivacy.explorer.web.answered_entries import (
     says_of_data,
 )
 from rosprivacy.explorer.web.application import PROBLEM, Outcome, Site
+from rosprivacy.explorer.web.decision_form import NO_FIELDS
 from rosprivacy.explorer.web.element_pane import element_pane
+from rosprivacy.explorer.web.finding_pane import finding_pane
 from rosprivacy.explorer.web.page import Message, template, verdict_of
 from rosprivacy.explorer.web.panes import ROBOT, ROBOT_OR_MODEL, Pane, in_words, stands_for, titles_of
 from rosprivacy.explorer.web.view import LONGEST, PageView
@@ -54,7 +56,8 @@ ROS_STEPS = ("publish", "subscribe", "matches")  # that have a sentence of their
 BOUND = 40  # rows of what may bring data in; the others are found by name
 LONGEST_SEARCH = 200  # letters of what is looked for
 FIRST, SUMMARY = "/", "/?step=summary"
-STEPS = ("summary", "source")  # that are asked for by name
+DECIDE = "decide"
+STEPS = ("summary", "source", DECIDE)  # that are asked for by name
 FIELDS = ("role", "note", "by", "method", "makes", "brings", "whose")
 
 
@@ -335,6 +338,12 @@ class ReviewSite(Site):
                     entered={name: "".join(entered.several(name)[:1]) if entered else "" for name in FIELDS},
                     about=entered.several("about") if entered else chosen, **shared,
                 )  # fmt: skip
+            elif step == DECIDE and (finding := standing.findings.get(_value(query, "finding"))):
+                text = template("review_decide").render(
+                    d=finding_pane(standing, finding, PageView(), words), by=self._by,
+                    action=f"?step={DECIDE}&finding={finding.id}",
+                    filled=outcome.filled if outcome else NO_FIELDS, **shared,
+                )  # fmt: skip
             elif step == "source":
                 sources = sources_pane(standing, _value(query, "find"), words)
                 text = template("review_source").render(s=sources, **shared)
@@ -366,6 +375,11 @@ class ReviewSite(Site):
         if left_of(now) and "note" not in label:  # there is an answer now
             label["note"] = note_before(now)
         return label
+
+    def _decide(self, form: EditForm) -> Outcome:
+        outcome = super()._decide(form)
+        self._next = SUMMARY
+        return outcome
 
     def _undo(self, form: EditForm) -> Outcome:
         """Take the last answer back, and ask its question again."""
