@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.model import Category, Element, Legal
 
-PROHIBITED = "AI Act Art. 5"  # the names of the provisions on prohibited practices begin with it
+PROHIBITED = "AI Act Art. 5"  # on prohibited practices; a paragraph of it follows in brackets
 _STRENGTH = {verdict: number for number, verdict in enumerate(ARTICLE_9_VERDICTS)}
 
 
@@ -149,9 +149,18 @@ def recognises(category: Category) -> bool:
     >>> recognises(CATEGORIES["FaceTemplate"]), recognises(CATEGORIES["Video"])
     (True, False)
     """
-    return any(legal.verdict in SPECIAL for legal in category.law) or any(
-        at.startswith(PROHIBITED) for at in category.look_at
-    )
+    special = any(legal.verdict in SPECIAL for legal in category.law)
+    return special or any(map(on_prohibited_practices, category.look_at))
+
+
+def on_prohibited_practices(provision: str) -> bool:
+    """Return whether the name of a provision is that of Article 5 of the AI Act, or of a part of it.
+
+    >>> [on_prohibited_practices(name) for name in ("AI Act Art. 5", "AI Act Art. 5(1)(f)", "AI Act Art. 50(3)")]
+    [True, True, False]
+    """
+    article, _, _ = provision.partition("(")
+    return article == PROHIBITED
 
 
 def turned_special(finding: Finding, categories: Mapping[str, Category]) -> Element | None:

@@ -73,7 +73,8 @@ class TakenAway(NamedTuple):
     itself
         Whether the element would be open itself.
     perhaps
-        Whether it was not worked out what lies behind: too much hangs on such lines.
+        Whether it was not worked out what lies behind: too much hangs on such lines, or data gets on to what is not
+        in the graph.
     note
         In words, where there is more to say: of a file that was not read, why.
     """
@@ -97,7 +98,11 @@ class TakenAway(NamedTuple):
 
 
 def ledger(
-    analysis: Analysis, bound: Bound, hierarchy: Hierarchy, diagnostics: Iterable[Diagnostic] = ()
+    analysis: Analysis,
+    bound: Bound,
+    hierarchy: Hierarchy,
+    diagnostics: Iterable[Diagnostic] = (),
+    beyond: Collection[Element] = (),
 ) -> tuple[TakenAway, ...]:
     """Return what was taken away, in the order of ``BY`` and of the graph.
 
@@ -105,11 +110,13 @@ def ledger(
     ----------
     diagnostics
         Of the inputs: files that were not read are among them.
+    beyond
+        Of a part of a graph, the elements from which data gets to the rest: a leak or an open element may lie there.
 
     Notes
     -----
-    Two runs of the kernel, and one more for each line about several elements that closes a path only as a whole (at
-    most ``closures.ROUNDS``); then a search from each place where data ends.
+    Two runs of the kernel (three for a part), and one more for each line about several elements that closes a path
+    only as a whole (at most ``closures.ROUNDS``); then a search from each place where data ends.
 
     Examples
     --------
@@ -125,7 +132,7 @@ def ledger(
     leaks = _leaks(spread, bound, hierarchy)
     unread = (diagnostic for diagnostic in dict.fromkeys(diagnostics) if diagnostic.code == UNREAD)
     rows = [
-        *_closed(spread, {v: bits & asked for v, bits in leaks.items()}, _unlabelled(spread, bound, asked)),
+        *_closed(spread, {v: bits & asked for v, bits in leaks.items()}, _unlabelled(spread, bound, asked), beyond),
         *_outdone(spread),
         *_reviewed(spread, asked),
         *(
@@ -156,16 +163,20 @@ def _unlabelled(spread: Spread, bound: Bound, open_bits: int) -> dict[int, int]:
     return {v: open_bits & ~(0 if v in unknown else spread.covered.get(v, 0)) for v in range(len(elements))}
 
 
-def _closed(spread: Spread, leaks: Mapping[int, int], unlabelled: Mapping[int, int]) -> Iterator[TakenAway]:
+def _closed(
+    spread: Spread, leaks: Mapping[int, int], unlabelled: Mapping[int, int], beyond: Collection[Element]
+) -> Iterator[TakenAway]:
     """What labels and DENY lines close, with what lies behind."""
     closed, elements = closures(spread), spread.graph.elements
     to_leak, to_open = behind(spread, closed, leaks), behind(spread, closed, unlabelled)
+    onward = behind(spread, closed, {v: spread.all_bits for v, element in enumerate(elements) if element in beyond})
     for number, closure in enumerate(closed):
         leak, question = to_leak.get(number), to_open.get(number)
         perhaps = PERHAPS in (leak, question)
         would_be_found = elements[closure.vertex].is_channel or closure.by == ABSENT  # read there, or kept (rule S10)
         if closure.to < 0 and would_be_found and leaks.get(closure.vertex, 0) & closure.bits:
             leak = closure.vertex
+        perhaps = perhaps or (number in onward and None in (leak, question))
         lines = closure.lines
         yield TakenAway(
             closure.by,

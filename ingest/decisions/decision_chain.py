@@ -12,7 +12,7 @@ import json
 import re
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rosprivacy.analysis.errors import DecisionError, InputError, InputErrors
+from rosprivacy.analysis.errors import DecisionError, InputError, InputErrors, shown
 from rosprivacy.analysis.json_values import parsed
 
 if TYPE_CHECKING:
@@ -180,7 +180,7 @@ def _joins(facts: Mapping[str, Any]) -> bool:
 def _wording(entry: ChainEntry) -> str:
     """What an entry says of itself now, so that a person knows which it is."""
     facts = ((key, entry.decision.get(key)) for key in ("id", "decision", "owner", "date"))
-    text = ", ".join(f"{key} {value}" for key, value in facts if isinstance(value, str))
+    text = ", ".join(f"{key} {shown(value)}" for key, value in facts if isinstance(value, str))
     return f"; it says now: {text}" if text else ""
 
 

@@ -47,6 +47,8 @@ class Placed:
         By robot of the graph.
     met
         Where the flows of the fleet file begin and end.
+    feeding
+        The elements from which these lead to robots: of some robots, also to those that are not placed.
     """
 
     graph: FlowGraph
@@ -54,6 +56,7 @@ class Placed:
     likeness: Likeness
     profiles: Mapping[str, tuple[Profile, ...]]
     met: frozenset[Met] = frozenset()
+    feeding: frozenset[Element] = frozenset()
 
 
 def place(fleet: Fleet, groups: Sequence[Alike], members: Mapping[str, Member], view: str) -> Placed:
@@ -80,7 +83,7 @@ def _placed(placing: _Placing, groups: Sequence[Alike], members: Mapping[str, Me
     if placing.problems:
         raise InputErrors(placing.problems)
     graph, bound = numbered(part, profiles, view)
-    return Placed(graph, bound, likeness(groups), profiles, frozenset(placing.met))
+    return Placed(graph, bound, likeness(groups), profiles, frozenset(placing.met), frozenset(placing.feeding))
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,6 +191,7 @@ class _Placing:
         self.problems: list[InputError] = []
         self.restated: list[Place] = []
         self.met: set[Met] = set()
+        self.feeding: set[Element] = set()
         self._fleet = fleet
         self._whole = whole
         self._owns = own
@@ -267,6 +271,7 @@ class _Placing:
     def _add_flows(self, whole: Part) -> None:
         lines: dict[Key, list[Place]] = defaultdict(list)
         for flow, (sources, targets) in zip(self._fleet.flows, self.ends(), strict=True):
+            self.feeding.update(sources if COLON in flow.target else ())
             for source in sources:
                 for target in targets:
                     key = (source, target, FLOW)

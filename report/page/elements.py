@@ -11,7 +11,7 @@ from collections import Counter, defaultdict
 from itertools import islice
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rosprivacy.analysis.legal import PROHIBITED
+from rosprivacy.analysis.legal import on_prohibited_practices
 from rosprivacy.analysis.model import SPECIAL
 from rosprivacy.analysis.text import fit
 from rosprivacy.report.finding_facts import grouped
@@ -368,7 +368,7 @@ def makings(index: Index) -> tuple[MakingEntry, ...]:
 def _recognises(entry: Mapping[str, Any]) -> bool:
     """Whether persons are recognised or judged by such data, as ``recognises`` has it of a category."""
     special = any(legal["verdict"] in SPECIAL for legal in entry.get("law", ()))
-    return special or any(at.startswith(PROHIBITED) for at in entry.get("look_at", ()))
+    return special or any(map(on_prohibited_practices, entry.get("look_at", ())))
 
 
 PROTECTION = ("category", "method", "stated", "everywhere")  # what tells measures at elements of one name apart

@@ -14,7 +14,7 @@ from rosprivacy.analysis.text import fit, printable
 from rosprivacy.report.finding_facts import grouped
 from rosprivacy.report.naming import all_kinds, key
 from rosprivacy.report.page.elements import EVERY, STORAGE, retention
-from rosprivacy.report.page.flows import TO_DECIDE
+from rosprivacy.report.page.flows import TO_DECIDE, WITH_A_CONTRACT
 from rosprivacy.report.row_texts import country
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 SETTLED = ("accepted", "dismissed")  # the others, in the order in which a card has them
 NAMES = 3  # kinds that the heading of a card names one by one
 LINKS = 6  # entries that a line leads to
-PROCESSOR = "processor"
+OCCASIONAL = "occasional"  # of a derogation: Article 49
 STATE = "state"  # its title is that of decisions
 OF_PLACE = ("element", "file", "line", "holds", "missing", "without_limit")  # what does not tell recipients apart
 
@@ -292,7 +292,8 @@ def _stated(leak: Mapping[str, Any], findings: Sequence[Mapping[str, Any]], inde
         ("recipient", words.row(recipient), True),
         ("country", country(row, index.words), True),
         ("transfer", words.of_value(f"transfer.{transfer}", transfer) if transfer else "", leaves),
-        ("contract", fit(row.get("contract", "")), role in ("", PROCESSOR)),
+        ("occasional", "", OCCASIONAL in row.get("missing", ())),
+        ("contract", fit(row.get("contract", "")), role in ("", *WITH_A_CONTRACT)),
         ("retention", retention({"retention": durations}, index), keeps),
     ]
     yield from ((what, value) for what, value, asked in facts if value or asked)

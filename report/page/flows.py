@@ -9,7 +9,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.legal import CHAPTER_V
-from rosprivacy.analysis.model import THIRD_COUNTRY
+from rosprivacy.analysis.model import NO_BASIS, THIRD_COUNTRY
+from rosprivacy.analysis.non_ros import INSIDE
 from rosprivacy.analysis.text import fit, printable
 from rosprivacy.report.finding_facts import data_made, grouped
 from rosprivacy.report.naming import key, name
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 
 SHOWN_AT_MOST = 3  # elements in one row
 VALID = "valid"
+WITH_A_CONTRACT = ("processor", "joint-controller")  # Articles 28 and 26
 TO_DECIDE = ("open", "decided")  # states of entries
 
 Fact = tuple[str, str]  # what it is about, as a part of a key of words, and its value; empty if it is not stated
@@ -140,12 +142,22 @@ def _persons(finding: Mapping[str, Any], index: Index) -> str:
     return index.words.row(index.subjects.get(key(finding["source"]), ()))
 
 
-def _provisions(findings: Iterable[Mapping[str, Any]], index: Index) -> Iterator[str]:
+def _provisions(findings: Sequence[Mapping[str, Any]], index: Index) -> Iterator[str]:
     for finding in findings:
         yield index.words(f"opening.law.{finding['kind']}")
         for legal in finding["law"]:
             cited = index.provision(finding["category"], legal["provision"])
             yield cited.partition(" (")[0]  # without its title, which stands where the law is told
+    for finding in findings:
+        yield from _of_recipient(index.outside.get(key(finding["leak"]), {}), index)
+
+
+def _of_recipient(stated: Mapping[str, Any], index: Index) -> Iterator[str]:
+    """Provisions on who gets the data, whatever the finding is about: a transfer with a stated basis is one."""
+    if stated.get("transfer", NO_BASIS) != NO_BASIS and stated.get("area") != INSIDE:
+        yield index.words(f"opening.law.{THIRD_COUNTRY}")
+    if stated.get("recipient") in WITH_A_CONTRACT:
+        yield index.words(f"opening.law.{stated['recipient']}")
 
 
 def _bases(findings: Sequence[Mapping[str, Any]], index: Index) -> list[str]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rosprivacy.analysis.legal import PROHIBITED, transfer_of
+from rosprivacy.analysis.legal import on_prohibited_practices, transfer_of
 from rosprivacy.analysis.model import ARTICLE_10, GDPR_DENIED, GDPR_OPEN, SPECIAL
 from rosprivacy.analysis.model.register_row import Cell, RowState
 from rosprivacy.analysis.non_ros import ADEQUACY, ADEQUATE, DEROGATION, INSIDE, OCCASIONAL
@@ -146,10 +146,10 @@ def questions_of(row: Mapping[str, Any]) -> Iterator[str]:
 
 def _foremost(row: Row, index: Index) -> Iterator[tuple[str, str]]:
     """What is to be known of a row before all else, and what is said of its place."""
-    prohibited = [  # with the bracket, since Article 50 is none
+    prohibited = [
         text(law, "provision", index.words.language)
         for law in index.looked_at
-        if law["provision"].startswith(f"{PROHIBITED}(") and row["category"] in law["categories"]
+        if on_prohibited_practices(law["provision"]) and row["category"] in law["categories"]
     ]
     if prohibited:
         yield "know.prohibited", index.words.row(prohibited)

@@ -31,14 +31,14 @@ if TYPE_CHECKING:
     from lxml.etree import _Element
 
 
-def word_document(text: str, title: str, language: str, html: str) -> bytes:
+def word_document(text: str, title: str, language: str, date: str) -> bytes:
     """Return a report as the bytes of a ``.docx``.
 
     Parameters
     ----------
     text
         CommonMark with tables.
-    title, language, made
+    title, language, date
         What the properties of the document say: its name, ``en`` or another ISO 639-1 code, the date as YYYY-MM-DD.
 
     Notes
@@ -51,7 +51,7 @@ def word_document(text: str, title: str, language: str, html: str) -> bytes:
     b'PK'
     """
     document = docx.Document()
-    laid_out(document, title, language, html)
+    laid_out(document, title, language, date)
     tree = SyntaxTreeNode(MarkdownIt("commonmark").enable("table").parse(text))
     for block in tree.children:
         _write(block, document)
@@ -136,7 +136,7 @@ CODE, BODY = "Consolas", "Calibri"
 SPELLING = {"en": "en-GB", "de": "de-DE", "fr": "fr-FR"}  # Word checks no spelling of a language without a country
 
 
-def laid_out(document: Document, title: str, language: str, html: str) -> None:
+def laid_out(document: Document, title: str, language: str, date: str) -> None:
     """Set the paper (A4, lying, for the tables), the fonts, the language and the properties of an empty document."""
     section = document.sections[0]
     section.orientation = WD_ORIENT.LANDSCAPE
@@ -151,7 +151,21 @@ def laid_out(document: Document, title: str, language: str, html: str) -> None:
     known = document.core_properties
     known.title, known.author, known.last_modified_by, known.comments = title[:255], "rosprivacy", "rosprivacy", ""
     known.language, known.revision = language, 1
-    known.created = known.modified = datetime.fromisoformat(html)
+    known.created = known.modified = datetime.fromisoformat(date)
+    numbered(document.sections[0].footer.paragraphs[0], title, date)
+
+
+def numbered(footer: Paragraph, title: str, date: str) -> None:
+    """Write on each page what the document is, of which day, and which page of how many it is."""
+    footer.add_run(f"{blanked(title)[:100]} · {date} · ")
+    paragraph: _Element = footer._p  # noqa: SLF001 - python-docx has no word for it
+    for field, after in (("PAGE", " / "), ("NUMPAGES", "")):
+        counted = OxmlElement("w:fldSimple")
+        counted.set(qn("w:instr"), field)
+        paragraph.append(counted)
+        footer.add_run(after)
+    for run in footer.runs:
+        run.font.size = Pt(8)
 
 
 def repeated_on_each_page(row: _Row) -> None:

@@ -260,7 +260,7 @@ def _message(finding: Finding, law: Sequence[Legal], turned: Element | None, pla
     if finding.reason:
         said.append(f"{leak}: {prose(finding.reason)}.")
     if finding.pseudonymised:
-        said.append("It arrives pseudonymised, which is still personal data.")
+        said.append("It arrives pseudonymised, which is personal data for whoever can tell the persons.")
     if turned is not None:
         said.append(f"{element_name(turned)} makes such data of other data.")
     if finding.dismissed:

@@ -101,7 +101,7 @@ RULES = (
 UNREVIEWED = SarifRule(
     "unreviewed-element",
     "PersonalDataNotReviewed",
-    "Personal data reaches a node that no label speaks of: a question to answer.",
+    "Personal data reaches a node for which no label answers in full: a question to answer.",
     "The node is among those that data reaches before any other that nobody has reviewed. The analysis lets the data "
     "pass there. Until a person has looked, nobody knows what becomes of it.",
     (

@@ -414,7 +414,7 @@ def _decision(finding: Mapping[str, Any], words: Words) -> Iterator[Line]:
         return
     from rosprivacy.analysis.decisions import Choice, State  # noqa: PLC0415 - light start
 
-    choice, at = words(f"terminal.done.{decision['choice']}"), place(decision)
+    choice, at = words(f"decision.{decision['choice']}"), place(decision)
     expires = words.date(decision["expires"]) if decision["expires"] else ""
     if decision["state"] == State.EXPIRED:
         yield f"   {words('terminal.undecided', choice=choice, date=expires, place=at)}", "yellow"

@@ -296,7 +296,7 @@ def _filter(step: Mapping[str, Any], verb: str) -> Iterator[Line]:
     whole = len(step["between"]) > 1
     kinds = ", ".join(step["categories"])
     yield f"   {verb} a filter between {source} and {target}", "bold"
-    yield f"      It has to end {kinds} (anonymise, aggregate or drop; pseudonymised data is still personal).", ""
+    yield f"      It has to end {kinds} (anonymise, aggregate or drop; pseudonymising does not end it).", ""
     if whole:
         yield "      In an enclave of its own: the right to the data before it is taken from the whole enclave.", ""
     yield f"      Filtered data goes to: {', '.join(map(_marked, step['reaches'])) or 'nobody'}", ""

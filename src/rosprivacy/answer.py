@@ -81,6 +81,8 @@ class Answer:
         Whether a user asked for it by name, which a short document waits for.
     closes
         Proposes changes that remove the open findings; None where the policies are not at hand.
+    beyond
+        The elements of the graph from which data gets to robots that it does not hold.
     """
 
     analysis: Analysis
@@ -98,6 +100,7 @@ class Answer:
     hangs_on_asked: bool = field(default=True, repr=False, compare=False)
     hangs_on_named: bool = field(default=False, repr=False, compare=False)
     closes: Callable[[Any], Mapping[str, Any] | str] | None = field(default=None, repr=False, compare=False)
+    beyond: frozenset[Element] = field(default=frozenset(), repr=False, compare=False)
 
     @property
     def shown(self) -> Analysis:
@@ -126,7 +129,7 @@ class Answer:
     @cached_property
     def taken_away(self) -> tuple[TakenAway, ...]:
         """The ledger: what was taken away on the data's side, and on whose word; of robots that are alike of one."""
-        rows = ledger(self.analysis, self.bound, self.vocabulary.hierarchy, self.diagnostics)
+        rows = ledger(self.analysis, self.bound, self.vocabulary.hierarchy, self.diagnostics, self.beyond)
         return tuple(row for row in rows if row.element is None or row.element.robot not in self._robots_not_shown)
 
     @cached_property

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from rosprivacy.analysis.legal import gaps
+from rosprivacy.analysis.legal import gaps, recognises
 from rosprivacy.analysis.model import DISCLOSURE, THIRD_COUNTRY
 from rosprivacy.ontology.vocabulary import load
 
@@ -51,6 +51,15 @@ def test_only_chapter_v_permits_a_transfer(basis: str) -> None:
         "is about a transfer out of the EEA and states no basis of chapter V (45, 46, 47 or 49), which Article 6 is not"
     )
     assert lacks(["6(1)(f)", basis], "LicencePlate", THIRD_COUNTRY) == []
+
+
+def test_who_makes_what_article_5_of_the_ai_act_speaks_of_recognises_persons_and_of_article_50_not() -> None:
+    """A node that understands spoken commands only tells persons that they deal with an AI system (Article 50(1))."""
+    kinds = load().categories
+    assert all(recognises(kinds[name]) for name in ("EmotionEstimate", "SkinTone", "WatchListMatch"))
+    for name in ("VoiceCommand", "InteractionLog"):
+        assert any(provision.startswith("AI Act Art. 50") for provision in kinds[name].look_at)
+        assert not recognises(kinds[name])
 
 
 def test_a_derogation_alone_is_asked_about() -> None:

@@ -110,7 +110,7 @@ def standard(choices: Choices) -> dict[str, str]:
 
 
 def decisions(choices: Choices) -> dict[str, str]:
-    entries = [_decision(choices) for _ in range(choices.below(4))]
+    entries = [decision(choices) for _ in range(choices.below(4))]
     return {"decisions.yaml": written(choices, {"decisions": 1, "findings": entries})}
 
 
@@ -231,7 +231,8 @@ def _element(choices: Choices, others: tuple[str, ...]) -> dict[str, Any]:
     return said
 
 
-def _decision(choices: Choices) -> dict[str, Any]:
+def decision(choices: Choices) -> dict[str, Any]:
+    """What is decided about a finding, as an entry of a decisions file."""
     said: dict[str, Any] = {"decision": choices.pick(("accept", "mitigate", "delegate", "avoid"))}
     if choices.once_in(3):
         said["id"] = "".join(choices.pick("0123456789abcdef") for _ in range(16))

@@ -22,6 +22,8 @@ from rosprivacy.analysis.suggesting.packages import nodes_of_packages, package_e
 from rosprivacy.bag_copy import share_bag
 from rosprivacy.explorer.journal import read_journal
 from rosprivacy.explorer.session import Session
+from rosprivacy.ingest.decisions.decision_chain import examine, heads, log_text
+from rosprivacy.ingest.decisions.decision_log import merged, parse_log, read_log_or_file
 from rosprivacy.ingest.decisions.decisions_file import read_decisions
 from rosprivacy.ingest.deployed.governance import open_topics, read_governance
 from rosprivacy.ingest.deployed.permissions import policy_of, read_permissions
@@ -55,6 +57,7 @@ from tests.fuzzing import (
     bag_texts,
     code_texts,
     label_texts,
+    log_texts,
     node_info_texts,
     other_texts,
     package_texts,
@@ -173,6 +176,31 @@ def _taken_up() -> None:
         saved = rosprivacy.analyze("base.xml", "edited.yaml", today=TODAY)
         assert [one.id for one in saved.findings] == [one.id for one in session.findings]
         assert saved.analysis.verdict == session.verdict
+
+
+def _logged() -> None:
+    """What is read is what the program wrote: no line can be taken out, changed or moved, and two logs join either way.
+
+    A problem that ``verify`` would name is a reason to refuse the log.
+    """
+    name, data = "decisions.jsonl", Path("decisions.jsonl").read_bytes()
+    entries, problems = examine(data)
+    read_log_or_file(name, load(), TODAY)
+    assert not problems, problems
+    assert log_text(entries).encode() == data
+    lines = data.splitlines(keepends=True)
+    for at, line in enumerate(lines):
+        for other in ([], [line.replace(b'"when":"', b'"when":"0', 1)], [line, line]):
+            changed = b"".join([*lines[:at], *other, *lines[at + 1 :]])
+            assert examine(changed, heads(entries))[1], (at, other)
+    theirs = Path("theirs.jsonl").read_bytes()
+    facts = {"account": {}, "when": "2026-06-02T00:00:00Z"}
+    for ours, others in ((data, theirs), (theirs, data), (data, data)):
+        text, undecided = merged(name, ours, "theirs.jsonl", others, facts)
+        joint = parse_log("joined.jsonl", text.encode(), load(), TODAY)
+        assert joint.head not in ("", heads(entries)) or ours == others or not undecided
+        for one in (ours, others):
+            assert {entry.hash for entry in examine(one)[0]} <= {entry.hash for entry in examine(text.encode())[0]}
 
 
 def _answered() -> None:
@@ -318,6 +346,11 @@ TARGETS = {target.name: target for target in (
         "decisions", 90, label_texts.decisions, lambda: read_decisions("decisions.yaml", load(), TODAY),
         lambda: rosprivacy.analyze("base.xml", "base.yaml", decisions="decisions.yaml", today=TODAY),
         _with_base("--decisions", "decisions.yaml"),
+    ),
+    Target(
+        "decision-log", 40, log_texts.decision_log, _logged,
+        lambda: rosprivacy.analyze("base.xml", "base.yaml", decisions="decisions.jsonl", today=TODAY),
+        _with_base("--decisions", "decisions.jsonl"),
     ),
     Target(
         "limits", 60, label_texts.limits, lambda: read_limits("limits.yaml", _base().analysis.graph), _limits,

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import pytest
 from hypothesis import given
@@ -21,6 +22,9 @@ from tests.helpers.parts import FLEET, documents, fleet_file, fleet_of_two, in_l
 from tests.helpers.paths import ROOT
 from tests.helpers.random_fleets import Case, fleets
 from tests.helpers.written_systems import Written, written
+
+if TYPE_CHECKING:
+    from rosprivacy.result import Result
 
 __all__ = ["fleet_file"]
 
@@ -59,6 +63,32 @@ def test_the_document_of_random_fleets(tmp_path_factory: pytest.TempPathFactory,
     with fleet_of_two(tmp_path_factory, one, two) as file:
         if file:
             documents(file, in_list)
+
+
+def test_what_lies_behind_on_a_robot_that_is_not_shown_is_not_worked_out(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Voice that the desk drops would get by the hub to the other robot: no row says that nothing lies there."""
+    monkeypatch.chdir(tmp_path)
+    write("one.xml", policy("mic>/sound<", "desk></sound"))
+    write("two.xml", policy("inbox>/mail<", "printer></mail"))
+    write("one.yaml", "labels: 1\nnodes: {/mic: {source: [Voice]}, /desk: {sanitizer: {Voice: drop}}}\n")
+    write("two.yaml", "labels: 1\n")
+    write(
+        "f.yaml",
+        "fleet: 1\nrobots: {one: {policies: one.xml, labels: one.yaml}, two: {policies: two.xml, labels: two.yaml}}\n"
+        "elements: {hub: {kind: side-channel, conduit: [PersonalData]}}\n"
+        'flows: [{from: "one:/desk", to: hub}, {from: hub, to: "two:/inbox"}]\n',
+    )
+    documents("f.yaml", in_list)
+
+    def dropped(answer: Result) -> Any:
+        (row,) = (row for row in answer.document()["taken_away"] if row["by"] == "sanitizer")
+        return row["leak"], row["open"] and row["open"]["name"], row["perhaps"]
+
+    assert dropped(answer_fleet("f.yaml", Settings())) == (None, "/inbox", False)
+    monkeypatch.setattr(distributed, "MOST_WHOLE", 0)
+    assert dropped(in_list("f.yaml")) == (None, None, True)
 
 
 @pytest.mark.parametrize(

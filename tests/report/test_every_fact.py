@@ -137,7 +137,7 @@ RDF = ("turtle", "json-ld")
 DECIDED = dict.fromkeys(("text", "sarif", "cnil-pia", *RDF, *PAGE), same)
 MEASURE = {  # where a sanitizer states no method
     "text": lambda name: f"sanitizer {name} states no method",
-    "cnil-pia": lambda name: f"{name}: pseudonymise (the data is still personal), taken because the label states no",
+    "cnil-pia": lambda name: f"{name}: pseudonymise (personal data for whoever can tell the persons), taken because",
     "turtle": lambda name: f'"pseudonymisation at {name}"@en ;',
     "article30": lambda name: f"{name} (video of persons): not stated: taken as pseudonymising",
 }

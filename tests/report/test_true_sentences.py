@@ -5,21 +5,16 @@ An office in Germany: a camera, an emotion estimate, a watch list, a blur; an ar
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
-from lxml import html as lxml_html
 
 import rosprivacy
-from rosprivacy.formats import Style, written
 from rosprivacy.report.catalogs.words import Words, plain
-from rosprivacy.report.page import article30
 from tests.helpers.fleet_files import policy
-from tests.helpers.pages import LANGUAGES
+from tests.helpers.pages import LANGUAGES, record_rows, seen
 
 if TYPE_CHECKING:
     from rosprivacy.result import Result
@@ -64,22 +59,8 @@ def office(folder: Path, country: str = "DE", transfer: str = CLAUSES, **setting
     return rosprivacy.analyze(folder / "p.xml", folder / "l.yaml", **settings)
 
 
-def seen(result: Result, name: str, language: str = "en") -> str:
-    """What a reader of a page sees; the others as they are written."""
-    text = written(result, name, Style(language=language))
-    assert isinstance(text, str)
-    return plain(lxml_html.document_fromstring(text).text_content() if name in ("html", "works-council") else text)
-
-
-def rows(result: Result) -> dict[tuple[str, str], dict[str, str]]:
-    text = seen(result, "article30").removeprefix("\ufeff")
-    columns = {Words("en")(f"record.{name}"): name for name in article30.RecordEntry.__dataclass_fields__}
-    found = [{columns[key]: cell for key, cell in row.items()} for row in csv.DictReader(io.StringIO(text))]
-    return {(row["category"], row["exit"]): row for row in found}
-
-
 def test_a_row_of_the_record_states_its_own_time_limit_and_measures(tmp_path: Path) -> None:
-    told = rows(office(tmp_path))
+    told = record_rows(office(tmp_path))
     training, archive, cabin = (told["video of persons", name] for name in ("training set", "archive", "cabin"))
     assert (training["retention"], cabin["retention"]) == ("to be completed", "to be completed")
     assert "30(1)(f)" in training["complete"]
@@ -96,7 +77,7 @@ def test_a_row_of_the_record_states_its_own_time_limit_and_measures(tmp_path: Pa
 def test_the_persons_of_what_is_made_are_those_of_the_sources_that_reach_the_maker() -> None:
     """The shipped fleet: only the guides recognise faces, and their cameras are about visitors."""
     fleet = rosprivacy.analyze_fleet(Path("examples/fleet/fleet.yaml").resolve())
-    made = {exit_: row["subjects"] for (kind, exit_), row in rows(fleet).items() if kind == "face template"}
+    made = {exit_: row["subjects"] for (kind, exit_), row in record_rows(fleet).items() if kind == "face template"}
     assert set(made.values()) == {"visitors"}
     part = next(p for p in answers(fleet)[121].split("<p><strong>") if p.startswith("face template"))
     assert "visitors" in part
@@ -191,7 +172,7 @@ def test_a_provision_that_names_no_kind_of_data_is_not_revealed_by_any(tmp_path:
     ],
 )
 def test_the_record_names_the_clauses_that_were_stated(tmp_path: Path, transfer: str, told: str) -> None:
-    assert rows(office(tmp_path, transfer=transfer))["video of persons", "archive"]["transfer"] == told
+    assert record_rows(office(tmp_path, transfer=transfer))["video of persons", "archive"]["transfer"] == told
 
 
 def test_what_is_made_and_followed_is_not_said_to_be_unfollowed(tmp_path: Path) -> None:

@@ -198,7 +198,8 @@ def result(task: Task, whole: Found, question: Question, engine: str) -> Result:
         return answer(system, question)
     sample = shown(task, whole, placed, question.settings.paths, question.settings.max_paths)
     counts = None if task.whole else whole.counts  # counts say that there are robots beside those of the graph
-    return concluded(system, question, sample.analysis, sample.view, Options(), counts)
+    told = concluded(system, question, sample.analysis, sample.view, Options(), counts)
+    return told if task.whole else replace(told, beyond=placed.feeding)
 
 
 def _rests_on(task: Task, whole: Found, settings: Settings, engine: str) -> dict[str, Any]:
@@ -223,9 +224,9 @@ def _left_out(whole: Found, engine: str, question: Question) -> Iterator[Diagnos
         yield Diagnostic(place, Severity.NOTICE, unlimited)
     bounds = (
         f"analysed in parts, {whole.open:,} open elements in the whole fleet: ways and distances are the shortest "
-        "among the robots that are shown, and what is told element by element is told of these: open elements, "
-        "unknown ends, what is denied, sanitized, derived, taken away, stated of purposes and bases, or not stated, "
-        "and what the answer hangs on"
+        "among the robots that are shown, and what is told element by element is told of these: enclaves, open "
+        "elements, unknown ends, what is denied, sanitized, derived, taken away, stated of purposes and bases, or not "
+        "stated, and what the answer hangs on"
     )
     yield Diagnostic(place, Severity.WARNING, bounds, IN_PARTS)
 

@@ -9,6 +9,7 @@ from zipfile import ZipFile
 
 import docx
 import pytest
+from docx.oxml.ns import qn
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -78,6 +79,14 @@ def test_the_same_input_gives_the_same_bytes(care: rosprivacy.Result, monkeypatc
 
 
 @pytest.mark.slow
+def test_each_page_says_of_what_and_which_of_how_many_it_is(care: rosprivacy.Result) -> None:
+    written = docx.Document(BytesIO(care.to("docx", title="The home")))
+    (section,) = written.sections
+    footer = section.footer._element
+    assert "The home" in section.footer.paragraphs[0].text
+    assert [field.get(qn("w:instr")) for field in footer.iter(qn("w:fldSimple"))] == ["PAGE", "NUMPAGES"]
+
+
 def test_headings_are_words_own_and_tables_repeat_their_head(care: rosprivacy.Result) -> None:
     document = docx.Document(BytesIO(care.to("docx")))
     headings = [p.text for p in document.paragraphs if p.style and p.style.name == "Heading 2"]
