@@ -1,7 +1,7 @@
 """Where data goes, in three models: nothing of it, one type of relationship per kind, one ``CARRIES {kinds}`` for all.
 
 Each model in a private Neo4j of its own: time of the load, size on disk, pairs of source and leak of some kinds,
-asked as people ask first. ``docs/database.md`` says what was decided and why.
+asked as people ask first. ``docs/performance.md`` has the figures.
 """
 
 from __future__ import annotations

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.neo4j_graph.rows import RobotRows
 
 SIZES = (100, 1_000)  # robots
-PAGE = REPOSITORY / "docs" / "first-questions.md"
+PAGES = (REPOSITORY / "docs" / "first-questions.md", REPOSITORY / "tests" / "queries" / "more_questions.md")
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,8 +68,8 @@ def rows(*, quick: bool) -> Iterator[Row]:
 
 
 def questions() -> dict[str, str]:
-    """The questions of the page, with the Cypher that is right."""
-    parts = re.split(r"^### ", PAGE.read_text("utf-8"), flags=re.MULTILINE)[1:]
+    """The questions of the pages, with the Cypher that is right."""
+    parts = [part for page in PAGES for part in re.split(r"^### ", page.read_text("utf-8"), flags=re.MULTILINE)[1:]]
     return {part.partition("\n")[0]: re.findall(r"```cypher\n(.*?)```", part, re.DOTALL)[0] for part in parts}
 
 

@@ -1,7 +1,7 @@
 """What the site has beside ``docs/``: pages from the top of the repository, and the reference of the public names.
 
 A hook of MkDocs (see ``mkdocs.yml``). Links from one page to another lead there; a link to a file of the repository
-that is no page becomes its name.
+that is no page becomes its name. The menu has a page for each command and each document of ``docs/reference/``.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ import rosprivacy
 if TYPE_CHECKING:
     from mkdocs.config.defaults import MkDocsConfig
     from mkdocs.structure.files import Files
+    from mkdocs.structure.pages import Page
 
 ROOT = Path(__file__).resolve().parent.parent
 BESIDE = {
@@ -27,6 +28,7 @@ BESIDE = {
     "CONTRIBUTING.md": "contributing.md",
     "CHANGELOG.md": "changelog.md",
 }
+MENU = "Reference"  # in mkdocs.yml; its folders are listed behind it
 ONTOLOGY = "ontology.md"  # on the site it stands for the folder of the Turtle files
 MODEL = ("category", "diagnostic", "element", "policy", "statement")
 FACTS = (
@@ -36,11 +38,20 @@ FACTS = (
 )
 
 
+def on_config(config: MkDocsConfig) -> MkDocsConfig:
+    """List the pages of commands and of documents in the menu."""
+    (menu,) = (entry[MENU] for entry in config.nav or [] if isinstance(entry, dict) and MENU in entry)
+    for title, folder in (("Commands, one by one", "commands"), ("Documents, one by one", "documents")):
+        pages = sorted((ROOT / "docs" / "reference" / folder).glob("*.md"))
+        menu.append({title: [f"reference/{folder}/{page.name}" for page in pages]})
+    return config
+
+
 def on_files(files: Files, config: MkDocsConfig) -> Files:
     """Add the pages that do not lie in ``docs/``."""
     for name, page in BESIDE.items():
-        files.append(File.generated(config, page, content=linked((ROOT / name).read_text("utf-8"), "")))
-    files.append(File.generated(config, "reference.md", content=reference()))
+        files.append(File.generated(config, page, content=linked((ROOT / name).read_text("utf-8"), "", "")))
+    files.append(File.generated(config, "reference/python.md", content=reference()))
     files.append(File.generated(config, ONTOLOGY, content=ontology_page()))
     return files
 
@@ -53,13 +64,14 @@ def reference() -> str:
     return "# Python\n" + "".join(f"\n::: {path}\n" for path in (*told, *FACTS))
 
 
-def on_page_markdown(markdown: str, **_: object) -> str:
+def on_page_markdown(markdown: str, page: Page, **_: object) -> str:
     """Lead links out of ``docs/`` to the pages that stand for these files."""
-    return linked(markdown, "docs")
+    folder = posixpath.dirname(page.file.src_uri)
+    return linked(markdown, posixpath.join("docs", folder), folder)
 
 
-def linked(text: str, folder: str) -> str:
-    """Return a page of a folder of the repository with links as they are on the site."""
+def linked(text: str, folder: str, site_folder: str) -> str:
+    """Return a page of a folder of the repository with links as they are on the site, in a folder there."""
     pages = {**BESIDE, "ontology": ONTOLOGY}
 
     def as_on_site(link: re.Match[str]) -> str:
@@ -68,9 +80,9 @@ def linked(text: str, folder: str) -> str:
             return link[0]
         path = posixpath.normpath(posixpath.join(folder, target))
         if path in pages:
-            return f"[{said}]({pages[path]}{anchor})"
+            return f"[{said}]({posixpath.relpath(pages[path], site_folder or '.')}{anchor})"
         if path.startswith("docs/"):
-            return f"[{said}]({path.removeprefix('docs/')}{anchor})"
+            return f"[{said}]({posixpath.relpath(path.removeprefix('docs/'), site_folder or '.')}{anchor})"
         return said if (ROOT / path).exists() else link[0]
 
     return re.sub(r"\[([^\]]+)\]\(([^)#\s]+)(#[^)]*)?\)", as_on_site, text)

@@ -1,4 +1,4 @@
-"""``docs/case-studies.md`` can be repeated: commands are run and lines typed in order, and what it counts is right."""
+"""The case studies can be repeated: commands are run and lines typed in order, and what it counts is right."""
 
 from __future__ import annotations
 

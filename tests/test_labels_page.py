@@ -28,6 +28,23 @@ for part in re.split(r"^(?=#+ )", PAGE, flags=re.MULTILINE):
     for number, text in enumerate(re.findall(r"^```yaml\n(.*?)^```", part, re.MULTILINE | re.DOTALL)):
         BLOCKS[f"{TITLE} {number}" if number else TITLE] = text
 ROWS = re.findall(r"^\| `(\{?nodes: .+)` \| ([a-z-]+) \|$", PAGE, re.MULTILINE)
+MORE_ROWS = [
+    ("nodes: {/uplink: {leak: [Video]}}", "leak"),
+    ('nodes: {"/up*": {leak: [Video]}, /uplink: {conduit: [PersonalData]}}', "leak"),
+    ('nodes: {"/up*": {leak: [PersonalData]}, /uplink: {leak: {none: [Video]}, conduit: [Video]}}', "no-leak-found"),
+    ("nodes: {/uplink: {leak: [PersonalData], conduit: [Video]}}", "leak"),
+    ("nodes: {/uplink: {leak: [Video], conduit: [Video]}}", "error"),
+    ('{nodes: {/uplink: {leak: [Video]}}, channels: {"/vid*": mundane, /video: {only: [Video]}}}', "leak"),
+    (
+        "{nodes: {/camera: {source: {Video: [/video]}}, /uplink: {leak: [Video]}}, channels: {/video: mundane}}",
+        "error",
+    ),
+    ("nodes: {/camera: {source: [ContactData]}, /uplink: {leak: [Location], conduit: [ContactData]}}", "leak"),
+    ('nodes: {/camera: {source: [Video]}, "/cam*": {sanitizer: {Video: drop}}, /uplink: {leak: [Video]}}', "leak"),
+    ('{nodes: {/uplink: {leak: [Video]}}, channels: {"/vid*": sensitive, "*ideo": {sensitive: [Video]}}}', "leak"),
+    ("{nodes: {/uplink: {leak: [Video]}}, channels: {/video: {only: [PersonImage], never: [Video]}}}", "no-leak-found"),
+    ("{nodes: {/uplink: {leak: [Video]}}, channels: {/video: {only: [Video], never: [PersonImage]}}}", "error"),
+]
 CODES = {"leak": 1, "no-leak-found": 0, "undetermined": 4, "error": 2}
 
 
@@ -56,7 +73,7 @@ def test_each_block_has_a_test() -> None:
     assert len(ROWS) == PAGE.count("| no-leak-found |") + PAGE.count("| leak |\n") + PAGE.count("| error |")
 
 
-@pytest.mark.parametrize(("labels", "answer"), ROWS)
+@pytest.mark.parametrize(("labels", "answer"), [*ROWS, *MORE_ROWS])
 def test_a_row_of_which_label_wins(cli: Cli, labels: str, answer: str) -> None:
     Path("p.xml").write_text(policy("/camera>/video", "/uplink</video"), "utf-8")
     said = {"labels": 1, "channels": {"/video": "sensitive"}, **yaml.safe_load(labels)}

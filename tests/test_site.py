@@ -13,6 +13,7 @@ import pytest
 
 import rosprivacy
 from tests.helpers.paths import ROOT
+from tests.helpers.reference import command_group
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -38,12 +39,20 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_every_page_is_there(site: Path) -> None:
-    pages = {page.stem for page in (ROOT / "docs").glob("*.md")} | {"first-steps", "reporting", "changelog"}
-    assert pages <= {page.stem for page in site.glob("*.html")}
+    docs = ROOT / "docs"
+    pages = {page.relative_to(docs).with_suffix(".html") for page in docs.rglob("*.md")}
+    assert pages <= {page.relative_to(site) for page in site.rglob("*.html")}
+    assert all((site / f"{page}.html").exists() for page in ("first-steps", "reporting", "changelog"))
+
+
+def test_each_command_has_a_page_in_the_menu(site: Path) -> None:
+    text = (site / "reference" / "index.html").read_text("utf-8")
+    for name in command_group():
+        assert f'href="commands/{name}.html"' in text, name
 
 
 def test_nothing_is_loaded_from_another_host(site: Path) -> None:
-    for page in site.glob("*.html"):
+    for page in site.rglob("*.html"):
         text = page.read_text("utf-8")
         loaded = re.findall(r"<(?:script|img|link|iframe)\b[^>]*\b(?:src|href)=\"?([^\s\">]+)", text)
         assert loaded
@@ -53,7 +62,7 @@ def test_nothing_is_loaded_from_another_host(site: Path) -> None:
 
 def test_the_reference_tells_every_public_name(site: Path) -> None:
     """That each of them has a docstring is held by ruff (D100 to D107)."""
-    text = (site / "reference.html").read_text("utf-8")
+    text = (site / "reference" / "python.html").read_text("utf-8")
     for name in set(rosprivacy.__all__) - {"__version__"}:
         where = getattr(getattr(rosprivacy, name), "__module__", "rosprivacy")
         assert f'id="{where}.{name}"' in text, name

@@ -167,7 +167,9 @@ class _StoredReader:
 
     def not_understood(self, place: str, error: Exception, of: str) -> None:
         """Note what properties cannot be read."""
-        self.problem(f"{place} cannot be understood: {shown(str(error))}", f"see docs/database.md for what {of} has")
+        self.problem(
+            f"{place} cannot be understood: {shown(str(error))}", f"see docs/reference/graph.md for what {of} has"
+        )
 
     def elements(self, records: Iterable[Record]) -> None:
         for record in records:
@@ -224,7 +226,7 @@ class _StoredReader:
             except (KeyError, TypeError, ValueError, AttributeError) as error:
                 which = f"{shown(source.name)} -> {shown(target.name)}"
                 what = f"a flow cannot be understood: {which}: {shown(str(error))}"
-                self.problem(what, "see docs/database.md for what a flow has")
+                self.problem(what, "see docs/reference/graph.md for what a flow has")
                 continue
             for name in sorted(unknown):
                 self.problem(f"a flow names the unknown category {shown(name)!r}", "correct it")

@@ -1,8 +1,8 @@
 """The graph in Neo4j, declared once: kinds of nodes and relationships, their properties and what they mean.
 
-In: nothing. Out: tables, from which the constraints, the statements that write rows and the tables of
-``docs/database.md`` are derived. Identifiers in Cypher come from here and from the ontology only, checked and quoted;
-values are always parameters.
+In: nothing. Out: tables, from which the constraints, the statements that write rows and
+``docs/reference/graph.md`` are derived. Identifiers in Cypher come from here and from the ontology only, checked and
+quoted; values are always parameters.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The figures of ``docs/suggestions.md``: decisions and keys from a policy to the answer of hand-made labels."""
+"""The figures of ``figures.md``: decisions and keys from a policy to the answer of hand-made labels."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tests.helpers.paths import ROOT
 if TYPE_CHECKING:
     from pathlib import Path
 
-PAGE = ROOT / "docs" / "suggestions.md"
+PAGE = ROOT / "tests" / "decisions" / "figures.md"
 
 
 def test_a_label_file_is_taken_apart_into_what_is_typed() -> None:
@@ -50,3 +50,6 @@ def test_the_figures_of_the_page(corpus: Path, tmp_path: Path) -> None:
             f"{count.typed}", f"{hand.keys}", f"{count.keys}", f"{count.rows}", f"{count.judged}",
         ]  # fmt: skip
         assert re.search(re.escape(f"| {' | '.join(row)} |"), page), row
+        if truth.name == "RMF office":
+            told = f"{count.decisions} decisions and {count.keys} keys, in place of {hand.decisions} and {hand.keys:,}"
+            assert told in (ROOT / "docs" / "suggestions.md").read_text("utf-8")

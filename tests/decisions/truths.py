@@ -1,7 +1,7 @@
 """Hand-made labels that are the truth of the count: what a person has to say, and what comes of it.
 
-RMF office and TurtleBot3 are those of ``docs/case-studies.md``, as its reader types them; TurtleBot3 is also what the
-paper's five rounds came to; the care home is the example of ours.
+RMF office and TurtleBot3 are the case studies (``tests/helpers/typist.py``), as a reader types them; TurtleBot3 is also
+what the paper's five rounds came to; the care home is the example of ours.
 """
 
 from __future__ import annotations

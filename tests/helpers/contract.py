@@ -1,4 +1,4 @@
-"""The JSON documents as their types declare them -> JSON schemas, and a page of all fields.
+"""The JSON documents as their types declare them -> JSON schemas, and a page of the fields of each.
 
 ``python -m tests.test_docs`` writes both.
 """
@@ -34,14 +34,7 @@ DOCUMENTS: dict[str, Any] = {
 }
 PLAIN = {str: "string", int: "integer", bool: "boolean", type(None): "null"}
 IN_WORDS = {"string": "text", "integer": "number", "boolean": "true or false", "null": "null", "object": "object"}
-PAGE = ROOT / "docs" / "documents.md"
-HEAD = """\
-# The JSON documents, field by field
-
-Written by `python -m tests.test_docs` from the types in `report/schemas/`; do not edit. The same as JSON schemas: {}.
-
-A field in *italics* may be absent: where there is nothing to say, or in documents of earlier versions.
-"""
+ABSENT = "A field in *italics* may be absent: where there is nothing to say, or in documents of earlier versions."
 
 
 def file_of(name: str) -> Path:
@@ -143,41 +136,68 @@ def _named(hint: Any) -> Iterator[Any]:
             yield from _named(each)
 
 
-def page() -> str:
-    """All documents and all that stands in them, as tables."""
-    links = ", ".join(f"[{name}]({name}.schema.json)" for name in DOCUMENTS)
-    lines = [HEAD.format(links)]
-    listed: set[Any] = set()
-    for document in DOCUMENTS.values():
-        title = parts(fields(document)["format"])[1]["const"]
-        left = [(f"## {title}", document)]
-        while left:
-            heading, each = left.pop(0)
-            if each not in listed:
-                listed.add(each)
-                about = _about(each) if each.__doc__ and "TypedDict" not in each.__doc__ else ""
-                lines += [heading, "", *([about, ""] if about else []), *_rows(each), ""]
-                left[:0] = [(f"### {used.__name__}", used) for used in _used(each)]
+def index(written_by: str) -> str:
+    """The page that lists all documents; ``written_by`` says where pages come from."""
+    rows = [f"| [{_format(name)}](documents/{name}.md) | {_about(one)} |" for name, one in DOCUMENTS.items()]
+    return "\n".join(["# JSON documents", "", written_by, "| document | what it is |", "| --- | --- |", *rows, ""])
+
+
+def page(name: str, written_by: str) -> str:
+    """A document and all that stands in it, as tables; what an earlier document describes is a link to its page."""
+    described: set[Any] = set()
+    for earlier, document in DOCUMENTS.items():
+        if earlier == name:
+            break
+        described |= _within(document)
+    schemas = f"As a JSON schema: [{name}.schema.json](../../{name}.schema.json). {ABSENT}"
+    lines = [f"# {_format(name)}", "", written_by, schemas, ""]
+    left = [("", DOCUMENTS[name])]
+    while left:
+        heading, each = left.pop(0)
+        if each not in described:
+            described.add(each)
+            about = _about(each) if each.__doc__ and "TypedDict" not in each.__doc__ else ""
+            lines += [*([heading, ""] if heading else []), *([about, ""] if about else []), *_rows(each, name), ""]
+            left[:0] = [(f"## {used.__name__}", used) for used in _used(each)]
     return "\n".join(lines)
 
 
-def _rows(document: Any) -> Iterator[str]:
+def _format(name: str) -> str:
+    """What a document calls its format."""
+    constant: str = parts(fields(DOCUMENTS[name])["format"])[1]["const"]
+    return constant
+
+
+def _within(document: Any) -> set[Any]:
+    """A document and the types that stand in it."""
+    within: set[Any] = set()
+    left = [document]
+    while left:
+        each = left.pop()
+        if each not in within:
+            within.add(each)
+            left += _used(each)
+    return within
+
+
+def _rows(document: Any, name: str) -> Iterator[str]:
     yield "| field | holds | meaning |"
     yield "| --- | --- | --- |"
     for key, hint in fields(document).items():
         shown = f"`{key}`" if key in document.__required_keys__ else f"*`{key}`*"
-        yield f"| {shown} | {_holds(hint)} | {parts(hint)[2]} |".replace("  |", " |")
+        yield f"| {shown} | {_holds(hint, name)} | {parts(hint)[2]} |".replace("  |", " |")
 
 
-def _holds(hint: Any) -> str:
-    """What a field holds, in words."""
+def _holds(hint: Any, name: str) -> str:
+    """What a field of a document holds, in words; a type that an earlier document describes is a link to its page."""
     hint, keywords, _ = parts(hint)
     values = keywords.get("enum", [keywords["const"]] if "const" in keywords else [])
     if values:
         return ", ".join(f"`{json.dumps(value)}`" for value in values)
     if is_typeddict(hint):
-        return f"[{hint.__name__}](#{hint.__name__.lower()})"
-    inside = [_holds(each) for each in get_args(hint) if each not in (Any, object)]
+        first = next(other for other, document in DOCUMENTS.items() if other == name or hint in _within(document))
+        return f"[{hint.__name__}]({'' if first == name else f'{first}.md'}#{hint.__name__.lower()})"
+    inside = [_holds(each, name) for each in get_args(hint) if each not in (Any, object)]
     if get_origin(hint) in (Union, types.UnionType):
         return " or ".join(inside)
     if get_origin(hint) is list:

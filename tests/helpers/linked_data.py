@@ -11,7 +11,7 @@ from rdflib import Graph
 
 from tests.helpers.paths import ROOT
 
-PAGE = ROOT / "docs" / "linked-data.md"
+PAGE, MORE = ROOT / "docs" / "linked-data.md", ROOT / "tests" / "report" / "rdf" / "more_questions.md"
 QUESTION = re.compile(r"(```sparql\n(.*?)```\n)\n(?:\|[^\n]*\n)*\n?", re.DOTALL)
 SYNTAX = {"turtle": pyoxigraph.RdfFormat.TURTLE, "json-ld": pyoxigraph.RdfFormat.JSON_LD}
 
@@ -35,8 +35,8 @@ def strict(text: str | bytes, form: str) -> Graph:
 
 
 def questions() -> list[str]:
-    """The SPARQL questions of the page, in order."""
-    return [query for _, query in QUESTION.findall(PAGE.read_text("utf-8"))]
+    """The SPARQL questions of the page and those that stand with its test, in order."""
+    return [query for file in (PAGE, MORE) for _, query in QUESTION.findall(file.read_text("utf-8"))]
 
 
 def answered(graph: Graph, query: str) -> list[tuple[str, ...]]:

@@ -1,4 +1,4 @@
-"""The case studies of ``docs/case-studies.md``, and who types what they say into a label file."""
+"""The case studies of ``docs/case-studies.md`` and beside it, and who types what they say into a label file."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from tests.helpers.turtlebot import TURTLEBOT3
 if TYPE_CHECKING:
     from pathlib import Path
 
-PAGE = (ROOT / "docs" / "case-studies.md").read_text("utf-8")
+PAGES = [ROOT / "docs" / "case-studies.md", ROOT / "tests" / "turtlebot3_study.md"]
 POLICIES = {
     "$RMF": "policies/open-rmf__rmf_demos/rmf_demos/sros2/policies/office.policy.xml",
     "$TB3": TURTLEBOT3,
 }
-STUDIES = {study.splitlines()[0]: study for study in PAGE.split("\n## ")[1:]}
+STUDIES = {study.splitlines()[0]: study for page in PAGES for study in page.read_text("utf-8").split("\n## ")[1:]}
 FILE = "labels.yaml"
 COUNTS = ("lines typed", "empty lines filled in", "lines changed")
 

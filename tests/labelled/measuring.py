@@ -138,7 +138,7 @@ def measured(some: Iterable[System], look: Look, folder: Path) -> Measured:
 
 
 def table(looks: Mapping[str, Measured]) -> str:
-    """Write the figures as they stand in docs/suggestions.md."""
+    """Write the figures as they stand in figures.md."""
     rows = []
     for name, found in looks.items():
         shares = [*(found.precision[sure] for sure in ("likely", "may")), found.recall[SOURCE]]

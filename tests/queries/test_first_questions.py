@@ -1,6 +1,6 @@
-"""docs/first-questions.md: each right question gives what memory says, and each naive form something else.
+"""docs/first-questions.md and more_questions.md: each right question gives what memory says, each naive one does not.
 
-One database for the page: the fleet, the care home and the factory of the examples, a kiosk, a lab in both views, a
+One database for both pages: the fleet, the care home and the factory of the examples, a kiosk, a lab in both views, a
 cart with a file that nobody read, and a crane without labels.
 What memory says is counted from the analysis: a robot of the graph of a fleet stands for all that are like it.
 """
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from rosprivacy.private_neo4j.connection import Connection
     from rosprivacy.result import Result
 
-PAGE = ROOT / "docs" / "first-questions.md"
+PAGE, MORE = ROOT / "docs" / "first-questions.md", ROOT / "tests" / "queries" / "more_questions.md"
 SYSTEMS = "tests/cases/queries/systems"
 MONDAY, TUESDAY, WEDNESDAY, THURSDAY = (Run(f"2026-11-{day}T08:00:00Z", "1.0", str(day)) for day in range(23, 27))
 SITES = {"east": ("factory",), "north": ("carrier_01", "guide_01", "lab"), "south": ("carrier_lent", "kiosk")}
@@ -74,7 +74,7 @@ def blocks(page: str) -> dict[str, Block]:
     return questions
 
 
-TEXT = PAGE.read_text("utf-8")
+TEXT = PAGE.read_text("utf-8") + MORE.read_text("utf-8")
 QUESTIONS = blocks(TEXT)
 
 

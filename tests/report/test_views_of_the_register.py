@@ -27,8 +27,8 @@ from rosprivacy.report.page.index import Index
 from rosprivacy.report.rdf.findings import rdf_graph
 from tests.helpers.answers import answer_of
 from tests.helpers.concerned import VOCABULARY, Case, cases
-from tests.helpers.fleet_files import policy
 from tests.helpers.linked_rows import comparable, rows_told
+from tests.helpers.office import LABELS, POLICY
 from tests.helpers.paths import ROOT
 from tests.helpers.systems import analysed
 
@@ -63,39 +63,6 @@ COMPLETED = {
     "retention": (Cell.RETENTION,),
 }
 LETTERS = {"a": Cell.CONTROLLERS, "b": Cell.PURPOSES, "c": Cell.SUBJECTS, "e": Cell.SAFEGUARDS, "f": Cell.RETENTION}
-
-
-POLICY = policy(
-    "camera>/image<", "mic>/audio<", "emotion>/mood</image", "blur>/blurred</image",
-    "recorder></image,/mood", "trainer></blurred", "teleop></image,/audio",
-)  # fmt: skip
-LABELS = """labels: 1
-country: DE
-context: workplace
-controller: Example House
-dpo: officer-1
-nodes:
-  /camera: {source: [Video], subjects: [employees, visitors], purpose: protection, legal_basis: ["6(1)(f)"]}
-  /mic: {source: [Voice], subjects: [callers]}
-  /emotion: {derives: [{from: Video, to: EmotionEstimate}], sanitizer: {Video: drop}}
-  /blur: {sanitizer: {Video: pseudonymise}}
-  /recorder: conduit
-  /trainer: conduit
-  /teleop: conduit
-channels: {/image: sensitive, /audio: sensitive, /mood: sensitive, /blurred: sensitive}
-elements:
-  archive: {kind: storage, country: US, retention: {Video: P90D, PersonalData: P1Y}, encrypted: false,
-            operator: Cloud A, recipient: processor, contract: contract-1, transfer: standard-clauses}
-  disk: {kind: storage, country: IN, retention: P30D, backups: P7D, operator: Data B, recipient: processor,
-         transfer: none}
-  training set: {kind: storage, country: DE, encrypted: true, recipient: third-party}
-  cabin: {kind: person, country: TN, operator: Teleop C, recipient: processor, transfer: derogation}
-flows:
-  - {from: /recorder, to: archive}
-  - {from: /recorder, to: disk}
-  - {from: /trainer, to: training set}
-  - {from: /teleop, to: cabin}
-"""
 
 
 @given(cases())

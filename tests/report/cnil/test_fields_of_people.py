@@ -6,7 +6,6 @@ import json
 from typing import TYPE_CHECKING, Any
 
 import pytest
-import yaml
 
 import rosprivacy
 from rosprivacy.report.catalogs.words import Words, plain
@@ -14,50 +13,13 @@ from rosprivacy.report.cnil.person_answers import SCALE, level_of
 from rosprivacy.report.page.assessment import FORMAT
 from tests.helpers.fleet_files import policy
 from tests.helpers.graphs import hospital
-from tests.report.cnil.test_cnil import GAUGE, LIST, Page, imported, seen
-from tests.report.test_views_of_the_register import LABELS, POLICY
+from tests.helpers.office import DECISIONS, LANGUAGES, LONG, NO_PLACE, OF_ALL, OF_PATHS, answers_of, decided_office
+from tests.helpers.pia_tool import GAUGE, LIST, Page, Tool, imported, seen
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from rosprivacy.result import Result
-    from tests.report.cnil.test_cnil import Tool
-
-LANGUAGES = ("en", "de", "fr")
-LONG = " ".join(f"word{n}" for n in range(80))  # longer than a name that is shown
-DECISIONS: list[dict[str, Any]] = [
-    {"leak": "cabin", "category": "Video", "decision": "mitigate", "reason": f"Blur it first: {LONG}",
-     "owner": "Bob Fixer", "expires": "2099-05-06", "ticket": "ROB-17"},
-    {"leak": "disk", "category": "Video", "decision": "accept-on-condition", "reason": "needed",
-     "condition": "clauses are signed", "owner": "Cleo Clerk", "expires": "2099-07-08"},
-    {"leak": "cabin", "category": "Voice", "decision": "accept", "reason": f"They asked for it: {LONG}",
-     "owner": "Ada Judge", "legal_basis": ["6(1)(a)", "49(1)(a)"], "expires": "2099-01-02"},
-]  # fmt: skip
-OF_ALL = {
-    "sign.purpose": "remote help <now>", "sign.controller": "House & Co", "sign.basis": "agreed by the council",
-    "sign.necessity": "no other\nway", "sign.risks": "faces abroad", "sign.residual": "small after blurring",
-    "sign.consultation": "not needed", "sign.measures": "staff is trained", "sign.advice": "stop\nuntil blurred",
-    "sign.views": "the works council agrees",
-}  # fmt: skip
-OF_PATHS = {
-    "likelihood": "limited: a contract", "severity": "Important", "whom": "visitors", "measures": "a cover",
-    "residual": "a little", "decision": "Dora, go on",
-}  # fmt: skip
-NO_PLACE = {"sign.name": "Dora", "criterion.5": "no", "risk.0123456789abcdef.severity": "of a path that is gone"}
-
-
-def decided_office(folder: Path) -> Result:
-    """A robot in an office, with a decision of each sort."""
-    (folder / "p.xml").write_text(POLICY, "utf-8")
-    (folder / "l.yaml").write_text(LABELS, "utf-8")
-    (folder / "d.yaml").write_text(yaml.safe_dump({"decisions": 1, "findings": DECISIONS}), "utf-8")
-    return rosprivacy.analyze(folder / "p.xml", folder / "l.yaml", decisions=folder / "d.yaml")
-
-
-def answers_of(result: Result, of_paths: dict[str, str]) -> dict[str, str]:
-    """The answers to each field of a report."""
-    ids = [finding.id for finding in result.analysis.findings if not finding.dismissed]
-    return OF_ALL | {f"risk.{one}.{name}": text for one in ids for name, text in of_paths.items()} | NO_PLACE
 
 
 def file_with(result: Result, answers: dict[str, str], folder: Path, language: str = "en") -> dict[str, Any]:

@@ -19,9 +19,9 @@ from rosprivacy.documents import document_of
 from rosprivacy.report.cnil.person_answers import SCALE, PersonAnswers
 from rosprivacy.report.cnil.pia import cnil_pia
 from tests.helpers.languages import SYSTEMS
+from tests.helpers.office import LANGUAGES, OF_PATHS, answers_of, decided_office
 from tests.helpers.paths import ROOT
-from tests.report.cnil.test_cnil import CREATED, ITEMS, LIST, TEXT, imported
-from tests.report.cnil.test_fields_of_people import LANGUAGES, OF_PATHS, answers_of, decided_office
+from tests.helpers.pia_tool import CREATED, ITEMS, LIST, TEXT, imported
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

@@ -293,7 +293,7 @@ def test_a_picture_without_graphviz_needs_no_graphviz() -> None:
 
 def test_the_pictures_of_the_documentation_are_shown_there_and_can_be_read_on_a_page() -> None:
     """Letters of 11 points on a picture of 1,100 are 9 dots high on a page of 900."""
-    page = (ROOT / "docs" / "views.md").read_text("utf-8")
+    page = "".join((ROOT / "docs" / f"{name}.md").read_text("utf-8") for name in ("views", "what-it-finds"))
     files = sorted((ROOT / "docs" / "pictures").glob("*.svg"))
     assert {drawing.name for drawing in DRAWN["PICTURES"]} == {file.stem for file in files}
     for file in files:

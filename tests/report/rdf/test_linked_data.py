@@ -21,10 +21,12 @@ from rosprivacy.queries.library import find
 from rosprivacy.queries.run import run
 from rosprivacy.report.rdf.terms import RP
 from tests.helpers.graphs import care_home, rows_of
-from tests.helpers.linked_data import PAGE, QUESTION, answered, questions
+from tests.helpers.linked_data import MORE, PAGE, QUESTION, answered, questions
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from rdflib.term import Node
 
     from rosprivacy.private_neo4j.connection import Connection
@@ -67,8 +69,8 @@ def under_article_9(graph: Graph) -> set[tuple[str, ...]]:
 
 
 def marked(graph: Graph) -> set[tuple[str, ...]]:
-    """By the page's shape: what pyshacl marks, and what the marked value says."""
-    (shape,) = re.findall(r"```turtle\n(.*?)```", PAGE.read_text("utf-8"), re.DOTALL)
+    """By the shape of the questions: what pyshacl marks, and what the marked value says."""
+    (shape,) = re.findall(r"```turtle\n(.*?)```", MORE.read_text("utf-8"), re.DOTALL)
     _, report, _ = pyshacl.validate(graph, shacl_graph=Graph().parse(data=shape, format="turtle"))
     assert isinstance(report, Graph)
     return {row(graph, finding, law) for finding, law in results(report)}
@@ -103,8 +105,9 @@ def test_there_are_seven_questions_and_each_has_an_answer(graph: Graph) -> None:
     assert all(answered(graph, query) for query in questions())
 
 
-def test_the_answers_are_those_of_the_page() -> None:
-    text = PAGE.read_text("utf-8")
+@pytest.mark.parametrize("file", [PAGE, MORE], ids=lambda file: str(file.name))
+def test_the_answers_are_those_of_the_page(file: Path) -> None:
+    text = file.read_text("utf-8")
     assert text == page(text), "python -m tests.report.rdf.test_linked_data"
 
 
@@ -170,4 +173,5 @@ def test_the_words_of_the_page_are_those_of_the_shapes() -> None:
 
 
 if __name__ == "__main__":
-    PAGE.write_text(page(PAGE.read_text("utf-8")), "utf-8")
+    for file in (PAGE, MORE):
+        file.write_text(page(file.read_text("utf-8")), "utf-8")
