@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.mitigation.limits import DENY, FILTER, REVIEW
 from rosprivacy.analysis.text import fit
+from rosprivacy.report.finding_facts import grouped
 from rosprivacy.report.naming import line, name
 from rosprivacy.report.page.finding_entries import LINES, SHOWN_AT_MOST, hops_of, sentence_of
 
@@ -76,8 +77,12 @@ def closing(index: Index, entries: Iterable[PathEntry], proposals: Mapping[str, 
     stays = {row["finding"] for row in last["keeps"]}
     steps = last["steps"] if last["proven"] else []
     instead = {
-        words(f"closing.state.{row['kind']}", element=name(row["element"]), data=index.data(row["category"]))
-        for row in last["statements"]
+        words(
+            f"closing.state.{some[0]['kind']}",
+            element=name(some[0]["element"]),
+            data=index.all_data(dict.fromkeys(row["category"] for row in some)),
+        )
+        for some in grouped(last["statements"], lambda row: (row["kind"], name(row["element"])))
     }
     return ClosingEntry(
         sentences=tuple(proposal_told(last, steps, index)),

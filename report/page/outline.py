@@ -25,7 +25,7 @@ from rosprivacy.report.page.finding_entries import DecisionText, PathEntry, find
 from rosprivacy.report.page.fleet_section import FleetSection, fleet_told
 from rosprivacy.report.page.flows import flows
 from rosprivacy.report.page.index import Index, state
-from rosprivacy.report.page.kinds import KindEntry, ProvisionOnce, kinds, provisions
+from rosprivacy.report.page.kinds import KindEntry, ProvisionList, kinds, provisions
 from rosprivacy.report.page.look_at import FurtherLaw, further_law
 from rosprivacy.report.page.opening import OpeningSection, opening
 from rosprivacy.report.page.persons import Concerned, concerned, signed
@@ -48,7 +48,7 @@ SECTIONS = (
 ONLY_WITH = {"wildcard": "pattern", "request": "leg"}  # words that come only where an element has it
 LAST = "sign"  # of what is no appendix
 SHOWN_AT_MOST = 3  # robots or policies in the title
-PARAGRAPHS = 10  # of the method note
+PARAGRAPHS = 6  # of the method note
 EXPLAINED = ("profile", "enclave", "label", "wildcard", "request")  # before they first come, beside the view
 
 
@@ -133,7 +133,7 @@ class Outline(NamedTuple):
     beyond_said: tuple[str, ...]
     orphans: tuple[DecisionText, ...]
     further: FurtherLaw
-    provisions: tuple[ProvisionOnce, ...]
+    provisions: ProvisionList
     questions: tuple[QuestionGroup, ...]
     doubts: tuple[Sort, ...]
     criteria: tuple[AssessmentCriterion, ...]
