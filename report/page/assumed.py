@@ -38,14 +38,14 @@ class Remark(NamedTuple):
 
     Attributes
     ----------
-    more
+    endings
         How several that begin with the text go on; empty of one that stands alone.
     """
 
     place: str
     severity: str
     text: str
-    more: tuple[str, ...] = ()
+    endings: tuple[str, ...] = ()
 
 
 class ResultGrounds(NamedTuple):
@@ -347,13 +347,17 @@ def only_by_types(index: Index) -> tuple[tuple[str, str], ...]:
 
 
 class ClosedSection(NamedTuple):
-    """One row: where data ends, which data, on whose word, and where it would get to."""
+    """One row: where data ends, which data, on whose word, and where it would get to.
+
+    ``hangs`` where the list of what hangs on single statements has the paths of all these data.
+    """
 
     where: str
     data: str
     statement: str
     lines: tuple[str, ...]
     behind: str
+    hangs: bool = False
 
 
 def closed(index: Index) -> tuple[ClosedSection, ...]:
@@ -385,4 +389,15 @@ def _closed(rows: list[Mapping[str, Any]], index: Index) -> ClosedSection:
         statement=words("closed.glob", said=said) if row["glob"] else said,
         lines=tuple(f"{fit(place['file'])}:{place['line']}" for place in row["places"]),
         behind=words.row(behind) if behind else words("closed.perhaps"),
+        hangs=bool(behind) and all(_hangs(row, index) for row in rows),
     )
+
+
+def _hangs(row: Mapping[str, Any], index: Index) -> bool:
+    """Whether what hangs on the statement that closes a row names the same data, recipient and element to review."""
+    places = {(place["file"], place["line"]) for place in row["places"]}
+    hung = [one for one in index.document.get("hangs_on") or () if (one["file"], one["line"]) in places]
+    opened = {(opening["category"], key(opening["leak"])) for one in hung for opening in one["findings"]}
+    asked = {key(question["element"]) for one in hung for question in one["questions"]}
+    leads = row["leak"] is None or opened >= {(category, key(row["leak"])) for category in row["categories"]}
+    return bool(opened) and leads and (row["open"] is None or key(row["open"]) in asked)

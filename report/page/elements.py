@@ -142,7 +142,7 @@ def _role_text(role: str, categories: Sequence[str], row: Mapping[str, Any], ind
     """What labels say of an element; where it is of all that gets there, or of every kind, the kinds are not named."""
     if role in ALL_OF_IT and set(categories) == {*row["categories"], *row["pseudonymised"]}:
         return index.words(f"role.{role}.all")
-    if role == "leak" and len(categories) > 1 and set(categories) == set(index.categories):
+    if role == "leak" and categories[1:] and set(categories) == set(index.categories):
         return index.words("role.leak.all")
     return index.words(f"role.{role}", data=index.all_data(categories))
 

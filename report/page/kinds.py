@@ -151,11 +151,7 @@ class KindEntry(NamedTuple):
     @property
     def shared(self) -> dict[str, tuple[PathEntry, ...]]:
         """Notes that several entries have -> these; each stands once, before them."""
-        of: dict[str, list[PathEntry]] = {}
-        for entry in self.detailed:
-            for note in entry.notes:
-                of.setdefault(note, []).append(entry)
-        return {note: tuple(entries) for note, entries in of.items() if len(entries) > 1}
+        return {note: tuple(entries) for note, entries in entries_of(self.entries).items() if len(entries) > 1}
 
     @property
     def detailed(self) -> tuple[PathEntry, ...]:
@@ -171,6 +167,15 @@ class KindEntry(NamedTuple):
     def to_assess(self) -> int:
         """How many entries are to be assessed."""
         return sum(entry.state in ("open", "decided") for entry in self.entries)
+
+
+def entries_of(entries: Iterable[PathEntry]) -> dict[str, list[PathEntry]]:
+    """Return the notes of entries that are told one by one -> those that have them."""
+    of: dict[str, list[PathEntry]] = {}
+    for entry in entries:
+        for note in entry.notes if entry.detailed else ():
+            of.setdefault(note, []).append(entry)
+    return of
 
 
 def kinds(index: Index, entries: Iterable[PathEntry]) -> tuple[KindEntry, ...]:

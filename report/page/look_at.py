@@ -118,9 +118,9 @@ def context_of(name: str, index: Index) -> str:
 
 
 def revealed(finding: Mapping[str, Any], index: Index) -> Iterator[str]:
-    """Yield what the data of a finding may reveal where they are brought in: context, provision, reason.
+    """Yield what the data of a finding may reveal where they are brought in: context and provision.
 
-    What only concerns such data there is said once, of their kind.
+    Why, and what only concerns such data there, is said once, where the provision is.
     """
     of_category = {
         (row["context"], row["provision"], row["condition"]): row
@@ -134,7 +134,6 @@ def revealed(finding: Mapping[str, Any], index: Index) -> Iterator[str]:
                 "entry.context.may-reveal",
                 context=context_of(said["context"], index),
                 provision=text(row, "provision", language),
-                reason=text(row, "condition", language),
             )
 
 

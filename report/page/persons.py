@@ -331,7 +331,7 @@ class Persons(NamedTuple):
     places: tuple[DataPlace, ...]
 
 
-class DataThere(NamedTuple):
+class Holding(NamedTuple):
     """Kinds of data at a place that are about the same persons and are kept for the same time."""
 
     kinds: tuple[str, ...]
@@ -346,7 +346,7 @@ class RightsPlace(NamedTuple):
     ----------
     stated
         Whether it lies outside ROS, so that the table of what people stated has who operates it.
-    there
+    holdings
         Which data about whom it holds, and for how long.
     """
 
@@ -354,7 +354,7 @@ class RightsPlace(NamedTuple):
     kind: str
     recipient: str
     stated: bool
-    there: tuple[DataThere, ...]
+    holdings: tuple[Holding, ...]
 
 
 def by_place(groups: Iterable[Persons]) -> tuple[RightsPlace, ...]:
@@ -367,12 +367,12 @@ def by_place(groups: Iterable[Persons]) -> tuple[RightsPlace, ...]:
                 names = persons_of.setdefault((kind, place.retention), [])
                 if group.name not in names:
                     names.append(group.name)
-    return tuple(RightsPlace(*place, tuple(_there(persons_of))) for place, persons_of in about.items())
+    return tuple(RightsPlace(*place, tuple(_holdings(persons_of))) for place, persons_of in about.items())
 
 
-def _there(persons_of: Mapping[tuple[str, str], Sequence[str]]) -> Iterator[DataThere]:
+def _holdings(persons_of: Mapping[tuple[str, str], Sequence[str]]) -> Iterator[Holding]:
     for same in grouped(persons_of, lambda at: (tuple(persons_of[at]), at[1])):
-        yield DataThere(tuple(kind for kind, _ in same), tuple(persons_of[same[0]]), same[0][1])
+        yield Holding(tuple(kind for kind, _ in same), tuple(persons_of[same[0]]), same[0][1])
 
 
 def rights(index: Index) -> tuple[Persons, ...]:
