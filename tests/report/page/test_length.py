@@ -32,7 +32,9 @@ WRITTEN = {"office": office, "abroad": abroad}
 def system(request: pytest.FixtureRequest, tmp_path: Path) -> dict[str, Any]:
     if request.param in WRITTEN:
         return WRITTEN[request.param](tmp_path)
-    return {"care": care, "factory": lambda: run(3), "fleet": lambda: dict(hospital().document())}[request.param]()
+    if request.param == "fleet":
+        return dict(hospital().document())
+    return care() if request.param == "care" else run(3)
 
 
 def words(written: str) -> int:
