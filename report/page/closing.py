@@ -86,7 +86,7 @@ def closing(index: Index, entries: Iterable[PathEntry], proposals: Mapping[str, 
     }
     return ClosingEntry(
         sentences=tuple(proposal_told(last, steps, index)),
-        changes=tuple(change_told(step, index) for step in steps[:SHOWN]),
+        changes=tuple(_changes(steps[:SHOWN], index)),
         remainder=words("closing.more", n=len(steps) - SHOWN) if len(steps) > SHOWN else "",
         instead=tuple(sorted(instead)),
         stays=tuple(entry for entry in entries if stays.intersection((entry.id, *entry.alike))),
@@ -117,6 +117,16 @@ def _protect(last: Mapping[str, Any], index: Index) -> Iterator[str]:
         yield index.words(f"closing.protect.{row['cause']}", place=line(row), channels=named, removed=ended)
 
 
+def _changes(steps: Iterable[Mapping[str, Any]], index: Index) -> Iterator[Proposed]:
+    """The changes; what a filter has to do is said of the first."""
+    explained = False
+    for step in steps:
+        change, is_filter = change_told(step, index), step["kind"] == FILTER
+        again = is_filter and explained
+        yield change._replace(text=_filter(step, index, "closing.filter.again")) if again else change
+        explained = explained or is_filter
+
+
 def change_told(step: Mapping[str, Any], index: Index) -> Proposed:
     """Return one change of a mitigation document in words."""
     places = [line(grant) for grant in step["policy"]]
@@ -125,9 +135,9 @@ def change_told(step: Mapping[str, Any], index: Index) -> Proposed:
     return Proposed(text, unique[:LINES], len(unique[LINES:]), tuple(_notes(step, index)))
 
 
-def _filter(step: Mapping[str, Any], index: Index) -> str:
+def _filter(step: Mapping[str, Any], index: Index, key: str = "closing.filter") -> str:
     ends = [index.words.row(dict.fromkeys(name(one[end]) for one in step["between"])) for end in ("from", "to")]
-    return index.words("closing.filter", source=ends[0], target=ends[1], data=index.all_data(step["categories"]))
+    return index.words(key, source=ends[0], target=ends[1], data=index.all_data(step["categories"]))
 
 
 def _review(step: Mapping[str, Any], index: Index) -> str:

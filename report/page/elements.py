@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from rosprivacy.report.page.finding_entries import PathEntry
     from rosprivacy.report.page.index import Index
 
-ALL_OF_IT = ("conduit", "source")  # what can be said of all that gets there
+ALL_OF_IT = {"conduit": "role.conduit.all", "source": "role.source.it"}  # what can be said of all that gets there
 PASSES = ("conduit", "sanitizer")  # what is said of data that may never get there
 
 
@@ -141,7 +141,7 @@ def _item(group: list[Mapping[str, Any]], entry: Mapping[Any, Any], open_at: set
 def _role_text(role: str, categories: Sequence[str], row: Mapping[str, Any], index: Index) -> str:
     """What labels say of an element; where it is of all that gets there, or of every kind, the kinds are not named."""
     if role in ALL_OF_IT and set(categories) == {*row["categories"], *row["pseudonymised"]}:
-        return index.words(f"role.{role}.all")
+        return index.words(ALL_OF_IT[role])
     if role == "leak" and categories[1:] and set(categories) == set(index.categories):
         return index.words("role.leak.all")
     return index.words(f"role.{role}", data=index.all_data(categories))

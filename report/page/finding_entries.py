@@ -415,12 +415,13 @@ def hops_of(finding: Mapping[str, Any], index: Index) -> Iterator[Hop]:
         last = number == len(steps)
         here = [category for category, _ in data[max(number - 1, 0) : number or 1]]
         here = list(dict.fromkeys([*here, *([finding["category"]] if last else [])]))
-        notes, is_open = _label_texts(element, here, index)
+        alone = {finding["category"], *(category for category, _ in data)} == {finding["category"]}
+        notes, is_open = _label_texts(element, here, index, alone=alone)
         end = "leak" if last else "source" if number == 0 else ""
         if last:
             yield Hop(name(element), index.words.kind(element), notes, is_open, end)
             continue
-        changed = number == 0 or data[number] != data[number - 1]
+        changed = data[number] != data[number - 1] if number else not _brings_in(element, *data[0], index)
         label = index.data(data[number][0], pseudonymised=data[number][1]) if changed else ""
         lines = tuple(_lines(steps[number], index))
         verb = index.words(f"verb.{steps[number]['role']}")
@@ -437,9 +438,20 @@ def hops_of(finding: Mapping[str, Any], index: Index) -> Iterator[Hop]:
         )
 
 
-def _label_texts(element: Mapping[str, Any], categories: Collection[str], index: Index) -> tuple[tuple[str, ...], bool]:
+def _brings_in(element: Mapping[str, Any], category: str, pseudonymised: bool, index: Index) -> bool:  # noqa: FBT001
+    """Whether labels say of the element that it is a source of just these data."""
+    return not pseudonymised and "source" in index.roles.get((key(element), category), ())
+
+
+SHORT = ("source", "conduit", "leak")  # roles that need no kind of data where a path has one
+
+
+def _label_texts(
+    element: Mapping[str, Any], categories: Collection[str], index: Index, *, alone: bool
+) -> tuple[tuple[str, ...], bool]:
+    """What labels say of an element, and whether it is open; where a path has one kind, that is not named again."""
     notes = [
-        index.words(f"role.{role}", data=index.data(category))
+        index.words(f"role.{role}.it" if alone and role in SHORT else f"role.{role}", data=index.data(category))
         for category in categories
         for role in index.roles.get((key(element), category), ())
     ]

@@ -269,6 +269,8 @@ def _by_kind(index: Index, statement: Callable[[Sequence[Mapping[str, Any]], Ind
         for category in index.categories
     }
     texts = {category: statement(some, index) for category, some in rows.items() if some}
+    if len(set(texts.values())) == 1:
+        return next(iter(texts.values()))
     return "; ".join(
         index.words.pair(index.all_data(same), texts[same[0]]) for same in grouped(texts, texts.__getitem__)
     )

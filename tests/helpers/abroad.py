@@ -63,6 +63,11 @@ FLOWS: list[dict[str, Any]] = [
 
 def abroad(folder: Path) -> dict[str, Any]:
     """The document of the system, as ``analyze`` writes it."""
+    return json.loads(json.dumps(abroad_answer(folder).document()))  # type: ignore[no-any-return]  # JSON
+
+
+def abroad_answer(folder: Path) -> rosprivacy.Result:
+    """The system, analysed."""
     labels = {
         "labels": 1,
         "context": ["workplace", "public-space"],
@@ -79,5 +84,4 @@ def abroad(folder: Path) -> dict[str, Any]:
     }
     (folder / "yard.policy.xml").write_text(policy(PROFILES), "utf-8")
     (folder / "yard.labels.json").write_text(json.dumps(labels, indent=1), "utf-8")
-    answer = rosprivacy.analyze([str(folder / "yard.policy.xml")], [str(folder / "yard.labels.json")])
-    return json.loads(json.dumps(answer.document()))  # type: ignore[no-any-return]  # JSON
+    return rosprivacy.analyze([str(folder / "yard.policy.xml")], [str(folder / "yard.labels.json")])

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from markdown_it import MarkdownIt
 
-from rosprivacy.report.catalogs.words import plain
+from rosprivacy.report.catalogs.words import plain, table
 from rosprivacy.report.finding_facts import looked_at
 from rosprivacy.report.naming import line, text
 from rosprivacy.report.page.markdown import markdown
-from tests.helpers.abroad import abroad
+from tests.helpers.abroad import abroad, abroad_answer
 from tests.helpers.graphs import hospital
 from tests.helpers.pages import LANGUAGES, told
 from tests.helpers.reports import care, office, run
@@ -47,6 +47,13 @@ def test_the_body_is_short_and_the_appendix_has_its_bound(system: dict[str, Any]
     body, _, appendix = markdown(told(system, language)).partition("\n# ")
     assert words(body) <= BODY
     assert words(appendix) <= APPENDIX[language]
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_what_closes_the_paths_fits_into_the_body(tmp_path: Path, language: str) -> None:
+    written = str(abroad_answer(tmp_path).to("markdown", language=language))
+    assert table(language)["heading.closing"] in written
+    assert words(written.partition("\n# ")[0]) <= BODY
 
 
 def test_every_id_policy_line_and_provision_is_there(system: dict[str, Any]) -> None:
