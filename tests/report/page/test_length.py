@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 BODY = 3_000
-APPENDIX = {"en": 3_700, "de": 3_700, "fr": 4_350}  # French says the same in more words
+APPENDIX = {"en": 3_700, "de": 3_750, "fr": 4_350}  # a third of it is law; French says the same in more words
 LONG = 12  # words
 WRITTEN = {"office": office, "abroad": abroad}
 
