@@ -145,7 +145,7 @@ def _special(index: Index) -> str:
 def _innovative(makes: str, index: Index) -> str:
     if not index.of_role.get("source"):
         return makes
-    return index.words("criterion.innovative", makes=f"; {makes}" if makes else "")
+    return index.words("criterion.innovative.makes" if makes else "criterion.innovative")
 
 
 def _scale(index: Index) -> str:

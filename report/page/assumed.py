@@ -18,7 +18,7 @@ from rosprivacy.report.observed_lines import observed_lines
 from rosprivacy.report.page.hanging import Hanging, hanging
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
 
     from rosprivacy.report.page.index import Index
 
@@ -34,11 +34,18 @@ class File(NamedTuple):
 
 
 class Remark(NamedTuple):
-    """What was said of a file when it was read."""
+    """What was said of a file when it was read.
+
+    Attributes
+    ----------
+    endings
+        How several that begin with the text go on; empty of one that stands alone.
+    """
 
     place: str
     severity: str
     text: str
+    endings: tuple[str, ...] = ()
 
 
 class ResultGrounds(NamedTuple):
@@ -135,15 +142,13 @@ def _standard(index: Index) -> str:
 def _stopped(index: Index) -> Iterator[str]:
     """Standard channels at which data stops, those of which a glob says otherwise, and what labels take away."""
     words, said = index.words, index.document["assumptions"]
-    for rows in grouped(said.get("standard_channels_reached", ()), lambda row: tuple(row["categories"])):
-        names = words.row(index.names_by_node([row["element"] for row in rows]))
-        yield words("assumption.standard.reached", element=names, data=index.all_data(rows[0]["categories"]))
-    for row in said.get("standard_channels_reached", ()):
-        if end := row.get("keeps_from"):
-            ends = {"element": name(row["element"]), "end": name(end)}
-            yield words("assumption.standard.keeps", data=index.all_data(row["categories"]), **ends)
+    reached = said.get("standard_channels_reached", ())
+    if reached:
+        yield words("assumption.standard.reached", rows="; ".join(_reached(reached, index)))
+    if kept := [row for row in reached if row.get("keeps_from")]:
+        yield words("assumption.standard.keeps", rows="; ".join(_kept_away(row, index) for row in kept))
     if unchanged := said.get("standard_channels_unchanged", ()):
-        yield words("assumption.standard.unchanged", element=words.row(index.names(unchanged)))
+        yield words("assumption.standard.unchanged", element=words.row(index.names_by_node(unchanged)))
     for row in said.get("absent", ()):
         yield words("assumption.absent", element=name(row["element"]), why=printable(row["why"]))
     if rows := hanging_labels(index.document):
@@ -159,6 +164,17 @@ def _stopped(index: Index) -> Iterator[str]:
             lost=fit(f"{row['file']}:{row['line']}"),
             by=fit(f"{row['by']['file']}:{row['by']['line']}"),
         )
+
+
+def _reached(rows: Sequence[Mapping[str, Any]], index: Index) -> Iterator[str]:
+    for same in grouped(rows, lambda row: tuple(row["categories"])):
+        names = index.words.row(index.names_by_node([row["element"] for row in same]))
+        yield index.words.pair(index.all_data(same[0]["categories"]), names)
+
+
+def _kept_away(row: Mapping[str, Any], index: Index) -> str:
+    ends = {"element": name(row["element"]), "end": name(row["keeps_from"])}
+    return index.words("assumption.standard.keeps.one", data=index.all_data(row["categories"]), **ends)
 
 
 def _globs(index: Index) -> Iterator[str]:
@@ -206,8 +222,10 @@ def _type(kind: str, index: Index) -> str:
 
 def _outside(index: Index) -> Iterator[str]:
     words, said = index.words, index.document["assumptions"]
-    for kind, role in said.get("taken_by_kind", {}).items():
-        yield words("assumption.kinds", kind=words.kind({"kind": kind}), role=words(f"assumption.kinds.{role}"))
+    taken = said.get("taken_by_kind", {})
+    for kinds in grouped(taken, taken.__getitem__):
+        names = words.row(words.kind({"kind": kind}) for kind in kinds)
+        yield words("assumption.kinds", kind=names, role=words(f"assumption.kinds.{taken[kinds[0]]}"))
     if "countries_as_of" in said:
         yield words("assumption.countries", date=words.date(said["countries_as_of"]))
     for row in index.outside.values():
@@ -238,15 +256,27 @@ def files(index: Index) -> tuple[File, ...]:
 
 
 def remarks(index: Index) -> tuple[Remark, ...]:
-    """Return what was said of the files, warnings before notices."""
+    """Return what was said of the files, warnings before notices; what begins alike at one line is one."""
     order = {"error": 0, "warning": 1, "notice": 2}
     rows = sorted(index.document["diagnostics"], key=lambda row: order[row["severity"]])
-    return tuple(
-        Remark(
-            f"{fit(row['file'])}:{row['line']}", index.words(f"severity.{row['severity']}"), printable(row["message"])
-        )
-        for row in rows
-    )
+    return tuple(_remark(same, index) for same in grouped(rows, _beginning))
+
+
+AND = ", and "  # after which messages of one sort differ
+
+
+def _beginning(row: Mapping[str, Any]) -> tuple[str, str, int, str]:
+    return row["severity"], row["file"], row["line"], row["message"].rpartition(AND)[0] or row["message"]
+
+
+def _remark(rows: list[Mapping[str, Any]], index: Index) -> Remark:
+    place = f"{fit(rows[0]['file'])}:{rows[0]['line']}"
+    messages = tuple(dict.fromkeys(printable(row["message"]) for row in rows))
+    severity = index.words(f"severity.{rows[0]['severity']}")
+    if len(messages) == 1:
+        return Remark(place, severity, messages[0])
+    begins = messages[0].rpartition(AND)[0] + AND
+    return Remark(place, severity, begins, tuple(message.removeprefix(begins) for message in messages))
 
 
 class Typed(NamedTuple):
@@ -317,13 +347,17 @@ def only_by_types(index: Index) -> tuple[tuple[str, str], ...]:
 
 
 class ClosedSection(NamedTuple):
-    """One row: where data ends, which data, on whose word, and where it would get to."""
+    """One row: where data ends, which data, on whose word, and where it would get to.
+
+    ``hangs`` where the list of what hangs on single statements has the paths of all these data.
+    """
 
     where: str
     data: str
     statement: str
     lines: tuple[str, ...]
     behind: str
+    hangs: bool = False
 
 
 def closed(index: Index) -> tuple[ClosedSection, ...]:
@@ -355,4 +389,15 @@ def _closed(rows: list[Mapping[str, Any]], index: Index) -> ClosedSection:
         statement=words("closed.glob", said=said) if row["glob"] else said,
         lines=tuple(f"{fit(place['file'])}:{place['line']}" for place in row["places"]),
         behind=words.row(behind) if behind else words("closed.perhaps"),
+        hangs=bool(behind) and all(_hangs(row, index) for row in rows),
     )
+
+
+def _hangs(row: Mapping[str, Any], index: Index) -> bool:
+    """Whether what hangs on the statement that closes a row names the same data, recipient and element to review."""
+    places = {(place["file"], place["line"]) for place in row["places"]}
+    hung = [one for one in index.document.get("hangs_on") or () if (one["file"], one["line"]) in places]
+    opened = {(opening["category"], key(opening["leak"])) for one in hung for opening in one["findings"]}
+    asked = {key(question["element"]) for one in hung for question in one["questions"]}
+    leads = row["leak"] is None or opened >= {(category, key(row["leak"])) for category in row["categories"]}
+    return bool(opened) and leads and (row["open"] is None or key(row["open"]) in asked)

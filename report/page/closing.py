@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.mitigation.limits import DENY, FILTER, REVIEW
 from rosprivacy.analysis.text import fit
+from rosprivacy.report.finding_facts import grouped
 from rosprivacy.report.naming import line, name
 from rosprivacy.report.page.finding_entries import LINES, SHOWN_AT_MOST, hops_of, sentence_of
 
@@ -76,12 +77,16 @@ def closing(index: Index, entries: Iterable[PathEntry], proposals: Mapping[str, 
     stays = {row["finding"] for row in last["keeps"]}
     steps = last["steps"] if last["proven"] else []
     instead = {
-        words(f"closing.state.{row['kind']}", element=name(row["element"]), data=index.data(row["category"]))
-        for row in last["statements"]
+        words(
+            f"closing.state.{some[0]['kind']}",
+            element=name(some[0]["element"]),
+            data=index.all_data(dict.fromkeys(row["category"] for row in some)),
+        )
+        for some in grouped(last["statements"], lambda row: (row["kind"], name(row["element"])))
     }
     return ClosingEntry(
         sentences=tuple(proposal_told(last, steps, index)),
-        changes=tuple(change_told(step, index) for step in steps[:SHOWN]),
+        changes=tuple(_changes(steps[:SHOWN], index)),
         remainder=words("closing.more", n=len(steps) - SHOWN) if len(steps) > SHOWN else "",
         instead=tuple(sorted(instead)),
         stays=tuple(entry for entry in entries if stays.intersection((entry.id, *entry.alike))),
@@ -112,6 +117,16 @@ def _protect(last: Mapping[str, Any], index: Index) -> Iterator[str]:
         yield index.words(f"closing.protect.{row['cause']}", place=line(row), channels=named, removed=ended)
 
 
+def _changes(steps: Iterable[Mapping[str, Any]], index: Index) -> Iterator[Proposed]:
+    """The changes; what a filter has to do is said of the first."""
+    explained = False
+    for step in steps:
+        change, is_filter = change_told(step, index), step["kind"] == FILTER
+        again = is_filter and explained
+        yield change._replace(text=_filter(step, index, "closing.filter.again")) if again else change
+        explained = explained or is_filter
+
+
 def change_told(step: Mapping[str, Any], index: Index) -> Proposed:
     """Return one change of a mitigation document in words."""
     places = [line(grant) for grant in step["policy"]]
@@ -120,9 +135,9 @@ def change_told(step: Mapping[str, Any], index: Index) -> Proposed:
     return Proposed(text, unique[:LINES], len(unique[LINES:]), tuple(_notes(step, index)))
 
 
-def _filter(step: Mapping[str, Any], index: Index) -> str:
+def _filter(step: Mapping[str, Any], index: Index, key: str = "closing.filter") -> str:
     ends = [index.words.row(dict.fromkeys(name(one[end]) for one in step["between"])) for end in ("from", "to")]
-    return index.words("closing.filter", source=ends[0], target=ends[1], data=index.all_data(step["categories"]))
+    return index.words(key, source=ends[0], target=ends[1], data=index.all_data(step["categories"]))
 
 
 def _review(step: Mapping[str, Any], index: Index) -> str:

@@ -20,12 +20,13 @@ from rosprivacy.report.page.index import state, weight, without_robots
 from rosprivacy.report.row_texts import backups_text, country
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.report.naming import Key
     from rosprivacy.report.page.finding_entries import PathEntry
     from rosprivacy.report.page.index import Index
 
+ALL_OF_IT = {"conduit": "role.conduit.all", "source": "role.source.it"}  # what can be said of all that gets there
 PASSES = ("conduit", "sanitizer")  # what is said of data that may never get there
 
 
@@ -75,7 +76,7 @@ class Inventory(NamedTuple):
     size: str
     denied: str
     items: tuple[ElementItem, ...]
-    rest: tuple[tuple[str, tuple[str, ...]], ...]
+    rest: tuple[tuple[str, int, tuple[str, ...]], ...]
     enclaves: tuple[Enclave, ...]
     outside: tuple[Outside, ...]
     cleanings: tuple[CleaningEntry, ...]
@@ -132,9 +133,18 @@ def _item(group: list[Mapping[str, Any]], entry: Mapping[Any, Any], open_at: set
         kind=words.kind(element),
         robots=robots,
         data=words.row([*(_category_held(at, category, index) for category in row["categories"]), *hidden]),
-        roles=tuple(words(f"role.{role}", data=index.all_data(c)) for role, c in entry.get(at, {}).items()),
+        roles=tuple(_role_text(role, c, row, index) for role, c in entry.get(at, {}).items()),
         reviewed=at not in open_at,
     )
+
+
+def _role_text(role: str, categories: Sequence[str], row: Mapping[str, Any], index: Index) -> str:
+    """What labels say of an element; where it is of all that gets there, or of every kind, the kinds are not named."""
+    if role in ALL_OF_IT and set(categories) == {*row["categories"], *row["pseudonymised"]}:
+        return index.words(ALL_OF_IT[role])
+    if role == "leak" and categories[1:] and set(categories) == set(index.categories):
+        return index.words("role.leak.all")
+    return index.words(f"role.{role}", data=index.all_data(categories))
 
 
 def _category_held(at: Key, category: str, index: Index) -> str:
@@ -143,10 +153,13 @@ def _category_held(at: Key, category: str, index: Index) -> str:
     return index.words("inventory.cleaned", data=data) if (at, category) in index.cleaned else data
 
 
-def unreached_names(index: Index) -> tuple[tuple[str, tuple[str, ...]], ...]:
-    """Return the names of the elements that no data gets to, by kind."""
+def unreached_names(index: Index) -> tuple[tuple[str, int, tuple[str, ...]], ...]:
+    """Return the elements that no data gets to: kind, how many names there are, names; services of a node are one."""
     groups = grouped(index.document["unreached"], lambda element: element["kind"])
-    return tuple((index.words.kind({"kind": some[0]["kind"]}), index.names(some)) for some in groups)
+    return tuple(
+        (index.words.kind({"kind": some[0]["kind"]}), len(index.names(some)), index.names_by_node(some))
+        for some in groups
+    )
 
 
 def enclaves(index: Index) -> tuple[Enclave, ...]:

@@ -172,6 +172,9 @@ class PathEntry(NamedTuple):
         On a fleet, the id of the pattern: what decisions name.
     same_way
         (number, anchor) of an entry before it that has the same hops; None if there is none.
+    begins_as, begins
+        (number, anchor) of the entry before it that has its first hops with their policy lines, and how many these
+        are; None where they are too few to name another path for them.
     through
         Other recipients that every path leads through.
     notes
@@ -205,6 +208,13 @@ class PathEntry(NamedTuple):
     detailed: bool = True
     where: tuple[tuple[str, tuple[str, ...]], ...] = ()
     same_way: tuple[int, str] | None = None
+    begins_as: tuple[int, str] | None = None
+    begins: int = 0
+
+    @property
+    def new_hops(self) -> tuple[Hop, ...]:
+        """The hops that no entry before it has told."""
+        return () if self.same_way else self.hops[self.begins :]
 
     @property
     def brief(self) -> str:
@@ -240,15 +250,24 @@ def finding_entries(index: Index, marks: Mapping[str, str] | None = None) -> tup
     return tuple(_ways_once(entries))
 
 
+WORTH = 2  # hops that two paths begin with, so that the second names the first for them
+
+
 def _ways_once(entries: Iterable[PathEntry]) -> Iterator[PathEntry]:
-    """The entries; one that goes along the same hops as one before says so."""
+    """The entries; one that goes along the hops of one before, or begins so, says it."""
     first: dict[tuple[Hop, ...], tuple[int, str]] = {}
+    begun: dict[tuple[Hop, ...], tuple[int, str]] = {}
     for entry in entries:
-        if entry.hops:
-            way = first.setdefault(entry.hops, (entry.number, entry.anchor))
-            yield entry if way[0] == entry.number else entry._replace(same_way=way)
-        else:
-            yield entry
+        at = entry.number, entry.anchor
+        way = first.setdefault(entry.hops, at) if entry.hops else at
+        if way != at:
+            yield entry._replace(same_way=way)
+            continue
+        beginnings = [entry.hops[:number] for number in range(WORTH, len(entry.hops))]
+        shared = [hops for hops in beginnings if hops in begun]
+        yield entry._replace(begins_as=begun[shared[-1]], begins=len(shared[-1])) if shared else entry
+        for hops in beginnings:
+            begun.setdefault(hops, at)
 
 
 def _entry(
@@ -396,12 +415,13 @@ def hops_of(finding: Mapping[str, Any], index: Index) -> Iterator[Hop]:
         last = number == len(steps)
         here = [category for category, _ in data[max(number - 1, 0) : number or 1]]
         here = list(dict.fromkeys([*here, *([finding["category"]] if last else [])]))
-        notes, is_open = _label_texts(element, here, index)
+        alone = {finding["category"], *(category for category, _ in data)} == {finding["category"]}
+        notes, is_open = _label_texts(element, here, index, alone=alone)
         end = "leak" if last else "source" if number == 0 else ""
         if last:
             yield Hop(name(element), index.words.kind(element), notes, is_open, end)
             continue
-        changed = number == 0 or data[number] != data[number - 1]
+        changed = data[number] != data[number - 1] if number else not _brings_in(element, *data[0], index)
         label = index.data(data[number][0], pseudonymised=data[number][1]) if changed else ""
         lines = tuple(_lines(steps[number], index))
         verb = index.words(f"verb.{steps[number]['role']}")
@@ -418,9 +438,20 @@ def hops_of(finding: Mapping[str, Any], index: Index) -> Iterator[Hop]:
         )
 
 
-def _label_texts(element: Mapping[str, Any], categories: Collection[str], index: Index) -> tuple[tuple[str, ...], bool]:
+def _brings_in(element: Mapping[str, Any], category: str, pseudonymised: bool, index: Index) -> bool:  # noqa: FBT001
+    """Whether labels say of the element that it is a source of just these data."""
+    return not pseudonymised and "source" in index.roles.get((key(element), category), ())
+
+
+SHORT = ("source", "conduit", "leak")  # roles that need no kind of data where a path has one
+
+
+def _label_texts(
+    element: Mapping[str, Any], categories: Collection[str], index: Index, *, alone: bool
+) -> tuple[tuple[str, ...], bool]:
+    """What labels say of an element, and whether it is open; where a path has one kind, that is not named again."""
     notes = [
-        index.words(f"role.{role}", data=index.data(category))
+        index.words(f"role.{role}.it" if alone and role in SHORT else f"role.{role}", data=index.data(category))
         for category in categories
         for role in index.roles.get((key(element), category), ())
     ]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.text import fit
 from rosprivacy.report.finding_facts import grouped
-from rosprivacy.report.naming import opening_text
+from rosprivacy.report.naming import key, opening_text
 from rosprivacy.report.page.index import node_of_service
 
 if TYPE_CHECKING:
@@ -34,6 +34,9 @@ class Hanging(NamedTuple):
         What there would be without it.
     shipped
         Whether it is not the user's.
+    itself, only_of
+        Whether all that would be is that the elements themselves would not be reviewed; and of which kinds of data, if
+        not of all that get there.
     """
 
     where: str
@@ -44,6 +47,8 @@ class Hanging(NamedTuple):
     findings: tuple[str, ...]
     questions: tuple[str, ...]
     shipped: bool
+    itself: bool = False
+    only_of: str = ""
 
 
 def hanging(index: Index) -> tuple[Hanging, ...] | None:
@@ -72,9 +77,30 @@ def _hanging(rows: Sequence[Mapping[str, Any]], index: Index) -> Hanging:
         by=fit(row["author"]),
         why=fit(row["why"]),
         findings=_names_shown(list(_findings(row, index)), index),
-        questions=_names_shown(list(_questions(rows, index)), index),
+        questions=tuple(_questions(rows, index)),
         shipped=row["shipped"],
+        itself=_about_itself(rows, index),
+        only_of=_only_of(rows, index),
     )
+
+
+def _about_itself(rows: Sequence[Mapping[str, Any]], index: Index) -> bool:
+    """Whether nothing but a review of the elements themselves would be missing."""
+    asked = [question["element"] for row in rows for question in row["questions"]]
+    stated = [element for row in rows for element in row["elements"]]
+    more = any(row[what] for row in rows for what in ("findings", "refused", "perhaps", "to"))
+    return not more and set(index.names_by_node(asked)) == set(index.names_by_node(stated))
+
+
+def _only_of(rows: Iterable[Mapping[str, Any]], index: Index) -> str:
+    """The kinds of data of the questions, if others get to one of the elements, or would get to a standard channel."""
+    there = {key(row["element"]): {*row["categories"], *row["pseudonymised"]} for row in index.document["carries"]}
+    for row in index.document["assumptions"].get("standard_channels_reached", ()):
+        there[key(row["element"])] = set(row["categories"])
+    asked = [question for row in rows for question in row["questions"]]
+    if all(there.get(key(question["element"])) == set(question["categories"]) for question in asked):
+        return ""
+    return index.all_data(dict.fromkeys(of for question in asked for of in question["categories"]))
 
 
 def _statement(row: Mapping[str, Any], index: Index) -> str:
@@ -84,7 +110,11 @@ def _statement(row: Mapping[str, Any], index: Index) -> str:
     if row["role"] == "sanitizer" and role != "absent":
         method = words(f"method.{row['method']}")
         said = f"{said} ({method})"
-    said = words.pair(said, index.all_data(row["categories"])) if row["categories"] else said
+    if row["categories"]:
+        names = [
+            index.data(category) for category in sorted(row["categories"], key=lambda one: one not in index.categories)
+        ]
+        said = words.pair(said, words.row(words.first(names, FEW)))
     return words("closed.glob", said=said) if row["glob"] else said
 
 
@@ -101,11 +131,19 @@ def _findings(row: Mapping[str, Any], index: Index) -> Iterator[str]:
 
 
 def _questions(rows: Iterable[Mapping[str, Any]], index: Index) -> Iterator[str]:
+    """Elements that would not be reviewed, the first of them; those of which it is the same data together."""
     questions = [question for row in rows for question in row["questions"]]
+    named: dict[str, list[str]] = {}
     for some in grouped(questions, lambda question: tuple(question["categories"])):
-        data = index.all_data(some[0]["categories"])
-        for name in index.names_by_node([question["element"] for question in some]):
-            yield f"{name} ({data})"
+        names = named.setdefault(index.all_data(some[0]["categories"]), [])
+        names += dict.fromkeys(index.names_by_node([question["element"] for question in some]))
+    left = FEW
+    for data, names in named.items():
+        if shown := names[: max(left, 0)]:
+            yield f"{index.words.row(shown)} ({data})"
+        left -= len(names)
+    if left < 0:
+        yield index.words("more", n=-left)
 
 
 def _names_shown(texts: Sequence[str], index: Index) -> tuple[str, ...]:

@@ -19,7 +19,7 @@ from markupsafe import Markup, escape
 
 from rosprivacy.report.page.figures import Figures, page_legend
 from rosprivacy.report.page.outline import PARAGRAPHS
-from rosprivacy.report.page.spaced_templates import TEMPLATES, CompiledTemplates, SpacedTemplates
+from rosprivacy.report.page.spaced_templates import TEMPLATES, CompiledTemplates, SpacedTemplates, alike
 from rosprivacy.report.pictures.looks import INK
 
 if TYPE_CHECKING:
@@ -84,6 +84,7 @@ def environment_of(language: str) -> tuple[Environment, str, str]:
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    environment.filters["alike"] = alike
     css, js = (loader.get_source(environment, name)[0] for name in ("report.css", "report.js"))
     return environment, css, js
 

@@ -6,11 +6,14 @@ finding first, then the others, in the document's order.
 
 from __future__ import annotations
 
+from collections import Counter
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.text import fit, printable
 from rosprivacy.ontology.iris import as_published
 from rosprivacy.report.catalogs.words import spaced
+from rosprivacy.report.finding_facts import grouped
 from rosprivacy.report.naming import count_rows, text
 from rosprivacy.report.page.index import kind_anchor
 from rosprivacy.report.page.look_at import LookAt, context_of, of_kind
@@ -50,8 +53,8 @@ class ProvisionOnce(NamedTuple):
 
     Attributes
     ----------
-    callers
-        Contexts, or every system; the kinds name theirs themselves.
+    reviewed
+        When we read it; empty where it is when most of the list was read.
     contexts
         (why it is to be looked at in a context, of which kinds of data).
     """
@@ -59,9 +62,42 @@ class ProvisionOnce(NamedTuple):
     name: str
     title: str
     meaning: str
-    dates: str
-    callers: tuple[str, ...]
+    reviewed: str
+    applies: str
     contexts: tuple[tuple[str, str], ...]
+
+    @property
+    def numbered(self) -> bool:
+        """Whether the title is the name of an act or a judgment, which the meaning does not say."""
+        return any(map(str.isdigit, self.title))
+
+    @property
+    def dates(self) -> str:
+        """What is to be told of its dates, in a row."""
+        return "; ".join(filter(None, (self.reviewed, self.applies)))
+
+
+class ProvisionGroup(NamedTuple):
+    """Provisions that the same contexts or every system call for; ``callers`` is empty where only kinds of data do."""
+
+    callers: str
+    provisions: tuple[ProvisionOnce, ...]
+
+
+class ProvisionList(NamedTuple):
+    """What the provisions of a report say, each once.
+
+    Attributes
+    ----------
+    reviewed
+        When most of them were read.
+    unconfirmed
+        (that a change is not confirmed, the names of the provisions).
+    """
+
+    reviewed: str
+    groups: tuple[ProvisionGroup, ...]
+    unconfirmed: tuple[tuple[str, str], ...]
 
 
 class KindEntry(NamedTuple):
@@ -115,11 +151,7 @@ class KindEntry(NamedTuple):
     @property
     def shared(self) -> dict[str, tuple[PathEntry, ...]]:
         """Notes that several entries have -> these; each stands once, before them."""
-        of: dict[str, list[PathEntry]] = {}
-        for entry in self.detailed:
-            for note in entry.notes:
-                of.setdefault(note, []).append(entry)
-        return {note: tuple(entries) for note, entries in of.items() if len(entries) > 1}
+        return {note: tuple(entries) for note, entries in entries_of(self.entries).items() if len(entries) > 1}
 
     @property
     def detailed(self) -> tuple[PathEntry, ...]:
@@ -135,6 +167,15 @@ class KindEntry(NamedTuple):
     def to_assess(self) -> int:
         """How many entries are to be assessed."""
         return sum(entry.state in ("open", "decided") for entry in self.entries)
+
+
+def entries_of(entries: Iterable[PathEntry]) -> dict[str, list[PathEntry]]:
+    """Return the notes of entries that are told one by one -> those that have them."""
+    of: dict[str, list[PathEntry]] = {}
+    for entry in entries:
+        for note in entry.notes if entry.detailed else ():
+            of.setdefault(note, []).append(entry)
+    return of
 
 
 def kinds(index: Index, entries: Iterable[PathEntry]) -> tuple[KindEntry, ...]:
@@ -177,38 +218,57 @@ def _kind(category: Mapping[str, Any], index: Index, entries: tuple[PathEntry, .
     )
 
 
-def provisions(entries: Iterable[KindEntry], further: FurtherLaw, index: Index) -> tuple[ProvisionOnce, ...]:
-    """Return what the provisions say, each once; by name."""
-    words = index.words
-    titles: dict[tuple[str, str, str], str] = {}
-    callers: dict[tuple[str, str, str], dict[str, None]] = {}
-    contexts: dict[tuple[str, str, str], dict[str, list[str]]] = {}
+def provisions(entries: Iterable[KindEntry], further: FurtherLaw, index: Index) -> ProvisionList:
+    """Return what the provisions say, each once: those of kinds of data, of every system, of contexts; by name."""
+    called: dict[LookAt, dict[str, None]] = {}  # the title apart: only what is looked at beside has one
+    titles: dict[LookAt, str] = {}
+    contexts: dict[LookAt, dict[str, list[str]]] = {}
     for kind in entries:
         for law in kind.law:
-            titles.setdefault((law.name, law.meaning, words("law.as.of", date=law.as_of)), "")
+            called.setdefault(_looked_at(law, index), {})
         for context, law in kind.in_context:
-            key = law.name, law.meaning, words("law.as.of", date=law.as_of)
-            titles.setdefault(key, "")
-            why = words.pair(words(f"law.context.{law.verdict}", context=context), law.condition)
-            why = f"{why}. {words.pair(words('law.sources'), law.sources)}" if law.sources else why
-            contexts.setdefault(key, {}).setdefault(why, []).append(kind.title)
-        for look in kind.look_at:
-            titles[look.name, look.meaning, look.dates] = look.title
-    for caller, several in further.provisions:
-        for look in several:
-            titles[look.name, look.meaning, look.dates] = look.title
-            callers.setdefault((look.name, look.meaning, look.dates), {})[caller] = None
-    return tuple(
-        ProvisionOnce(
-            name,
-            titles[name, meaning, dates],
-            meaning,
-            dates,
-            tuple(callers.get((name, meaning, dates), ())),
-            tuple((why, words.row(of)) for why, of in contexts.get((name, meaning, dates), {}).items()),
+            contexts.setdefault(_looked_at(law, index), {}).setdefault(_why(context, law, index), []).append(kind.title)
+    pointed_at = (("", look) for kind in entries for look in kind.look_at)
+    for caller, look in (*pointed_at, *((caller, look) for caller, several in further.provisions for look in several)):
+        untitled = look._replace(title="")
+        titles[untitled] = look.title
+        called.setdefault(untitled, {}).update({caller: None} if caller else {})
+    found = sorted({**called, **contexts})
+    usual = Counter(look.reviewed for look in found).most_common(1)[0][0] if found else ""
+    groups = (
+        ProvisionGroup(
+            "; ".join(called.get(some[0], ())),
+            tuple(
+                ProvisionOnce(
+                    look.name,
+                    titles.get(look, ""),
+                    look.meaning,
+                    "" if look.reviewed == usual else look.reviewed,
+                    look.applies,
+                    tuple((why, index.words.row(of)) for why, of in contexts.get(look, {}).items()),
+                )
+                for look in some
+            ),
         )
-        for name, meaning, dates in sorted(titles)
+        for some in grouped(found, lambda look: tuple(called.get(look, ())))
     )
+    open_changes = grouped((look for look in found if look.unconfirmed), attrgetter("unconfirmed"))
+    return ProvisionList(
+        usual,
+        tuple(sorted(groups, key=lambda group: group.callers != "")),
+        tuple((some[0].unconfirmed, "; ".join(look.name for look in some)) for some in open_changes),
+    )
+
+
+def _looked_at(law: ProvisionText, index: Index) -> LookAt:
+    return LookAt(law.name, "", law.meaning, index.words("law.as.of", date=law.as_of), "", "")
+
+
+def _why(context: str, law: ProvisionText, index: Index) -> str:
+    """Why a provision is to be looked at in a context."""
+    words = index.words
+    why = words.pair(words(f"law.context.{law.verdict}", context=context), law.condition)
+    return f"{why}. {words.pair(words('law.sources'), law.sources)}" if law.sources else why
 
 
 def provision(legal: Mapping[str, Any], of: str, index: Index) -> ProvisionText:
@@ -223,10 +283,21 @@ def provision(legal: Mapping[str, Any], of: str, index: Index) -> ProvisionText:
         verdict=legal["verdict"],
         condition=condition,
         meaning=text(legal, "meaning", language),
-        sources=spaced(printable(sources or "; ".join(legal["sources"])), language),
+        sources=spaced(printable(_sources(sources or "; ".join(legal["sources"]))), language),
         stated="" if legal["stated_of"] in ("", of) else _stated(legal["stated_of"], index),
         as_of=index.words.date(legal["as_of"]),
     )
+
+
+def _sources(texts: str) -> str:
+    """Sources in a row; of several places in one, its name once.
+
+    >>> _sources("Guidelines 3/2019 par. 63; Guidelines 3/2019 par. 65; Recital 51")
+    'Guidelines 3/2019 par. 63, 65; Recital 51'
+    """
+    cited = [tuple(source.rpartition(" ")[::2]) for source in texts.split("; ")]
+    same = grouped(cited, lambda of: of[0] if of[1].isdecimal() else of)
+    return "; ".join(" ".join(filter(None, (some[0][0], ", ".join(place for _, place in some)))) for some in same)
 
 
 def _stated(names: str, index: Index) -> str:

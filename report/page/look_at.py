@@ -22,12 +22,27 @@ ABOUT_WORK = ("AI Act", "GDPR Art. 88", "GDPR Art. 22", "BDSG § 26", "BetrVG", 
 
 
 class LookAt(NamedTuple):
-    """One provision to look at, with its dates."""
+    """One provision to look at.
+
+    Attributes
+    ----------
+    reviewed
+        When we read it.
+    applies, unconfirmed
+        From when on it applies; that a change of it is not confirmed; empty if nothing is to be told.
+    """
 
     name: str
     title: str
     meaning: str
-    dates: str
+    reviewed: str
+    applies: str
+    unconfirmed: str
+
+    @property
+    def dates(self) -> str:
+        """All of it in a row."""
+        return "; ".join(filter(None, (self.reviewed, self.applies, self.unconfirmed)))
 
 
 class FurtherLaw(NamedTuple):
@@ -103,9 +118,9 @@ def context_of(name: str, index: Index) -> str:
 
 
 def revealed(finding: Mapping[str, Any], index: Index) -> Iterator[str]:
-    """Yield what the data of a finding may reveal where they are brought in: context, provision, reason.
+    """Yield what the data of a finding may reveal where they are brought in: context and provision.
 
-    What only concerns such data there is said once, of their kind.
+    Why, and what only concerns such data there, is said once, where the provision is.
     """
     of_category = {
         (row["context"], row["provision"], row["condition"]): row
@@ -119,18 +134,17 @@ def revealed(finding: Mapping[str, Any], index: Index) -> Iterator[str]:
                 "entry.context.may-reveal",
                 context=context_of(said["context"], index),
                 provision=text(row, "provision", language),
-                reason=text(row, "condition", language),
             )
 
 
 def _provision_text(rows: Iterable[Mapping[str, Any]], index: Index) -> Iterator[LookAt]:
     words, language = index.words, index.words.language
     for row in rows:
-        dates = [words("law.as.of", date=words.date(row["as_of"]))]
-        if row["applies_from"]:
-            dates.append(words("look.applies", date=words.date(row["applies_from"])))
+        reviewed = words("law.as.of", date=words.date(row["as_of"]))
+        applies = words("look.applies", date=words.date(row["applies_from"])) if row["applies_from"] else ""
+        unconfirmed = ""
         if not row.get("confirmed", True):
             adopted = row["adopted"]
-            dates.append(words("look.unconfirmed", date=words.date(adopted)) if adopted else words("look.pointer"))
+            unconfirmed = words("look.unconfirmed", date=words.date(adopted)) if adopted else words("look.pointer")
         provision, title, meaning = (text(row, what, language) for what in ("provision", "title", "meaning"))
-        yield LookAt(provision, title, meaning, "; ".join(dates))
+        yield LookAt(provision, title, meaning, reviewed, applies, unconfirmed)

@@ -8,20 +8,16 @@ from __future__ import annotations
 
 import re
 from functools import cache
-from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 
 from rosprivacy.report.catalogs.words import NARROW, WIDE
-from rosprivacy.report.finding_facts import grouped
 from rosprivacy.report.page.outline import PARAGRAPHS
-from rosprivacy.report.page.spaced_templates import TEMPLATES, CompiledTemplates, SpacedTemplates
+from rosprivacy.report.page.spaced_templates import TEMPLATES, CompiledTemplates, SpacedTemplates, alike
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
     from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.page.outline import Outline
 
@@ -69,11 +65,6 @@ def code(value: str) -> Markup:
     fence = "`" * (max((len(run) for run in re.findall("`+", line)), default=0) + 1)
     space = " " if line.startswith("`") or line.endswith("`") else ""
     return Markup(f"{fence}{space}{line.replace('|', chr(92) + '|')}{space}{fence}")  # noqa: S704 - in a fence
-
-
-def alike(rows: Iterable[Any], *fields: str) -> list[list[Any]]:
-    """Return rows that have the same in some fields together, in the order of the first of each."""
-    return grouped(rows, attrgetter(*fields))
 
 
 @cache

@@ -25,7 +25,7 @@ from rosprivacy.report.page.finding_entries import DecisionText, PathEntry, find
 from rosprivacy.report.page.fleet_section import FleetSection, fleet_told
 from rosprivacy.report.page.flows import flows
 from rosprivacy.report.page.index import Index, state
-from rosprivacy.report.page.kinds import KindEntry, ProvisionOnce, kinds, provisions
+from rosprivacy.report.page.kinds import KindEntry, ProvisionList, entries_of, kinds, provisions
 from rosprivacy.report.page.look_at import FurtherLaw, further_law
 from rosprivacy.report.page.opening import OpeningSection, opening
 from rosprivacy.report.page.persons import Concerned, concerned, signed
@@ -48,7 +48,7 @@ SECTIONS = (
 ONLY_WITH = {"wildcard": "pattern", "request": "leg"}  # words that come only where an element has it
 LAST = "sign"  # of what is no appendix
 SHOWN_AT_MOST = 3  # robots or policies in the title
-PARAGRAPHS = 10  # of the method note
+PARAGRAPHS = 5  # of the method note
 EXPLAINED = ("profile", "enclave", "label", "wildcard", "request")  # before they first come, beside the view
 
 
@@ -133,7 +133,7 @@ class Outline(NamedTuple):
     beyond_said: tuple[str, ...]
     orphans: tuple[DecisionText, ...]
     further: FurtherLaw
-    provisions: tuple[ProvisionOnce, ...]
+    provisions: ProvisionList
     questions: tuple[QuestionGroup, ...]
     doubts: tuple[Sort, ...]
     criteria: tuple[AssessmentCriterion, ...]
@@ -145,6 +145,15 @@ class Outline(NamedTuple):
         """Where the appendix begins: what the sections before rest on."""
         anchors = [anchor for anchor, _ in self.sections]
         return anchors[anchors.index(LAST) + 1]
+
+    @property
+    def shared(self) -> dict[str, tuple[PathEntry, ...]]:
+        """Notes that entries of several kinds of data have -> these; each stands once, before all kinds."""
+        return {
+            note: tuple(entries)
+            for note, entries in entries_of(self.entries).items()
+            if len({entry.category for entry in entries}) > 1
+        }
 
     def number(self, section: str) -> int:
         """Return the number of a section."""

@@ -53,6 +53,11 @@ class Concerned(NamedTuple):
     processed: tuple[PurposeRow, ...]
     rights: tuple[Persons, ...]
 
+    @property
+    def by_place(self) -> tuple[RightsPlace, ...]:
+        """The places of all groups, each once."""
+        return by_place(self.rights)
+
 
 def concerned(index: Index, entries: Sequence[PathEntry]) -> Concerned:
     """Return the persons of a document."""
@@ -70,11 +75,14 @@ class TableCell(NamedTuple):
         Anchor of the first entry, empty if there is none.
     strong
         Whether there is something to assess.
+    brief
+        How much there is to assess, as a number.
     """
 
     text: str
     link: str = ""
     strong: bool = False
+    brief: str = ""
 
 
 class TableRow(NamedTuple):
@@ -152,13 +160,14 @@ def _gets(
         if some:
             hidden = f", {words('cell.hidden')}" if all(finding["pseudonymised"] for finding in some) else ""
             text = words(said) if said else words.count(len(some), "way")
-            return TableCell(text + hidden, links.to(some), strong=stands == "open")
+            brief = "" if said else words.number(len(some)) + hidden
+            return TableCell(text + hidden, links.to(some), strong=stands == "open", brief=brief)
     if any(category in index.outside.get(key(element), {}).get("holds", ()) for element in group):
         return TableCell(words("cell.gets"))
     cleaned = [row for element in group if (row := index.cleaned.get((key(element), category)))]
     if cleaned and cleaned[0].get("recognises"):
         return TableCell(words("cell.gets"))
-    return TableCell(_cleaned(cleaned[0], index) if cleaned else words("cell.no"))
+    return TableCell(_cleaned(cleaned[0], index) if cleaned else words("cell.none"))
 
 
 def _cleaned(row: Mapping[str, Any], index: Index) -> str:
@@ -202,7 +211,8 @@ def _about(
     open_findings = [finding for finding in here if state(finding) == "open"]
     words = index.words
     if open_findings:
-        return TableCell(words.count(len(open_findings), "way"), links.to(open_findings), strong=True)
+        number = len(open_findings)
+        return TableCell(words.count(number, "way"), links.to(open_findings), strong=True, brief=words.number(number))
     if here:
         accepted = any(state(finding) == "accepted" for finding in here)
         return TableCell(words("cell.accepted" if accepted else "cell.through"), links.to(here))
@@ -258,8 +268,11 @@ def _by_kind(index: Index, statement: Callable[[Sequence[Mapping[str, Any]], Ind
         category: [row for (_, of), row in index.processed_for.items() if of == category]
         for category in index.categories
     }
+    texts = {category: statement(some, index) for category, some in rows.items() if some}
+    if len(set(texts.values())) == 1:
+        return next(iter(texts.values()))
     return "; ".join(
-        index.words.pair(index.data(category), statement(some, index)) for category, some in rows.items() if some
+        index.words.pair(index.all_data(same), texts[same[0]]) for same in grouped(texts, texts.__getitem__)
     )
 
 
@@ -293,18 +306,24 @@ class DataPlace(NamedTuple):
 
     Attributes
     ----------
+    kinds
+        The kinds of data; ``data`` has them in a row.
     recipient
         Who operates it, where, and on which safeguard data get there; or that nobody states it.
     measures
         What is seen to protect the data on their way there.
+    stated
+        Whether it lies outside ROS, where people state what there is to it.
     """
 
     name: str
     kind: str
+    kinds: tuple[str, ...]
     data: str
     retention: str
     recipient: str
     measures: tuple[str, ...]
+    stated: bool = False
 
 
 class Persons(NamedTuple):
@@ -312,6 +331,50 @@ class Persons(NamedTuple):
 
     name: str
     places: tuple[DataPlace, ...]
+
+
+class Holding(NamedTuple):
+    """Kinds of data at a place that are about the same persons and are kept for the same time."""
+
+    kinds: tuple[str, ...]
+    persons: tuple[str, ...]
+    retention: str
+
+
+class RightsPlace(NamedTuple):
+    """A place once for all groups of persons.
+
+    Attributes
+    ----------
+    stated
+        Whether it lies outside ROS, so that the table of what people stated has who operates it.
+    holdings
+        Which data about whom it holds, and for how long.
+    """
+
+    name: str
+    kind: str
+    recipient: str
+    stated: bool
+    holdings: tuple[Holding, ...]
+
+
+def by_place(groups: Iterable[Persons]) -> tuple[RightsPlace, ...]:
+    """Return the places of all groups, each once, in the order in which the groups name them."""
+    about: dict[tuple[str, str, str, bool], dict[tuple[str, str], list[str]]] = {}
+    for group in groups:
+        for place in group.places:
+            persons_of = about.setdefault((place.name, place.kind, place.recipient, place.stated), {})
+            for kind in place.kinds:
+                names = persons_of.setdefault((kind, place.retention), [])
+                if group.name not in names:
+                    names.append(group.name)
+    return tuple(RightsPlace(*place, tuple(_holdings(persons_of))) for place, persons_of in about.items())
+
+
+def _holdings(persons_of: Mapping[tuple[str, str], Sequence[str]]) -> Iterator[Holding]:
+    for same in grouped(persons_of, lambda at: (tuple(persons_of[at]), at[1])):
+        yield Holding(tuple(kind for kind, _ in same), tuple(persons_of[same[0]]), same[0][1])
 
 
 def rights(index: Index) -> tuple[Persons, ...]:
@@ -327,18 +390,21 @@ def _places(rows: Iterable[Mapping[str, Any]], index: Index) -> Iterator[DataPla
     """Storages first, then who receives data; kinds of data of which all else is the same are one."""
     there = [row for row in rows if row["places"]]
     there.sort(key=lambda row: (row["places"][0]["kind"] != STORAGE, key(row["places"][0])))
-    for same in grouped([_place(row, index) for row in there], lambda place: place._replace(data="")):
-        yield same[0]._replace(data=index.words.row(dict.fromkeys(place.data for place in same)))
+    for same in grouped([_place(row, index) for row in there], lambda place: place._replace(kinds=(), data="")):
+        kinds = tuple(dict.fromkeys(kind for place in same for kind in place.kinds))
+        yield same[0]._replace(kinds=kinds, data=index.words.row(kinds))
 
 
 def _place(row: Mapping[str, Any], index: Index) -> DataPlace:
-    words = index.words
+    words, data = index.words, index.data(row["category"], pseudonymised=row["pseudonymised"])
     return DataPlace(
         name=words.row(index.names(row["places"])),
         kind=words.kind(row["places"][0]),
-        data=index.data(row["category"], pseudonymised=row["pseudonymised"]),
+        kinds=(data,),
+        data=data,
         retention=row_texts.retention(row, words) or words("rights.unknown"),
         recipient="; ".join(filter(None, (*row_texts.recipient(row, words), row_texts.where(row, words))))
         or words("rights.unknown"),
         measures=tuple(protections(row, index)),
+        stated=key(row["places"][0]) in index.outside,
     )

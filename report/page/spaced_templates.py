@@ -9,16 +9,18 @@ from __future__ import annotations
 import re
 import sys
 from contextlib import suppress
+from operator import attrgetter
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import jinja2
 from jinja2 import FileSystemBytecodeCache, PackageLoader
 
 from rosprivacy.report.catalogs.words import NARROW, WIDE
+from rosprivacy.report.finding_facts import grouped
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
     from jinja2 import Environment
     from jinja2.bccache import Bucket
@@ -73,3 +75,8 @@ class CompiledTemplates(FileSystemBytecodeCache):
             with suppress(OSError):
                 Path(self.directory).mkdir(exist_ok=True)
                 super().dump_bytecode(bucket)
+
+
+def alike(rows: Iterable[Any], *fields: str) -> list[list[Any]]:
+    """Return rows that have the same in some fields together, in the order of the first of each."""
+    return grouped(rows, attrgetter(*fields))

@@ -32,7 +32,7 @@ def test_the_table_of_recipients_does_not_say_no_path(told: Outline) -> None:
     video = cells["video of persons"]
     assert video.startswith("reaches it; said to be cleaned there: aggregates, ")
     assert video.endswith(LINE)
-    assert cells["location"] == "no path found"  # a sanitizer of it, too, but none of it gets there
+    assert cells["location"] == "–"  # a sanitizer of it, too, but none of it gets there
 
 
 def test_all_who_read_beside_a_sanitizer_are_named(told: Outline, document: dict[str, Any]) -> None:

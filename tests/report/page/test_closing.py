@@ -42,7 +42,7 @@ def test_the_report_tells_each_change_of_the_last_proposal_with_its_policy_lines
 
 def test_a_redacted_report_names_nobody_in_it() -> None:
     text = str(written(home(), "markdown", Style(redact=True)))
-    assert "Put a filter between /topic-" in text
+    assert "filter between /topic-" in text
     assert "/audio" not in text
     assert "care-home.policy.xml" not in text
 

@@ -20,7 +20,7 @@ def test_who_gets_which_kind() -> None:
     """All cells are in the golden set."""
     who = cells(told(care()).persons.recipients)
     assert who["/recorder"]["video of persons"] == "1 path to assess, pseudonymised"
-    assert who["/recorder"]["voice"] == "no path found"
+    assert who["/recorder"]["voice"] == "–"
     assert who["/uplink"]["voice"] == "1 path to assess"
 
 
