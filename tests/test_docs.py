@@ -12,7 +12,6 @@ import json
 import re
 import shlex
 import shutil
-from enum import StrEnum
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -22,6 +21,7 @@ import typer
 import rosprivacy
 from rosprivacy.analysis.bounds import BOUNDS, COUNTED
 from rosprivacy.analysis.model import NON_ROS, RANKS
+from rosprivacy.analysis.python_311 import StrEnum
 from rosprivacy.cli.app import program
 from rosprivacy.cli.exit_code import CODES
 from rosprivacy.cli.inputs import WRITTEN

@@ -7,13 +7,13 @@ import re
 import shutil
 import subprocess
 import sys
-import tomllib
 from pathlib import Path
 
 import pytest
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
+from rosprivacy.analysis.python_311 import tomllib
 from tests.helpers.paths import ROOT
 
 LOCKS = {"requirements.lock": (), "docker/requirements.lock": ("neo4j-rust-ext",)}

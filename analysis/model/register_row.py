@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from enum import StrEnum
 from typing import TYPE_CHECKING, NamedTuple
+
+from rosprivacy.analysis.python_311 import StrEnum
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.durations import Duration

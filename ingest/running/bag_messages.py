@@ -23,7 +23,7 @@ from rosprivacy.ingest.running.recorded_file import (
     bounded_stream,
     state,
 )
-from rosprivacy.ingest.running.sqlite_file import connection, guard
+from rosprivacy.ingest.running.sqlite_file import connection, guard, limit_cells
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -68,7 +68,7 @@ def _sqlite_messages(file: str) -> Iterator[RecordedMessage]:
     try:
         with closing(connection(file)) as database:
             guard(database, READABLE)
-            database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, LARGEST)
+            limit_cells(database, LARGEST)
             channels = _channels(database, _tables(database))
             database.set_progress_handler(None, 0)  # there are as many messages as there are
             for row in database.execute(MESSAGES):

@@ -7,6 +7,7 @@ not even a log beside it. SQLite itself is told which columns may be read: what 
 from __future__ import annotations
 
 import sqlite3
+import sys
 from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -83,9 +84,15 @@ def guard(database: sqlite3.Connection, readable: Mapping[str, Collection[str]] 
         return sqlite3.SQLITE_OK if known else sqlite3.SQLITE_DENY
 
     database.text_factory = lambda data: data.decode("utf-8", "replace")
-    database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, LONGEST_CELL)
+    limit_cells(database, LONGEST_CELL)
     database.set_progress_handler(lambda: True, STEPS)
     database.set_authorizer(allowed)
+
+
+def limit_cells(database: sqlite3.Connection, length: int) -> None:
+    """Refuse to read a cell of more bytes than ``length``. On Python 3.10 the limit is SQLite's own, 1 GB."""
+    if sys.version_info >= (3, 11):
+        database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, length)
 
 
 def _columns(database: sqlite3.Connection, file: str) -> list[str]:

@@ -22,7 +22,7 @@ from functools import cache
 from importlib.util import find_spec
 from math import inf
 from pathlib import Path
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING
 
 from lxml import etree
 
@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from types import TracebackType
 
+    from rosprivacy.analysis.python_311 import Self
     from rosprivacy.report.pictures.picture import Picture
 
 WORKER = str(Path(__file__).with_name("graphviz_worker.py"))

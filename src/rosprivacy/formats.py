@@ -8,7 +8,7 @@ is a folder in ``report/`` and a row here.
 from __future__ import annotations
 
 import os
-from datetime import UTC, datetime
+from datetime import datetime, timezone
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, overload
 
@@ -207,7 +207,7 @@ def _cnil_pia(document: Document, style: Style) -> str:
     from rosprivacy.report.cnil.pia import cnil_pia
     from rosprivacy.report.json_text import as_text
 
-    created = (source_date(os.environ) or datetime.now(UTC)).isoformat(timespec="milliseconds")
+    created = (source_date(os.environ) or datetime.now(timezone.utc)).isoformat(timespec="milliseconds")
     return as_text(cnil_pia(document, created.replace("+00:00", "Z"), style.language))
 
 

@@ -6,11 +6,11 @@ import os
 import re
 import subprocess
 import sys
-import tomllib
 
 import pytest
 import yaml
 
+from rosprivacy.analysis.python_311 import tomllib
 from tests.helpers.ci_files import HOSTED, tool
 from tests.helpers.paths import ROOT
 

@@ -139,9 +139,8 @@ def _fetch_jar(context: MavenContext, jar: PinnedJar) -> Path:
     wanted = context.project(".".join(group), artifact).at_version(version).artifact(classifier, "jar")
     for _ in range(2):
         path = Path(wanted.resolve())
-        with path.open("rb") as opened:
-            if hashlib.file_digest(opened, "sha256").hexdigest() == jar.sha256:
-                return path
+        if hashlib.sha256(path.read_bytes()).hexdigest() == jar.sha256:
+            return path
         if zipfile.is_zipfile(path):  # whole, and yet another
             problem = "is not the file that this version of rosprivacy was made with: its SHA-256 differs"
             hint = "nothing was started; find out where it comes from, remove it, then try again"

@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 import re
 from dataclasses import dataclass, field, replace
-from datetime import UTC, datetime
+from datetime import datetime, timezone
 from html.parser import HTMLParser
 from typing import TYPE_CHECKING, Any
 
@@ -21,6 +21,7 @@ from rosprivacy.analysis.durations import parse
 from rosprivacy.analysis.findings.findings import analyse
 from rosprivacy.analysis.model import Bound, Category, Element, Flow, FlowGraph, NonRosFacts, Place, Statement
 from rosprivacy.analysis.non_ros import EVERY
+from rosprivacy.analysis.python_311 import from_iso
 from rosprivacy.documents import document_of
 from rosprivacy.ingest.neo4j_graph.loading import load as load_robots
 from rosprivacy.ontology.vocabulary import Vocabulary, load
@@ -137,7 +138,7 @@ class Tool:
 def date(text: str) -> datetime:
     """``new Date(text)`` that is none of the invalid ones."""
     assert re.fullmatch(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{3}Z", text)
-    return datetime.fromisoformat(text)
+    return from_iso(text)
 
 
 class Page(HTMLParser):
@@ -397,7 +398,7 @@ def test_without_being_told_it_is_dated_now(monkeypatch: pytest.MonkeyPatch) -> 
     """The tool sorts by date, so there is one."""
     monkeypatch.delenv("SOURCE_DATE_EPOCH", raising=False)
     made = imported(as_json(analyze(*CARE_HOME), "cnil-pia")).pia["created_at"]
-    assert abs((made - datetime.now(UTC)).total_seconds()) < 60
+    assert abs((made - datetime.now(timezone.utc)).total_seconds()) < 60
 
 
 @pytest.mark.slow
