@@ -23,7 +23,7 @@ from rosprivacy.ingest.running.recorded_file import (
     bounded_stream,
     state,
 )
-from rosprivacy.ingest.running.sqlite_file import connection, guard, limit_cells
+from rosprivacy.ingest.running.sqlite_file import connection, guard, limit_cells, refuse_computed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -93,6 +93,8 @@ def _tables(database: sqlite3.Connection) -> dict[str, str]:
     for name in ("topics", "messages"):
         if name not in tables:
             raise EndedError(f"it has no table {name!r}")
+    for name in ("topics", "messages", "message_definitions"):
+        refuse_computed(tables.get(name, ""))
     return tables
 
 

@@ -6,6 +6,7 @@ not even a log beside it. SQLite itself is told which columns may be read: what 
 
 from __future__ import annotations
 
+import re
 import sqlite3
 import sys
 from contextlib import closing
@@ -31,6 +32,7 @@ READABLE = {
     "topics": {"id", "name", "type", "type_description_hash"},
     "messages": {"timestamp"},
 }
+_COMPUTED = re.compile(r"\bAS\b", re.IGNORECASE)
 DAMAGED = "the database is damaged; topics may be missing"
 
 
@@ -95,12 +97,22 @@ def limit_cells(database: sqlite3.Connection, length: int) -> None:
         database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, length)
 
 
+def refuse_computed(definition: str) -> None:
+    """Raise ``sqlite3.DatabaseError`` for a table with a column that is computed: it is as large as it likes.
+
+    Nobody records such a table; Python 3.10 has no limit for its cells.
+    """
+    if _COMPUTED.search(definition):
+        raise sqlite3.DatabaseError("a column that is computed")
+
+
 def _columns(database: sqlite3.Connection, file: str) -> list[str]:
     """Which of the columns that are read there are; a view or a virtual table could run what it likes."""
     asked = "SELECT sql FROM sqlite_master WHERE name = 'topics' AND type = 'table'"
     tables = [str(row[0]) for row in database.execute(asked).fetchmany(2)]
     if not tables or not tables[0].upper().startswith("CREATE TABLE"):
         raise BagError(file, 0, "a database without the table 'topics'", "name a .db3 file of rosbag2")
+    refuse_computed(tables[0])
     return ["name", "type", *(["type_description_hash"] if "type_description_hash" in tables[0] else [])]
 
 

@@ -22,7 +22,7 @@ ROOMS: dict[str, set[str]] = {
 }
 # Which wings a wing may import from; '' is what stands in the room itself. A name of one module is that module alone.
 PYTHON = {"python_311"}  # what Python 3.10 lacks
-MODEL = {"", "model"} | PYTHON
+MODEL = {"", "model"}
 FACTS = MODEL | {"kernel", "answer", "case", "contexts", "decisions", "legal"}
 READING = {"reading", "policies"}
 ANSWERS = {"", "result", "answering"}
@@ -34,10 +34,10 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "model": {"durations"} | PYTHON,
         "": {"model", "durations"} | PYTHON,
         "kernel": MODEL,
-        "answer": MODEL | {"kernel"},
+        "answer": MODEL | {"kernel"} | PYTHON,
         "case": MODEL | {"answer"},
-        "decisions": MODEL | {"answer", "case", "legal"},
-        "legal": MODEL | {"answer"},
+        "decisions": MODEL | {"answer", "case", "legal"} | PYTHON,
+        "legal": MODEL | {"answer"} | PYTHON,
         "contexts": MODEL | {"answer"},
         "findings": FACTS,
         "whatif": FACTS | {"findings"},
