@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-LOCK := uv pip compile --quiet --upgrade --universal --python-version 3.11 --generate-hashes --no-emit-index-url \
+LOCK := uv pip compile --quiet --upgrade --universal --python-version 3.10 --generate-hashes --no-emit-index-url \
 	--no-annotate --custom-compile-command 'make locks'
 
 .PHONY: demo test fuzz locks clean
@@ -23,6 +23,8 @@ fuzz: $(VENV)/installed-dev
 $(VENV)/installed: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --editable .
+	$(BIN)/python -m pip install --quiet --only-binary pygraphviz --editable '.[views]' || \
+		echo "Graphviz has no wheel for this machine: pictures are missing (docs/views.md, Formats)"
 	touch $@
 
 # Spark is large and few change what uses it: make .venv/installed-dev EXTRAS=dev,bench,spark
@@ -37,7 +39,7 @@ $(VENV)/installed-dev: pyproject.toml
 # tools of a release. Needs uv.
 locks:
 	echo 'setuptools>=77' | $(LOCK) pyproject.toml - --output-file requirements.lock
-	printf 'setuptools>=77\nneo4j-rust-ext>=5.26\n' | $(LOCK) pyproject.toml - --output-file docker/requirements.lock
+	printf 'setuptools>=77\nneo4j-rust-ext>=5.26\n' | $(LOCK) pyproject.toml - --extra views --output-file docker/requirements.lock
 	printf 'build\ncheck-wheel-contents\ncyclonedx-bom\npip\ntwine\n' | $(LOCK) - --output-file .ci/release.lock
 
 clean:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from enum import StrEnum
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import DISCLOSURE, Rank
+from rosprivacy.analysis.python_311 import StrEnum
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Mapping

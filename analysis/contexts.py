@@ -171,7 +171,8 @@ class Contexts(NamedTuple):
             key = ("" if together else robot, *name)
             of_name[key] = of_name.get(key, frozenset()).union(contexts)
         for of_kind, more in bound.elsewhere.items() if together else ():
-            of_name["", *of_kind] = of_name.get(("", *of_kind), frozenset()).union(more)
+            everywhere = ("", *of_kind)
+            of_name[everywhere] = of_name.get(everywhere, frozenset()).union(more)
         elements = (element.identity for element in graph.elements if not element.is_channel) if of_name else ()
         keys = {one: of_name.get(("" if together else one[0], *one[1:]), frozenset()) for one in elements}
         return cls(

@@ -9,7 +9,6 @@ and nor does what it outranks: a person has to look again.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from enum import StrEnum
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -18,6 +17,7 @@ from rosprivacy.analysis.errors import DecisionError
 from rosprivacy.analysis.expressions import regex
 from rosprivacy.analysis.legal import acceptance_gaps
 from rosprivacy.analysis.model import Diagnostic, Place, Severity
+from rosprivacy.analysis.python_311 import StrEnum
 from rosprivacy.analysis.remembered import change_text, changes
 from rosprivacy.analysis.written_names import bare_name, is_glob
 

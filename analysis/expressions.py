@@ -7,6 +7,7 @@ one covers by the other.
 from __future__ import annotations
 
 import re
+import sys
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -108,8 +109,14 @@ def _source(pattern: str) -> str:
         else:
             parts[-1].append(_class(token))
     first, *others = ("".join(part) for part in parts)
-    between = "".join(f"(?>.*?{part})" for part in others[:-1] if part)
+    between = "".join(_first_fit(number, part) for number, part in enumerate(others[:-1]) if part)
     return f"{first}{between}.*{others[-1]}\\Z" if others else f"{first}\\Z"
+
+
+def _first_fit(number: int, part: str) -> str:
+    """What is never read a second time: an atomic group, or what stands for one on Python 3.10."""
+    group = f"g{number}"
+    return f"(?>.*?{part})" if sys.version_info >= (3, 11) else f"(?=(?P<{group}>.*?{part}))(?P={group})"
 
 
 def _class(token: CharSet) -> str:

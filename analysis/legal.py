@@ -8,7 +8,6 @@ judge.
 
 from __future__ import annotations
 
-from enum import StrEnum
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.model import (
@@ -20,6 +19,7 @@ from rosprivacy.analysis.model import (
     THIRD_COUNTRY,
     is_article_9,
 )
+from rosprivacy.analysis.python_311 import StrEnum
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
-from enum import StrEnum
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors, shown
+from rosprivacy.analysis.python_311 import StrEnum
 from rosprivacy.analysis.written_names import did_you_mean, nearest
 
 if TYPE_CHECKING:

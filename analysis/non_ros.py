@@ -6,7 +6,7 @@ nobody stated about an element is taken by its kind: data passes what only holds
 
 from __future__ import annotations
 
-from datetime import UTC, datetime
+from datetime import datetime, timezone
 from typing import TYPE_CHECKING, TypeVar
 
 from rosprivacy.analysis.model import NOWHERE, NonRosFacts, Reason, Statement
@@ -134,7 +134,7 @@ def kept_past(facts: NonRosFacts, retention: Duration) -> list[Reason]:
     oldest = facts.recording.oldest if facts.recording else None
     if oldest is None or not facts.day:
         return []
-    since = datetime.fromtimestamp(oldest // 10**9, UTC)
+    since = datetime.fromtimestamp(oldest // 10**9, timezone.utc)
     ended = retention.ends(since).date().isoformat()
     if facts.day <= ended:
         return []

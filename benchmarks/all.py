@@ -147,9 +147,9 @@ def main() -> int:
     failed = []
     print(line_of("benchmark", "ours / against", "ours", "against", "ratio", "bound", ""), flush=True)
     # Each in a fresh process: what one has loaded is no part of the next one, nor of the memory of what it starts.
-    with ProcessPoolExecutor(1, get_context("spawn"), max_tasks_per_child=1) as pool:
-        for benchmark in asked.names or BENCHMARKS:
-            quick = asked.quick or asked.counts
+    for benchmark in asked.names or BENCHMARKS:
+        quick = asked.quick or asked.counts
+        with ProcessPoolExecutor(1, get_context("spawn")) as pool:
             failed += pool.submit(measured, benchmark, quick=quick, counts=asked.counts).result()
     print("\n".join(["", *(f"missed twice: {name}" for name in failed)] if failed else ["", "all bounds held"]))
     return 1 if failed else 0

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import os
 import sys
-from contextlib import chdir
 from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
@@ -24,6 +23,8 @@ from typing import TYPE_CHECKING
 
 from measure import Measured, Row, calls_of
 from worst_case import node, policy, topics
+
+from rosprivacy.analysis.python_311 import chdir
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -15,7 +15,7 @@ from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from measure import Row, calls, compared, counted, processor
 
@@ -25,11 +25,12 @@ from rosprivacy.settings import Settings
 from rosprivacy.systems.robot_system import answer_robot
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from measure import Measured
 
     Robot = tuple[tuple[str], tuple[str]]  # its policies and its label files
+T = TypeVar("T")
 BOUND = 1.0  # suggesting costs less than analysing
 CALLS = 1.25  # another Python makes other calls of one comprehension
 ELEMENTS = 10_000
@@ -81,16 +82,20 @@ def rows(*, quick: bool) -> Iterator[Row]:
 
 def measured(rounds: int, *, typed: bool, quick: bool) -> Measured:
     """Compare suggesting with the analysis that comes before it, each round in a new process."""
-    new = get_context("spawn")
     with TemporaryDirectory() as small, TemporaryDirectory() as large:
         first, second = robot(PER_CHAIN, Path(small), typed=typed), robot(ELEMENTS, Path(large), typed=typed)
-        with ProcessPoolExecutor(1, mp_context=new, max_tasks_per_child=1) as processes:
-            if quick:
-                suggested_calls, analysed_calls, number = processes.submit(calls_once, first, second).result()
-                return counted(suggested_calls, analysed_calls, f"{number:,} suggestions")
-            each = list(processes.map(once, [first] * rounds, [second] * rounds))
+        if quick:
+            suggested_calls, analysed_calls, number = anew(calls_once, first, second)
+            return counted(suggested_calls, analysed_calls, f"{number:,} suggestions")
+        each = [anew(once, first, second) for _ in range(rounds)]
     suggesting, analysing, made = zip(*each, strict=True)
     return compared((suggesting, analysing), f"{made[0]:,} suggestions")
+
+
+def anew(work: Callable[[Robot, Robot], T], first: Robot, second: Robot) -> T:
+    """Do it in a new process."""
+    with ProcessPoolExecutor(1, get_context("spawn")) as process:
+        return process.submit(work, first, second).result()
 
 
 def once(first: Robot, second: Robot) -> tuple[float, float, int]:

@@ -24,6 +24,8 @@ from measure import Measured, NotMeasured, Row, corpus
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
+    from rosprivacy.analysis.python_311 import Unpack
+
 ROUNDS = 3  # of the real policy and of the tiny one
 FLEET = "fleet: 1\nmodels: {m: {policies: p.xml}}\ngroups:\n"
 XI = 'xmlns:xi="http://www.w3.org/2001/XInclude"'
@@ -92,7 +94,7 @@ def largest() -> Path:
     return max((path for path in files if b"<policy" in path.read_bytes()), key=lambda path: path.stat().st_size)
 
 
-def shapes() -> dict[str, tuple[Mapping[str, str], *tuple[str, ...]]]:
+def shapes() -> dict[str, tuple[Mapping[str, str], Unpack[tuple[str, ...]]]]:
     """Return the files of each shape, and the arguments beside which they are read."""
     tiny = policy(node("a", topics("publish", ["t"])))
     with_labels, fleet = ("p.xml", "-l", "l.yaml"), ("--fleet", "f.yaml")

@@ -11,10 +11,11 @@ import subprocess
 import sys
 from dataclasses import fields, replace
 from functools import partial
-from typing import TYPE_CHECKING, Any, assert_type
+from typing import TYPE_CHECKING, Any
 
 import pytest
 import yaml
+from typing_extensions import assert_type
 
 import rosprivacy
 from rosprivacy import settings

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from contextlib import chdir
 from fnmatch import fnmatch
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -17,6 +16,7 @@ from hypothesis import strategies as st
 
 import rosprivacy
 from rosprivacy.analysis.modes import View
+from rosprivacy.analysis.python_311 import chdir
 from rosprivacy.both_views import TRIED, both_views
 from rosprivacy.settings import Settings
 from tests.helpers.command import cli

@@ -11,7 +11,6 @@ import json
 import re
 import shlex
 import shutil
-import tomllib
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +18,7 @@ import pytest
 
 import rosprivacy
 from rosprivacy.analysis.model import NON_ROS
+from rosprivacy.analysis.python_311 import tomllib
 from rosprivacy.cli.project_file import project_schema
 from rosprivacy.ingest.fleet.fleet_schema import fleet_schema
 from rosprivacy.ingest.labels.keywords import CHANNEL, KEYWORDS, NODE, rows

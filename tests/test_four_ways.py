@@ -5,7 +5,6 @@ Fleets on Spark and in memory: ``tests/parts/test_spark.py``.
 
 from __future__ import annotations
 
-from contextlib import chdir
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
@@ -14,6 +13,7 @@ import pytest
 from hypothesis import HealthCheck, Phase, assume, given, settings
 
 import rosprivacy
+from rosprivacy.analysis.python_311 import chdir
 from rosprivacy.ingest.neo4j_graph.loading import load
 from rosprivacy.ingest.policies.saved_graph import as_dict
 from rosprivacy.private_neo4j import connection

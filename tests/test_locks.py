@@ -7,13 +7,13 @@ import re
 import shutil
 import subprocess
 import sys
-import tomllib
 from pathlib import Path
 
 import pytest
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
+from rosprivacy.analysis.python_311 import tomllib
 from tests.helpers.paths import ROOT
 
 LOCKS = {"requirements.lock": (), "docker/requirements.lock": ("neo4j-rust-ext",)}
@@ -50,23 +50,14 @@ def test_the_lock_has_what_the_project_asks_for(lock: str, more: tuple[str, ...]
         assert all(asked.specifier.contains(version) for version in versions), asked
 
 
-@pytest.mark.parametrize(
-    ("system", "machine", "wanted"),
-    [
-        ("linux", "x86_64", True), ("linux", "aarch64", True), ("linux", "armv7l", False),
-        ("darwin", "arm64", True), ("darwin", "x86_64", False),
-        ("win32", "AMD64", True), ("win32", "ARM64", False),
-    ],
-)  # fmt: skip
-def test_graphviz_comes_with_the_plain_install_where_there_are_wheels(system: str, machine: str, wanted: bool) -> None:  # noqa: FBT001 - a case
-    """Pictures need no extra; where nothing brings Graphviz along, an install does not fail for it."""
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
-    here = {"sys_platform": system, "platform_machine": machine, "implementation_name": "cpython"}
-    locked = [pin for lock in LOCKS for pin, _ in entries(lock)]
-    for some in ([Requirement(asked) for asked in project["project"]["dependencies"]], locked):
-        (asked,) = {one.marker for one in some if one.name == "pygraphviz"}
-        assert asked is not None
-        assert asked.evaluate(here) is wanted
+def test_graphviz_comes_with_the_image_and_not_with_the_core() -> None:
+    """It is as large as all else together, and the Action draws nothing."""
+    action, image = ({canonicalize_name(pin.name) for pin, _ in entries(lock)} for lock in LOCKS)
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+    core = {canonicalize_name(Requirement(asked).name) for asked in project["dependencies"]}
+    views = {canonicalize_name(Requirement(asked).name) for asked in project["optional-dependencies"]["views"]}
+    assert views <= image
+    assert not views & (action | core)
 
 
 def test_the_image_has_what_the_action_has() -> None:

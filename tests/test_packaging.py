@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import json
 import os
+import re
+import shutil
 import subprocess
 import sys
 import tarfile
 import zipfile
 from importlib.resources import files
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
+from rosprivacy.analysis.python_311 import tomllib
 from tests.helpers.paths import ROOT
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 ROOMS = sorted(path.name for path in (ROOT / "src" / "rosprivacy").iterdir() if path.is_symlink())
 
@@ -59,6 +59,33 @@ def test_the_wheel_holds_every_module_and_data_file(built: Path) -> None:
         assert not any(member.issym() for member in archive.getmembers())  # real files, for systems without links
 
 
+def pythons() -> list[str]:
+    """The Pythons of this machine that we support, a version each: of the path, and of pyenv."""
+    classifiers = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["classifiers"]
+    versions = [name.rpartition(" ")[2] for name in classifiers if re.search(r":: 3\.\d+$", name)]
+    others = Path.home() / ".pyenv" / "versions"
+    found = {"{}.{}".format(*sys.version_info): sys.executable}
+    for version in versions:
+        of_pyenv = [str(path) for path in sorted(others.glob(f"{version}.*/bin/python"))]
+        for python in [*of_pyenv, shutil.which(f"python{version}")]:
+            if python and _answers(python):
+                found.setdefault(version, python)
+    return [found[version] for version in versions if version in found]
+
+
+def _answers(python: str) -> bool:
+    """Whether it runs, and can make environments: one of pyenv need not, where another version is chosen."""
+    return not subprocess.run([python, "-c", "import ensurepip"], capture_output=True, check=False).returncode
+
+
+SIZE = """
+from importlib.metadata import distributions
+records = [one.read_text("RECORD") for one in distributions() if one.metadata["Name"] not in ("pip", "setuptools")]
+print(sum(int(line.rpartition(",")[2] or 0) for record in records for line in record.splitlines()))
+"""
+MOST = 150_000_000  # bytes of the core and all that it needs, as wheels bring them; on x86_64
+
+
 @pytest.mark.slow
 def test_package_indexes_take_what_is_built(built: Path) -> None:
     for check in (["twine", "check", "--strict", *built.iterdir()], ["check_wheel_contents", *built.glob("*.whl")]):
@@ -68,20 +95,25 @@ def test_package_indexes_take_what_is_built(built: Path) -> None:
 
 
 @pytest.mark.slow
-def test_the_main_job_runs_in_a_fresh_environment(built: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize("base", pythons())
+def test_the_main_job_runs_in_a_fresh_environment_of_each_python(built: Path, tmp_path: Path, base: str) -> None:
     (wheel,) = built.glob("*.whl")
     environment = {k: v for k, v in os.environ.items() if not k.startswith(("PYTHON", "VIRTUAL_ENV"))}
-    subprocess.run([sys.executable, "-m", "venv", str(tmp_path / "env")], check=True)
+    subprocess.run([base, "-m", "venv", str(tmp_path / "env")], check=True, env=environment)
     python = tmp_path / "env" / "bin" / "python"
     install = [str(python), "-m", "pip", "install", "--quiet", str(wheel)]
     subprocess.run(install, check=True, env=environment)
+
+    def ran(*command: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+
     factory = ROOT / "examples" / "factory"
-    program = tmp_path / "env" / "bin" / "rosprivacy"
-    policy, labels = factory / "before.policy.xml", factory / "run2.labels.yaml"
-    command = [str(program), "analyze", str(policy), "--labels", str(labels), "--format", "json"]
-    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+    program = str(tmp_path / "env" / "bin" / "rosprivacy")
+    system = [str(factory / "before.policy.xml"), "--labels", str(factory / "run2.labels.yaml")]
+    done = ran(program, "analyze", *system, "--format", "json")
     assert done.returncode == 1, done.stderr
     assert json.loads(done.stdout)["verdict"] == "leak"
-    where = [str(python), "-c", "import rosprivacy.ingest.policies.policy_xml as p; print(p.__file__)"]
-    file = subprocess.run(where, cwd=tmp_path, env=environment, capture_output=True, text=True, check=True).stdout
-    assert str(tmp_path) in file
+    report = ran(program, "report", *system, "--output", "report.html")  # without Graphviz, which is an extra
+    assert (report.returncode, report.stderr.count("\n")) == (0, 1), report.stderr
+    assert str(tmp_path) in ran(str(python), "-c", "import rosprivacy.ingest as room; print(room.__path__[0])").stdout
+    assert 0 < int(ran(str(python), "-c", SIZE).stdout) <= MOST

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import chdir
 from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -15,6 +14,7 @@ from hypothesis import strategies as st
 
 import rosprivacy
 from rosprivacy.analysis.model import BY_TYPE_CLOSES
+from rosprivacy.analysis.python_311 import chdir
 from rosprivacy.labelling.by_type_lines import with_lines_by_type
 from rosprivacy.report.json_text import as_text
 from rosprivacy.settings import Settings

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import chdir
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
@@ -11,6 +10,7 @@ import pytest
 from hypothesis import Phase, assume, given, settings
 
 import rosprivacy
+from rosprivacy.analysis.python_311 import chdir
 from rosprivacy.ingest.policies.saved_graph import as_dict
 from rosprivacy.report.json_text import as_text
 from tests.helpers.typed_systems import KINDS, MORE, NODES, TYPES, System, cannot, found, systems

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import chdir
 from dataclasses import replace
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
@@ -14,6 +13,7 @@ from hypothesis import strategies as st
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.findings.beyond import DenyLine
 from rosprivacy.analysis.modes import View
+from rosprivacy.analysis.python_311 import chdir
 from rosprivacy.answering import answer
 from rosprivacy.both_views import ChangeTrials, both_views
 from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, PolicyChange, changed, changed_graph

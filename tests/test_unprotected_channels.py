@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import json
-from contextlib import chdir
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
 import rosprivacy
+from rosprivacy.analysis.python_311 import chdir
 from rosprivacy.ingest.neo4j_graph.loading import load
 from rosprivacy.private_neo4j import connection
 from rosprivacy.report.compare.changes import changes

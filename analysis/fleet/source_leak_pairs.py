@@ -153,7 +153,8 @@ def blocks(spread: Spread, kinds: Sequence[Concern], mask: int) -> Iterator[Bloc
 
 def _has(bits: Bits, bit: int) -> Flags:
     """Whether a bit is set, by row."""
-    return (bits[:, bit // WORD] >> np.uint64(bit % WORD) & np.uint64(1)).astype(bool)
+    flags: Flags = (bits[:, bit // WORD] >> np.uint64(bit % WORD) & np.uint64(1)).astype(bool)
+    return flags
 
 
 def forms(category: int, bits: CategoryBits, steps: Collection[tuple[int, int]]) -> tuple[int, ...]:
@@ -220,7 +221,7 @@ class CategoryRun:
 
     def nothing(self, n: int) -> Bits:
         """Return that none of n sources emits anything anywhere: shape (vertices, words)."""
-        return np.zeros((-(-n * len(self._forms) // WORD), len(self._network.keep)), np.uint64).T
+        return np.zeros((len(self._network.keep), -(-n * len(self._forms) // WORD)), np.uint64, order="F")
 
     def begun(self, sources: Indices, numbers: Indices, n: int) -> Bits:
         """Return what sources emit, each under its number."""

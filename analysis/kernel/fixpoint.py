@@ -183,7 +183,8 @@ def _between_words(
 
 
 def _bit(bits: Indices) -> Bits:
-    return np.left_shift(np.uint64(1), (bits % WORD).astype(np.uint64))
+    shifted: Bits = np.left_shift(np.uint64(1), (bits % WORD).astype(np.uint64))
+    return shifted
 
 
 def _step(graph: _Folded, word: _Word) -> None:

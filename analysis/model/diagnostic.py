@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from enum import StrEnum
 from typing import TYPE_CHECKING, NamedTuple
+
+from rosprivacy.analysis.python_311 import StrEnum
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import dataclass
-from enum import StrEnum
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.model.diagnostic import GAPS, RIDES, Place
+from rosprivacy.analysis.python_311 import StrEnum
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.model.element import Element

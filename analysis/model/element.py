@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, NamedTuple, TypeVar, dataclass_transform
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
+
+from rosprivacy.analysis.python_311 import dataclass_transform
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

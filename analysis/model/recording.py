@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from datetime import UTC, datetime
-from enum import StrEnum
+from datetime import datetime, timezone
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model.suggestion import surest
+from rosprivacy.analysis.python_311 import StrEnum
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -97,7 +97,7 @@ def iso(moment: int | None) -> str:
     >>> iso(1_700_000_000_500_000_000), iso(None)
     ('2023-11-14T22:13:20Z', '')
     """
-    return f"{datetime.fromtimestamp(moment // 10**9, UTC):%Y-%m-%dT%H:%M:%SZ}" if moment is not None else ""
+    return f"{datetime.fromtimestamp(moment // 10**9, timezone.utc):%Y-%m-%dT%H:%M:%SZ}" if moment is not None else ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,11 +12,12 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from datetime import UTC, datetime
+from datetime import datetime, timezone
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputErrors, PolicyError, shown
 from rosprivacy.analysis.model import SEVERAL_PROFILES, Diagnostic, Grant, Policy, Profile, Severity
+from rosprivacy.analysis.python_311 import from_iso
 from rosprivacy.ingest.deployed.security_xml import Domains, XmlSource, security_entries, warning
 from rosprivacy.ingest.policies.names import DDS
 
@@ -134,17 +135,17 @@ def _ends(validity: XmlSection | None) -> tuple[XmlSection | None, XmlSection | 
 def _time(end: XmlSection | None) -> datetime:
     """A moment of the XML schema's ``dateTime``; whole seconds."""
     if end is None:
-        return datetime.min.replace(tzinfo=UTC)
+        return datetime.min.replace(tzinfo=timezone.utc)
     match = _TIME.fullmatch(end.text.strip())
     try:
-        written = datetime.fromisoformat(match[1] + (match[2] or "")) if match else None
+        written = from_iso(match[1] + (match[2] or "")) if match else None
     except ValueError:
         written = None
     if written is None:
         what = f"{shown(repr(end.text.strip()))} in <{end.tag}>"
         end.source.problem(end.element, what, "write a moment such as 2026-01-31T00:00:00Z")
-        return datetime.min.replace(tzinfo=UTC)
-    return written if written.tzinfo else written.replace(tzinfo=UTC)
+        return datetime.min.replace(tzinfo=timezone.utc)
+    return written if written.tzinfo else written.replace(tzinfo=timezone.utc)
 
 
 def _rule(rule: XmlSection) -> PermissionRule:

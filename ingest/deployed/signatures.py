@@ -21,12 +21,13 @@ import ssl
 import subprocess
 import tempfile
 from dataclasses import dataclass
-from datetime import UTC, datetime
+from datetime import datetime, timezone
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import PolicyError, shown
+from rosprivacy.analysis.python_311 import from_iso
 from rosprivacy.ingest.reading.bounded_file import read_regular
 from rosprivacy.ingest.reading.file_kinds import is_signed
 
@@ -154,7 +155,7 @@ def given_by(certificate: Certificate, authority: Authority) -> bool:
 
 
 def _moment(text: str) -> datetime:
-    return datetime.fromisoformat(text.strip()).astimezone(UTC)
+    return from_iso(text.strip()).astimezone(timezone.utc)
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from datetime import UTC, datetime
+from datetime import datetime, timezone
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, TypeVar
 from uuid import uuid4
@@ -83,7 +83,7 @@ class Run:
     @classmethod
     def begun(cls, version: str, at: datetime | None = None) -> Run:
         """Return a run that begins now, or at another time."""
-        return cls((at or datetime.now(UTC)).astimezone(UTC).strftime("%Y-%m-%dT%H:%M:%SZ"), version)
+        return cls((at or datetime.now(timezone.utc)).astimezone(timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ"), version)
 
 
 @dataclass(frozen=True, slots=True)

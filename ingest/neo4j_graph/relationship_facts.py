@@ -289,7 +289,8 @@ def role_statements(
     together: dict[tuple[Any, ...], list[str]] = defaultdict(list)
     for category, statement in roles:
         alone = () if statement.role in ("only", "never", "mundane") or statement.shipped else (category,)
-        together[(*statement, *alone)].append(category)
+        facts = (*statement, *alone)
+        together[facts].append(category)
     for key, categories in sorted(together.items(), key=lambda item: str(item[0])):
         statement = Statement(*key[: len(Statement._fields)])
         names, to = () if statement.shipped else tuple(sorted(categories)), statement.to

@@ -33,7 +33,8 @@ def alike(profiles: Iterable[Profile], alone: Container[str]) -> dict[str, tuple
         enclaves[profile.node].add(profile.enclave)
     groups: dict[tuple[str, ...], list[str]] = defaultdict(list)
     for node in sorted(enclaves):
-        groups["" if node not in alone else node, *sorted(enclaves[node])].append(node)
+        held = ("" if node not in alone else node, *sorted(enclaves[node]))
+        groups[held].append(node)
     return {nodes[0]: tuple(nodes) for nodes in groups.values()}
 
 

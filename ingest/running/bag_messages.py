@@ -23,7 +23,7 @@ from rosprivacy.ingest.running.recorded_file import (
     bounded_stream,
     state,
 )
-from rosprivacy.ingest.running.sqlite_file import connection, guard
+from rosprivacy.ingest.running.sqlite_file import connection, guard, limit_cells, refuse_computed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -68,7 +68,7 @@ def _sqlite_messages(file: str) -> Iterator[RecordedMessage]:
     try:
         with closing(connection(file)) as database:
             guard(database, READABLE)
-            database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, LARGEST)
+            limit_cells(database, LARGEST)
             channels = _channels(database, _tables(database))
             database.set_progress_handler(None, 0)  # there are as many messages as there are
             for row in database.execute(MESSAGES):
@@ -93,6 +93,8 @@ def _tables(database: sqlite3.Connection) -> dict[str, str]:
     for name in ("topics", "messages"):
         if name not in tables:
             raise EndedError(f"it has no table {name!r}")
+    for name in ("topics", "messages", "message_definitions"):
+        refuse_computed(tables.get(name, ""))
     return tables
 
 

@@ -8,11 +8,12 @@ from __future__ import annotations
 import os
 import time
 from dataclasses import dataclass
-from datetime import datetime, timedelta
+from datetime import timedelta
 from typing import TYPE_CHECKING
 from xml.sax.saxutils import quoteattr
 
 from rosprivacy.analysis.errors import ObservationError
+from rosprivacy.analysis.python_311 import from_iso
 from rosprivacy.ingest.running.dds_graph import DOOR, DdsGraph, observation
 from rosprivacy.ingest.running.doors import Pace, polled
 from rosprivacy.ingest.running.observation import moment
@@ -72,7 +73,7 @@ class DdsDoor:
 
             def observation_of(at_the_end: bool) -> Observation:  # noqa: FBT001 - as ``polled`` calls it
                 now = self.clock()
-                patience = "" if at_the_end else moment(datetime.fromisoformat(now) - timedelta(seconds=PATIENCE))
+                patience = "" if at_the_end else moment(from_iso(now) - timedelta(seconds=PATIENCE))
                 return observation(graph, since, now, self.domain, patience)
 
             yield from polled(lambda: readers.take(graph, self.clock()), observation_of, PACE, seconds, self.wait)

@@ -12,7 +12,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from dataclasses import dataclass
-from datetime import UTC, datetime
+from datetime import datetime, timezone
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -287,7 +287,7 @@ class GraphFiles:
 
 
 def _time(nanoseconds: int) -> str:
-    return moment(datetime.fromtimestamp(nanoseconds // 10**9, UTC))
+    return moment(datetime.fromtimestamp(nanoseconds // 10**9, timezone.utc))
 
 
 def _later(file: str, before: int, line: int, problem: str, hint: str) -> ObservationError:

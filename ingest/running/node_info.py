@@ -18,7 +18,7 @@ import sys
 import time
 from collections import Counter
 from dataclasses import dataclass, field, replace
-from datetime import UTC, datetime
+from datetime import datetime, timezone
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -262,7 +262,7 @@ def text_of_what_runs(
         at = at or clock()
     else:
         data = read_regular(file, LONGEST, fail)
-        at = at or moment(datetime.fromtimestamp(Path(file).stat().st_mtime, UTC))
+        at = at or moment(datetime.fromtimestamp(Path(file).stat().st_mtime, timezone.utc))
     kind = kind_of(data)
     if kind not in (None, purpose):
         instead = ANALYSE if kind in (POLICY, PERMISSIONS) else kind.instead

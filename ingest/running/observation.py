@@ -9,7 +9,7 @@ Times are texts such as ``2026-11-22T10:00:00Z``, always in UTC and to the secon
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from datetime import UTC, datetime
+from datetime import datetime, timezone
 from typing import TYPE_CHECKING
 
 from rosprivacy.ingest.policies.observed_metadata import HIDDEN, NO_NODE, STILL_CHANGING
@@ -34,10 +34,10 @@ DDS_TYPE = "hri_privacy_msgs::msg::dds_::PersonalDataProcessor_"
 def moment(time: datetime) -> str:
     """Return a time as observations hold it.
 
-    >>> moment(datetime(2026, 11, 22, 10, 0, tzinfo=UTC))
+    >>> moment(datetime(2026, 11, 22, 10, 0, tzinfo=timezone.utc))
     '2026-11-22T10:00:00Z'
     """
-    return time.astimezone(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
+    return time.astimezone(timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ")
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,9 @@ not even a log beside it. SQLite itself is told which columns may be read: what 
 
 from __future__ import annotations
 
+import re
 import sqlite3
+import sys
 from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -30,6 +32,7 @@ READABLE = {
     "topics": {"id", "name", "type", "type_description_hash"},
     "messages": {"timestamp"},
 }
+_COMPUTED = re.compile(r"\bAS\b", re.IGNORECASE)
 DAMAGED = "the database is damaged; topics may be missing"
 
 
@@ -83,9 +86,24 @@ def guard(database: sqlite3.Connection, readable: Mapping[str, Collection[str]] 
         return sqlite3.SQLITE_OK if known else sqlite3.SQLITE_DENY
 
     database.text_factory = lambda data: data.decode("utf-8", "replace")
-    database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, LONGEST_CELL)
+    limit_cells(database, LONGEST_CELL)
     database.set_progress_handler(lambda: True, STEPS)
     database.set_authorizer(allowed)
+
+
+def limit_cells(database: sqlite3.Connection, length: int) -> None:
+    """Refuse to read a cell of more bytes than ``length``. On Python 3.10 the limit is SQLite's own, 1 GB."""
+    if sys.version_info >= (3, 11):
+        database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, length)
+
+
+def refuse_computed(definition: str) -> None:
+    """Raise ``sqlite3.DatabaseError`` for a table with a column that is computed: it is as large as it likes.
+
+    Nobody records such a table; Python 3.10 has no limit for its cells.
+    """
+    if _COMPUTED.search(definition):
+        raise sqlite3.DatabaseError("a column that is computed")
 
 
 def _columns(database: sqlite3.Connection, file: str) -> list[str]:
@@ -94,6 +112,7 @@ def _columns(database: sqlite3.Connection, file: str) -> list[str]:
     tables = [str(row[0]) for row in database.execute(asked).fetchmany(2)]
     if not tables or not tables[0].upper().startswith("CREATE TABLE"):
         raise BagError(file, 0, "a database without the table 'topics'", "name a .db3 file of rosbag2")
+    refuse_computed(tables[0])
     return ["name", "type", *(["type_description_hash"] if "type_description_hash" in tables[0] else [])]
 
 

@@ -10,13 +10,13 @@ import ast
 import configparser
 import posixpath
 import re
-import tomllib
 import warnings
 from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import InputError, PolicyError, shown
+from rosprivacy.analysis.python_311 import tomllib
 from rosprivacy.ingest.code.source_files import CPP, MAX_BYTES, PYTHON
 from rosprivacy.ingest.policies.xinclude import parsed
 from rosprivacy.ingest.reading.bounded_file import read_regular

@@ -11,8 +11,9 @@ digitalpolicyalert.org, event 39226.
 
 from __future__ import annotations
 
-from enum import StrEnum
 from typing import NamedTuple
+
+from rosprivacy.analysis.python_311 import StrEnum
 
 READ = "2026-11-28"  # when these sources were read
 

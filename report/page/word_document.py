@@ -6,7 +6,6 @@ In: the report as Markdown (``markdown.py``), so that no sentence stands in one 
 
 from __future__ import annotations
 
-from datetime import datetime
 from io import BytesIO
 from typing import TYPE_CHECKING
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
@@ -19,6 +18,7 @@ from docx.shared import Mm, Pt
 from markdown_it import MarkdownIt
 from markdown_it.tree import SyntaxTreeNode
 
+from rosprivacy.analysis.python_311 import from_iso
 from rosprivacy.analysis.text import blanked
 
 if TYPE_CHECKING:
@@ -151,7 +151,7 @@ def laid_out(document: Document, title: str, language: str, date: str) -> None:
     known = document.core_properties
     known.title, known.author, known.last_modified_by, known.comments = title[:255], "rosprivacy", "rosprivacy", ""
     known.language, known.revision = language, 1
-    known.created = known.modified = datetime.fromisoformat(date)
+    known.created = known.modified = from_iso(date)
     numbered(document.sections[0].footer.paragraphs[0], title, date)
 
 

@@ -22,7 +22,7 @@ from functools import cache
 from importlib.util import find_spec
 from math import inf
 from pathlib import Path
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING
 
 from lxml import etree
 
@@ -38,18 +38,21 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from types import TracebackType
 
+    from rosprivacy.analysis.python_311 import Self
     from rosprivacy.report.pictures.picture import Picture
 
 WORKER = str(Path(__file__).with_name("graphviz_worker.py"))
-MISSING = (
-    "graph: Graphviz is not installed, so there is no SVG and no PNG; take --format dot, graphml or mermaid, or "
-    "install it with its headers (Debian: libgraphviz-dev) and then"
-)
+MISSING = "Graphviz is not installed, so there is no"
 
 
 def available() -> bool:
     """Return whether Graphviz is installed."""
     return find_spec("pygraphviz") is not None
+
+
+def how_to_get_it() -> str:
+    """Return what to do where Graphviz is not installed; most machines need no more than the command."""
+    return f"install it: {command_for('views')} (where no wheel fits, first its headers; Debian: libgraphviz-dev)"
 
 
 class TooLongError(Exception):
@@ -105,7 +108,8 @@ class Graphviz(Closing):
 
     def __init__(self) -> None:
         if not available():
-            raise DrawingError(f"{MISSING} {command_for('views')}")
+            text_forms = "take --format dot, graphml or mermaid, or"
+            raise DrawingError(f"graph: {MISSING} SVG and no PNG; {text_forms} {how_to_get_it()}")
         self._process: subprocess.Popen[bytes] | None = None
 
     def draw(self, job: Job, seconds: float) -> bytes:
@@ -156,7 +160,7 @@ class Graphviz(Closing):
 
     def _running(self) -> subprocess.Popen[bytes]:
         if self._process is None:
-            command = [sys.executable, "-P", WORKER]  # -P: nothing is imported from folders of ours or of the user
+            command = [sys.executable, WORKER]
             self._process = subprocess.Popen(  # noqa: S603 - our own module
                 command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
             )

@@ -10,11 +10,15 @@ import math
 import os
 import signal
 import sys
+from pathlib import Path
 from typing import Any, BinaryIO
 
 
 def main() -> None:
     """Draw until there is nothing more to read."""
+    # Nothing is imported from the folder of this file, whose names may be those of packages.
+    here = str(Path(__file__).resolve().parent)
+    sys.path[:] = [folder for folder in sys.path if folder != here]
     # Graphviz and others may print to file 1: the answers go out by another number.
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)

@@ -1,7 +1,8 @@
 """The document ``rosprivacy.analysis/1``, what its answer rests on, and what it tells of a fleet."""
 
-from typing import Annotated, NotRequired, TypedDict
+from typing import Annotated
 
+from rosprivacy.analysis.python_311 import NotRequired, TypedDict
 from rosprivacy.report.schemas.notation import (
     Count,
     Day,

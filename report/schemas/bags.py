@@ -1,7 +1,8 @@
 """The documents ``rosprivacy.bags/1`` and ``rosprivacy.shared-bag/1``."""
 
-from typing import Annotated, Any, NotRequired, TypedDict
+from typing import Annotated, Any
 
+from rosprivacy.analysis.python_311 import NotRequired, TypedDict
 from rosprivacy.report.schemas.notation import BagVerdict, Confidence, Count, Keywords
 
 

@@ -1,7 +1,8 @@
 """The document ``rosprivacy.mitigation/1``."""
 
-from typing import Annotated, Any, NotRequired, TypedDict
+from typing import Annotated, Any
 
+from rosprivacy.analysis.python_311 import NotRequired, TypedDict
 from rosprivacy.report.schemas.analysis import Assumptions
 from rosprivacy.report.schemas.notation import (
     Always,

@@ -1,7 +1,8 @@
 """The documents about policies themselves: ``rosprivacy.check/1`` and ``rosprivacy.lint/1``."""
 
-from typing import Annotated, NotRequired, TypedDict
+from typing import Annotated
 
+from rosprivacy.analysis.python_311 import NotRequired, TypedDict
 from rosprivacy.report.schemas.notation import Cause, Count, Keywords, Severity, closed, one_of
 from rosprivacy.report.schemas.records import FileEntry
 

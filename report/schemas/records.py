@@ -1,7 +1,8 @@
 """What stands in the rows of a document: elements, files, lines, findings, decisions, open questions, the ledger."""
 
-from typing import Annotated, NotRequired, TypedDict
+from typing import Annotated
 
+from rosprivacy.analysis.python_311 import NotRequired, TypedDict
 from rosprivacy.report.schemas.notation import (
     Always,
     Article9,

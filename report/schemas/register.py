@@ -1,8 +1,9 @@
 """The register of processing in a document: the rows from which records, notices and tables of persons are made."""
 
-from typing import Annotated, TypedDict
+from typing import Annotated
 
 from rosprivacy.analysis.model.register_row import Cell, RowState
+from rosprivacy.analysis.python_311 import TypedDict
 from rosprivacy.report.schemas.notation import Article9, Context, Id, Keywords, Method, closed, one_of
 from rosprivacy.report.schemas.records import ElementEntry
 

@@ -1,7 +1,8 @@
 """What is stated, as a document tells it: of categories by the ontology, of nodes and non-ROS elements by labels."""
 
-from typing import Annotated, NotRequired, TypedDict
+from typing import Annotated
 
+from rosprivacy.analysis.python_311 import NotRequired, TypedDict
 from rosprivacy.report.schemas.notation import (
     Article9,
     Context,

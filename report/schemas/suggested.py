@@ -1,7 +1,8 @@
 """The documents of suggestions: ``rosprivacy.suggestions/1`` and ``rosprivacy.model-exchanges/1``."""
 
-from typing import Annotated, Any, NotRequired, TypedDict
+from typing import Annotated, Any
 
+from rosprivacy.analysis.python_311 import NotRequired, TypedDict
 from rosprivacy.report.schemas.notation import SHA256, Confidence, Count, Keywords, Positive, Sha256, Verdict, one_of
 from rosprivacy.report.schemas.records import FileEntry
 

@@ -1,6 +1,6 @@
 """What ``ros2`` calls: it hands over to the program ``rosprivacy`` on the path.
 
-The program is not imported: ``ros2`` runs on the Python of its distribution (3.10 in Humble), rosprivacy needs 3.11 and
+The program is not imported: ``ros2`` runs on the Python of its distribution (3.8 in Foxy), rosprivacy needs 3.10 and
 stands in an environment of its own. So this file keeps to Python 3.8 and to the standard library.
 """
 

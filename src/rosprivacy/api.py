@@ -19,8 +19,8 @@ from rosprivacy.systems.robot_system import answer_robot
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
-    from typing import Unpack
 
+    from rosprivacy.analysis.python_311 import Unpack
     from rosprivacy.explorer.session import FleetSession, Session
     from rosprivacy.labelling.suggesting import Suggested
     from rosprivacy.result import Result

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from datetime import UTC, datetime
+from datetime import datetime, timezone
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, shown
@@ -28,7 +28,7 @@ def source_date(environment: Mapping[str, str]) -> datetime | None:
     if not given:
         return None
     try:
-        return datetime.fromtimestamp(int(given), UTC)
+        return datetime.fromtimestamp(int(given), timezone.utc)
     except (ValueError, OverflowError, OSError):
         hint = "give whole seconds since 1970, or unset it"
         raise InputError(VARIABLE, 0, f"{shown(given)!r} is not a time", hint) from None
@@ -49,7 +49,7 @@ def today(environment: Mapping[str, str]) -> str:
     >>> today({"SOURCE_DATE_EPOCH": "1767225600"})
     '2026-01-01'
     """
-    return (source_date(environment) or datetime.now(UTC)).date().isoformat()
+    return (source_date(environment) or datetime.now(timezone.utc)).date().isoformat()
 
 
 def now(environment: Mapping[str, str]) -> str:
@@ -58,4 +58,4 @@ def now(environment: Mapping[str, str]) -> str:
     >>> now({"SOURCE_DATE_EPOCH": "1767225600"})
     '2026-01-01T00:00:00Z'
     """
-    return (source_date(environment) or datetime.now(UTC)).strftime("%Y-%m-%dT%H:%M:%SZ")
+    return (source_date(environment) or datetime.now(timezone.utc)).strftime("%Y-%m-%dT%H:%M:%SZ")

@@ -8,7 +8,7 @@ is a folder in ``report/`` and a row here.
 from __future__ import annotations
 
 import os
-from datetime import UTC, datetime
+from datetime import datetime, timezone
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, overload
 
@@ -211,7 +211,7 @@ def _cnil_pia(document: Document, style: Style) -> str:
     given = _answers(style)
     source = f"{given.file[-120:]} (sha256 {given.sha256[:12]})" if given else ""
     people = PersonAnswers(given.texts, source) if given else PersonAnswers()
-    created = (source_date(os.environ) or datetime.now(UTC)).isoformat(timespec="milliseconds")
+    created = (source_date(os.environ) or datetime.now(timezone.utc)).isoformat(timespec="milliseconds")
     return as_text(cnil_pia(document, created.replace("+00:00", "Z"), style.language, people))
 
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 import os
 import re
 from dataclasses import dataclass
-from datetime import UTC, datetime
+from datetime import datetime, timezone
 from itertools import chain, count
 from typing import TYPE_CHECKING
 
@@ -19,6 +19,7 @@ from ruamel.yaml.comments import CommentedMap
 
 from rosprivacy.analysis.errors import InputError, InputErrors, ObservationError, shown
 from rosprivacy.analysis.model import WITHOUT_WARNINGS
+from rosprivacy.analysis.python_311 import from_iso
 from rosprivacy.analysis.text import blanked, counted
 from rosprivacy.clock import source_date
 from rosprivacy.ingest.labels.entries import LONGEST_NAME
@@ -68,7 +69,7 @@ class ObservedTexts:
 
 def now() -> str:
     """Return the time, or that of ``SOURCE_DATE_EPOCH`` (rule S14)."""
-    return moment(source_date(os.environ) or datetime.now(UTC))
+    return moment(source_date(os.environ) or datetime.now(timezone.utc))
 
 
 def seconds_of(duration: str) -> float:
@@ -100,7 +101,7 @@ def time_of(text: str) -> str:
     '2026-11-22T10:00:00Z'
     """
     try:
-        time = datetime.fromisoformat(text)
+        time = from_iso(text)
         if time.tzinfo is not None:
             return moment(time)
     except (ValueError, OverflowError):

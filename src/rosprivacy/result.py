@@ -15,11 +15,11 @@ from rosprivacy.report.document.contents import IN_JSON, RELIANCE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
-    from typing import Unpack
 
     import networkx as nx
 
     from rosprivacy.analysis.model import Element, Policy
+    from rosprivacy.analysis.python_311 import Unpack
     from rosprivacy.analysis.whatif.why_not import WhyNot
     from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.ingest.types.types_file import TypesFile

@@ -6,11 +6,11 @@ import os
 import re
 import subprocess
 import sys
-import tomllib
 
 import pytest
 import yaml
 
+from rosprivacy.analysis.python_311 import tomllib
 from tests.helpers.ci_files import HOSTED, tool
 from tests.helpers.paths import ROOT
 
@@ -19,16 +19,19 @@ def test_the_hosted_checks_are_those_of_ci_run_on_each_python_and_may_only_read(
     hosted = yaml.safe_load(HOSTED.read_text("utf-8"))
     assert hosted["permissions"] == {}
     assert "pull_request_target" not in hosted[True]  # YAML reads 'on' so
-    (job,) = hosted["jobs"].values()
-    assert job["permissions"] == {"contents": "read"}
+    job, everyday = hosted["jobs"]["checks"], hosted["jobs"]["everyday"]
+    assert all(each["permissions"] == {"contents": "read"} for each in hosted["jobs"].values())
     each_week = "${{ github.event_name == 'schedule' && '--thorough' || '' }}"
     assert [step["run"] for step in job["steps"] if "run" in step] == [f".ci/run 'not corpus' {each_week}"]
     assert set(hosted[True]) == {"pull_request", "push", "schedule"}
-    (out,) = (step["with"] for step in job["steps"] if step.get("uses", "").startswith("actions/checkout@"))
-    assert out["persist-credentials"] is False
-    classifiers = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["classifiers"]
-    supported = [name.rpartition(" ")[2] for name in classifiers if re.search(r":: 3\.\d+$", name)]
-    assert job["strategy"]["matrix"]["python"] == supported  # each was run where we work
+    for each in hosted["jobs"].values():
+        (out,) = (step["with"] for step in each["steps"] if step.get("uses", "").startswith("actions/checkout@"))
+        assert out["persist-credentials"] is False
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+    supported = [name.rpartition(" ")[2] for name in project["classifiers"] if re.search(r":: 3\.\d+$", name)]
+    oldest, newest = everyday["strategy"]["matrix"]["python"]
+    assert [oldest, *job["strategy"]["matrix"]["python"], newest] == supported
+    assert project["requires-python"] == f">={oldest}"
 
 
 def test_before_a_commit_runs_what_ci_runs_from_the_same_environment() -> None:

@@ -16,6 +16,7 @@ import sys
 import tempfile
 import tracemalloc
 from collections import Counter
+from contextlib import closing
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -142,7 +143,7 @@ def test_a_recording_of_sqlite_becomes_mcap(cli: Cli, tmp_path: Path) -> None:
     said = labels(tmp_path, "channels: {/camera: {only: [Video]}, /odom: mundane}")
     shared(cli, run, "--without", "all", "-l", said, "-o", tmp_path / "b.mcap")
     (database,) = run.glob("*.db3")
-    with sqlite3.connect(database) as connection:
+    with closing(sqlite3.connect(database)) as connection, connection:
         asked = "SELECT timestamp, data FROM messages JOIN topics t ON t.id = topic_id WHERE t.name = '/odom'"
         before = connection.execute(asked).fetchall()
         definition = connection.execute(
@@ -483,7 +484,7 @@ INSERT INTO topics2 SELECT * FROM topics; DROP TABLE topics; ALTER TABLE topics2
 def test_a_database_of_which_messages_are_not_known(cli: Cli, tmp_path: Path, change: str) -> None:
     run = rosbag2(tmp_path / "run", "sqlite3", {"/odom": (ODOMETRY, 3)})
     (file,) = run.glob("*.db3")
-    with sqlite3.connect(file) as database:
+    with closing(sqlite3.connect(file)) as database, database:
         database.executescript(change)
     database.close()
     said = labels(tmp_path, "channels: {'*': mundane}")

@@ -94,7 +94,7 @@ def _sqlite(choices: Choices, topics: Topics) -> bytes:
             database.execute("CREATE TABLE messages(timestamp INTEGER, data BLOB)")
             database.execute("INSERT INTO messages VALUES (7, 'message')")
         database.commit()
-        return database.serialize()
+        return bytes(database.serialize())  # type: ignore[attr-defined]  # from Python 3.11 on
 
 
 def _damaged(choices: Choices, data: bytes) -> bytes:

@@ -11,12 +11,14 @@ import re
 import struct
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from random import Random
     from types import TracebackType
+
+    from rosprivacy.analysis.python_311 import Self
 
 LINE = re.compile(r".+?(:\d+)?: .+; .+")  # file:line: what is wrong; what to do. In JSON a place stands for the line.
 SECRET = "outside_the_root"  # noqa: S105 - the name of a topic

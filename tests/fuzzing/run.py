@@ -14,7 +14,7 @@ import subprocess
 import sys
 import time
 from dataclasses import dataclass, field
-from datetime import UTC, datetime
+from datetime import datetime, timezone
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
@@ -80,7 +80,7 @@ class Run:
         git = shutil.which("git") or "git"
         commit = subprocess.run([git, "rev-parse", "HEAD"], cwd=ROOT, capture_output=True, text=True, check=False)
         return {
-            "begun": datetime.fromtimestamp(self.begun, UTC).isoformat(timespec="seconds"),
+            "begun": datetime.fromtimestamp(self.begun, timezone.utc).isoformat(timespec="seconds"),
             "seconds": round(time.time() - self.begun),
             "commit": commit.stdout.strip() or "unknown",
             "python": platform.python_version(),

@@ -6,7 +6,7 @@ import os
 import resource
 import time
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Never
+from typing import TYPE_CHECKING, NoReturn
 
 from tests.fuzzing import judge
 from tests.fuzzing.record import Counts, save
@@ -97,7 +97,7 @@ class Slice:
         self.counts.peak = peak()
         save(self.folder / "slice.json", asdict(self.counts))
 
-    def end(self) -> Never:
+    def end(self) -> NoReturn:
         """Tidy up, write the counts and leave: libFuzzer does not come back."""
         os.chdir("/")
         self.held.close()

@@ -12,7 +12,7 @@ import sys
 import tempfile
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any
 
 from rosprivacy.ingest.mitigation.deny_patch import TEMPORARY
 from rosprivacy.report.pictures.graphviz import WORKER
@@ -21,6 +21,8 @@ from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
     from types import FrameType, TracebackType
+
+    from rosprivacy.analysis.python_311 import Self
 
 SECONDS = 10
 GROWTH = 2**30

@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from rosprivacy.analysis.python_311 import chdir
 from tests.golden.runs import calls, lay_out
 from tests.helpers.command import UNSET
 from tests.helpers.paths import ROOT
@@ -44,7 +45,7 @@ def answers(only: str = "", keep: Path | None = None, *, first: int = 0, step: i
     os.environ["SOURCE_DATE_EPOCH"] = DATE
     for name in UNSET:
         os.environ.pop(name, None)
-    with TemporaryDirectory() as laid, contextlib.chdir(laid):
+    with TemporaryDirectory() as laid, chdir(laid):
         lay_out(Path(laid), Path(corpus) if corpus else None)
         each = dict.fromkeys(calls(Path(laid)))  # two systems may share a call
         for call in islice(each, first, None, step):

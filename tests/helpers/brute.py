@@ -424,17 +424,18 @@ class Brute:
                 plain, hidden = (leak, (category, False)), (leak, (category, True))
                 for kind in [kind for kind, holds in kinds.items() if holds]:
                     key = (kind, category, source, leak)
+                    direct, beside = (*key, False), (*key, True)
                     free = self.spread([source], other) if kind == "disclosure" else whole
                     if plain in free:
-                        found[*key, False] = (False, False, free[plain])
+                        found[direct] = (False, False, free[plain])
                     elif hidden in free:
-                        found[*key, False] = (True, False, free[hidden])
+                        found[direct] = (True, False, free[hidden])
                         if plain in whole:
-                            found[*key, True] = (False, True, whole[plain])
+                            found[beside] = (False, True, whole[plain])
                     elif plain in whole:
-                        found[*key, False] = (False, True, whole[plain])
+                        found[direct] = (False, True, whole[plain])
                     else:
-                        found[*key, False] = (True, True, whole[hidden])
+                        found[direct] = (True, True, whole[hidden])
         return found
 
     def covered(self, vertex: int, category: str) -> bool:

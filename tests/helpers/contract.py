@@ -7,8 +7,11 @@ from __future__ import annotations
 
 import json
 import types
-from typing import TYPE_CHECKING, Annotated, Any, NotRequired, Union, get_args, get_origin, get_type_hints, is_typeddict
+from typing import TYPE_CHECKING, Annotated, Any, Union, get_args, get_origin
 
+from typing_extensions import get_type_hints, is_typeddict  # of Python 3.11, on 3.10 too
+
+from rosprivacy.analysis.python_311 import NotRequired
 from rosprivacy.report.schemas.analysis import AnalysisDocument, ShortDocument
 from rosprivacy.report.schemas.bags import BagsDocument, SharedBagDocument
 from rosprivacy.report.schemas.mitigation import MitigationDocument

@@ -18,7 +18,7 @@ import time
 from contextlib import suppress
 from dataclasses import asdict, dataclass, field
 from functools import cache
-from typing import IO, TYPE_CHECKING, Any, Self
+from typing import IO, TYPE_CHECKING, Any
 
 import typer.main
 
@@ -27,6 +27,8 @@ from tests.helpers.paths import ROOT
 if TYPE_CHECKING:
     from pathlib import Path
     from types import FrameType
+
+    from rosprivacy.analysis.python_311 import Self
 
 OF_FILES = ("open", "write", "flush", "fsync", "chmod", "replace", "unlink", "flock", "link", "mkdir")
 OF_SOCKETS = ("sendall",)

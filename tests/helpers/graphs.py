@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import json
-from contextlib import chdir
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import rosprivacy
+from rosprivacy.analysis.python_311 import chdir
 from rosprivacy.ingest.neo4j_graph.fleet_rows import robot_rows
 from rosprivacy.settings import Settings
 from rosprivacy.systems.fleet_system import answer_fleet

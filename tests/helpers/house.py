@@ -21,6 +21,7 @@ ROOMS: dict[str, set[str]] = {
     "report": {"analysis", "ontology", "queries"},
 }
 # Which wings a wing may import from; '' is what stands in the room itself. A name of one module is that module alone.
+PYTHON = {"python_311"}  # what Python 3.10 lacks
 MODEL = {"", "model"}
 FACTS = MODEL | {"kernel", "answer", "case", "contexts", "decisions", "legal"}
 READING = {"reading", "policies"}
@@ -28,14 +29,15 @@ ANSWERS = {"", "result", "answering"}
 WORK = ANSWERS | {"formats", "outputs", "mitigation", "systems", "both_views", "checking", "linting", "labelling"}
 WINGS: dict[str, dict[str, set[str]]] = {
     "analysis": {
+        "python_311": set(),
         "durations": set(),
-        "model": {"durations"},
-        "": {"model", "durations"},
+        "model": {"durations"} | PYTHON,
+        "": {"model", "durations"} | PYTHON,
         "kernel": MODEL,
-        "answer": MODEL | {"kernel"},
+        "answer": MODEL | {"kernel"} | PYTHON,
         "case": MODEL | {"answer"},
-        "decisions": MODEL | {"answer", "case", "legal"},
-        "legal": MODEL | {"answer"},
+        "decisions": MODEL | {"answer", "case", "legal"} | PYTHON,
+        "legal": MODEL | {"answer"} | PYTHON,
         "contexts": MODEL | {"answer"},
         "findings": FACTS,
         "whatif": FACTS | {"findings"},

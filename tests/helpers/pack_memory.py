@@ -245,9 +245,9 @@ class Memory:
                 counts[at, f.category, f.dismissed, f.source.robot != at] += robot in ("", at)
         keys = {key[:2] for key, count in counts.items() if count}
         return [
-            (*key, counts[*key, False, False] + counts[*key, False, True],
-             counts[*key, True, False] + counts[*key, True, True], counts[*key, False, True])
-            for key in keys
+            (at, category, counts[at, category, False, False] + counts[at, category, False, True],
+             counts[at, category, True, False] + counts[at, category, True, True], counts[at, category, False, True])
+            for at, category in keys
         ]  # fmt: skip
 
     def _restricted(self, robot: str, **settings: Any) -> Rows:

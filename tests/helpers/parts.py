@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from contextlib import chdir, contextmanager
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -16,6 +16,7 @@ from rosprivacy.analysis.fleet.counts import counted
 from rosprivacy.analysis.fleet.patterns_of_pairs import Groups
 from rosprivacy.analysis.model import GAPS, IN_PARTS, LEGAL_BASIS, RESTRICTED, RIDES
 from rosprivacy.analysis.model.doubt import RANKS
+from rosprivacy.analysis.python_311 import chdir
 from rosprivacy.formats import Style, in_pieces
 from rosprivacy.ingest.fleet.alike_robots import alike
 from rosprivacy.ingest.fleet.fleet_file import read_fleet
@@ -235,7 +236,8 @@ def purposes_of_fewer(got: list[dict[str, Any]], expected: list[dict[str, Any]])
     """At what robots share, what those that are shown state; never more than what all of them do."""
     whole = {(*row["element"].values(), row["category"]): row for row in expected}
     for row in got:
-        known = whole[*row["element"].values(), row["category"]]
+        at = (*row["element"].values(), row["category"])
+        known = whole[at]
         for key in ("controllers", "officers", "purposes", "legal_bases"):
             assert set(row[key]) <= set(known[key]), (key, row, known)
 

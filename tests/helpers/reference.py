@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import ast
 import json
-from enum import StrEnum
 from functools import cache, partial
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
@@ -17,6 +16,7 @@ import typer
 
 from rosprivacy.analysis.bounds import BOUNDS, COUNTED
 from rosprivacy.analysis.model import RANKS
+from rosprivacy.analysis.python_311 import StrEnum
 from rosprivacy.cli.app import program
 from rosprivacy.cli.exit_code import CODES
 from rosprivacy.cli.inputs import WRITTEN

@@ -156,7 +156,7 @@ def test_a_verified_jar_is_read_again_only_if_it_was_changed(
     jar = cache / one
     assert jars.jar_files(tmp_path) == [jar]
     with monkeypatch.context() as patch:
-        patch.setattr(hashlib, "file_digest", None)  # nothing is hashed
+        patch.setattr(jars, "_digest", None)  # nothing is hashed
         patch.setitem(sys.modules, "jgo", None)  # and nothing looked up
         assert jars.jar_files(tmp_path) == [jar]
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from contextlib import chdir
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import pytest
@@ -18,6 +17,7 @@ import rosprivacy
 from rosprivacy.analysis.errors import InputError
 from rosprivacy.analysis.fleet.likeness import NO_ROBOTS
 from rosprivacy.analysis.model import DISCLOSURE, STORAGE_LIMITATION, THIRD_COUNTRY, Rank
+from rosprivacy.analysis.python_311 import chdir
 from rosprivacy.both_views import both_views
 from rosprivacy.ingest.neo4j_graph.loading import Run, load
 from rosprivacy.private_neo4j import connection

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import sys
-from contextlib import chdir
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
@@ -13,6 +12,7 @@ from urllib.parse import quote
 import pytest
 
 import rosprivacy
+from rosprivacy.analysis.python_311 import chdir
 from rosprivacy.answering import answer
 from rosprivacy.formats import FORMATS, Style, written
 from rosprivacy.private_neo4j import connection

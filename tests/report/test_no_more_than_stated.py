@@ -10,7 +10,6 @@ import csv
 import io
 import json
 import re
-from contextlib import chdir
 from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -22,6 +21,7 @@ from hypothesis import strategies as st
 
 import rosprivacy
 from rosprivacy.analysis.findings import processed
+from rosprivacy.analysis.python_311 import chdir
 from rosprivacy.ingest.labels.countries import countries
 from rosprivacy.report import row_texts
 from rosprivacy.report.catalogs.words import Words

@@ -17,8 +17,10 @@ import sys
 from typing import TYPE_CHECKING
 
 import pytest
+import yaml
 from lxml import etree
 
+from rosprivacy.analysis.python_311 import tomllib
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
@@ -149,12 +151,14 @@ def test_a_build_for_colcon_brings_what_ros_looks_for(installed: Path) -> None:
     assert (installed / "share" / "ament_index" / "resource_index" / "packages" / "ros2privacy").is_file()
     shipped = installed / "share" / "ros2privacy" / "package.xml"
     package = etree.parse(shipped)
-    assert [package.findtext(path) for path in ("name", "license", "exec_depend", "export/build_type")] == [
-        "ros2privacy",
-        "Apache-2.0",
-        "ros2cli",
-        "ament_python",
-    ]
+    facts = [package.findtext(path) for path in ("name", "license", "export/build_type")]
+    assert facts == ["ros2privacy", "Apache-2.0", "ament_python"]
+    needed = [str(each.text) for each in package.findall("exec_depend")]
+    rules = yaml.safe_load((PACKAGE / "rosdep.yaml").read_text("utf-8"))
+    assert needed == ["ros2cli", *rules]
+    program = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["name"]
+    (systems,) = rules.values()
+    assert all(rule == {"pip": {"packages": [program]}} for rule in systems.values())
     version = re.search(r'version="([0-9.]+)"', (PACKAGE / "setup.py").read_text())
     assert version is not None
     assert package.findtext("version") == version[1]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING
 
 from rosprivacy.ingest.policies.names import resolve
 from rosprivacy.ingest.scan.scan_facts import BASES, GUESSED, PACKAGE
@@ -17,6 +17,7 @@ from tests.scanned.truth import End, Outside, Start, channels
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
+    from rosprivacy.analysis.python_311 import Self
     from rosprivacy.ingest.scan.checkout import Checkout
     from rosprivacy.ingest.scan.scan_facts import CodeFacts, CodeNode, Gap, LaunchedSystem, Name
     from tests.scanned.truth import Truth

@@ -21,6 +21,8 @@ from rosprivacy.cli.suggestions_to_answer import suggestions_to_answer
 from rosprivacy.formats import FORMATS, Style, in_pieces
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from rosprivacy.result import Result
     from rosprivacy.settings import Settings
 
@@ -317,10 +319,20 @@ def answer(
     if isinstance(text, str) and form != "text":
         text = text.encode()  # a file says of itself that it is UTF-8, whatever the terminal understands
     emit(text, written.output, others)
-    if form == "text" and not written.quiet:
-        for line in suggestions_to_answer(inputs):
-            typer.echo(line, err=True)
+    for line in _remarks(inputs, form, quiet=written.quiet):
+        typer.echo(line, err=True)
     raise typer.Exit(exit_code(result, fail_on))
+
+
+def _remarks(inputs: Inputs, form: str, *, quiet: bool) -> Iterator[str]:
+    """What a person at the terminal has to know of an answer beside the answer."""
+    if form == "text" and not quiet:
+        yield from suggestions_to_answer(inputs)
+    elif form == "html":
+        from rosprivacy.report.pictures.graphviz import MISSING, available, how_to_get_it
+
+        if not available():
+            yield f"report: {MISSING} picture on the page; {how_to_get_it()}"
 
 
 def _in_parts(fleet: str, settings: Settings, computed: Computed) -> Result:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import sys
-from enum import StrEnum
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from rosprivacy.analysis.python_311 import StrEnum
 from rosprivacy.cli.exit_code import LEAK, UNDETERMINED
 from rosprivacy.cli.inputs import Inputs, reads_system, refuse
 from rosprivacy.cli.options import READ, Output, complete_category

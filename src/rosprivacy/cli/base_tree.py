@@ -10,11 +10,12 @@ from __future__ import annotations
 import os
 import subprocess
 import tempfile
-from contextlib import chdir, contextmanager
+from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import InputError, InputErrors, reason, shown
+from rosprivacy.analysis.python_311 import chdir
 from rosprivacy.cli.base_revision import FETCH, GIT, commit_of, git, git_environment
 
 if TYPE_CHECKING:

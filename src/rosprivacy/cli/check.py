@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
 from typing import Annotated
 
 import typer
 
+from rosprivacy.analysis.python_311 import StrEnum
 from rosprivacy.cli.exit_code import LEAK, UNDETERMINED
 from rosprivacy.cli.inputs import Inputs, reads_system
 from rosprivacy.cli.options import Output, TextOrJson

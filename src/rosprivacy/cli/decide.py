@@ -5,13 +5,13 @@ from __future__ import annotations
 import os
 import sys
 from datetime import date
-from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import typer
 
 from rosprivacy.analysis.errors import DecisionError, InputErrors, shown
+from rosprivacy.analysis.python_311 import StrEnum
 from rosprivacy.cli.inputs import takes_groups
 from rosprivacy.cli.options import Ontologies, complete_category
 from rosprivacy.cli.output import emit

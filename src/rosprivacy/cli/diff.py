@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import os
 import sys
-from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
 from rosprivacy.analysis.errors import InputError, InputErrors, shown
+from rosprivacy.analysis.python_311 import StrEnum
 from rosprivacy.cli.exit_code import UNDETERMINED
 from rosprivacy.cli.inputs import Inputs, reads_system, refuse
 from rosprivacy.cli.options import READ, Output

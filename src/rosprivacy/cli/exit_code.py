@@ -5,10 +5,10 @@ In: a ``Result`` and what a user lets the build fail on. Out: a number.
 
 from __future__ import annotations
 
-from enum import StrEnum
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import NOTHING_FOLLOWED
+from rosprivacy.analysis.python_311 import StrEnum
 
 if TYPE_CHECKING:
     from collections.abc import Collection

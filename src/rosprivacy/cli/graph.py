@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import sys
 from dataclasses import replace
-from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
+from rosprivacy.analysis.python_311 import StrEnum
 from rosprivacy.cli.inputs import Inputs, reads_system
 from rosprivacy.cli.options import Language, Output, ViewOrBoth, ViewOrBothChosen
 from rosprivacy.cli.output import emit, not_for_a_terminal

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
 from typing import Annotated
 
 import typer
 
 from rosprivacy.analysis.model import Severity
+from rosprivacy.analysis.python_311 import StrEnum
 from rosprivacy.cli.exit_code import LEAK
 from rosprivacy.cli.inputs import Inputs, reads_system
 from rosprivacy.cli.options import Output

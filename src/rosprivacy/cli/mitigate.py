@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import sys
-from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
 from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.python_311 import StrEnum
 from rosprivacy.cli.inputs import Inputs, reads_system
 from rosprivacy.cli.options import Output, TextOrJson
 from rosprivacy.cli.output import emit, on_console

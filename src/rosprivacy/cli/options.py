@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
@@ -10,6 +9,7 @@ import typer
 
 from rosprivacy.analysis.bounds import COUNTED
 from rosprivacy.analysis.modes import View
+from rosprivacy.analysis.python_311 import StrEnum
 
 
 class TextOrJson(StrEnum):

@@ -11,13 +11,13 @@ import hashlib
 import os
 import re
 import stat
-import tomllib
 from functools import lru_cache, partial
 from glob import has_magic, iglob
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.errors import InputError, InputErrors, shown
+from rosprivacy.analysis.python_311 import tomllib
 from rosprivacy.analysis.written_names import did_you_mean, nearest
 from rosprivacy.cli.exit_code import FailOn
 from rosprivacy.cli.options import Language
@@ -25,7 +25,8 @@ from rosprivacy.ingest.reading.bounded_file import beginning, leaves, read_utf8,
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-    from enum import StrEnum
+
+    from rosprivacy.analysis.python_311 import StrEnum
 
 OWN_FILE, PYTHON_FILE = "rosprivacy.toml", "pyproject.toml"
 MAX_BYTES = 1_000_000

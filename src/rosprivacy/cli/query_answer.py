@@ -5,10 +5,10 @@ from __future__ import annotations
 import io
 import sys
 import textwrap
-from enum import StrEnum
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import QueryError, shown
+from rosprivacy.analysis.python_311 import StrEnum
 from rosprivacy.analysis.text import counted, printable
 
 if TYPE_CHECKING:

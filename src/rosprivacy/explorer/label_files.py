@@ -18,8 +18,8 @@ from rosprivacy.systems.robot_system import read_label_files, robot_system, with
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
-    from typing import Self
 
+    from rosprivacy.analysis.python_311 import Self
     from rosprivacy.explorer.edited_file import Conflict, SavedFile
     from rosprivacy.explorer.scenarios import WhatIf
     from rosprivacy.question import Question

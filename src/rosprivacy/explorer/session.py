@@ -30,13 +30,13 @@ from rosprivacy.systems.fleet_system import read_once
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
-    from typing import Unpack
 
     from neo4j import Driver
 
     from rosprivacy.analysis.answer import Finding, Verdict
     from rosprivacy.analysis.decisions import Decisions
     from rosprivacy.analysis.model import Element
+    from rosprivacy.analysis.python_311 import Unpack
     from rosprivacy.explorer.deciding import How
     from rosprivacy.explorer.edited_file import Conflict, SavedFile
     from rosprivacy.explorer.edits import Label

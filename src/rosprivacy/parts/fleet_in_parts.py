@@ -6,7 +6,7 @@ In: a fleet file. Out: a ``Result`` like that of ``answer_fleet``, in whose grap
 from __future__ import annotations
 
 import os
-from contextlib import chdir, suppress
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -16,6 +16,7 @@ from rosprivacy.analysis.errors import FleetError, InputError, InputErrors, reas
 from rosprivacy.analysis.files_read import note
 from rosprivacy.analysis.findings.findings import Options
 from rosprivacy.analysis.model import IN_PARTS, Diagnostic, Place, Severity
+from rosprivacy.analysis.python_311 import chdir
 from rosprivacy.answering import answer, concluded
 from rosprivacy.assumptions import named_files, types_read
 from rosprivacy.clock import judged_on

@@ -132,6 +132,10 @@ def _fetch() -> Iterator[Path]:
             pool.shutdown(cancel_futures=True)
 
 
+def _digest(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
 def _fetch_jar(context: MavenContext, jar: PinnedJar) -> Path:
     """Download a jar file if it is not there, and again if it was broken off."""
     *group, artifact, version, file = jar.path.parts
@@ -139,9 +143,8 @@ def _fetch_jar(context: MavenContext, jar: PinnedJar) -> Path:
     wanted = context.project(".".join(group), artifact).at_version(version).artifact(classifier, "jar")
     for _ in range(2):
         path = Path(wanted.resolve())
-        with path.open("rb") as opened:
-            if hashlib.file_digest(opened, "sha256").hexdigest() == jar.sha256:
-                return path
+        if _digest(path) == jar.sha256:
+            return path
         if zipfile.is_zipfile(path):  # whole, and yet another
             problem = "is not the file that this version of rosprivacy was made with: its SHA-256 differs"
             hint = "nothing was started; find out where it comes from, remove it, then try again"

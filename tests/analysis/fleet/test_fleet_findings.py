@@ -157,7 +157,8 @@ def test_of_many_pairs_of_robots_each_robot_has_one_at_either_end(case: Case) ->
         for one in findings:
             first = likeness.second.get(one.leak.robot, one.leak.robot)
             for end in (("from", one.source.robot), ("to", first)) if likeness.count(one) else ():
-                found[pattern_id(one, likeness), *end] |= one.stands
+                finding = (pattern_id(one, likeness), *end)
+                found[finding] |= one.stands
             if likeness.count(one) and not likeness.across(one):
                 found[one.id, one.disjoint_paths] = one.stands
         return found

@@ -20,6 +20,7 @@ from urllib.parse import urlencode
 import pytest
 from lxml import html
 
+from rosprivacy.analysis.python_311 import chdir
 from tests.helpers.explorers import Explorer, begin_stored
 from tests.helpers.paths import ROOT
 
@@ -232,7 +233,7 @@ OF_STORY = {CARE: "care-home", FACTORY: "factory", "fleet.yaml": "fleet"}
 def pages(story: str) -> list[tuple[str, str]]:
     """What a story shows: what was asked, and what was answered; in a folder with a copy of the example."""
     told, policy, labels, how = STORIES[story]
-    with TemporaryDirectory() as folder, contextlib.chdir(folder):
+    with TemporaryDirectory() as folder, chdir(folder):
         for file in (ROOT / "examples" / OF_STORY[policy]).iterdir():
             if file.is_file():
                 shutil.copy(file, file.name)

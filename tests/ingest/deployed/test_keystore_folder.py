@@ -7,7 +7,7 @@ import json
 import os
 import ssl
 import time
-from datetime import UTC, datetime, timedelta
+from datetime import datetime, timedelta, timezone
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.deployed.deployed_inputs import Read
     from tests.helpers.command import Cli
 
-TODAY = (datetime.now(UTC) + timedelta(days=1)).date().isoformat()  # the certificates are given today
+TODAY = (datetime.now(timezone.utc) + timedelta(days=1)).date().isoformat()  # the certificates are given today
 CA = "public/permissions_ca.cert.pem"
 PERMISSIONS = "enclaves/camera/permissions.p7s"
 CAMERA = permissions(grant("/camera", rule("allow", publish=("rt/video",))))

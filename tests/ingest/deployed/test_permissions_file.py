@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from datetime import UTC, datetime
+from datetime import datetime, timezone
 
 import pytest
 from hypothesis import given
@@ -42,16 +42,19 @@ ALLOW = rule("allow", publish=("rt/a",))
 def test_a_grant_has_subject_dates_rules_and_a_default() -> None:
     [one] = read(permissions(grant("/camera", rule("deny", subscribe=("rt/b",)), ALLOW, default="ALLOW"))).grants
     assert (one.subject, one.allow, [r.allow for r in one.rules]) == ("CN=/camera", True, [False, True])
-    assert (one.not_before, one.not_after) == (datetime(2020, 1, 1, tzinfo=UTC), datetime(2060, 1, 1, tzinfo=UTC))
+    assert (one.not_before, one.not_after) == (
+        datetime(2020, 1, 1, tzinfo=timezone.utc),
+        datetime(2060, 1, 1, tzinfo=timezone.utc),
+    )
 
 
 @pytest.mark.parametrize(
     ("written", "moment"),
     [
-        ("2026-01-31T00:00:00", datetime(2026, 1, 31, tzinfo=UTC)),
-        ("2026-01-31T01:00:00+01:00", datetime(2026, 1, 31, tzinfo=UTC)),
-        ("2035-06-27T03:13:14.908199+00:00", datetime(2035, 6, 27, 3, 13, 14, tzinfo=UTC)),
-        ("2026-01-31T00:00:00Z", datetime(2026, 1, 31, tzinfo=UTC)),
+        ("2026-01-31T00:00:00", datetime(2026, 1, 31, tzinfo=timezone.utc)),
+        ("2026-01-31T01:00:00+01:00", datetime(2026, 1, 31, tzinfo=timezone.utc)),
+        ("2035-06-27T03:13:14.908199+00:00", datetime(2035, 6, 27, 3, 13, 14, tzinfo=timezone.utc)),
+        ("2026-01-31T00:00:00Z", datetime(2026, 1, 31, tzinfo=timezone.utc)),
     ],
 )
 def test_a_moment_without_a_zone_is_utc(written: str, moment: datetime) -> None:

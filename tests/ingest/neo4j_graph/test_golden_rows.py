@@ -6,7 +6,6 @@ to compare those of two commits with ``diff -r``; without a folder it writes a c
 
 from __future__ import annotations
 
-import contextlib
 import hashlib
 import json
 import re
@@ -15,10 +14,11 @@ from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from rosprivacy.analysis.python_311 import Self, chdir
 from rosprivacy.answering import answer
 from rosprivacy.bags import answer_bags
 from rosprivacy.both_views import both_views, both_views_of_fleet
@@ -83,7 +83,7 @@ def _comparable(row: Any) -> Any:
 
 def written() -> Iterator[tuple[str, list[str]]]:
     """By name, what is written of each example."""
-    with TemporaryDirectory() as laid, contextlib.chdir(laid):
+    with TemporaryDirectory() as laid, chdir(laid):
         lay_out(Path(laid), None)
         for name, (policy, *more) in ROBOTS.items():
             if name != "misspelt":  # it is refused

@@ -11,6 +11,7 @@ import sqlite3
 import struct
 import subprocess
 import sys
+from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -141,7 +142,7 @@ def test_what_a_message_holds_cannot_be_asked_for(tmp_path: Path) -> None:
     from rosprivacy.ingest.running.sqlite_file import guard
 
     (file,) = read_bag(str(rosbag2(tmp_path / "run", "sqlite3"))).files
-    with sqlite3.connect(f"file:{file}?mode=ro&immutable=1", uri=True) as database:
+    with closing(sqlite3.connect(f"file:{file}?mode=ro&immutable=1", uri=True)) as database, database:
         assert database.execute("SELECT data FROM messages").fetchone() == (SECRET * 5,)
         guard(database)
         assert database.execute("SELECT timestamp FROM messages LIMIT 1").fetchone() == (START,)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
-from datetime import UTC, datetime
+from datetime import datetime, timezone
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -255,7 +255,7 @@ def test_without_being_told_it_is_dated_now(monkeypatch: pytest.MonkeyPatch) -> 
     """The tool sorts by date, so there is one."""
     monkeypatch.delenv("SOURCE_DATE_EPOCH", raising=False)
     made = imported(as_json(analyze(*CARE_HOME), "cnil-pia")).pia["created_at"]
-    assert abs((made - datetime.now(UTC)).total_seconds()) < 60
+    assert abs((made - datetime.now(timezone.utc)).total_seconds()) < 60
 
 
 @pytest.mark.slow

@@ -85,7 +85,7 @@ def test_what_graphviz_refuses_is_one_line(job: Job) -> None:
 def test_without_graphviz_it_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch, picture: Picture) -> None:
     monkeypatch.setattr(module, "find_spec", lambda _: None)
     with pytest.raises(
-        DrawingError, match=r"^graph: Graphviz is not installed.*libgraphviz-dev\) and then .*pygraphviz"
+        DrawingError, match=r"^graph: Graphviz is not installed.*; take --format dot.*pygraphviz.*libgraphviz-dev\)$"
     ):
         drawn(picture, "svg")
 

@@ -291,6 +291,25 @@ def test_a_picture_without_graphviz_needs_no_graphviz() -> None:
     assert rosprivacy.__version__
 
 
+@pytest.mark.slow
+def test_a_report_without_graphviz_is_written_with_the_same_exit_code(tmp_path: Path) -> None:
+    code = (
+        "import sys; sys.modules['pygraphviz'] = None\nfrom rosprivacy.cli.app import main\n"
+        "sys.argv = ['rosprivacy', *{}]\nmain()"
+    )
+    system = ["examples/factory/before.policy.xml", "-l", "examples/factory/run2.labels.yaml", "-o"]
+    for command, status in ((["report"], 0), (["analyze", "--format", "html"], 1)):
+        page = tmp_path / f"{command[0]}.html"
+        words = [*command, *system, str(page)]
+        done = subprocess.run(
+            [sys.executable, "-c", code.format(words)], cwd=ROOT, capture_output=True, text=True, check=False
+        )
+        assert done.returncode == status, done.stderr
+        (line,) = done.stderr.splitlines()
+        assert "pygraphviz" in line
+        assert page.read_text("utf-8").count("[views]") == 1
+
+
 def test_the_pictures_of_the_documentation_are_shown_there_and_can_be_read_on_a_page() -> None:
     """Letters of 11 points on a picture of 1,100 are 9 dots high on a page of 900."""
     page = "".join((ROOT / "docs" / f"{name}.md").read_text("utf-8") for name in ("views", "what-it-finds"))

@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 import re
-from contextlib import chdir
 from typing import TYPE_CHECKING
 
 import pyshacl
@@ -14,6 +13,7 @@ import pytest
 from rdflib import SH, Graph, Literal
 
 import rosprivacy
+from rosprivacy.analysis.python_311 import chdir
 from rosprivacy.formats import written
 from rosprivacy.ingest.neo4j_graph.loading import load
 from rosprivacy.private_neo4j import connection

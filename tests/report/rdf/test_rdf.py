@@ -6,7 +6,6 @@ import json
 import re
 import subprocess
 import sys
-from contextlib import chdir
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -21,6 +20,7 @@ from rosprivacy.analysis.durations import parse
 from rosprivacy.analysis.findings.findings import analyse
 from rosprivacy.analysis.model import Bound, Category, Element, Flow, FlowGraph, Legal, Method, NonRosFacts
 from rosprivacy.analysis.non_ros import EVERY
+from rosprivacy.analysis.python_311 import chdir
 from rosprivacy.documents import document_of
 from rosprivacy.formats import written
 from rosprivacy.ontology.iris import as_published

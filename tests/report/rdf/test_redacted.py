@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-from contextlib import chdir
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +12,7 @@ import pytest
 from rdflib import Graph, Literal, URIRef
 
 import rosprivacy
+from rosprivacy.analysis.python_311 import chdir
 from rosprivacy.formats import Style, written
 from rosprivacy.report.rdf.terms import RP
 from rosprivacy.report.redact import LEFT_OUT, redacted

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from datetime import UTC, datetime
+from datetime import datetime, timezone
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
@@ -190,7 +190,7 @@ class TestTime:
         assert b"dateTime" not in run("-f", "turtle", SOURCE_DATE_EPOCH="").stdout
         told = strict(run("-f", "turtle", SOURCE_DATE_EPOCH="1767225600").stdout.decode(), "turtle")
         moments = {o for o in told.objects() if isinstance(o, Literal) and o.datatype == XSD.dateTime}
-        assert {moment.toPython() for moment in moments} == {datetime(2026, 1, 1, tzinfo=UTC)}
+        assert {moment.toPython() for moment in moments} == {datetime(2026, 1, 1, tzinfo=timezone.utc)}
 
     @pytest.mark.parametrize("given_", ["x", "1.5", "9" * 30, "\n"])
     def test_what_is_no_time_is_refused(self, given_: str) -> None:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-from contextlib import chdir
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
 import rosprivacy
+from rosprivacy.analysis.python_311 import chdir
 from rosprivacy.report.catalogs.words import IN_ENGLISH
 from rosprivacy.report.finding_facts import in_order
 from rosprivacy.report.naming import shown_name

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import chdir
 from functools import cache
 from io import StringIO
 from pathlib import Path
@@ -12,6 +11,7 @@ import pytest
 from rich.console import Console
 
 import rosprivacy
+from rosprivacy.analysis.python_311 import chdir
 from rosprivacy.report.text.analysis import print_report, report_text, verdict_line
 from tests.helpers.paths import ROOT
 

@@ -419,5 +419,5 @@ async def _static(request: Request) -> Response:
         return PlainTextResponse("There is no such file.", 404)
     if name == PICTURE:
         return Response(style_sheet(), media_type=STATIC[name])
-    text = files("rosprivacy.explorer.web").joinpath("static", name).read_text("utf-8")
+    text = files("rosprivacy.explorer.web").joinpath("static").joinpath(name).read_text("utf-8")
     return Response(text, media_type=STATIC[name])
