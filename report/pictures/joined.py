@@ -78,8 +78,12 @@ class Joined:
 
     def after(self, key: Key, bits: int) -> list[Key]:
         """Return the elements that some bits go to from one, sorted."""
-        ends = {there for vertex in self._vertices.get(key, ()) for there, along in self._from(vertex) if along & bits}
+        ends = {there for vertex in self._vertices.get(key, ()) for there in self.onward(vertex, bits)}
         return self._remaining(key, ends)
+
+    def onward(self, vertex: int, bits: int) -> Iterator[int]:
+        """Return the vertices that some bits go to from one: what enters a side or a leg leaves by that one only."""
+        return (there for there, along in self._from(vertex) if along & bits)
 
     def before(self, key: Key, bits: int) -> list[Key]:
         """Return the elements that some bits come from to one, sorted; O(flows)."""

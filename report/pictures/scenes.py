@@ -152,32 +152,34 @@ def _lines(joined: Joined, box_of: Mapping[Key, Key], bits: int) -> Iterator[Pic
     lines = FlowLines(set(box_of.values()))
     readers = _Readers(joined, box_of, bits)
     for key, box in box_of.items():
-        for there in joined.after(key, bits):
-            for end in (box_of[there],) if there in box_of else readers.of(there):
-                lines.add(box, end, DATA, "", ())
+        onward = {there for vertex in joined.vertices(key) for there in joined.onward(vertex, bits)}
+        for end in sorted({end for there in onward for end in readers.of(there)}):
+            lines.add(box, end, DATA, "", ())
     yield from lines.drawn_lines()
 
 
 class _Readers:
-    """The boxes that data of a channel without a box gets to, through others of that kind too."""
+    """The boxes that data at a vertex is in or gets to, through channels without a box."""
 
     def __init__(self, joined: Joined, box_of: Mapping[Key, Key], bits: int) -> None:
         self._joined, self._box_of, self._bits = joined, box_of, bits
-        self._readers: dict[Key, frozenset[Key]] = {}
+        self._elements = joined.analysis.graph.elements
+        self._readers: dict[int, frozenset[Key]] = {}
 
-    def of(self, channel: Key) -> frozenset[Key]:
-        if channel not in self._readers:
-            found: set[Key] = set()
-            seen, waiting = {channel}, [channel]
+    def of(self, vertex: int) -> frozenset[Key]:
+        if vertex not in self._readers:
+            boxes: set[Key] = set()
+            seen, waiting = {vertex}, [vertex]
             while waiting:
-                for there in self._joined.after(waiting.pop(), self._bits):
-                    if there in self._box_of:
-                        found.add(self._box_of[there])
-                    elif there not in seen:
-                        seen.add(there)
-                        waiting.append(there)
-            self._readers[channel] = frozenset(found)
-        return self._readers[channel]
+                here = waiting.pop()
+                if box := self._box_of.get(self._elements[here].identity):
+                    boxes.add(box)
+                    continue
+                new = set(self._joined.onward(here, self._bits)) - seen
+                seen |= new
+                waiting += new
+            self._readers[vertex] = frozenset(boxes)
+        return self._readers[vertex]
 
 
 BOUND = 30  # boxes

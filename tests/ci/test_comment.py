@@ -133,7 +133,7 @@ def test_who_reads_a_pull_request_can_write_nothing() -> None:
 
 def test_the_workflow_runs_what_is_there() -> None:
     inputs = yaml.safe_load(ACTION.read_text("utf-8"))["inputs"]
-    ours = [step["with"] for step in STEPS if step.get("uses", "").endswith("/rosprivacy@main")]
+    ours = [step["with"] for step in STEPS if step.get("uses", "").endswith("/rosprivacy@v0.2.0")]
     assert len(ours) == 2
     assert all(set(given) <= set(inputs) for given in ours)
     assert "pull_request_target" not in WORKFLOW[True]  # YAML reads 'on' so
