@@ -276,7 +276,7 @@ def _remark(rows: list[Mapping[str, Any]], index: Index) -> Remark:
     if len(messages) == 1:
         return Remark(place, severity, messages[0])
     begins = messages[0].rpartition(AND)[0] + AND
-    return Remark(place, severity, begins, tuple(message.removeprefix(begins) for message in messages))
+    return Remark(place, severity, begins.rstrip(), tuple(message.removeprefix(begins) for message in messages))
 
 
 class Typed(NamedTuple):

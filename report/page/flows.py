@@ -95,12 +95,21 @@ def _row(group: Sequence[PathEntry], index: Index) -> ToDecide:
         source=name_of(first["source"]),
         leak=name_of(first["leak"]),
         article9=entry.article9,
-        kinds=tuple(index.words(f"finding.{finding['kind']}") for finding in findings),
+        kinds=tuple(index.words(f"finding.{kind}") for kind in _kinds(findings, index)),
         spread=entry.spread,
         facts=tuple(_facts(findings, index)),
         persons=_persons(first, index) or index.words("not.stated"),
         entries=tuple(group),
     )
+
+
+def _kinds(findings: Sequence[Mapping[str, Any]], index: Index) -> Iterator[str]:
+    """What the findings are, and a transfer also where a basis is stated: that its place is in a third country."""
+    kinds = dict.fromkeys(finding["kind"] for finding in findings)
+    yield from kinds
+    abroad = any(index.outside.get(key(f["leak"]), {}).get("area", INSIDE) not in ("", INSIDE) for f in findings)
+    if abroad and THIRD_COUNTRY not in kinds:
+        yield THIRD_COUNTRY
 
 
 def _name(element: Mapping[str, Any], index: Index, *, many: bool) -> str:
