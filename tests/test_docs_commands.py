@@ -1,6 +1,6 @@
 """Every command that a page shows is one of the program, with options that it has; those of formats are run.
 
-What a command prints is held for each page by itself: ``test_docs.py``, ``test_paper.py``, ``test_case_studies.py``, …
+What a command prints is held for each page by itself, and ``test_docs_runs.py`` runs the commands of the others.
 """
 
 from __future__ import annotations
