@@ -104,8 +104,8 @@ def reported(folder: Path) -> None:
 
 LAID_OUT: dict[str, tuple[Callable[[Path], None], ...]] = {
     "annotations": (annotated,), "changes": (fleet, checkout), "decisions": (), "edpb": (fleet,),
-    "keystores": (deployed,), "labels": (), "linked-data": (), "lint": (), "mitigation": (), "observe": (observed,), "report": (reported,),
-    "scan": (labelled_checkout,), "suggestions": (suggested,),
+    "keystores": (deployed,), "labels": (), "linked-data": (), "lint": (), "mitigation": (),
+    "observe": (observed,), "report": (reported,), "scan": (labelled_checkout,), "suggestions": (suggested,),
 }  # fmt: skip
 
 
