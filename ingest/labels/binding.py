@@ -14,6 +14,7 @@ from rosprivacy.analysis.durations import ordered
 from rosprivacy.analysis.errors import InputError, InputErrors, LabelError, shown
 from rosprivacy.analysis.many_flows import at_most, leaving, parted
 from rosprivacy.analysis.model import (
+    NON_ROS,
     NOWHERE,
     PARTICIPANT,
     TYPE_LINE,
@@ -121,10 +122,14 @@ class Unmatched:
 
 
 def misnamed(names: GraphNames, labels: Iterable[Labels]) -> list[LabelError]:
-    """Return the errors for names of elements that match nothing, in files that could not be read whole."""
+    """Return the errors for names of elements of ROS that match nothing, in files that could not be read whole.
+
+    What lies outside ROS is stated by these files themselves.
+    """
     unmatched = Unmatched(names)
+    kinds = names.by_kind.keys() - set(NON_ROS)
     entries = (entry for file in labels if not file.shipped for entry in file.entries)
-    of_ros = (entry for entry in entries if not names.by_kind.keys().isdisjoint(entry.kinds))
+    of_ros = (entry for entry in entries if not kinds.isdisjoint(entry.kinds))
     return [unmatched.of_entry(entry) for entry in of_ros if not names.matching(entry.name, entry.kinds)]
 
 

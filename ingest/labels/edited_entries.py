@@ -131,7 +131,7 @@ def edited(labels: Labels, edits: Sequence[SaidOfElement], how: WrittenEntries) 
         elements = _elements(elements, one, reader.elements)
     read = tuple(entry for some in entries.values() for entry in some)
     if problems:
-        raise LabelErrors(problems, (replace(labels, entries=read),))
+        raise LabelErrors(problems, (replace(labels, entries=read, elements=tuple(elements)),))
     digest = hashlib.sha256(json.dumps([labels.sha256, edits], sort_keys=True, default=str).encode()).hexdigest()
     return replace(
         labels,

@@ -120,9 +120,12 @@ def test_an_edit_with_a_wrong_key_at_a_wrong_name_is_told_of_both() -> None:
         '<policy version="0.2.0"><enclaves><enclave path="/e"><profiles><profile ns="/" node="n0">'
         '<topics publish="ALLOW"><topic>/b</topic></topics></profile></profiles></enclave></enclaves></policy>'
     )
-    held(
-        Written(policy, "labels: 1\nnodes:\n  /n0: {source: [Video]}\n", ()), [Edit("nodes", "/m", {"leek": ["Video"]})]
-    )
+    wrong = Edit("nodes", "/m", {"leek": ["Video"]})
+    new = Edit("elements", "cloud", {"kind": "storage", "leak": ["Video"]})
+    labels = "labels: 1\nnodes:\n  /n0: {source: [Video]}\n"
+    disk = "elements:\n  disk: {kind: storage}\nflows:\n  - {from: /n0, to: disk}\n"
+    for text in (labels, labels + disk):
+        held(Written(policy, text, ()), [new, wrong])
 
 
 def held(system: Written, deeds: list[Edit | str]) -> None:

@@ -83,6 +83,7 @@ def test_json_and_csv_for_users_are_written_in_one_place_each() -> None:
                 csv.add(place)
     assert csv == {"report/spreadsheet.py"}
     assert raw - {"report/json_text.py"} == {
+        "ingest/decisions/decision_chain.py",  # a line of the log, which is hashed as it is written
         "ingest/labels/label_file.py",  # read again at once
         "ingest/labels/label_writer.py",  # a label file of the user's, written back
         "src/rosprivacy/cli/init.py",  # names in a project file, which are printable, and an author that is made so
