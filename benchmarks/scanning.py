@@ -1,28 +1,25 @@
 """What a scan of a checkout costs: it grows with the checkout and no faster, and is some times parsing alone.
 
 A workspace of packages in Python and C++ (``source_code.py`` says which), each with its manifest, what it installs and
-a launch file that starts its nodes. A scan is all from the folder to its
-systems. Parsing alone is what Python's own parser and tree-sitter take for the code and the launch files.
+a launch file that starts its nodes. A scan is all from the folder to its systems. Parsing alone is what Python's own
+parser and tree-sitter take for the code and the launch files.
 """
 
 from __future__ import annotations
 
-from functools import partial
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
-from measure import Row, timed, timed_or_counted
-from source_code import parsing, workspace
+from source_code import rows_of, workspace
 
 from rosprivacy.ingest.scan.checkout import read_checkout, systems_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+    from pathlib import Path
 
-    from measure import Measured
+    from measure import Row
 
-LINEAR, TIMES_PARSING = 1.5, 15.0
+TIMES_PARSING = 15.0
 FEW, TIMES = 13, 10  # packages of eight files; the large workspace has so many times more
 MANIFEST = "<package><name>p{0}</name><exec_depend>rclpy</exec_depend><depend>rclcpp</depend></package>\n"
 SETUP = "from setuptools import setup\nsetup(name='p{0}', entry_points={{'console_scripts': ['node = p.node:main']}})\n"
@@ -44,12 +41,7 @@ FILES = (
 
 def rows(*, quick: bool) -> Iterator[Row]:
     """Declare what is measured."""
-    rounds = 3 if quick else 7
-    with TemporaryDirectory() as folder:
-        few, many = (checkout(Path(folder) / str(count), count) for count in (FEW, FEW * TIMES))
-        what = f"scanning {FEW * TIMES} packages"
-        yield Row(what, f"{TIMES} times {FEW}", partial(grown, many, few, rounds, quick=quick), LINEAR, counts=quick)
-        yield Row(what, "parsing them", partial(beside_parsing, many, rounds), bound=TIMES_PARSING)
+    yield from rows_of(f"scanning {FEW * TIMES} packages", checkout, scan, (FEW, TIMES), TIMES_PARSING, quick=quick)
 
 
 def checkout(folder: Path, packages: int) -> str:
@@ -61,16 +53,6 @@ def checkout(folder: Path, packages: int) -> str:
             file.parent.mkdir(exist_ok=True)
             file.write_text(text.format(number), "utf-8")
     return str(folder)
-
-
-def grown(many: str, few: str, rounds: int, *, quick: bool) -> Measured:
-    """Compare a large checkout against a small one that is scanned as often as it is larger."""
-    return timed_or_counted(rounds, lambda: scan(many), lambda: [scan(few) for _ in range(TIMES)], quick=quick)
-
-
-def beside_parsing(many: str, rounds: int) -> Measured:
-    """Time a scan against what parses the code."""
-    return timed(rounds, lambda: scan(many), parsing(many))
 
 
 def scan(folder: str) -> object:

@@ -21,8 +21,6 @@ from rosprivacy.labelling.knowledge import code_said
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from measure import Measured
-
 LINEAR, TIMES_PARSING = 1.5, 25.0
 FEW, TIMES = 25, 4  # packages; the large workspace has so many times more
 METHODS = 20  # of a class
@@ -46,12 +44,33 @@ FUNCTION = "void Show{0}::m{1}(int x) {{ std::vector<int> y; for (int i = 0; i <
 
 def rows(*, quick: bool) -> Iterator[Row]:
     """Declare what is measured."""
+    what = f"reading {FEW * TIMES} packages of source code"
+    yield from rows_of(what, workspace, told, (FEW, TIMES), TIMES_PARSING, quick=quick)
+
+
+def rows_of(
+    what: str,
+    made: Callable[[Path, int], str],
+    read: Callable[[str], object],
+    few_and_times: tuple[int, int],
+    times_parsing: float,
+    *,
+    quick: bool,
+) -> Iterator[Row]:
+    """Declare the two rows of whatever reads source code: against so many times fewer packages, and against parsing.
+
+    ``made`` writes so many packages into a folder and returns its name, ``read`` does with it what is measured.
+    """
+    few, times = few_and_times
     rounds = 3 if quick else 7
     with TemporaryDirectory() as folder:
-        few, many = (workspace(Path(folder) / str(count), count) for count in (FEW, FEW * TIMES))
-        what = f"reading {FEW * TIMES} packages of source code"
-        yield Row(what, f"{TIMES} times {FEW}", partial(grown, many, few, rounds, quick=quick), LINEAR, counts=quick)
-        yield Row(what, "parsing them", partial(beside_parsing, many, rounds), bound=TIMES_PARSING)
+        small, large = (made(Path(folder) / str(count), count) for count in (few, few * times))
+        grown = partial(
+            timed_or_counted, rounds, partial(read, large), lambda: [read(small) for _ in range(times)], quick=quick
+        )
+        yield Row(what, f"{times} times {few}", grown, LINEAR, counts=quick)
+        beside = partial(timed, rounds, partial(read, large), parsing(large))
+        yield Row(what, "parsing them", beside, bound=times_parsing)
 
 
 def workspace(folder: Path, packages: int) -> str:
@@ -68,16 +87,6 @@ def workspace(folder: Path, packages: int) -> str:
             (package / name).parent.mkdir(parents=True, exist_ok=True)
             (package / name).write_text(text, "utf-8")
     return str(folder)
-
-
-def grown(many: str, few: str, rounds: int, *, quick: bool) -> Measured:
-    """Compare a large workspace against a small one that is read as often as it is larger."""
-    return timed_or_counted(rounds, lambda: told(many), lambda: [told(few) for _ in range(TIMES)], quick=quick)
-
-
-def beside_parsing(many: str, rounds: int) -> Measured:
-    """Time a workspace against what parses it."""
-    return timed(rounds, lambda: told(many), parsing(many))
 
 
 def parsing(folder: str) -> Callable[[], None]:

@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 SETTLED = ("accepted", "dismissed")  # the others, in the order in which a card has them
 NAMES = 3  # kinds that the heading of a card names one by one
 LINKS = 6  # entries that a line leads to
-OCCASIONAL = "occasional"  # of a derogation: Article 49
 STATE = "state"  # its title is that of decisions
 OF_PLACE = ("element", "file", "line", "holds", "missing", "without_limit")  # what does not tell recipients apart
 
@@ -292,7 +291,7 @@ def _stated(leak: Mapping[str, Any], findings: Sequence[Mapping[str, Any]], inde
         ("recipient", words.row(recipient), True),
         ("country", country(row, index.words), True),
         ("transfer", words.of_value(f"transfer.{transfer}", transfer) if transfer else "", leaves),
-        ("occasional", "", OCCASIONAL in row.get("missing", ())),
+        ("occasional", "", "occasional" in row.get("missing", ())),
         ("contract", fit(row.get("contract", "")), role in ("", *WITH_A_CONTRACT)),
         ("retention", retention({"retention": durations}, index), keeps),
     ]
