@@ -22,7 +22,7 @@ fuzz: $(VENV)/installed-dev
 
 $(VENV)/installed: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --editable .
+	$(BIN)/python -m pip install --quiet --editable '.[code]'
 	$(BIN)/python -m pip install --quiet --only-binary pygraphviz --editable '.[views]' || \
 		echo "Graphviz has no wheel for this machine: pictures are missing (docs/views.md, Formats)"
 	touch $@
