@@ -87,7 +87,8 @@ def test_what_a_provision_is_about_stands_once(system: dict[str, Any], language:
     shown = plain(page(system, language).text_content())
     for row in looked_at(system):
         name, title, meaning = (plain(text(row, field, language)) for field in ("provision", "title", "meaning"))
-        assert len(re.findall(rf"{re.escape(name)}[{SIGNS}]?\s?: {re.escape(title)}", written)) == 1
+        if title not in name:
+            assert len(re.findall(rf"{re.escape(name)}[{SIGNS}]?\s?: {re.escape(title)}", written)) == 1
         assert shown.count(meaning) == 1
 
 
