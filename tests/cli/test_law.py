@@ -30,7 +30,7 @@ __all__ = ["cli"]
         ),
         (
             "de",
-            "EuGH C-21/23: ND gegen DR (Lindenapotheke), 4. Oktober 2024: Bestellungen von Arzneimitteln (reviewed 2026-11-21)",
+            "EuGH C-21/23: ND gegen DR (Lindenapotheke), 4. Oktober 2024: Bestellungen von Arzneimitteln (reviewed",
         ),
         ("fr", "art. 88 RGPD: Traitement de données dans le cadre des relations de travail (reviewed 2026-11-21)"),
     ],
