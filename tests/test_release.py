@@ -17,6 +17,7 @@ from tests.helpers.paths import ROOT
 if TYPE_CHECKING:
     from types import ModuleType
 
+pytest.importorskip("tomllib", reason="the check before a release needs Python 3.11")
 SCHEMAS = {
     "vendor.github-workflows": [".github/workflows/*.yml", "examples/ci/*.yml"],
     "vendor.github-actions": ["action.yml"],

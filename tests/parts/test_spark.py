@@ -424,7 +424,8 @@ def test_nothing_of_a_checkout_is_run(checkout: Path, folder: str) -> None:
     variables = {
         name: value for name, value in os.environ.items() if not name.startswith(("PYTHON", "SPARK", "PYSPARK"))
     }
-    command = [sys.executable, "-P", "-m", "rosprivacy", "analyze", "--fleet", FILE, "--engine", "spark"]
+    program = str(Path(sys.executable).with_name("rosprivacy"))  # with an option such as -P its processes had that, too
+    command = [program, "analyze", "--fleet", FILE, "--engine", "spark"]
     done = subprocess.run(
         command,
         cwd=checkout / folder,
@@ -492,7 +493,7 @@ def test_on_a_cluster_an_executor_may_be_killed(cluster: tuple[str, list[int]], 
     environment = {
         name: value for name, value in os.environ.items() if not name.startswith(("PYTHON", "SPARK", "PYSPARK"))
     }
-    command = [sys.executable, "-P", "-m", "rosprivacy", "analyze", "--fleet", FILE, "--format", "json"]
+    command = [str(Path(sys.executable).with_name("rosprivacy")), "analyze", "--fleet", FILE, "--format", "json"]
     answers = []
     for spark_options in ([], ["--engine", "spark", "--master", address]):
         process = subprocess.Popen(

@@ -17,6 +17,7 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
+from multiprocessing import util
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from threading import Thread
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
     from rosprivacy.parts.kept_parts import KeptParts
     from rosprivacy.parts.units import Unit
 
-SAFE_PATH = {"PYTHONSAFEPATH": "1"}  # as ``python -P``: the current folder is not searched for modules
+SAFE_PATH = {"PYTHONSAFEPATH": "1"}  # from Python 3.11 on: the current folder is not searched for modules
 UNITS = 50  # to a part: a process holds it easily, and there are parts enough for many processors
 KILLED = (
     "--engine parts: a process ended before its part was done, as by a lack of memory; "
@@ -106,6 +107,22 @@ def environment(changed: Mapping[str, str]) -> Iterator[None]:
 
 
 @contextmanager
+def safe_path() -> Iterator[None]:
+    """Keep processes that Python starts in the block from running modules of the current folder, as ``python -P``."""
+    with environment(SAFE_PATH):
+        if sys.version_info >= (3, 11):
+            yield
+            return
+        # Python 3.10 does not know the variable, and it has no public way to start its processes with ``-I``.
+        given = util._args_from_interpreter_flags  # type: ignore[attr-defined]  # noqa: SLF001
+        util._args_from_interpreter_flags = lambda: ["-I", *given()]  # type: ignore[attr-defined]  # noqa: SLF001
+        try:
+            yield
+        finally:
+            util._args_from_interpreter_flags = given  # type: ignore[attr-defined]  # noqa: SLF001
+
+
+@contextmanager
 def processes(
     progress: Callable[[Sequence[str]], Iterable[str]], resumed: KeptParts | None = None
 ) -> Iterator[Callable[[Sequence[Unit]], LocalParts]]:
@@ -117,7 +134,7 @@ def processes(
         In the block, if a process ends before its part is done.
     """
     context = multiprocessing.get_context("spawn")  # a copy of this process would have its threads' locks, too
-    with TemporaryDirectory(prefix="rosprivacy-parts-") as folder, environment(SAFE_PATH):
+    with TemporaryDirectory(prefix="rosprivacy-parts-") as folder, safe_path():
         pool = ProcessPoolExecutor(_processors(), context, _begin, (folder,))
         try:
             yield partial(_scattered, pool, Path(folder), progress, resumed)

