@@ -22,7 +22,7 @@ fuzz: $(VENV)/installed-dev
 
 $(VENV)/installed: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --editable '.[code]'
+	$(BIN)/python -m pip install --quiet --editable '.[code,ontology]'
 	$(BIN)/python -m pip install --quiet --only-binary pygraphviz --editable '.[views]' || \
 		echo "Graphviz has no wheel for this machine: pictures are missing (docs/views.md, Formats)"
 	touch $@
@@ -38,8 +38,8 @@ $(VENV)/installed-dev: pyproject.toml
 # What the GitHub Action and the image install, with the hashes of all files, what builds rosprivacy itself, and the
 # tools of a release. Needs uv.
 locks:
-	echo 'setuptools>=77' | $(LOCK) pyproject.toml - --output-file requirements.lock
-	printf 'setuptools>=77\nneo4j-rust-ext>=5.26\n' | $(LOCK) pyproject.toml - --extra views --output-file docker/requirements.lock
+	echo 'setuptools>=77' | $(LOCK) pyproject.toml - --extra ontology --output-file requirements.lock
+	printf 'setuptools>=77\nneo4j-rust-ext>=5.26\n' | $(LOCK) pyproject.toml - --extra ontology --extra views --output-file docker/requirements.lock
 	printf 'build\ncheck-wheel-contents\ncyclonedx-bom\npip\ntwine\n' | $(LOCK) - --output-file .ci/release.lock
 
 clean:

@@ -19,7 +19,7 @@ from rosprivacy.ontology.pointed import Pointed
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-FORMAT = 12  # one more when what is kept, or what is refused, changes
+FORMAT = 13  # one more when what is kept, or what is refused, changes
 
 
 def default_folder() -> Path:

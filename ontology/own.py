@@ -1,6 +1,6 @@
 """Users' own ontologies: read, checked against the shapes and against ours, each problem named with its subject.
 
-In: a Turtle file and what is known. Out: what is known with its categories. Heavy: rdflib and pyshacl.
+In: a Turtle file and what is known. Out: what is known with its categories. Heavy: rdflib and pyshacl (an extra).
 """
 
 from __future__ import annotations

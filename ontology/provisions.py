@@ -15,10 +15,13 @@ from rdflib import DCTERMS, RDF, RDFS, SKOS, URIRef
 from rosprivacy.ontology.turtle import ENGLISH, RP, first_texts, read
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from rdflib import Graph
     from rdflib.term import Node
 
 FILES = ("law.ttl", "other_law.ttl")
+SIGNS = "(),.;:†‡§¶"  # beside the words of a citation
 MONTHS = 6  # after which a person has to look whether the law is still as it was read
 
 
@@ -28,6 +31,8 @@ class Provision:
 
     Attributes
     ----------
+    identifier
+        As findings cite it, in English.
     name
         As findings cite it in the language.
     meaning
@@ -41,6 +46,7 @@ class Provision:
         know of it is what others write.
     """
 
+    identifier: str
     name: str
     title: str
     meaning: str
@@ -86,6 +92,21 @@ def provisions(language: str = ENGLISH) -> tuple[Provision, ...]:
     )
 
 
+def provisions_named(provisions: Iterable[Provision], words: str) -> tuple[Provision, ...]:
+    """Return those that have all words in what they are called; signs at the ends of words do not count.
+
+    >>> [one.name for one in provisions_named(provisions("de"), "art. 32 dsgvo (sicherheit)")]
+    ['Art. 32 DSGVO']
+    """
+    wanted = {word.strip(SIGNS) for word in words.casefold().split()} - {""}
+
+    def called(provision: Provision) -> set[str]:
+        texts = (provision.identifier, provision.name, provision.title)
+        return {word.strip(SIGNS) for text in texts for word in text.casefold().split()}
+
+    return tuple(provision for provision in provisions if wanted <= called(provision))
+
+
 def is_old(as_of: str, today: str) -> bool:
     """Whether a day lies more than six months before another; both ``YYYY-MM-DD``.
 
@@ -99,6 +120,7 @@ def is_old(as_of: str, today: str) -> bool:
 
 def _provision(graph: Graph, subject: Node, language: str) -> Provision:
     return Provision(
+        str(graph.value(subject, RP.identifier)),
         _text(graph, subject, DCTERMS.bibliographicCitation, language),
         _text(graph, subject, DCTERMS.title, language),
         _text(graph, subject, SKOS.definition, language),

@@ -254,14 +254,14 @@ def _situation(graph: Graph, subject: Node) -> Situation:
 
 
 def _cited(graph: Graph, provision: Node) -> dict[str, str]:
-    """How a provision is cited in each language; an article with what it is about."""
+    """How a provision is cited in each language; with what it is about where its identifier says that, too."""
     citations, titles = (
         first_texts(graph, provision, DCTERMS.bibliographicCitation),
         first_texts(graph, provision, DCTERMS.title),
     )
-    article = str(graph.value(provision, RP.kind)) == "article"
+    titled = _identifier(graph, provision).endswith(f" {titles.get(ENGLISH)}")
     return {
-        language: f"{cited} ({titles[language]})" if article and language in titles else cited
+        language: f"{cited} ({titles[language]})" if titled and language in titles else cited
         for language, cited in citations.items()
     }
 

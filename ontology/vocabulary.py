@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 from functools import lru_cache, wraps
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Concatenate, NamedTuple, ParamSpec, TypeVar
 
@@ -15,6 +16,7 @@ from rosprivacy.analysis.contexts import surrounded
 from rosprivacy.analysis.errors import InputErrors, OntologyError, reason
 from rosprivacy.analysis.files_read import noted
 from rosprivacy.analysis.hierarchy import Hierarchy
+from rosprivacy.analysis.installing import command_for
 from rosprivacy.analysis.legal import close
 from rosprivacy.analysis.written_names import FEW, did_you_mean, nearest
 from rosprivacy.ontology import cache as kept
@@ -32,6 +34,7 @@ LARGEST = 4 * 2**20  # bytes of a user's file
 REMEMBERED = 8  # vocabularies that are remembered, and what was made for them: of a program that asks many times
 P = ParamSpec("P")
 T = TypeVar("T")
+CHECKER = "pyshacl"  # an extra, for ontologies of users; what it has passed is in the cache
 TOP = "PersonalData"
 SHIPPED = ("categories.ttl", "law.ttl", "other_law.ttl", "contexts.ttl", "persons.ttl", "elements.ttl", "dpv.ttl")
 PREFIXES = {
@@ -158,7 +161,7 @@ def load(cache: Path | None = None, ontologies: Sequence[str] = ()) -> Vocabular
     Raises
     ------
     InputErrors
-        If an ontology breaks a rule.
+        If an ontology breaks a rule, or cannot be checked.
     """
     shipped = tuple((FOLDER / name).read_bytes() for name in SHIPPED)
     own = tuple((file, _read(file)) for file in dict.fromkeys(ontologies))
@@ -229,7 +232,10 @@ def _shipped(texts: tuple[bytes, ...]) -> tuple[Known, dict[str, str]]:
     return Known(graph, categories_of(graph)), respelt_of(graph)
 
 
-def _parse(shipped: tuple[bytes, ...], own: Iterable[tuple[str, bytes]]) -> kept.CachedOntology:
+def _parse(shipped: tuple[bytes, ...], own: Sequence[tuple[str, bytes]]) -> kept.CachedOntology:
+    if own and find_spec(CHECKER) is None:
+        hint = f"install it: {command_for('ontology')}"
+        raise InputErrors([OntologyError(own[0][0], 0, f"cannot be checked, since {CHECKER} is not installed", hint)])
     known, respelt = _shipped(shipped)
     problems = []
     for file, data in own:

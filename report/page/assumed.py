@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rosprivacy.analysis.model import MAY_REVEAL
+from rosprivacy.analysis.model import MAY_REVEAL, OWN_DOMAINS
 from rosprivacy.analysis.text import fit, printable
 from rosprivacy.report.document.ledger import hanging_labels
 from rosprivacy.report.finding_facts import grouped
@@ -18,7 +18,7 @@ from rosprivacy.report.observed_lines import observed_lines
 from rosprivacy.report.page.hanging import Hanging, hanging
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Mapping
 
     from rosprivacy.report.page.index import Index
 
@@ -104,8 +104,6 @@ def assumed(index: Index) -> Iterator[str]:
         )
     if said.get("article9_only"):
         yield words(f"assumption.article9.{said.get('article9_level', MAY_REVEAL)}")
-    if taken := said.get("backups_taken_as_none"):
-        yield words("assumption.backups", names=words.row(map(name, taken)))
     for category, kinds in said.get("may_be_asked", {}).items():
         yield words("assumption.broader", data=index.data(category), kinds=index.all_data(kinds))
     if "database" in said:
@@ -133,7 +131,7 @@ def _standard(index: Index) -> str:
     if not taken:
         return index.words("assumption.standard.none")
     channels = index.words.count(index.document["standard_channels"], "channel")
-    said = {"channels": channels, "file": fit(taken["file"]), "sha": taken["sha256"][:12]}
+    said = {"channels": channels, "file": fit(taken["file"])}
     if proposed := infrastructure_file(index.document["assumptions"]):
         return index.words("assumption.standard.proposed", **said, proposed=proposed)
     return index.words("assumption.standard", **said)
@@ -144,7 +142,8 @@ def _stopped(index: Index) -> Iterator[str]:
     words, said = index.words, index.document["assumptions"]
     reached = said.get("standard_channels_reached", ())
     if reached:
-        yield words("assumption.standard.reached", rows="; ".join(_reached(reached, index)))
+        names = index.names_and_nodes(row["element"] for row in reached)
+        yield words("assumption.standard.reached", names=words.row(names))
     if kept := [row for row in reached if row.get("keeps_from")]:
         yield words("assumption.standard.keeps", rows="; ".join(_kept_away(row, index) for row in kept))
     if unchanged := said.get("standard_channels_unchanged", ()):
@@ -166,15 +165,9 @@ def _stopped(index: Index) -> Iterator[str]:
         )
 
 
-def _reached(rows: Sequence[Mapping[str, Any]], index: Index) -> Iterator[str]:
-    for same in grouped(rows, lambda row: tuple(row["categories"])):
-        names = index.words.row(index.names_by_node([row["element"] for row in same]))
-        yield index.words.pair(index.all_data(same[0]["categories"]), names)
-
-
 def _kept_away(row: Mapping[str, Any], index: Index) -> str:
     ends = {"element": name(row["element"]), "end": name(row["keeps_from"])}
-    return index.words("assumption.standard.keeps.one", data=index.all_data(row["categories"]), **ends)
+    return index.words("assumption.standard.keeps.one", **ends)
 
 
 def _globs(index: Index) -> Iterator[str]:
@@ -223,14 +216,16 @@ def _type(kind: str, index: Index) -> str:
 def _outside(index: Index) -> Iterator[str]:
     words, said = index.words, index.document["assumptions"]
     taken = said.get("taken_by_kind", {})
-    for kinds in grouped(taken, taken.__getitem__):
-        names = words.row(words.kind({"kind": kind}) for kind in kinds)
-        yield words("assumption.kinds", kind=names, role=words(f"assumption.kinds.{taken[kinds[0]]}"))
+    if taken:
+        rows = (
+            words.pair(
+                words.row(words.kind({"kind": kind}) for kind in kinds), words(f"assumption.kinds.{taken[kinds[0]]}")
+            )
+            for kinds in grouped(taken, taken.__getitem__)
+        )
+        yield words("assumption.kinds", rows="; ".join(rows))
     if "countries_as_of" in said:
         yield words("assumption.countries", date=words.date(said["countries_as_of"]))
-    for row in index.outside.values():
-        if row.get("without_limit"):
-            yield words("assumption.limit", element=name(row["element"]), data=index.all_data(row["without_limit"]))
 
 
 def _unstated(index: Index) -> Iterator[str]:
@@ -256,9 +251,13 @@ def files(index: Index) -> tuple[File, ...]:
 
 
 def remarks(index: Index) -> tuple[Remark, ...]:
-    """Return what was said of the files, warnings before notices; what begins alike at one line is one."""
+    """Return what was said of the files, warnings before notices; what begins alike at one line is one.
+
+    Robots that share a domain are an assumption already.
+    """
     order = {"error": 0, "warning": 1, "notice": 2}
-    rows = sorted(index.document["diagnostics"], key=lambda row: order[row["severity"]])
+    rows = [row for row in index.document["diagnostics"] if row.get("code") != OWN_DOMAINS]
+    rows.sort(key=lambda row: order[row["severity"]])
     return tuple(_remark(same, index) for same in grouped(rows, _beginning))
 
 

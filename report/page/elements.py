@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from rosprivacy.report.page.finding_entries import PathEntry
     from rosprivacy.report.page.index import Index
 
-ALL_OF_IT = {"conduit": "role.conduit.all", "source": "role.source.it"}  # what can be said of all that gets there
+ELSEWHERE = ("source", "sanitizer", "derivation")  # roles that other sections have
 PASSES = ("conduit", "sanitizer")  # what is said of data that may never get there
 
 
@@ -40,6 +40,8 @@ class ElementItem(NamedTuple):
         How many have it.
     roles
         What labels say of it, one text for each role.
+    marks
+        Those of them that no other section has: sources stand at their kinds, what cleans and makes data apart.
     reviewed
         Whether labels cover all kinds of data that get there.
     """
@@ -49,6 +51,7 @@ class ElementItem(NamedTuple):
     robots: int
     data: str
     roles: tuple[str, ...]
+    marks: tuple[str, ...]
     reviewed: bool
 
 
@@ -127,6 +130,7 @@ def items(index: Index) -> tuple[ElementItem, ...]:
 def _item(group: list[Mapping[str, Any]], entry: Mapping[Any, Any], open_at: set[Any], index: Index) -> ElementItem:
     row, words = group[0], index.words
     element, at = row["element"], key(row["element"])
+    roles = {role: _role_text(role, of, row, index) for role, of in entry.get(at, {}).items()}
     hidden = [index.data(category, pseudonymised=True) for category in row["pseudonymised"]]
     robots = weight((row["element"]["robot"] for row in group), index.alike)
     return ElementItem(
@@ -134,15 +138,16 @@ def _item(group: list[Mapping[str, Any]], entry: Mapping[Any, Any], open_at: set
         kind=words.kind(element),
         robots=robots,
         data=words.row([*(_category_held(at, category, index) for category in row["categories"]), *hidden]),
-        roles=tuple(_role_text(role, c, row, index) for role, c in entry.get(at, {}).items()),
+        roles=tuple(filter(None, roles.values())),
+        marks=tuple(text for role, text in roles.items() if text and role not in ELSEWHERE),
         reviewed=at not in open_at,
     )
 
 
 def _role_text(role: str, categories: Sequence[str], row: Mapping[str, Any], index: Index) -> str:
-    """What labels say of an element; where it is of all that gets there, or of every kind, the kinds are not named."""
-    if role in ALL_OF_IT and set(categories) == {*row["categories"], *row["pseudonymised"]}:
-        return index.words(ALL_OF_IT[role])
+    """What labels say of an element; kinds are not named where it is of all of them; nothing where it passes on all."""
+    if role in ("conduit", "source") and set(categories) == {*row["categories"], *row["pseudonymised"]}:
+        return index.words("role.source.it") if role == "source" else ""
     if role == "leak" and categories[1:] and set(categories) == set(index.categories):
         return index.words("role.leak.all")
     return index.words(f"role.{role}", data=index.all_data(categories))
@@ -155,10 +160,10 @@ def _category_held(at: Key, category: str, index: Index) -> str:
 
 
 def unreached_names(index: Index) -> tuple[tuple[str, int, tuple[str, ...]], ...]:
-    """Return the elements that no data gets to: kind, how many names there are, names; services of a node are one."""
+    """Return the elements that no data gets to: kind, number of names, names; of parameter services their number."""
     groups = grouped(index.document["unreached"], lambda element: element["kind"])
     return tuple(
-        (index.words.kind({"kind": some[0]["kind"]}), len(index.names(some)), index.names_by_node(some))
+        (index.words.kind({"kind": some[0]["kind"]}), len(index.names(some)), index.names_and_nodes(some))
         for some in groups
     )
 

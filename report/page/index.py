@@ -177,17 +177,15 @@ class Index:
 
     def names_by_node(self, elements: Iterable[Mapping[str, Any]]) -> tuple[str, ...]:
         """Return the same, where all parameter services of a node are one."""
-        elements = list(elements)
-        services: dict[Any, set[str]] = {}
-        for element in elements:
-            if node := node_of_service(element):
-                services.setdefault(node, set()).add(element["name"].rpartition("/")[2])
-        whole = {node for node, names in services.items() if names == PARAMETER_SERVICES.keys()}
-        names = self.names(element for element in elements if node_of_service(element) not in whole)
-        nodes = self.names(
-            {"robot": robot, "kind": "node", "name": node} for robot, node in services if (robot, node) in whole
-        )
-        return (*([self.words("services", nodes=self.words.row(nodes))] if nodes else []), *names)
+        nodes, others = whole_nodes(elements)
+        of_nodes = self.names({"robot": robot, "kind": "node", "name": node} for robot, node in nodes)
+        return (*([self.words("services", nodes=self.words.row(of_nodes))] if nodes else []), *self.names(others))
+
+    def names_and_nodes(self, elements: Iterable[Mapping[str, Any]]) -> tuple[str, ...]:
+        """Return the same, where parameter services are named by the number of their nodes alone."""
+        nodes, others = whole_nodes(elements)
+        number = self.words.count(weight((robot for robot, _ in nodes), self.alike), "node")
+        return (*([self.words("services", nodes=number)] if nodes else []), *self.names(others))
 
 
 def state(finding: Mapping[str, Any]) -> str:
@@ -205,6 +203,19 @@ def node_of_service(element: Mapping[str, Any]) -> tuple[str, str] | None:
     """
     node, _, service = element["name"].rpartition("/")
     return (element["robot"], node) if element["kind"] == "service" and service in PARAMETER_SERVICES else None
+
+
+def whole_nodes(
+    elements: Iterable[Mapping[str, Any]],
+) -> tuple[tuple[tuple[str, str], ...], tuple[Mapping[str, Any], ...]]:
+    """Return the nodes of which all parameter services are among the elements, as (robot, name), and the others."""
+    elements = tuple(elements)
+    services: dict[tuple[str, str], set[str]] = {}
+    for element in elements:
+        if node := node_of_service(element):
+            services.setdefault(node, set()).add(element["name"].rpartition("/")[2])
+    whole = tuple(node for node, names in services.items() if names == PARAMETER_SERVICES.keys())
+    return whole, tuple(element for element in elements if node_of_service(element) not in whole)
 
 
 def anchor(finding_id: str) -> str:

@@ -7,7 +7,6 @@ finding first, then the others, in the document's order.
 from __future__ import annotations
 
 from collections import Counter
-from operator import attrgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.text import fit, printable
@@ -25,6 +24,7 @@ if TYPE_CHECKING:
     from rosprivacy.report.page.index import Index
     from rosprivacy.report.page.look_at import FurtherLaw
 
+SIGNS = "†‡§¶"  # of notes
 NARROWER = "⊇ "  # how the ontology writes, in other languages than English: if the data are of one of these kinds
 
 
@@ -53,28 +53,26 @@ class ProvisionOnce(NamedTuple):
 
     Attributes
     ----------
-    reviewed
-        When we read it; empty where it is when most of the list was read.
+    dates
+        When we read it, where that is not when most of the list was read; from when on it applies.
+    unconfirmed
+        That a change of it is not confirmed; empty if it is.
     contexts
         (why it is to be looked at in a context, of which kinds of data).
+    at_kinds
+        Whether kinds of data point at it: then its title and its dates stand there.
+    narrower
+        Whether it is a part of another of the list, of which kinds of data say when it applies.
     """
 
     name: str
     title: str
     meaning: str
-    reviewed: str
-    applies: str
+    dates: str
+    unconfirmed: str
     contexts: tuple[tuple[str, str], ...]
-
-    @property
-    def numbered(self) -> bool:
-        """Whether the title is the name of an act or a judgment, which the meaning does not say."""
-        return any(map(str.isdigit, self.title))
-
-    @property
-    def dates(self) -> str:
-        """What is to be told of its dates, in a row."""
-        return "; ".join(filter(None, (self.reviewed, self.applies)))
+    at_kinds: bool
+    narrower: bool
 
 
 class ProvisionGroup(NamedTuple):
@@ -92,12 +90,16 @@ class ProvisionList(NamedTuple):
     reviewed
         When most of them were read.
     unconfirmed
-        (that a change is not confirmed, the names of the provisions).
+        What is said of those of which a change is not confirmed: notes, each once.
     """
 
     reviewed: str
     groups: tuple[ProvisionGroup, ...]
-    unconfirmed: tuple[tuple[str, str], ...]
+    unconfirmed: tuple[str, ...]
+
+    def mark(self, note: str) -> str:
+        """Return the sign of a note, which stands after the name of a provision; empty for no note."""
+        return SIGNS[self.unconfirmed.index(note) % len(SIGNS)] if note else ""
 
 
 class KindEntry(NamedTuple):
@@ -118,7 +120,7 @@ class KindEntry(NamedTuple):
     in_context
         (what a context is called, what such data may reveal there).
     look_at
-        Further provisions to look at.
+        Further provisions to look at; the title of each stands at the first kind that points at it.
     """
 
     name: str
@@ -187,7 +189,14 @@ def kinds(index: Index, entries: Iterable[PathEntry]) -> tuple[KindEntry, ...]:
         _kind(category, index, tuple(by_category.get(category["name"], ())))
         for category in index.document["categories"]
     ]
-    return tuple(sorted(made, key=lambda kind: kind.entries[0].number if kind.entries else len(index.findings) + 1))
+    made.sort(key=lambda kind: kind.entries[0].number if kind.entries else len(index.findings) + 1)
+    first = {look: kind.name for kind in reversed(made) for look in kind.look_at}
+    return tuple(
+        kind._replace(
+            look_at=tuple(look if first[look] == kind.name else look._replace(title="") for look in kind.look_at)
+        )
+        for kind in made
+    )
 
 
 def _kind(category: Mapping[str, Any], index: Index, entries: tuple[PathEntry, ...]) -> KindEntry:
@@ -220,48 +229,41 @@ def _kind(category: Mapping[str, Any], index: Index, entries: tuple[PathEntry, .
 
 def provisions(entries: Iterable[KindEntry], further: FurtherLaw, index: Index) -> ProvisionList:
     """Return what the provisions say, each once: those of kinds of data, of every system, of contexts; by name."""
-    called: dict[LookAt, dict[str, None]] = {}  # the title apart: only what is looked at beside has one
-    titles: dict[LookAt, str] = {}
+    kinds = tuple(entries)
+    at_kinds = {look._replace(title=""): look.title for kind in reversed(kinds) for look in kind.look_at}
+    elsewhere = {look._replace(title=""): look.title for _, several in further.provisions for look in several}
+    titles = {**elsewhere, **at_kinds}  # the first kind that points at one has its title
     contexts: dict[LookAt, dict[str, list[str]]] = {}
-    for kind in entries:
-        for law in kind.law:
-            called.setdefault(_looked_at(law, index), {})
+    for kind in kinds:
         for context, law in kind.in_context:
-            contexts.setdefault(_looked_at(law, index), {}).setdefault(_why(context, law, index), []).append(kind.title)
-    pointed_at = (("", look) for kind in entries for look in kind.look_at)
-    for caller, look in (*pointed_at, *((caller, look) for caller, several in further.provisions for look in several)):
-        untitled = look._replace(title="")
-        titles[untitled] = look.title
-        called.setdefault(untitled, {}).update({caller: None} if caller else {})
-    found = sorted({**called, **contexts})
-    usual = Counter(look.reviewed for look in found).most_common(1)[0][0] if found else ""
+            contexts.setdefault(_looked_at(law), {}).setdefault(_why(context, law, index), []).append(kind.title)
+    borne = {_looked_at(law) for kind in kinds for law in kind.law}
+    called: dict[LookAt, list[str]] = {look: [] for look in (*at_kinds, *borne)}
+    for caller, several in further.provisions:
+        for look in several:
+            called.setdefault(look._replace(title=""), []).append(caller)
+    looks = sorted({**called, **contexts})
+    usual = Counter(look.reviewed for look in looks).most_common(1)[0][0] if looks else ""
+
+    def provision_row(look: LookAt) -> ProvisionOnce:
+        why = tuple((reason, index.words.row(of)) for reason, of in contexts.get(look, {}).items())
+        dates, title = look.dates_but(usual), titles.get(look, "")
+        narrower = not why and look in borne and any(look.name.startswith(f"{other.name} ") for other in borne)
+        return ProvisionOnce(look.name, title, look.meaning, dates, look.unconfirmed, why, look in at_kinds, narrower)
+
     groups = (
-        ProvisionGroup(
-            "; ".join(called.get(some[0], ())),
-            tuple(
-                ProvisionOnce(
-                    look.name,
-                    titles.get(look, ""),
-                    look.meaning,
-                    "" if look.reviewed == usual else look.reviewed,
-                    look.applies,
-                    tuple((why, index.words.row(of)) for why, of in contexts.get(look, {}).items()),
-                )
-                for look in some
-            ),
-        )
-        for some in grouped(found, lambda look: tuple(called.get(look, ())))
+        ProvisionGroup("; ".join(called.get(some[0], ())), tuple(map(provision_row, some)))
+        for some in grouped(looks, lambda look: tuple(called.get(look, ())))
     )
-    open_changes = grouped((look for look in found if look.unconfirmed), attrgetter("unconfirmed"))
     return ProvisionList(
         usual,
         tuple(sorted(groups, key=lambda group: group.callers != "")),
-        tuple((some[0].unconfirmed, "; ".join(look.name for look in some)) for some in open_changes),
+        tuple(sorted({look.unconfirmed for look in looks} - {""})),
     )
 
 
-def _looked_at(law: ProvisionText, index: Index) -> LookAt:
-    return LookAt(law.name, "", law.meaning, index.words("law.as.of", date=law.as_of), "", "")
+def _looked_at(law: ProvisionText) -> LookAt:
+    return LookAt(law.name, "", law.meaning, law.as_of, "", "")
 
 
 def _why(context: str, law: ProvisionText, index: Index) -> str:
@@ -274,16 +276,17 @@ def _why(context: str, law: ProvisionText, index: Index) -> str:
 def provision(legal: Mapping[str, Any], of: str, index: Index) -> ProvisionText:
     """Return a provision in words."""
     language = index.words.language
-    condition = text(legal, "condition", language)
+    name, condition = text(legal, "provision", language), text(legal, "condition", language)
     if condition.startswith(NARROWER):
         condition = index.words("law.narrower", kinds=condition.removeprefix(NARROWER))
-    sources = legal["translations"].get(language, {}).get("sources") if legal["sources"] else ""
+    translated = legal["translations"].get(language, {}).get("sources") if legal["sources"] else ""
+    sources = "; ".join(cited for cited in (translated or "; ".join(legal["sources"])).split("; ") if cited != name)
     return ProvisionText(
-        name=text(legal, "provision", language),
+        name=name,
         verdict=legal["verdict"],
         condition=condition,
         meaning=text(legal, "meaning", language),
-        sources=spaced(printable(_sources(sources or "; ".join(legal["sources"]))), language),
+        sources=spaced(printable(_sources(sources)), language) if sources else "",
         stated="" if legal["stated_of"] in ("", of) else _stated(legal["stated_of"], index),
         as_of=index.words.date(legal["as_of"]),
     )

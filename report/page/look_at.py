@@ -26,6 +26,8 @@ class LookAt(NamedTuple):
 
     Attributes
     ----------
+    title
+        What it is about; empty where that stands elsewhere.
     reviewed
         When we read it.
     applies, unconfirmed
@@ -43,6 +45,10 @@ class LookAt(NamedTuple):
     def dates(self) -> str:
         """All of it in a row."""
         return "; ".join(filter(None, (self.reviewed, self.applies, self.unconfirmed)))
+
+    def dates_but(self, usual: str) -> str:
+        """When it was read, if not as most provisions, and from when on it applies."""
+        return "; ".join(date for date in (self.reviewed, self.applies) if date not in ("", usual))
 
 
 class FurtherLaw(NamedTuple):
@@ -140,7 +146,7 @@ def revealed(finding: Mapping[str, Any], index: Index) -> Iterator[str]:
 def _provision_text(rows: Iterable[Mapping[str, Any]], index: Index) -> Iterator[LookAt]:
     words, language = index.words, index.words.language
     for row in rows:
-        reviewed = words("law.as.of", date=words.date(row["as_of"]))
+        reviewed = words.date(row["as_of"])
         applies = words("look.applies", date=words.date(row["applies_from"])) if row["applies_from"] else ""
         unconfirmed = ""
         if not row.get("confirmed", True):

@@ -48,7 +48,7 @@ SECTIONS = (
 ONLY_WITH = {"wildcard": "pattern", "request": "leg"}  # words that come only where an element has it
 LAST = "sign"  # of what is no appendix
 SHOWN_AT_MOST = 3  # robots or policies in the title
-PARAGRAPHS = 5  # of the method note
+PARAGRAPHS = 3  # of the method note
 EXPLAINED = ("profile", "enclave", "label", "wildcard", "request")  # before they first come, beside the view
 
 

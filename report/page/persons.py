@@ -66,6 +66,9 @@ def concerned(index: Index, entries: Sequence[PathEntry]) -> Concerned:
     return Concerned(table, silent, recipients(index, links), processed(index), rights(index))
 
 
+NOTHING = "–"  # what an empty cell says in every language
+
+
 class TableCell(NamedTuple):
     """What a table says at one place.
 
@@ -91,6 +94,11 @@ class TableRow(NamedTuple):
     name: str
     kind: str
     cells: tuple[TableCell, ...]
+
+    @property
+    def empty(self) -> bool:
+        """Whether nothing stands in any of its cells."""
+        return all(cell.text == NOTHING for cell in self.cells)
 
 
 class TablePart(NamedTuple):

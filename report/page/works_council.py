@@ -52,7 +52,7 @@ class CouncilLaw(NamedTuple):
     Attributes
     ----------
     dates
-        From when on it applies, and when we read it, where that is not when most were read; with a mark.
+        From when on it applies, with the mark of a note.
     """
 
     name: str
@@ -61,10 +61,10 @@ class CouncilLaw(NamedTuple):
 
 
 class CouncilLaws(NamedTuple):
-    """The provisions, when most of them were read, and what is not confirmed, each with its mark."""
+    """The provisions, when they were read, and what is not confirmed, each with its mark."""
 
     provisions: tuple[CouncilLaw, ...]
-    usual: str
+    reviewed: str
     notes: tuple[tuple[str, str], ...]
 
 
@@ -104,18 +104,26 @@ def _places(report: Outline) -> Iterator[CouncilPlace]:
 
 def _laws(laws: tuple[LookAt, ...], words: Words) -> CouncilLaws:
     """What each says, without its title but where that is the name of a judgment; what several share is told once."""
-    usual = Counter(law.reviewed for law in laws).most_common(1)[0][0] if laws else ""
     notes = {note: MARK * number for number, note in enumerate(sorted({law.unconfirmed for law in laws} - {""}), 1)}
     return CouncilLaws(
         tuple(
             CouncilLaw(
                 name=words.pair(law.name, law.title) if any(map(str.isdigit, law.title)) else law.name,
                 meaning=law.meaning,
-                dates="; ".join(date for date in (law.reviewed, law.applies) if date not in ("", usual))
-                + notes.get(law.unconfirmed, ""),
+                dates=law.applies + notes.get(law.unconfirmed, ""),
             )
             for law in laws
         ),
-        usual,
+        _reviewed(laws, words),
         tuple((mark, note) for note, mark in notes.items()),
     )
+
+
+def _reviewed(laws: tuple[LookAt, ...], words: Words) -> str:
+    """When we read most of them, and the others by name; empty without any."""
+    by_date = Counter(law.reviewed for law in laws)
+    if not by_date:
+        return ""
+    (usual, _), *others = by_date.most_common()
+    named = [words.pair(words.row(law.name for law in laws if law.reviewed == date), date) for date, _ in others]
+    return "; ".join((words("works_council.reviewed", date=usual), *named))

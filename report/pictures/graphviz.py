@@ -27,8 +27,8 @@ from typing import TYPE_CHECKING
 from lxml import etree
 
 from rosprivacy.analysis.errors import DrawingError, shown
+from rosprivacy.analysis.installing import command_for
 from rosprivacy.analysis.text import counted, printable
-from rosprivacy.report.installing import command_for
 from rosprivacy.report.pictures.corner_legend import drawn_boxes, legend_dot, legend_place
 from rosprivacy.report.pictures.dot import dot, hover, line_hover, paired
 from rosprivacy.report.pictures.looks import legend

@@ -7,8 +7,13 @@ from typing import TYPE_CHECKING
 import pytest
 
 from rosprivacy.ingest.labels.countries import countries
-from rosprivacy.ontology.provisions import is_old, provisions
+from rosprivacy.ontology.provisions import is_old, provisions, provisions_named
+from rosprivacy.report.catalogs.words import plain
+from rosprivacy.report.finding_facts import looked_at
+from rosprivacy.report.naming import text
 from tests.helpers.command import cli
+from tests.helpers.pages import LANGUAGES
+from tests.helpers.reports import care
 
 if TYPE_CHECKING:
     from tests.helpers.command import Cli
@@ -23,7 +28,10 @@ __all__ = ["cli"]
             "en",
             "GDPR Art. 9(1): Special categories of personal data (reviewed 2026-11-21)  https://eur-lex.",
         ),
-        ("de", "EuGH C-21/23: ND gegen DR (Lindenapotheke), 4. Oktober 2024 (reviewed 2026-11-21)  https://eur-lex."),
+        (
+            "de",
+            "EuGH C-21/23: ND gegen DR (Lindenapotheke), 4. Oktober 2024: Bestellungen von Arzneimitteln (reviewed",
+        ),
         ("fr", "art. 88 RGPD: Traitement de données dans le cadre des relations de travail (reviewed 2026-11-21)"),
     ],
 )
@@ -33,6 +41,25 @@ def test_each_provision_stands_there_with_its_date(cli: Cli, language: str, line
     assert lines[-1].endswith(f"reviewed {countries().as_of}")
     unconfirmed = [one for one in provisions() if not one.confirmed]
     assert len(lines) == 3 + 2 * len(provisions()) + len(unconfirmed)
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_every_name_of_a_report_is_a_name_here(language: str) -> None:
+    """The texts of a report name provisions and say that this command has what they say."""
+    known = provisions(language)
+    document = care()
+    stated = [row for kind in document["categories"] for row in (*kind["law"], *kind.get("in_context", ()))]
+    for row in (*stated, *looked_at(document)):
+        meanings = [plain(one.meaning) for one in provisions_named(known, text(row, "provision", language))]
+        assert plain(text(row, "meaning", language)) in meanings
+
+
+def test_one_provision_is_printed_by_its_name(cli: Cli) -> None:
+    lines = cli("law", "ai act art. 27").stdout.splitlines()
+    assert [line for line in lines if line.startswith("AI Act")] == [lines[2]]
+    unknown = cli("law", "GDPR Art. 999")
+    assert unknown.returncode == 2
+    assert "GDPR Art. 999" in unknown.stderr
 
 
 def test_what_no_public_source_confirms_is_named_and_is_4(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -84,6 +84,20 @@ class TestOwnOntology:
         assert "PersonalData" in found.hierarchy.ancestors["PulseCurve"]
         assert found.sources == ((str(mine), hashlib.sha256(mine.read_bytes()).hexdigest()),)
 
+    def test_without_what_checks_it_none_is_read_unless_it_was_checked_before(
+        self, mine: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        checked = load(tmp_path / "cache", [str(mine)])
+        monkeypatch.setitem(sys.modules, "pyshacl", None)
+        vocabulary._vocabulary.cache_clear()
+        assert load(tmp_path / "cache", [str(mine)]) == checked
+        with pytest.raises(InputErrors) as refused:
+            load(tmp_path / "empty", [str(mine), str(mine.with_name("mine.ttl"))])
+        (line,) = map(str, refused.value.errors)
+        assert line.startswith(f"{mine}: ")
+        assert "pyshacl is not installed; install " in line
+        assert refused.value.exit_code == 2
+
     def test_the_law_of_broader_ones_holds_unless_something_is_stated(self, mine: Path, tmp_path: Path) -> None:
         found = load(tmp_path / "cache", [str(mine)]).categories
         assert (found["PulseCurve"].article9, found["PulseCurve"].stated_of) == ("always", ("Health",))

@@ -21,6 +21,7 @@ from hypothesis import Phase, given, settings
 import rosprivacy
 from rosprivacy.analysis.errors import ClusterError, InputError, InputErrors
 from rosprivacy.analysis.files_read import one_run
+from rosprivacy.analysis.installing import command_for
 from rosprivacy.analysis.model import IN_PARTS
 from rosprivacy.ingest.fleet.joins import OF_FLEET
 from rosprivacy.parts import distributed
@@ -30,7 +31,6 @@ from rosprivacy.parts.parquet import check_new, read
 from rosprivacy.parts.session import HOST
 from rosprivacy.private_neo4j import connection
 from rosprivacy.report.atomic import check_outputs
-from rosprivacy.report.installing import command_for
 from rosprivacy.settings import Settings
 from rosprivacy.systems.fleet_system import answer_fleet
 from rosprivacy.systems.stored_system import answer_stored

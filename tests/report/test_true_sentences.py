@@ -203,6 +203,6 @@ def test_who_asks_for_sensitive_data_gets_convictions_too(tmp_path: Path) -> Non
 
 def test_the_ai_act_and_national_law_are_pointed_at_and_not_assessed(tmp_path: Path) -> None:
     text = seen(office(tmp_path), "html")
-    assert "are pointed at beside the paths and not assessed" in text
+    assert "are pointed at and not assessed" in text
     assert "national law and agreements with works councils are not looked at" not in text
     assert "such data may reveal it" not in seen(office(tmp_path), "article30")

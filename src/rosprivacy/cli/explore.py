@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from rosprivacy.analysis.errors import InputError
+from rosprivacy.analysis.installing import command_for
 from rosprivacy.analysis.text import counted
 from rosprivacy.cli.inputs import Inputs, reads_system
 from rosprivacy.cli.options import Language
-from rosprivacy.report.installing import command_for
 
 if TYPE_CHECKING:
     import socket

@@ -13,6 +13,10 @@ from rosprivacy.cli.output import emit
 
 
 def law(
+    name: Annotated[
+        str | None,
+        typer.Argument(metavar="[NAME]", help="Only what is called so, such as 'AI Act Art. 27'."),
+    ] = None,
     check: Annotated[
         bool,
         typer.Option(
@@ -25,12 +29,15 @@ def law(
     output: Output = None,
 ) -> None:
     """Print the provisions that findings point to, each with the day of our last look, and adequacy decisions."""
+    from rosprivacy.analysis.errors import shown
     from rosprivacy.clock import today
     from rosprivacy.ingest.labels.countries import countries
-    from rosprivacy.ontology.provisions import provisions
+    from rosprivacy.ontology.provisions import provisions, provisions_named
     from rosprivacy.report.text.categories import law_lines, old_lines, unconfirmed_lines
 
-    known, adequacy = provisions(lang.value), countries().as_of
+    known, adequacy = provisions_named(provisions(lang.value), name or ""), countries().as_of
+    if not known:
+        raise typer.BadParameter(f"no provision is called {shown(name or '')!r}; 'rosprivacy law' prints all")
     if not check:
         emit("".join(f"{line}\n" for line in law_lines(known, adequacy)), output)
         return

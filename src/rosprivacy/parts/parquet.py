@@ -16,13 +16,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import ClusterError, GraphError, InputError, InputErrors, RosPrivacyError, reason, shown
+from rosprivacy.analysis.installing import command_for
 from rosprivacy.analysis.json_values import parsed
 from rosprivacy.ingest.neo4j_graph.rows import RobotRows, rows_of
 from rosprivacy.ingest.neo4j_graph.schema import ROLES
 from rosprivacy.parts.session import cluster_errors, scatter
 from rosprivacy.parts.unit_rows import Plan, core_rows, own_properties, parts_of, put_together, unit_rows
 from rosprivacy.report.compare.earlier import document_of
-from rosprivacy.report.installing import command_for
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence

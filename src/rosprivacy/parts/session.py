@@ -23,8 +23,8 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import ClusterError, InputError, shown
+from rosprivacy.analysis.installing import command_for
 from rosprivacy.parts.processes import SAFE_PATH, environment
-from rosprivacy.report.installing import command_for
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence

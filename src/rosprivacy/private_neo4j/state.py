@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import DatabaseError, reason, shown
+from rosprivacy.analysis.installing import command_for
 from rosprivacy.report.atomic import keep_name
-from rosprivacy.report.installing import command_for
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

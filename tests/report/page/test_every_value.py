@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from rosprivacy.analysis.model import OWN_DOMAINS
 from rosprivacy.report.catalogs.words import Words, finding_reason
 from rosprivacy.report.finding_facts import looked_at
 from rosprivacy.report.naming import line, text
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
     Values = Iterator[str]
 
+PAGE = 0  # the page is the first of the texts
 FEW = 4  # lines that a step shows
 SHOWN = 8  # of what hangs on one statement
 
@@ -68,11 +70,17 @@ def provisions(document: Mapping[str, Any], words: Words) -> Values:
     for kind in document["categories"]:
         yield from (text(kind, what, words.language) for what in ("title", "definition", "gdpr"))
         for row in (*kind["law"], *kind.get("in_context", ())):
-            yield from (text(row, what, words.language) for what in ("provision", "meaning"))
+            yield text(row, "provision", words.language)
     for row in looked_at(document):
-        yield from (text(row, what, words.language) for what in ("provision", "meaning"))
+        yield from (text(row, what, words.language) for what in ("provision", "title"))
         yield words.date(row["as_of"])
         yield words.date(row["applies_from"]) if row["applies_from"] else ""
+
+
+def meanings(document: Mapping[str, Any], words: Words) -> Values:
+    """What provisions say in full stands in the page; the text has what they are about."""
+    of_data = [row for kind in document["categories"] for row in (*kind["law"], *kind.get("in_context", ()))]
+    yield from (text(row, "meaning", words.language) for row in (*of_data, *looked_at(document)))
 
 
 def labels(document: Mapping[str, Any], words: Words) -> Values:
@@ -87,7 +95,10 @@ def labels(document: Mapping[str, Any], words: Words) -> Values:
     yield from (one for row in document["subjects"] for one in row["subjects"])
     said = document["assumptions"]
     yield from (one for of in ("policies", "labels") for row in said[of] for one in (row["file"], row["sha256"]))
-    yield from (part for row in document["diagnostics"] for part in row["message"].rsplit(", and ", 1))
+    domains = [row["message"] for row in document["diagnostics"] if row.get("code") == OWN_DOMAINS]
+    yield from (message.rpartition(": ")[2].partition(" and ")[0] for message in domains)  # in every language
+    others = [row["message"] for row in document["diagnostics"] if row["message"] not in domains]
+    yield from (part for message in others for part in message.rsplit(", and ", 1))
     yield from (named(row["element"]) for row in document["sanitizers"])
     yield from (named(row["element"]) for row in document["derivations"] if row["reached"])
 
@@ -116,7 +127,9 @@ FACTS = (findings, places, provisions, labels, decisions, doubts, elements)
 def test_every_value_stands_in_the_page_and_in_the_text(system: dict[str, Any], language: str) -> None:
     words = Words(language)
     expected = {fact.__name__: {" ".join(value.split()) for value in fact(system, words)} for fact in FACTS}
-    for written in texts(system, language):
+    of_page = {"meanings": {" ".join(value.split()) for value in meanings(system, words)}}
+    for number, written in enumerate(texts(system, language)):
+        expected |= of_page if number == PAGE else {"meanings": set()}
         plain = " ".join(written.split())
         absent = {name: sorted(value for value in values if value not in plain) for name, values in expected.items()}
         assert not {name: values for name, values in absent.items() if values}

@@ -1,7 +1,8 @@
 """How to get what an extra of the program brings, into the very environment that it runs in.
 
 In: the name of an extra. Out: a command. It names the packages that the extra brings, which are on the package index;
-``rosprivacy`` itself may have come from anywhere, and whoever has its name there is not us.
+``rosprivacy`` itself may have come from anywhere, and whoever has its name there is not us. Like the errors, it
+stands where every room can use it.
 """
 
 from __future__ import annotations
@@ -16,7 +17,11 @@ _OF_EXTRA = re.compile(r"""extra\s*==\s*['"](?P<extra>[\w-]+)['"]""")
 
 
 def packages(extra: str) -> list[str]:
-    """Return what an extra needs, as the installed program says, sorted."""
+    """Return what an extra needs, as the installed program says, sorted.
+
+    >>> packages("no-such-extra")
+    []
+    """
     from importlib.metadata import PackageNotFoundError, requires  # noqa: PLC0415 - light start
 
     try:
@@ -31,6 +36,9 @@ def command_for(extra: str) -> str:
     """Return the command that installs what an extra brings.
 
     pipx and uv keep programs in environments of their own, which have no pip.
+
+    >>> command_for("no-such-extra")
+    'install the extra [no-such-extra] from where rosprivacy came from'
     """
     names = " ".join(shlex.quote(name) for name in packages(extra))
     if not names:

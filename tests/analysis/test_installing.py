@@ -8,10 +8,10 @@ import sys
 
 import pytest
 
-from rosprivacy.report.installing import command_for, packages
+from rosprivacy.analysis.installing import command_for, packages
 from tests.helpers.paths import ROOT
 
-EXTRAS = ("local", "spark", "views")
+EXTRAS = ("local", "ontology", "spark", "views")
 
 
 @pytest.mark.parametrize("extra", EXTRAS)
