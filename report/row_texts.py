@@ -15,7 +15,7 @@ from rosprivacy.analysis.non_ros import ADEQUATE, INSIDE, PARTLY, THIRD
 from rosprivacy.analysis.text import fit
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.report.catalogs.words import Words
 
@@ -28,6 +28,13 @@ def completed(texts: Iterable[str], row: Row, words: Words, *cells: Cell) -> str
     """Return what a row holds, and that a person has to complete it where something is not known."""
     unknown = any(cell in row["to_complete"] for cell in cells)
     return "; ".join([*dict.fromkeys(texts), *([words("record.open")] if unknown else [])])
+
+
+def of_all(rows: Sequence[Row], field: str, cell: Cell, words: Words) -> tuple[str, ...]:
+    """Return what rows hold in a field, each once, and that a person has to complete it where one row lacks it."""
+    stated = dict.fromkeys(fit(one) for row in rows for one in row[field])
+    unknown = not rows or any(cell in row["to_complete"] for row in rows)
+    return (*stated, *([words("record.open")] if unknown else []))
 
 
 def recipient(row: Row, words: Words) -> Iterator[str]:

@@ -12,7 +12,7 @@ import re
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from rosprivacy.analysis.durations import parts
 from rosprivacy.analysis.text import printable
@@ -22,7 +22,9 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.model import Reason
 
+Thing = TypeVar("Thing")
 DATE = 3  # parts of one
+REST = 2  # things that are named although there is no room: as short as how many they are
 _ARTICLE = re.compile(r"(?P<article>\d+)(?:\((?P<paragraph>\d+)\))?(?:\((?P<point>[a-z])\))?")
 WIDE, NARROW = "\u00a0", "\u202f"  # as the Imprimerie nationale has them: before a colon and in quotes; before ; ? !
 _FRENCH = ((re.compile(r" (?=[:»])|(?<=«) "), WIDE), (re.compile(r" (?=[;?!])"), NARROW))
@@ -37,6 +39,27 @@ def table(language: str) -> Mapping[str, str]:
     """
     words: dict[str, str] = json.loads(Path(__file__).with_name(f"{language}.json").read_text("utf-8"))
     return words
+
+
+def shown_of(number: int, limit: int) -> int:
+    """Return how many of some things are named where there is room for ``limit``; one or two more are named, too.
+
+    'and 1 more' is no shorter than a name, and leaves a reader without it.
+
+    >>> shown_of(3, 3), shown_of(5, 3), shown_of(6, 3)
+    (3, 5, 3)
+    """
+    return number if number <= limit + REST else limit
+
+
+def first_of(things: Sequence[Thing], limit: int) -> tuple[tuple[Thing, ...], int]:
+    """Return the first of some things, see ``shown_of``, and how many are left.
+
+    >>> first_of(["/a", "/b", "/c", "/d"], 1)
+    (('/a',), 3)
+    """
+    shown = shown_of(len(things), limit)
+    return tuple(things[:shown]), len(things) - shown
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,12 +146,13 @@ class Words:
         return ", ".join(texts)
 
     def first(self, texts: Sequence[str], limit: int) -> tuple[str, ...]:
-        """Return the first of some texts, and how many more there are.
+        """Return the first of some texts, see ``shown_of``, and how many more there are.
 
-        >>> Words("en").first(["/a", "/b", "/c"], 2), Words("en").first(["/a", "/b"], 2)
-        (('/a', '/b', 'and 1 more'), ('/a', '/b'))
+        >>> Words("en").first(["/a", "/b", "/c", "/d"], 1), Words("en").first(["/a", "/b", "/c"], 1)
+        (('/a', 'and 3 more'), ('/a', '/b', '/c'))
         """
-        return (*texts[:limit], *([self("more", n=len(texts) - limit)] if len(texts) > limit else ()))
+        shown, left = first_of(texts, limit)
+        return (*shown, *([self("more", n=left)] if left else ()))
 
     def of_value(self, key: str, otherwise: str) -> str:
         """Return the word for a value of the contract, or the value itself if there is none yet."""
@@ -161,12 +185,30 @@ def finding_reason(finding: Mapping[str, Any], words: Words, title: Callable[[st
     return _reason(because["key"], because["values"], words, title) if because else printable(finding.get("reason", ""))
 
 
+def brief_reason(finding: Mapping[str, Any], words: Words, title: Callable[[str], str]) -> str:
+    """Return the same in few words, for a line that asks what is to be decided; some reasons are short as they are.
+
+    >>> values = {"kept": "P60D", "limit": "P14D", "category": "Video"}
+    >>> brief_reason({"because": {"key": "kept-longer", "values": values}}, IN_ENGLISH, str)
+    'kept for 60 days, the limit is 14 days'
+    """
+    key = f"ask.reason.{finding['because']['key']}" if finding.get("because") else ""
+    if key not in table(words.language):
+        return finding_reason(finding, words, title)
+    return words(key, **_written(finding["because"]["values"], words, title))
+
+
 def reason_text(reason: Reason, words: Words, title: Callable[[str], str]) -> str:
     """Return a reason in words."""
     return _reason(reason.key, dict(reason.values), words, title)
 
 
 def _reason(key: str, values: Mapping[str, str], words: Words, title: Callable[[str], str]) -> str:
+    return words(f"reason.{key}", **_written(values, words, title))
+
+
+def _written(values: Mapping[str, str], words: Words, title: Callable[[str], str]) -> dict[str, str]:
+    """The values of a reason as the language writes them."""
     writers = {
         "kept": words.duration,
         "backups": words.duration,
@@ -180,7 +222,7 @@ def _reason(key: str, values: Mapping[str, str], words: Words, title: Callable[[
     if "recipients" in written:  # whom a decision covers: what the list of countries says, in English
         otherwise = words.of_value("adequacy.other", written["recipients"])
         written["recipients"] = words.of_value(f"adequacy.{written['country']}", otherwise)
-    return words(f"reason.{key}", **written)
+    return written
 
 
 def spaced(text: str, language: str) -> str:

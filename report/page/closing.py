@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.mitigation.limits import DENY, FILTER, REVIEW
 from rosprivacy.analysis.text import fit
+from rosprivacy.report.catalogs.words import first_of
 from rosprivacy.report.finding_facts import grouped
 from rosprivacy.report.naming import line, name
 from rosprivacy.report.page.finding_entries import LINES, SHOWN_AT_MOST, hops_of, sentence_of
@@ -76,6 +77,7 @@ def closing(index: Index, entries: Iterable[PathEntry], proposals: Mapping[str, 
     last = proposals["proposals"][-1]  # of all kinds together
     stays = {row["finding"] for row in last["keeps"]}
     steps = last["steps"] if last["proven"] else []
+    shown, left = first_of(steps, SHOWN)
     instead = {
         words(
             f"closing.state.{some[0]['kind']}",
@@ -86,8 +88,8 @@ def closing(index: Index, entries: Iterable[PathEntry], proposals: Mapping[str, 
     }
     return ClosingEntry(
         sentences=tuple(proposal_told(last, steps, index)),
-        changes=tuple(_changes(steps[:SHOWN], index)),
-        remainder=words("closing.more", n=len(steps) - SHOWN) if len(steps) > SHOWN else "",
+        changes=tuple(_changes(shown, index)),
+        remainder=words("closing.more", n=left) if left else "",
         instead=tuple(sorted(instead)),
         stays=tuple(entry for entry in entries if stays.intersection((entry.id, *entry.alike))),
     )
@@ -132,7 +134,7 @@ def change_told(step: Mapping[str, Any], index: Index) -> Proposed:
     places = [line(grant) for grant in step["policy"]]
     unique = tuple(dict.fromkeys(places))
     text = _TEXTS[step["kind"]](step, index)
-    return Proposed(text, unique[:LINES], len(unique[LINES:]), tuple(_notes(step, index)))
+    return Proposed(text, *first_of(unique, LINES), tuple(_notes(step, index)))
 
 
 def _filter(step: Mapping[str, Any], index: Index, key: str = "closing.filter") -> str:

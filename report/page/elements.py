@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from rosprivacy.analysis.legal import on_prohibited_practices
 from rosprivacy.analysis.model import SPECIAL
 from rosprivacy.analysis.text import fit
+from rosprivacy.report.catalogs.words import REST, shown_of
 from rosprivacy.report.finding_facts import grouped
 from rosprivacy.report.naming import key, name, without_leg
 from rosprivacy.report.page.index import state, weight, without_robots
@@ -223,7 +224,7 @@ def _outside(row: Mapping[str, Any], index: Index) -> Outside:
         kind=words.kind(element),
         storage=element["kind"] == STORAGE,
         holds=index.all_data(row["holds"]),
-        retention=retention(row, index),
+        retention=retention(row, row["holds"], index, tuple(_of_other_data(row, index))),
         backups=backups_text(row.get("backups"), index.words),
         encrypted="" if "encrypted" not in row else words("yes" if row["encrypted"] else "no"),
         country=country(row, index.words),
@@ -236,15 +237,43 @@ def _outside(row: Mapping[str, Any], index: Index) -> Outside:
     )
 
 
-def retention(row: Mapping[str, Any], index: Index) -> str:
-    """Return how long a storage keeps what."""
-    words = index.words
-    return "; ".join(
-        words("outside.every", duration=words.duration(fit(duration)))
-        if category == EVERY
-        else words("outside.of", data=index.data(category), duration=words.duration(fit(duration)))
-        for category, duration in row.get("retention", {}).items()
-    )
+def retention(row: Mapping[str, Any], kinds: Iterable[str], index: Index, rest: tuple[str, ...] = ()) -> str:
+    """Return how long a place keeps kinds of data; they are named where not all are kept alike.
+
+    A label may state it of a broader kind, for which the report has no name but that of the label file.
+
+    Parameters
+    ----------
+    row
+        What is stated of the place.
+    rest
+        The same of other data, in words.
+    """
+    texts, alike = [], grouped(dict.fromkeys(kinds), lambda kind: _periods(row, kind, index))
+    for same in alike:
+        if periods := _periods(row, same[0], index):
+            duration = index.words.row(index.words.duration(fit(period)) for period in periods)
+            of_some = {"data": index.all_data(same), "duration": duration}
+            texts.append(index.words("outside.of", **of_some) if rest or len(alike) > 1 else duration)
+    return "; ".join((*texts, *rest))
+
+
+def _periods(row: Mapping[str, Any], kind: str, index: Index) -> tuple[str, ...]:
+    """How long a place keeps a kind of data, as the register has it; else what is stated of the nearest kind."""
+    stated = row.get("retention", {})
+    nearest = next(((stated[of],) for of in (*index.upwards(kind), EVERY) if of in stated), ())
+    return index.periods.get((key(row["element"]), kind), nearest)
+
+
+def _of_other_data(row: Mapping[str, Any], index: Index) -> Iterator[str]:
+    """What is stated of data that do not get there."""
+    periods = {period for kind in row["holds"] for period in _periods(row, kind, index)}
+    for category, period in row.get("retention", {}).items():
+        if period not in periods:
+            duration = index.words.duration(fit(period))
+            every = category == EVERY
+            data = {} if every else {"data": index.data(category)}
+            yield index.words("outside.every" if every else "outside.of", duration=duration, **data)
 
 
 SHOWN = 100  # entries of one row
@@ -327,9 +356,9 @@ class _Past:
             here = {path for element in elements for path in self._through.get((category, element), ())}
             through = Counter(place for _, place in here)
             past = (place for place in paths if paths[place] > through[place])
-            first += islice(past, SHOWN)
+            first += islice(past, SHOWN + REST)
             number += len(paths) - sum(paths[place] == count for place, count in through.items())
-        return sorted(first, key=lambda place: place[1])[:SHOWN], number
+        return sorted(first, key=lambda place: place[1])[: shown_of(number, SHOWN)], number
 
 
 def _cleaning(group: list[Mapping[str, Any]], past: _Past, index: Index) -> CleaningEntry:

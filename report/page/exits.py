@@ -9,16 +9,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rosprivacy.analysis.model import THIRD_COUNTRY
 from rosprivacy.analysis.text import fit, printable
+from rosprivacy.report.catalogs.words import brief_reason, first_of
 from rosprivacy.report.finding_facts import grouped
 from rosprivacy.report.naming import all_kinds, key
-from rosprivacy.report.page.elements import EVERY, STORAGE, retention
+from rosprivacy.report.page.elements import STORAGE, retention
 from rosprivacy.report.page.flows import TO_DECIDE, WITH_A_CONTRACT
 from rosprivacy.report.row_texts import country
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.report.page.finding_entries import PathEntry
     from rosprivacy.report.page.flows import Fact, ToDecide
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 SETTLED = ("accepted", "dismissed")  # the others, in the order in which a card has them
 NAMES = 3  # kinds that the heading of a card names one by one
 LINKS = 6  # entries that a line leads to
-STATE = "state"  # its title is that of decisions
+STATE, OWNER = "state", "owner"  # the title of the first is that of decisions
 OF_PLACE = ("element", "file", "line", "holds", "missing", "without_limit")  # what does not tell recipients apart
 
 
@@ -51,6 +51,8 @@ class ExitLine(NamedTuple):
         (what, value) that other lines of the card have not.
     entries
         The first entries of the report that it is.
+    asks
+        What is to be decided, and why it is asked, in sentences.
     remainder
         How many others there are, in words.
     """
@@ -63,6 +65,7 @@ class ExitLine(NamedTuple):
     spread: tuple[str, ...]
     facts: tuple[tuple[str, str], ...]
     entries: tuple[PathEntry, ...]
+    asks: tuple[str, ...]
     remainder: str = ""
 
 
@@ -129,8 +132,14 @@ def exit_cards(index: Index, flows: Sequence[ToDecide], entries: Iterable[PathEn
     for flow in flows:
         if flow.entries[0].state in TO_DECIDE:
             by_place.setdefault(place_of(flow.entries[0]), []).append(flow)
+    silent = () if is_owned(flows) else (OWNER,)
     everywhere = {entry.category for flow in flows for entry in flow.entries if entry.state in TO_DECIDE}
-    return tuple(_card(group, by_place.get(place_of(group[0]), ()), everywhere, index) for group in groups)
+    return tuple(_card(group, by_place.get(place_of(group[0]), ()), everywhere, silent, index) for group in groups)
+
+
+def is_owned(flows: Iterable[ToDecide]) -> bool:
+    """Return whether of any flow to decide it is stated who decides; else that is told once for all."""
+    return any(dict(flow.facts)[OWNER] for flow in flows if flow.entries[0].state in TO_DECIDE)
 
 
 def _findings(entry: PathEntry, index: Index) -> list[Mapping[str, Any]]:
@@ -144,19 +153,22 @@ def _place(leaks: Sequence[Mapping[str, Any]], index: Index) -> Any:
     return leaks[0]["kind"], leaks[0]["name"], frozenset(stated)
 
 
-def _card(group: Sequence[PathEntry], flows: Sequence[ToDecide], everywhere: set[str], index: Index) -> ExitCard:
+def _card(
+    group: Sequence[PathEntry], flows: Sequence[ToDecide], everywhere: set[str], silent: Collection[str], index: Index
+) -> ExitCard:
     findings = [finding for entry in group for finding in _findings(entry, index)]
     to_decide = [entry for flow in flows for entry in flow.entries]
     place, lacks = _place_facts(findings, index) if flows else ([], [])
-    common, missing = _in_common(flows)
+    spoken = [flow._replace(facts=tuple(fact for fact in flow.facts if fact[0] not in silent)) for flow in flows]
+    common, missing = _in_common(spoken)
     return ExitCard(
         place=index.words.row(index.names([finding["leak"] for finding in findings])),
         kind=index.words.kind(findings[0]["leak"]),
         data=kinds_in_words(to_decide or group, everywhere, index),
         waits=any(flow.waits for flow in flows),
-        lines=tuple(_lines(flows, {what for what, _ in common}, index)),
+        lines=tuple(_lines(spoken, {what for what, _ in common}, index)),
         facts=tuple(_in_words([*place, *common], index)),
-        unstated=_unstated([*lacks, *((what, []) for what in missing)], flows, index),
+        unstated=_unstated([*lacks, *((what, []) for what in missing)], spoken, index),
         settled=tuple(_settled(group, index)),
         flows=tuple(flows),
         entries=tuple(group),
@@ -199,7 +211,10 @@ def _in_common(flows: Sequence[ToDecide]) -> tuple[list[Fact], list[str]]:
 
 
 def _in_words(facts: Iterable[Fact], index: Index) -> Iterator[tuple[str, str]]:
+    """Facts with their titles; that something waits to be decided goes without saying."""
     words = index.words
+    waits = (STATE, words("state.open"))
+    facts = (fact for fact in facts if fact != waits)
     titled = ((words("decision.state") if what == STATE else words(f"opening.{what}"), value) for what, value in facts)
     return ((title, value) for title, value in titled if value)
 
@@ -235,7 +250,8 @@ def _lines(flows: Sequence[ToDecide], common: set[str], index: Index) -> Iterato
     of_data = grouped(flows, lambda flow: (flow.content, alike(flow)))
     for groups in grouped(of_data, lambda group: (sources(group), alike(group[0]))):
         first = groups[0][0]
-        entries, remainder = _first([entry for group in groups for flow in group for entry in flow.entries], index)
+        every = [entry for group in groups for flow in group for entry in flow.entries]
+        entries, remainder = _first(every, index)
         yield ExitLine(
             waits=first.waits,
             data=index.words.row(group[0].content for group in groups),
@@ -245,13 +261,31 @@ def _lines(flows: Sequence[ToDecide], common: set[str], index: Index) -> Iterato
             spread=first.spread,
             facts=tuple(_in_words(facts(first), index)),
             entries=entries,
+            asks=tuple(_asks(every, index)),
             remainder=remainder,
         )
 
 
+def _asks(entries: Iterable[PathEntry], index: Index) -> Iterator[str]:
+    """Each question once, with the reasons for which it is asked."""
+    words = index.words
+    findings = [index.by_id[entry.id] for entry in entries]
+    for same in grouped(findings, lambda finding: finding["kind"]):
+        reasons = tuple(dict.fromkeys(_reason(finding, index) for finding in same))
+        question = words(f"ask.{same[0]['kind']}")
+        yield words("ask.reason", question=question, reason="; ".join(words.first(reasons, NAMES)))
+
+
+def _reason(finding: Mapping[str, Any], index: Index) -> str:
+    """Why a finding is one, in few words; the sentence stands with its path."""
+    taken = index.document["assumptions"].get("taken_by_kind", {}).get(finding["leak"]["kind"])
+    exit_ = index.words("ask.reason.sort" if taken == "leak" else "ask.reason.label")
+    return brief_reason(finding, index.words, index.data) or exit_
+
+
 def _first(entries: Sequence[PathEntry], index: Index) -> tuple[tuple[PathEntry, ...], str]:
-    left = len(entries) - LINKS
-    return tuple(entries[:LINKS]), index.words("more", n=left) if left > 0 else ""
+    shown, left = first_of(entries, LINKS)
+    return shown, index.words("more", n=left) if left else ""
 
 
 def _settled(group: Sequence[PathEntry], index: Index) -> Iterator[SettledLine]:
@@ -278,21 +312,19 @@ def _place_facts(findings: Sequence[Mapping[str, Any]], index: Index) -> tuple[l
 
 
 def _stated(leak: Mapping[str, Any], findings: Sequence[Mapping[str, Any]], index: Index) -> Iterator[Fact]:
-    """What is stated about one place; what is not asked of it is left out."""
+    """What is stated about one place; what is not asked of it, or by a question of its own, is left out."""
     words, row = index.words, index.outside.get(key(leak), {})
     role, transfer = row.get("recipient", ""), row.get("transfer", "")
     recipient = [printable(row["operator"])] if row.get("operator") else []
     recipient += [words.of_value(f"recipient.{role}", role)] if role else []
-    leaves = any(finding["kind"] == THIRD_COUNTRY for finding in findings)
     keeps = leak["kind"] == STORAGE or key(leak) not in index.outside
-    kinds = {kind for finding in findings for kind in index.upwards(finding["category"])} | {EVERY}
-    durations = {kind: time for kind, time in row.get("retention", {}).items() if kind in kinds}
+    period = retention(row, [finding["category"] for finding in findings], index) if row else ""
     facts: list[tuple[str, str, bool]] = [
         ("recipient", words.row(recipient), True),
         ("country", country(row, index.words), True),
-        ("transfer", words.of_value(f"transfer.{transfer}", transfer) if transfer else "", leaves),
+        ("transfer", words.of_value(f"transfer.{transfer}", transfer) if transfer else "", False),
         ("occasional", "", "occasional" in row.get("missing", ())),
         ("contract", fit(row.get("contract", "")), role in ("", *WITH_A_CONTRACT)),
-        ("retention", retention({"retention": durations}, index), keeps),
+        ("retention", period, keeps),
     ]
     yield from ((what, value) for what, value, asked in facts if value or asked)

@@ -11,7 +11,7 @@ from collections import Counter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.text import fit, printable
-from rosprivacy.report.catalogs.words import finding_reason
+from rosprivacy.report.catalogs.words import finding_reason, first_of
 from rosprivacy.report.finding_facts import gaps_of, grouped, in_order, made_of
 from rosprivacy.report.naming import key, line, name
 from rosprivacy.report.page.index import anchor, finding_pattern, kind_anchor, state
@@ -432,8 +432,7 @@ def hops_of(finding: Mapping[str, Any], index: Index) -> Iterator[Hop]:
             is_open,
             end,
             verb,
-            lines[:LINES],
-            len(lines[LINES:]),
+            *first_of(lines, LINES),
             label,
         )
 

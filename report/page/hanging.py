@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.text import fit
+from rosprivacy.report.catalogs.words import shown_of
 from rosprivacy.report.finding_facts import grouped
 from rosprivacy.report.naming import key, opening_text
 from rosprivacy.report.page.index import node_of_service
@@ -137,7 +138,7 @@ def _questions(rows: Iterable[Mapping[str, Any]], index: Index) -> Iterator[str]
     for some in grouped(questions, lambda question: tuple(question["categories"])):
         names = named.setdefault(index.all_data(some[0]["categories"]), [])
         names += dict.fromkeys(index.names_by_node([question["element"] for question in some]))
-    left = FEW
+    left = shown_of(sum(map(len, named.values())), FEW)
     for data, names in named.items():
         if shown := names[: max(left, 0)]:
             yield f"{index.words.row(shown)} ({data})"

@@ -1,10 +1,8 @@
-"""The report, and the summary for works councils, as one HTML file that asks nobody for anything: all is in it.
+"""The report as one HTML file that asks nobody for anything: all is in it.
 
 In: an ``Outline`` and its ``Figures``. Out: HTML. Every value is escaped by jinja2; a Content Security Policy allows
 the one style and the one script, each by its hash, so that no name from a policy can load or run anything. Pictures
-hold nothing but shapes and text. The summary is one page without a script: whose data, where they can get to, how long
-kept, which measures. Which groups of persons are employees the program cannot know: it lists all that labels name, and
-those of which nothing is stated.
+hold nothing but shapes and text.
 """
 
 from __future__ import annotations
@@ -25,7 +23,6 @@ from rosprivacy.report.pictures.looks import INK
 if TYPE_CHECKING:
     from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.page.outline import Outline
-    from rosprivacy.report.page.persons import DataPlace
 
 
 class _Escaped:
@@ -92,33 +89,3 @@ def environment_of(language: str) -> tuple[Environment, str, str]:
 def hashed(text: str) -> str:
     """Return the name of a text in a Content Security Policy."""
     return f"sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}"
-
-
-DECIDED = "measures"  # the field of the assessment that tells what was decided
-
-
-def works_council(report: Outline) -> str:
-    """Return the page.
-
-    Notes
-    -----
-    It tells what the report tells and nothing else: its rows are those of the rights of the persons, of the register.
-    Complexity: O(their size).
-    """
-    environment, css, _ = environment_of(report.words.language)
-    places: dict[DataPlace, list[str]] = {}
-    for group in report.persons.rights:
-        for place in group.places:
-            places.setdefault(place, []).append(group.name)
-    kinds = [kind for kind in report.kinds if any(kind.title in place.data for place in places)]
-    measures = [field.line for field in report.assessment.general if field.key == f"sign.{DECIDED}" and field.line]
-    page = environment.get_template("works_council.html.j2").render(
-        r=report,
-        t=in_html(report.words),
-        policy=f"default-src 'none'; style-src '{hashed(css)}'; img-src data:; base-uri 'none'; form-action 'none'",
-        css=Markup(css),  # noqa: S704 - our own file
-        places=[(report.words.row(names), place) for place, names in places.items()],
-        kinds=kinds,
-        measures=measures,
-    )
-    return page.strip() + "\n"

@@ -96,6 +96,13 @@ class Index:
         rows: Sequence[Mapping[str, Any]] = self.document.get("register", ())
         return rows
 
+    @cached_property
+    def periods(self) -> dict[tuple[Key, str], tuple[str, ...]]:
+        """(place, kind of data) -> how long it is kept there, by the rows of the register."""
+        return {
+            (key(place), row["category"]): tuple(row["retention"]) for row in self.register for place in row["places"]
+        }
+
     def is_of(self, group: str | None, category: str) -> bool:
         """Return whether data of a group of persons are there as a kind; of None, of those that labels do not name."""
         rows = [row for row in self.register if row["category"] == category]
@@ -126,7 +133,9 @@ class Index:
     def data(self, category: str, *, pseudonymised: bool = False) -> str:
         """Return what a kind of data is called."""
         known = self.categories.get(category)
-        title = (known and text(known, "title", self.words.language)) or fit(category)
+        title = (known and text(known, "title", self.words.language)) or self.words.of_value(
+            f"category.{category}", fit(category)
+        )
         return self.words("entry.data", data=title) if pseudonymised else title
 
     def provision(self, category: str, name: str) -> str:

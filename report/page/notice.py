@@ -68,20 +68,14 @@ def notice(document: Mapping[str, Any], language: str, title: str = "") -> str:
         "notice.md.j2",
         words,
         system=fit(title),
-        controllers=_of_all(rows, "controllers", Cell.CONTROLLERS, words),
-        officers=_of_all(rows, "officers", Cell.OFFICERS, words),
+        controllers="; ".join(row_texts.of_all(rows, "controllers", Cell.CONTROLLERS, words)),
+        officers="; ".join(row_texts.of_all(rows, "officers", Cell.OFFICERS, words)),
         columns=[words(f"notice.{column}") for column in NoticeRow._fields],
         kinds=[_kind(same, index) for same in grouped(rows, lambda row: row["category"])],
         interests=INTERESTS in stated,
         consent=not stated.isdisjoint(CONSENT),
         answer=verdict_sentence(document, words),
     )
-
-
-def _of_all(rows: Sequence[Row], field: str, cell: Cell, words: Words) -> str:
-    texts = dict.fromkeys(fit(one) for row in rows for one in row[field])
-    unknown = not rows or any(cell in row["to_complete"] for row in rows)
-    return "; ".join([*texts, *([words("record.open")] if unknown else [])])
 
 
 def _kind(rows: Sequence[Row], index: Index) -> NoticeKind:

@@ -7,14 +7,16 @@ texts. What nobody has reviewed is told beside it: that little is listed never m
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import islice
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.legal import Lack
+from rosprivacy.analysis.model.register_row import Cell
+from rosprivacy.report.catalogs.words import first_of
 from rosprivacy.report.finding_facts import gaps_of
 from rosprivacy.report.naming import count_rows
-from rosprivacy.report.page.exits import exit_cards, kinds_in_words
+from rosprivacy.report.page.exits import exit_cards, is_owned, kinds_in_words
 from rosprivacy.report.page.flows import TO_DECIDE, first_names
+from rosprivacy.report.row_texts import of_all
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -32,6 +34,7 @@ LACKING = {  # key of words -> what an acceptance lacks; None: it was changed si
     "opening.but.changed": None,
     "opening.but.no_end": Lack.NO_END,
 }
+STATED = 3  # controllers, and purposes, that are named
 PLACES = 3  # groups of places that the first sentence names
 
 
@@ -41,6 +44,8 @@ class OpeningSection:
 
     Attributes
     ----------
+    frame
+        (what, value): who is responsible, and what for; what is not stated is to be completed, who decides too.
     headline
         How many things wait for a decision; without any, the verdict.
     sentences
@@ -53,6 +58,7 @@ class OpeningSection:
         How many flows are to be decided.
     """
 
+    frame: tuple[tuple[str, str], ...]
     headline: str
     sentences: tuple[str, ...]
     cards: tuple[ExitCard, ...] = ()
@@ -63,7 +69,7 @@ class OpeningSection:
     @property
     def shown(self) -> tuple[ExitCard, ...]:
         """The cards that the page shows."""
-        return self.cards[:BOUND]
+        return first_of(self.cards, BOUND)[0]
 
     @property
     def rows(self) -> tuple[ToDecide, ...]:
@@ -95,18 +101,32 @@ def opening(
     """
     words = index.words
     rows = [flow for flow in flows if flow.entries[0].state in TO_DECIDE]
+    frame = tuple(_frame(rows, index))
     waiting = sum(row.waits for row in rows)
     cards = exit_cards(index, flows, entries)
     unfounded = tuple(_unfounded(index, flows))
-    more = words.count(len(cards) - BOUND, "opening.more") if len(cards) > BOUND else ""
+    _, left = first_of(cards, BOUND)
+    more = words.count(left, "opening.more") if left else ""
     if not rows:
         headline, means = verdict
         sentences = (means, *unfounded, *doubts, *_first_to_review(index))
-        return OpeningSection(headline, sentences, cards, remainder=more)
+        return OpeningSection(frame, headline, sentences, cards, remainder=more)
     headline = words.count(waiting, "opening.decide") if waiting else words.count(len(rows), "opening.carry")
     decided = [words.count(len(rows) - waiting, "opening.decided")] if 0 < waiting < len(rows) else []
     sentences = (*decided, *unfounded, *_unreviewed(index), *doubts)
-    return OpeningSection(headline, sentences, cards, len(rows), more, gist=_gist(rows, index))
+    return OpeningSection(frame, headline, sentences, cards, len(rows), more, gist=_gist(rows, index))
+
+
+def _frame(rows: Sequence[ToDecide], index: Index) -> Iterator[tuple[str, str]]:
+    """The controller and the purposes (Article 30(1)(a) and (b)), as the register has them; that nobody decides."""
+    words = index.words
+    for title, field, cell in (
+        ("column.controllers", "controllers", Cell.CONTROLLERS),
+        ("opening.purpose", "purposes", Cell.PURPOSES),
+    ):
+        yield words(title), "; ".join(words.first(of_all(index.register, field, cell, words), STATED))
+    if rows and not is_owned(rows):
+        yield words("opening.owner"), words("record.open")
 
 
 def _unfounded(index: Index, flows: Sequence[ToDecide]) -> Iterator[str]:
@@ -136,9 +156,9 @@ def _gist(rows: Sequence[ToDecide], index: Index) -> str:
     places: dict[str, list[str]] = {}
     for leak, entries in at.items():
         places.setdefault(kinds_in_words(entries, every, index), []).append(leak)
-    first = islice(places.items(), PLACES)
+    first, left = first_of(tuple(places.items()), PLACES)
     said = [words("opening.can", data=data, leak=first_names(leaks, index)) for data, leaks in first]
-    rest = sum(len(leaks) for leaks in islice(places.values(), PLACES, None))
+    rest = sum(len(leaks) for leaks in list(places.values())[-left:]) if left else 0
     said += [words.count(rest, "opening.places")] if rest else []
     sentence = "; ".join(said)
     return f"{sentence[:1].upper()}{sentence[1:]}."

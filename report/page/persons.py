@@ -3,8 +3,8 @@
 In: an ``Index`` and the entries of the report. Out: ``PageTable``s, cut into parts that are narrow enough for paper,
 and rows of plain texts. In the tables every kind of data is a column and every recipient a row, also where nothing was
 found: what is missing would look like an answer. What is not stated of all data of a kind is said to be completed. A
-storage or recipient counts for a group of persons (Articles 15, 17 and 20) if data that the group's sources bring in,
-or that are made of these, can get there; how long it is kept is 'not known' where nobody states it.
+storage or recipient counts for a group of persons (Articles 15, 17, 20 and 21) if data that the group's sources bring
+in, or that are made of these, can get there; how long it is kept is 'not known' where nobody states it.
 """
 
 from __future__ import annotations

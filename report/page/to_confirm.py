@@ -12,6 +12,7 @@ from rosprivacy.analysis.legal import on_prohibited_practices, transfer_of
 from rosprivacy.analysis.model import ARTICLE_10, GDPR_DENIED, GDPR_OPEN, SPECIAL
 from rosprivacy.analysis.model.register_row import Cell, RowState
 from rosprivacy.analysis.non_ros import ADEQUACY, ADEQUATE, DEROGATION, INSIDE, OCCASIONAL
+from rosprivacy.report.catalogs.words import first_of, shown_of
 from rosprivacy.report.finding_facts import REVEALS, in_order, scope_sentences
 from rosprivacy.report.naming import text
 from rosprivacy.report.page.index import kind_anchor
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 
 BOUND = 12  # places that page one has of each list; all of them stand in a section of their own
 FEW = 4  # of what is said before the first decision
+LINKS = 3  # entries that a place leads to
 RESTS = "know.rests"
 NO_SAFEGUARD = ("", "none", ADEQUACY, DEROGATION, OCCASIONAL)  # none of Articles 46 and 47
 ON_A_CONTRACT = {"processor": "confirm.processor", "joint-controller": "confirm.joint"}  # Articles 28 and 26
@@ -41,11 +43,11 @@ class QuestionPlace(NamedTuple):
     place
         Its name; of data that leave nowhere, who brings them in or makes them.
     kinds
-        (kind of data, its anchor), the heaviest first.
+        (kind of data, its anchor), the heaviest first; none where it is asked about the recipient, whatever the data.
     remark
         What else is said of it.
     entries
-        The paths that end there.
+        The paths of these kinds that end there.
     rows
         Ids of the rows of the register.
     """
@@ -55,6 +57,11 @@ class QuestionPlace(NamedTuple):
     remark: str
     entries: tuple[PathEntry, ...]
     rows: tuple[str, ...]
+
+    @property
+    def links(self) -> tuple[tuple[PathEntry, ...], int]:
+        """The paths that the place leads to, and how many there are beside them."""
+        return first_of(self.entries, LINKS)
 
 
 class RowQuestion(NamedTuple):
@@ -141,7 +148,7 @@ def questions_of(row: Mapping[str, Any]) -> Iterator[str]:
     if Cell.CRIMINAL_BASES in row["to_complete"]:
         yield "confirm.criminal"
     if Cell.SPECIAL_BASES in row["to_complete"]:
-        yield "confirm.special"
+        yield "confirm.secrecy" if row["special_bases"] else "confirm.special"
 
 
 def _foremost(row: Row, index: Index) -> Iterator[tuple[str, str]]:
@@ -175,13 +182,16 @@ def _questions(
         yield RowQuestion(
             key,
             index.words(key),
-            tuple(_place(name, remark, held, entries, index) for (name, remark), held in places.items()),
+            tuple(_place(key, name, remark, held, entries, index) for (name, remark), held in places.items()),
         )
 
 
 def _place(
-    name: str, remark: str, rows: Sequence[Row], entries: Mapping[str, PathEntry], index: Index
+    question: str, name: str, remark: str, rows: Sequence[Row], entries: Mapping[str, PathEntry], index: Index
 ) -> QuestionPlace:
+    ids = tuple(row["id"] for row in rows)
+    if question in ON_A_CONTRACT.values():
+        return QuestionPlace(name, (), remark, (), ids)
     kinds = {
         kind_anchor(row["category"]): index.data(row["category"], pseudonymised=row["pseudonymised"]) for row in rows
     }
@@ -192,7 +202,7 @@ def _place(
         kinds=tuple((data, at) for at, data in kinds.items()),
         remark=remark,
         entries=tuple(distinct[number] for number in sorted(distinct)),
-        rows=tuple(row["id"] for row in rows),
+        rows=ids,
     )
 
 
@@ -226,6 +236,8 @@ def _places(questions: Iterable[RowQuestion]) -> int:
 
 def _first(questions: Iterable[RowQuestion], bound: int) -> tuple[RowQuestion, ...]:
     """The first of them, each with the places that there is room for."""
+    questions = tuple(questions)
+    bound = shown_of(_places(questions), bound)
     first: list[RowQuestion] = []
     for question in questions:
         places = question.places[: max(bound - _places(first), 0)]

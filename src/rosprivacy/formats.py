@@ -268,7 +268,7 @@ def _html(document: Document, style: Style) -> str:
 
 
 def _works_council(document: Document, style: Style) -> str:
-    from rosprivacy.report.page.html import works_council
+    from rosprivacy.report.page.works_council import works_council
 
     return works_council(_outline(document, style)[0])
 

@@ -159,7 +159,7 @@ class Written(NamedTuple):
             show_default="as the output's name ends, else html; of analyze text",
             help="For a terminal, for programs, for code scanning; linked data; the CNIL's tool; a page, a text, a "
             "Word document; rows for the records of processing (Article 30 GDPR); a notice to persons (Articles 13 and "
-            "14); one page for works councils; an impact assessment along the EDPB's template.",
+            "14); a summary for works councils; an impact assessment along the EDPB's template.",
             rich_help_panel=WRITTEN,
         ),
     ] = None

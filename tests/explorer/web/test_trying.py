@@ -57,7 +57,7 @@ def test_what_closes_a_finding_is_one_click_from_being_tried(explore: Explore, l
     asked = page(client, finding.xpath("//a[@data-key='p']/@href")[0])
     said = text(asked, "element")
     assert "With 3 changes, this would be closed: 2 paths to assess." in said
-    assert "Analysed anew with them" in said
+    assert "The analysis was made again with these changes" in said
     whole, *each = asked.xpath("//form[input[@value='proposal']]")
     assert len(each) == 3
     answer = client.post(whole.get("action"), data=dict(whole.form_values()))

@@ -25,6 +25,7 @@ from rosprivacy.report.page.flows import flows
 from rosprivacy.report.page.html import html
 from rosprivacy.report.page.index import Index
 from rosprivacy.report.page.markdown import markdown
+from tests.helpers.abroad import abroad
 from tests.helpers.answers import answer_of
 from tests.helpers.graphs import hospital
 from tests.helpers.pages import LANGUAGES, page, texts_of, told
@@ -119,9 +120,7 @@ def test_what_all_flows_of_a_place_have_in_common_stands_once() -> None:
     uplink = told(care()).opening.cards[0]
     assert uplink.place == "/uplink"
     assert [line.sources for line in uplink.lines] == [("/camera",), ("/microphone",)]
-    assert dict(uplink.facts) == {"State": "to assess"} | {
-        what: value for what, value in uplink.facts if what == "Provisions"
-    }
+    assert {what for what, _ in uplink.facts} <= {"Provisions"}  # that it is to assess goes without saying
     assert [dict(line.facts)["Whose data"] for line in uplink.lines] == [
         "residents, staff, visitors",
         "residents, staff",
@@ -133,9 +132,11 @@ def test_what_is_not_stated_is_gathered_in_one_line_of_a_card(language: str) -> 
     report = told(care(), language)
     words = report.words
     for card in report.opening.cards:
-        for what in ("recipient", "country", "contract", "retention", "basis", "owner"):
+        for what in ("recipient", "country", "contract", "retention", "basis"):
             assert words(f"opening.unstated.{what}") in card.unstated
+        assert words("opening.unstated.owner") not in card.unstated  # nobody is named for any: told once, before
         assert not [value for _, value in card.facts if value in ("", words("not.stated"))]
+    assert (words("opening.owner"), words("record.open")) in report.opening.frame
     for text in texts_of(report):
         first = text.partition(plain(words("not.legal")))[0]
         for card in report.opening.cards:
@@ -152,7 +153,40 @@ def test_what_is_stated_of_a_place_is_on_its_card_and_not_in_that_line() -> None
     assert facts["Recipient"] == "Speech Inc., processor"
     assert facts["Country"].startswith("US")
     assert facts["Contract"] == "of May"
-    assert uplink.unstated == "Not stated: legal basis, who decides"
+    assert uplink.unstated == "Not stated: legal basis"
+
+
+def test_who_decides_is_asked_of_each_where_it_is_stated_of_some() -> None:
+    document = care()
+    decide(document, 0, choice="mitigate", owner="robot team")
+    opening = told(document).opening
+    assert "Who decides" not in dict(opening.frame)
+    unstated = {card.place: card.unstated for card in opening.cards}
+    assert "who decides (of voice)" in unstated["/uplink"]
+    assert unstated["/recorder"].endswith("who decides")
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_each_line_says_why_it_is_asked(language: str, tmp_path: Path) -> None:
+    """By what makes it a finding: a time that is too long, a decision on adequacy, a way out that somebody named."""
+    for document in (care(), with_outside(care()), dict(hospital().document()), abroad(tmp_path), run(2)):
+        report = told(document, language)
+        index = Index(document, report.words)
+        for line in (line for card in report.opening.cards for line in card.lines):
+            kinds = dict.fromkeys(entry.kind for entry in line.entries)
+            assert len(line.asks) == len(kinds)
+            for ask, kind in zip(line.asks, kinds, strict=True):
+                question, _, reason = ask.partition("?")
+                assert report.words(f"ask.{kind}").startswith(question)
+                assert len(reason.split()) in range(3, 25)
+            findings = [index.by_id[entry.id] for entry in line.entries]
+            limits = {value for f in findings for value in f.get("because", {}).get("values", {}).values()}
+            durations = {
+                report.words.duration(value) for value in limits if value.startswith("P") and value[1:2].isdigit()
+            }
+            assert all(any(duration in ask for ask in line.asks) for duration in durations)
+        for text in texts_of(report):
+            assert all(plain(ask) in text for card in report.opening.shown for line in card.lines for ask in line.asks)
 
 
 def test_what_is_not_stated_of_some_data_only_names_them() -> None:

@@ -6,13 +6,16 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from rosprivacy.report.catalogs.words import table
+from rosprivacy.report.catalogs.words import plain, table
 from rosprivacy.report.document.ledger import by_globs
+from tests.helpers.abroad import abroad
 from tests.helpers.graphs import hospital
-from tests.helpers.pages import page, texts, told
+from tests.helpers.pages import LANGUAGES, page, texts, told
 from tests.helpers.reports import care, decide, fleet, run, with_decisions, with_outside
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from rosprivacy.report.page.flows import ToDecide
 
 FACTS = ["whose", "law", "basis", "owner", "state"]
@@ -40,6 +43,29 @@ def test_the_report_begins_with_what_is_to_be_decided_the_worst_first() -> None:
     assert first["law"] == "Article 6; GDPR Art. 9(1) biometric data"
     assert (first["basis"], first["owner"]) == ("", "")
     assert first["state"] == "to assess"
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_page_one_names_the_controller_and_the_purpose_or_says_that_they_are_missing(
+    language: str, tmp_path: Path
+) -> None:
+    for document, stated in ((abroad(tmp_path), True), (care(), False)):
+        report = told(document, language)
+        frame = dict(report.opening.frame)
+        missing = report.words("record.open")
+        assert frame[report.words("column.controllers")] == ("Yard GmbH" if stated else missing)
+        assert frame[report.words("opening.purpose")] == ("protection of the yard" if stated else missing)
+        for text in texts(document, language):
+            before, _, after = text.partition(plain(report.opening.cards[0].data))
+            assert after
+            assert all(plain(report.words.pair(what, value)) in before for what, value in frame.items())
+
+
+def test_a_controller_of_some_data_only_is_still_to_be_completed(tmp_path: Path) -> None:
+    document = abroad(tmp_path)
+    row = document["register"][0]
+    row |= {"controllers": [], "to_complete": [*row["to_complete"], "controllers"]}
+    assert dict(told(document).opening.frame)["Controller"] == "Yard GmbH; to be completed"
 
 
 def test_a_page_links_each_line_of_a_card_to_its_paths() -> None:

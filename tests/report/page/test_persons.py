@@ -1,12 +1,21 @@
-"""The tables of persons and recipients, what storages, decisions and fleets add, and rights (Articles 15, 17, 20)."""
+"""The tables of persons and recipients, what storages, decisions and fleets add, and rights of persons."""
 
 from __future__ import annotations
 
-from typing import Any
+import re
+from typing import TYPE_CHECKING, Any
 
+import pytest
+
+from rosprivacy.report import naming
+from rosprivacy.report.catalogs.words import Words, plain
+from tests.helpers.abroad import abroad
 from tests.helpers.graphs import hospital
-from tests.helpers.pages import texts, told
+from tests.helpers.pages import LANGUAGES, texts, told
 from tests.helpers.reports import care, fleet, with_decisions, with_outside
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 
 def cells(table: Any) -> dict[str, dict[str, str]]:
@@ -42,7 +51,7 @@ def test_tables_are_cut_into_parts_that_fit_a_page() -> None:
 
 def test_storages_are_told_with_their_retention_and_what_is_missing() -> None:
     for text in texts(with_outside(care())):
-        assert "video of persons: 30 days; everything: 1 year" in text
+        assert "video of persons: 30 days; voice: 1 year" in text  # what is stated of everything holds for it
         assert "yes, for how long is not stated" in text
         assert "country: not stated" in text
         assert "US (adequacy decision for some recipients)" in text
@@ -51,6 +60,40 @@ def test_storages_are_told_with_their_retention_and_what_is_missing() -> None:
         assert "is kept at archive: without a stated end, or too long" in text
         assert "Reason: no retention is stated" in text
         assert "Members of the EEA and adequacy decisions as of 2026-06-30" in text
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_a_time_is_told_of_the_kinds_that_are_there_not_of_a_name_of_the_label_file(
+    language: str, tmp_path: Path
+) -> None:
+    """``PersonalData: P1Y`` is what the store keeps voice for; on its card one time stands without a name."""
+    report = told(abroad(tmp_path), language)
+    words, titles = report.words, {kind["name"]: kind for kind in abroad(tmp_path)["categories"]}
+    (store,) = [one for one in report.inventory.outside if one.name == "store"]
+    assert {part.count(": ") for part in plain(store.retention).split("; ")} == {1}
+    for name, time in (("Video", "P90D"), ("Voice", "P1Y")):
+        (part,) = [one for one in store.retention.split("; ") if naming.text(titles[name], "title", language) in one]
+        assert part.endswith(words.duration(time))
+    cards = {card.place: dict(card.facts) for card in report.opening.cards}
+    assert cards["store"][words("opening.retention")] == words.duration("P90D")
+    assert not [text for text in texts(abroad(tmp_path), language) if "PersonalData" in text]
+
+
+def test_a_time_of_data_that_do_not_get_there_is_told_too() -> None:
+    document = with_outside(care())
+    document["outside"][1]["retention"] = {"Video": "P30D", "every": "P1Y", "PersonalData": "P5Y"}
+    (archive,) = [one for one in told(document).inventory.outside if one.name == "archive"]
+    assert archive.retention == "video of persons: 30 days; voice: 1 year; personal data: 5 years"
+    document["register"] = []  # an older document
+    (archive,) = [one for one in told(document).inventory.outside if one.name == "archive"]
+    assert archive.retention.startswith("video of persons: 30 days")
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_who_meets_an_objection_finds_where_the_data_lie(language: str) -> None:
+    intro = Words(language)("rights.intro")
+    assert all(re.search(rf"\b{article}\b", intro) for article in (15, 17, 20, 21))  # Article 21(1) names 6(1)(e), (f)
+    assert all(plain(intro) in text for text in texts(care(), language))
 
 
 def test_decisions_stand_beside_their_way_with_what_they_lack() -> None:

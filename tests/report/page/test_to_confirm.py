@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from rosprivacy.report.catalogs.words import IN_ENGLISH, plain, table
+from rosprivacy.report.catalogs.words import IN_ENGLISH, Words, plain, table
 from rosprivacy.report.page.markdown import markdown
 from rosprivacy.report.page.to_confirm import BOUND, RowQuestion
 from tests.helpers.pages import LANGUAGES, page, told
@@ -96,7 +96,7 @@ def test_an_acceptance_without_ground_or_end_is_asked_about_and_still_counts() -
 
 def test_page_one_has_the_first_and_the_others_by_number_with_a_link(system: dict[str, Any]) -> None:
     (like,) = [row for row in system["register"] if row["category"] == "EmotionEstimate" and row["places"]]
-    for number in range(BOUND):
+    for number in range(BOUND + 2):
         place = {**like["places"][0], "name": f"disk {number}"}
         system["register"].append({**like, "id": f"{number:016x}", "places": [place]})
     report = told(system)
@@ -105,7 +105,36 @@ def test_page_one_has_the_first_and_the_others_by_number_with_a_link(system: dic
     assert all(every.remainder[1:])
     assert page(system).xpath("//section[@id='decide']//a[@href='#confirm']")
     every_place = page(system).xpath("//section[@id='confirm']")[0].text_content()
-    assert all(f"disk {number}" in every_place for number in range(BOUND))
+    assert all(f"disk {number}" in every_place for number in range(BOUND + 2))
+
+
+def test_one_or_two_that_are_left_are_named(system: dict[str, Any]) -> None:
+    """'and 1 more' names nothing: of places, and of the paths that end at one."""
+    (like,) = [row for row in system["register"] if row["category"] == "EmotionEstimate" and row["places"]]
+    for number in range(BOUND + 1):
+        place = {**like["places"][0], "name": f"disk {number}"}
+        system["register"].append({**like, "id": f"{number:016x}", "places": [place]})
+    lists = told(system).row_questions
+    assert len(lists.shown.know[0].places) == BOUND + 2
+    assert lists.remainder[2] == 0
+    for language in LANGUAGES:
+        text = markdown(told(care(), language))
+        assert not [n for n in (1, 2) if plain(Words(language)("more", n=n)) in plain(text)]
+
+
+def test_a_recipient_is_asked_for_its_contract_whatever_the_data(system: dict[str, Any]) -> None:
+    (question,) = [one for one in told(system).row_questions.confirm if one.key == "confirm.processor"]
+    assert [(place.place, place.kinds, place.entries) for place in question.places] == [("help desk", (), ())]
+    assert question.places[0].rows
+
+
+def test_health_data_are_asked_for_professional_secrecy_where_the_exception_is_stated(system: dict[str, Any]) -> None:
+    """Article 9(3): that no exception is stated would be false."""
+    for row in system["register"]:
+        row["special_bases"] = ["9(2)(h)"] if "special_bases" in row["to_complete"] else row["special_bases"]
+    keys = {question.key for question in told(system).row_questions.confirm}
+    assert "confirm.secrecy" in keys
+    assert "confirm.special" not in keys
 
 
 def test_whether_the_gdpr_applies_is_asked_first() -> None:

@@ -29,7 +29,11 @@ if TYPE_CHECKING:
 FINDING, ROW = "finding", "row"  # what a person can decide about
 GROUND_GROUPS = ("6(1)", "9(2)")
 ANSWER = "answer-"  # before the name of a question, as a field
-OF_GROUNDS = ("confirm.special", "confirm.criminal")  # a ground answers them, and that it is missing is told
+OF_GROUNDS = (
+    "confirm.special",
+    "confirm.secrecy",
+    "confirm.criminal",
+)  # a ground answers them; that it is missing is told
 
 
 def row_of(document: Mapping[str, Any], finding: str) -> Row | None:
