@@ -100,11 +100,11 @@ def provisions_named(provisions: Iterable[Provision], words: str) -> tuple[Provi
     """
     wanted = {word.strip(SIGNS) for word in words.casefold().split()} - {""}
 
-    def called(provision: Provision) -> set[str]:
+    def name_words(provision: Provision) -> set[str]:
         texts = (provision.identifier, provision.name, provision.title)
         return {word.strip(SIGNS) for text in texts for word in text.casefold().split()}
 
-    return tuple(provision for provision in provisions if wanted <= called(provision))
+    return tuple(provision for provision in provisions if wanted <= name_words(provision))
 
 
 def is_old(as_of: str, today: str) -> bool:
