@@ -158,6 +158,19 @@ def test_an_unknown_name_of_something_else_is_new(now: str, about: str, cli: Cli
     assert len(found["gaps"]["gone"]) == 1
 
 
+def test_a_class_that_makes_channels_by_itself_in_place_of_another_is_new(cli: Cli, robot: Path) -> None:
+    """Each has channels of its own, which are not known."""
+    edited(robot / LISTENER, "import whisper\n", "import whisper\nfrom driving import Basic, Careful\n")
+    edited(robot / LISTENER, MADE, f"{MADE}        self.drive = Basic(node=self)\n")
+    commit(robot)
+    edited(robot / LISTENER, "Basic(", "Careful(")
+    code, found = compared(cli, robot)
+    assert code == 1
+    assert [[row["about"].split()[1] for row in found["gaps"][what]] for what in ("new", "gone")] == [
+        ["Careful"], ["Basic"]
+    ]  # fmt: skip
+
+
 def test_a_way_out_that_is_gone_passes_and_is_named(cli: Cli, robot: Path) -> None:
     with_cloud(robot)
     with_open_name(robot)
