@@ -134,7 +134,7 @@ def analyse(
     return Analysis(
         graph=graph,
         verdict=Verdict.of(leak=leak, is_open=bool(questions), grounded=not lacks),
-        emitted=_asked(spread, options),
+        emitted=_categories(spread, options),
         findings=findings,
         open=questions,
         carried=_kept_carried(spread, mask, hierarchy),
@@ -177,14 +177,14 @@ def chosen_findings(
     return tuple(_findings(net, _mask(spread, options), kinds, options, _Tallies(options.bounds)))
 
 
-def _asked(spread: Spread, options: Options) -> tuple[str, ...]:
+def _categories(spread: Spread, options: Options) -> tuple[str, ...]:
     """The emitted categories that the answer is about."""
     return tuple(c for c in spread.categories if options.categories is None or c in options.categories)
 
 
 def _mask(spread: Spread, options: Options) -> int:
-    """Their bits."""
-    return sum(map(spread.forms_of, _asked(spread, options)))
+    """The bits of these categories."""
+    return sum(map(spread.forms_of, _categories(spread, options)))
 
 
 class _Tallies:

@@ -299,7 +299,7 @@ class _Reading(NamedTuple):
     problems: list[InputError]
 
 
-def _read_each(files: Iterable[str], named: Container[str], include_root: str | None, bounds: Bounds) -> _Reading:
+def _read_each(files: Iterable[str], named_files: Container[str], include_root: str | None, bounds: Bounds) -> _Reading:
     """Read files; one that is no policy is a problem only where somebody named it."""
     reading = _Reading([], [], [])
     for file in files:
@@ -307,7 +307,7 @@ def _read_each(files: Iterable[str], named: Container[str], include_root: str | 
             reading.policies.append(read_policy(file, include_root=include_root, bounds=bounds))
         except InputErrors as error:
             first = error.errors[0]
-            if isinstance(first, NotAPolicyError) and file not in named:
+            if isinstance(first, NotAPolicyError) and file not in named_files:
                 reading.skipped.append(first)
             else:
                 reading.problems.extend(_of_another_kind(file) or error.errors)
@@ -315,10 +315,10 @@ def _read_each(files: Iterable[str], named: Container[str], include_root: str | 
 
 
 def _without_policies(
-    arguments: Collection[str], found: Mapping[str, AbstractSet[str]], no_policies: AbstractSet[str]
+    arguments: Collection[str], folder_files: Mapping[str, AbstractSet[str]], no_policies: AbstractSet[str]
 ) -> Iterator[PolicyError]:
     """Name each folder that has no policy; and where nothing is named, say so."""
-    for argument in (one for one, files in found.items() if files <= no_policies) if arguments else ("nothing",):
+    for argument in (one for one, files in folder_files.items() if files <= no_policies) if arguments else ("nothing",):
         yield PolicyError(argument, 0, "no SROS 2 policy found", "name a file or folder that has one")
 
 

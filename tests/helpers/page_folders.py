@@ -154,14 +154,14 @@ def typed(folder: Path) -> None:
 def deployed(folder: Path) -> None:
     """A camera and an uplink: a keystore and files that ``openssl`` has signed, access lists, and their policy."""
     video = "rt/video"
-    said = {"camera": rule("allow", publish=(video,)), "uplink": rule("allow", subscribe=(video,))}
+    rules = {"camera": rule("allow", publish=(video,)), "uplink": rule("allow", subscribe=(video,))}
     made = Keystore(folder / "keystore")
     made.governance(governance())
-    for name, allowed in said.items():
+    for name, allowed in rules.items():
         made.enclave(f"/{name}", permissions(grant(f"/{name}", allowed)))
         (folder / name).mkdir()
-    made.sign(permissions(grant("/camera", said["camera"])), folder / "camera" / "permissions.p7s")
-    (folder / "uplink" / "permissions.xml").write_text(permissions(grant("/uplink", said["uplink"])), "utf-8")
+    made.sign(permissions(grant("/camera", rules["camera"])), folder / "camera" / "permissions.p7s")
+    (folder / "uplink" / "permissions.xml").write_text(permissions(grant("/uplink", rules["uplink"])), "utf-8")
     (folder / "governance.xml").write_text(governance(), "utf-8")
     (folder / "ours").mkdir()
     shutil.copy(folder / "keystore" / "public" / "permissions_ca.cert.pem", folder / "ours")
