@@ -124,7 +124,8 @@ def commit_of(revision: str, folder: str = os.curdir) -> str:
     """
     done = git("rev-parse", "--verify", "--quiet", "--end-of-options", f"{revision}^{{commit}}", folder=folder)
     if done.returncode:
-        checkout = "this checkout" if folder == os.curdir else f"the checkout {shown(os.path.relpath(folder))}"
+        name = os.path.relpath(folder)
+        checkout = "this checkout" if name == os.curdir else f"the checkout {shown(name)}"
         raise InputErrors([InputError(revision, 0, f"is no commit of {checkout}", FETCH)])
     return done.stdout.decode("ascii").strip()
 
