@@ -40,7 +40,6 @@ if TYPE_CHECKING:
 ARCHITECTURE = ROOT / "docs" / "architecture.md"
 LABELS = ROOT / "docs" / "labels.md"
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md")), ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md"]
-NEEDS_SERVER = ("load", "query", "db", "explore")  # their tests are those of the database; the last is one itself
 SECURITY = ROOT / "docs" / "security.md"
 PAGES.append(ROOT / "SECURITY.md")
 
@@ -159,25 +158,6 @@ def test_the_readmes_first_finding_is_what_is_printed(cli: Cli) -> None:
     (shown,) = [block for block in blocks(ROOT / "README.md", "text") if block.startswith("leak:")]
     for line in shown.splitlines():
         assert line == "…" or line in done.stdout.splitlines(), line
-
-
-@pytest.mark.slow
-def test_the_readmes_commands_run_as_they_stand_there(cli: Cli, tmp_path: Path) -> None:
-    """In their order, in one folder, with a policy, the examples and an environment as a reader has them."""
-    (tmp_path / "examples").symlink_to(ROOT / "examples")
-    shutil.copytree(ROOT / "examples" / "factory", tmp_path, dirs_exist_ok=True)
-    for name in ("my_robot", "old", "new"):
-        shutil.copy(tmp_path / "before.policy.xml", tmp_path / f"{name}.policy.xml")
-    lines = [line for block in blocks(ROOT / "README.md", "console") for line in block.splitlines()]
-    ran = {}
-    for line in lines:
-        program, *arguments = shlex.split(line, comments=True)
-        if program == "rosprivacy" and arguments[0] not in NEEDS_SERVER:
-            done = cli(*arguments, cwd=tmp_path)
-            ran[arguments[0]] = done.returncode
-            assert done.returncode in (0, 1, 4), (line, done.stderr)
-    assert ran.keys() == {"analyze", "try", "init", "labels", "mitigate", "report", "graph", "diff"}
-    assert (tmp_path / "report.html").stat().st_size > 10_000
 
 
 @pytest.mark.slow

@@ -1,6 +1,6 @@
-"""Every command that a page shows is one of the program, with options that it has; those of formats are run.
+"""Every command that a page names is one of the program, with options that it has.
 
-What a command prints is held for each page by itself, and ``test_docs_runs.py`` runs the commands of the others.
+``test_docs_runs.py`` runs the lines that a reader can type, and has the table of how.
 """
 
 from __future__ import annotations
@@ -12,14 +12,13 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from tests.helpers import reference
-from tests.helpers.docs import blocks, hand_written
+from tests.helpers.docs import hand_written
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from tests.helpers.command import Cli
 
 PAGES = [
     ROOT / "README.md",
@@ -66,14 +65,6 @@ def test_what_is_no_command_or_option_is_seen() -> None:
         ["db", "stop"],
         ["law"],
     ]
-
-
-@pytest.mark.parametrize("line", blocks(ROOT / "docs" / "formats.md", "console"))
-def test_the_commands_of_formats_write_what_they_name(cli: Cli, tmp_path: Path, line: str) -> None:
-    (tmp_path / "examples").symlink_to(ROOT / "examples")
-    program, *words = shlex.split(line)
-    assert (program, cli(*words, cwd=tmp_path).returncode) == ("rosprivacy", 1)
-    assert (tmp_path / words[-1]).exists()
 
 
 def test_the_figures_of_speed_name_scripts_that_are_there() -> None:

@@ -126,24 +126,18 @@ def analyse(
     options = options or Options()
     bound = replace(bound, outside=on_day(bound.outside, options.today))
     spread = spreading.spread(graph, bound, hierarchy, before)
-    kinds = tuple(concerns(spread, bound, hierarchy))
-    wanted = [c for c in spread.categories if options.categories is None or c in options.categories]
-    mask = _mask(spread, options)
-    net = Net.cached(spread)
-    work = _Tallies(options.bounds)
-    findings = _kept_findings(net, mask, kinds, options, work)
+    mask, net, work = _mask(spread, options), Net.cached(spread), _Tallies(options.bounds)
+    findings = _kept_findings(net, mask, tuple(concerns(spread, bound, hierarchy)), options, work)
     questions = open_questions(net, mask, unanswered(graph.elements, bound.outside))
     lacks = grounds(spread, mask).lacking
     leak = any(finding.stands for finding in findings)
     return Analysis(
         graph=graph,
         verdict=Verdict.of(leak=leak, is_open=bool(questions), grounded=not lacks),
-        emitted=tuple(wanted),
+        emitted=_categories(spread, options),
         findings=findings,
         open=questions,
-        carried=spread.course.memoised(
-            "carried", (mask, spread.absent_bits, hierarchy), lambda: _carried(spread, mask, hierarchy)
-        ),
+        carried=_kept_carried(spread, mask, hierarchy),
         roles=_roles(spread, mask),
         standard_channels=_standard_channels(spread),
         standard_reached=standard_channels.reached(spread, mask),
@@ -152,12 +146,7 @@ def analyse(
         standard_unchanged=standard_channels.unchanged(spread, bound),
         spread=spread,
         unstated=tuple(_unstated(spread)),
-        diagnostics=(
-            *(one.diagnostic() for one in spread.overruled),
-            *untouched(spread.facts, graph.elements, spread.categories),
-            *work.not_counted(),
-            *(() if leak or questions else _lacking(lacks, options, spread)),
-        ),
+        diagnostics=(*_remarks(spread, work), *(() if leak or questions else _lacking(lacks, options, spread))),
         outside={graph.elements[vertex]: facts for vertex, facts in sorted(bound.outside.items())},
         unknown_ends=unknown_ends(spread, mask),
         lacking=lacks,
@@ -188,9 +177,14 @@ def chosen_findings(
     return tuple(_findings(net, _mask(spread, options), kinds, options, _Tallies(options.bounds)))
 
 
+def _categories(spread: Spread, options: Options) -> tuple[str, ...]:
+    """The emitted categories that the answer is about."""
+    return tuple(c for c in spread.categories if options.categories is None or c in options.categories)
+
+
 def _mask(spread: Spread, options: Options) -> int:
-    """The bits of the categories that the answer is about."""
-    return sum(spread.forms_of(c) for c in spread.categories if options.categories is None or c in options.categories)
+    """The bits of these categories."""
+    return sum(map(spread.forms_of, _categories(spread, options)))
 
 
 class _Tallies:
@@ -462,8 +456,21 @@ def finding_id(
     return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:16]
 
 
+def _remarks(spread: Spread, work: _Tallies) -> Iterator[Diagnostic]:
+    """What is to be said beside the answer: labels without effect, and paths that were not counted (rule S11)."""
+    yield from (one.diagnostic() for one in spread.overruled)
+    yield from untouched(spread.facts, spread.graph.elements, spread.categories)
+    yield from work.not_counted()
+
+
 def _lacking(lacks: str, options: Options, spread: Spread) -> tuple[Diagnostic, ...]:
     return lacking(lacks, restricted=options.categories is not None, limited=bool(spread.limited))
+
+
+def _kept_carried(spread: Spread, mask: int, hierarchy: Hierarchy) -> tuple[CarriedData, ...]:
+    """What is where; that of before, where data goes the same ways and the same is asked."""
+    same = mask, spread.absent_bits, hierarchy
+    return spread.course.memoised("carried", same, lambda: _carried(spread, mask, hierarchy))
 
 
 def _carried(spread: Spread, mask: int, hierarchy: Hierarchy) -> tuple[CarriedData, ...]:

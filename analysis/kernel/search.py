@@ -114,49 +114,71 @@ def search(
     >>> [some.level(ARCHIVE, net.spread.forms_of("FaceTemplate")) for some in (reach, past)]
     [4, None]
     """
+    reach, level = Search(), 0
+    leaving, single = _begun(net, reach, starts, allowed, leaving_starts)
+    met: dict[int, int] = defaultdict(int)  # bits that have come to all that a meeting reads
+    while leaving or single:
+        level += 1
+        arriving = _arrivals(net, reach, leaving, single, met, level)
+        leaving, single = _departures(net, reach, arriving, allowed, stop, level), []
+    return reach
+
+
+def _begun(
+    net: Net, reach: Search, starts: Iterable[int], allowed: int, leaving_starts: Mapping[int, int] | None
+) -> tuple[dict[int, int], list[tuple[int, int, int]]]:
+    """What leaves the starts, by vertex; and what they emit through single flows only: flow, its target, bits."""
     spread = net.spread
-    reach = Search()
-    arrived, seen, gone = reach.arrived, reach.arrived_bits, reach.left_bits
-    flows, meetings = net.flows, net.meetings
-    keeps, derives, everything = spread.keeps, spread.derives, spread.all_bits
-    level = 0
-    leaving: dict[int, int] = defaultdict(int)
     emits = spread.emits if leaving_starts is None else leaving_starts
     first = {vertex: emits.get(vertex, 0) & allowed for vertex in sorted(starts)}
     begins = spread.begins if leaving_starts is None else leaving_starts.__getitem__
     reach.begun.update({vertex: begins(vertex) & allowed for vertex in first})
+    leaving: dict[int, int] = defaultdict(int)
     for vertex, bits in first.items():
         _leave(reach, vertex, bits, START, leaving)
-    single = _through_flows(net, first, allowed) if leaving_starts is None else []
-    met: dict[int, int] = defaultdict(int)  # bits that have come to all that a meeting reads
-    while leaving or single:
-        level += 1
-        arriving: dict[int, int] = defaultdict(int)
-        for index, target, bits in single:
-            _arrive(reach, target, bits, level, index, arriving)
-        single = []
-        for vertex in sorted(leaving):
-            bits = leaving[vertex]
-            for index, target, passing in flows.get(vertex, ()):
-                known = seen.get(target, 0)
-                if new := bits & passing & ~known:  # ``_arrive``, written out: most of the time is spent here
-                    seen[target] = known | new
-                    arrived[target].append((level, new, index))
-                    arriving[target] |= new
-            for meeting in meetings.get(vertex, ()):
-                if new := bits & ~met[id(meeting)]:
-                    met[id(meeting)] |= new
-                    _arrive_at_all(net, reach, vertex, meeting.read, new, level, arriving)
-        leaving = defaultdict(int)
-        for vertex, bits in sorted(arriving.items()):
-            if vertex in stop or vertex in derives:
-                _pass_on(spread, reach, vertex, bits, allowed, stop.get(vertex, 0), leaving)
-            elif new := bits & keeps.get(vertex, everything) & ~gone.get(vertex, 0):
-                _leave(reach, vertex, new, None, leaving)
-        read = _across_sides(net, reach, level, leaving)
-        for vertex in sorted(read):
-            _pass_on(spread, reach, vertex, read[vertex], allowed, stop.get(vertex, 0), leaving)
-    return reach
+    return leaving, _through_flows(net, first, allowed) if leaving_starts is None else []
+
+
+def _arrivals(
+    net: Net, reach: Search, leaving: Mapping[int, int], single: Iterable[tuple[int, int, int]], met: dict[int, int],
+    level: int,
+) -> dict[int, int]:  # fmt: skip
+    """What is new where the flows of a level end: vertex -> bits."""
+    arrived, seen, flows, meetings = reach.arrived, reach.arrived_bits, net.flows, net.meetings
+    arriving: dict[int, int] = defaultdict(int)
+    for index, target, bits in single:
+        _arrive(reach, target, bits, level, index, arriving)
+    for vertex in sorted(leaving):
+        bits = leaving[vertex]
+        for index, target, passing in flows.get(vertex, ()):
+            known = seen.get(target, 0)
+            if new := bits & passing & ~known:  # ``_arrive``, written out: most of the time is spent here
+                seen[target] = known | new
+                arrived[target].append((level, new, index))
+                arriving[target] |= new
+        for meeting in meetings.get(vertex, ()):
+            if new := bits & ~met[id(meeting)]:
+                met[id(meeting)] |= new
+                _arrive_at_all(net, reach, vertex, meeting.read, new, level, arriving)
+    return arriving
+
+
+def _departures(
+    net: Net, reach: Search, arriving: Mapping[int, int], allowed: int, stop: Mapping[int, int], level: int
+) -> dict[int, int]:
+    """What leaves again of what arrives at a level, on the other side of a wildcard too: vertex -> bits."""
+    spread, gone = net.spread, reach.left_bits
+    keeps, derives, everything = spread.keeps, spread.derives, spread.all_bits
+    leaving: dict[int, int] = defaultdict(int)
+    for vertex, bits in sorted(arriving.items()):
+        if vertex in stop or vertex in derives:
+            _pass_on(spread, reach, vertex, bits, allowed, stop.get(vertex, 0), leaving)
+        elif new := bits & keeps.get(vertex, everything) & ~gone.get(vertex, 0):
+            _leave(reach, vertex, new, None, leaving)
+    read = _across_sides(net, reach, level, leaving)
+    for vertex in sorted(read):
+        _pass_on(spread, reach, vertex, read[vertex], allowed, stop.get(vertex, 0), leaving)
+    return leaving
 
 
 def from_sources(spread: Spread) -> tuple[Net, Search]:

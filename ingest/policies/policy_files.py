@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from functools import cache
 from glob import glob, has_magic
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import InputError, InputErrors, PolicyError, reason, shown
@@ -24,7 +24,8 @@ from rosprivacy.ingest.reading.bounded_file import WIDEN, leaves, what_leaves
 from rosprivacy.ingest.reading.file_kinds import ACCESS_LIST, PERMISSIONS, POLICY, FileKind, kind_of_file
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Collection, Container, Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Set as AbstractSet
 
     from rosprivacy.analysis.bounds import Bounds
 
@@ -223,6 +224,11 @@ class _Expanded:
     contents: dict[str, Contents] = field(default_factory=dict)
     problems: list[InputError] = field(default_factory=list)
 
+    @property
+    def files(self) -> list[str]:
+        """All of them, each once."""
+        return sorted({*self.named_files, *(file for files in self.folder_files.values() for file in files)})
+
 
 def read_policies(
     arguments: Iterable[str],
@@ -261,27 +267,16 @@ def read_policies(
     """
     arguments = tuple(arguments)
     expanded = _expand(arguments)
-    named, found, problems = expanded.named_files, expanded.folder_files, expanded.problems
-    everything = sorted({*named, *(file for files in found.values() for file in files)})
-    outside = dict.fromkeys(file for file in everything if within is not None and leaves(file, within))
-    problems += [PolicyError(file, 0, what_leaves(file, within or ""), WIDEN) for file in outside]
-    policies: list[Policy] = []
-    skipped: list[NotAPolicyError] = []
-    for file in progress([file for file in everything if file not in outside]):
-        try:
-            policies.append(read_policy(file, include_root=include_root, bounds=bounds))
-        except InputErrors as error:
-            first = error.errors[0]
-            if isinstance(first, NotAPolicyError) and file not in named:
-                skipped.append(first)
-            else:
-                problems += _of_another_kind(file) or error.errors
-    no_policies = {error.file for error in skipped}
-    for argument, files in found.items():
-        if files <= no_policies:
-            problems.append(PolicyError(argument, 0, "no SROS 2 policy found", "name a file or folder that has one"))
-    if not arguments:
-        problems.append(PolicyError("nothing", 0, "no SROS 2 policy found", "name a file or folder that has one"))
+    named, found = expanded.named_files, expanded.folder_files
+    outside = dict.fromkeys(file for file in expanded.files if within is not None and leaves(file, within))
+    inside = [file for file in expanded.files if file not in outside]
+    policies, skipped, unread = _read_each(progress(inside), named, include_root, bounds)
+    problems = [
+        *expanded.problems,
+        *(PolicyError(file, 0, what_leaves(file, within or ""), WIDEN) for file in outside),
+        *unread,
+        *_without_policies(arguments, found, {error.file for error in skipped}),
+    ]
     if problems:
         good = {policy.file for policy in policies}
         whole = [one for folder in found for one in _mixed(folder, found[folder], good, problems)]
@@ -294,6 +289,37 @@ def read_policies(
         one for argument, held in expanded.contents.items() for one in held.diagnostics(argument, read, bounds)
     )
     return tuple(policies), (*(_not_read(error, included) for error in skipped), *passed_over)
+
+
+class _Reading(NamedTuple):
+    """What came of files: policies, what a folder holds beside these, and what is wrong."""
+
+    policies: list[Policy]
+    skipped: list[NotAPolicyError]
+    problems: list[InputError]
+
+
+def _read_each(files: Iterable[str], named_files: Container[str], include_root: str | None, bounds: Bounds) -> _Reading:
+    """Read files; one that is no policy is a problem only where somebody named it."""
+    reading = _Reading([], [], [])
+    for file in files:
+        try:
+            reading.policies.append(read_policy(file, include_root=include_root, bounds=bounds))
+        except InputErrors as error:
+            first = error.errors[0]
+            if isinstance(first, NotAPolicyError) and file not in named_files:
+                reading.skipped.append(first)
+            else:
+                reading.problems.extend(_of_another_kind(file) or error.errors)
+    return reading
+
+
+def _without_policies(
+    arguments: Collection[str], folder_files: Mapping[str, AbstractSet[str]], no_policies: AbstractSet[str]
+) -> Iterator[PolicyError]:
+    """Name each folder that has no policy; and where nothing is named, say so."""
+    for argument in (one for one, files in folder_files.items() if files <= no_policies) if arguments else ("nothing",):
+        yield PolicyError(argument, 0, "no SROS 2 policy found", "name a file or folder that has one")
 
 
 def _mixed(

@@ -350,7 +350,8 @@ class _Maker:
             self.ends.add(end)
             return True
         why = final.why or f"no {end.kind} of ROS can be called {final.text}"
-        self._gap(end.place, "name", f"{end.node}: the name of {A[end.kind]} ({end.role}) is not known: {why}")
+        what = f"{A[end.kind]} ({end.role} {end.type})" if end.type else f"{A[end.kind]} ({end.role})"
+        self._gap(end.place, "name", f"{end.node}: the name of {what} is not known: {why}")
         return False
 
     def _add_node(self, node: RunningNode, place: CodePlace, code: CodeNode | None) -> None:

@@ -5,6 +5,7 @@ In: a folder of sources, and a launch file of it. Out: texts to write, and lines
 
 from __future__ import annotations
 
+import re
 from collections import Counter, defaultdict
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -26,7 +27,8 @@ if TYPE_CHECKING:
 
 ARROWS = {(True, True): "<->", (True, False): "<-", (False, True): "->", (False, False): "-"}
 LOGS = "/rosout and log files"
-DEPENDS_ON = (" is not known: ", ": it depends on ", " depends on ")  # in the text of a gap
+DEPENDS_ON = re.compile(r" (?:is|are) not known: |^not known: |: it depends on | depends on ")  # in the text of a gap
+LISTED = re.compile(": ")  # in that of a gap about a file or a system: what is wrong with its lines, or many names
 SHOWN_AT_MOST = 40  # of the gaps, and of the systems
 
 
@@ -71,8 +73,9 @@ def scan(*folders: str, launch: str = "") -> Scan:
 def code_state(scans: Iterable[Scan]) -> CodeState:
     """Return the ways out and the gaps of scans, to be compared with those of others.
 
-    What a gap depends on is told in words of the code, which change when a variable is renamed, so it is not what the
-    gap is about. A number at the beginning of its text says how often.
+    A gap is about what is not known: the name of a topic that this node writes with this type. What that depends on is
+    told in words of the code, which change when a variable is renamed, and says no more of it. A number at the
+    beginning of its text says how often.
     """
     places: dict[Key, list[str]] = defaultdict(list)
     ways: dict[Key, Record] = defaultdict(lambda: {"times": 0})
@@ -82,12 +85,11 @@ def code_state(scans: Iterable[Scan]) -> CodeState:
             ways[key]["times"] += 1
             places[key].append(_line(place, scan))
         for gap in sorted({gap for system in (scan.system, *scan.systems) for gap in system.gaps}):
-            mark = next((mark for mark in DEPENDS_ON if mark in gap.text), ": ")
-            about, _, depends = gap.text.partition(mark)
+            about, *depends = (LISTED if gap.sort in ("file", "system") else DEPENDS_ON).split(gap.text, maxsplit=1)
             number, _, rest = about.partition(" ")
             key = (gap.sort, gap.place.file, rest if number.isdecimal() else about)
             gaps[key]["times"] += int(number) if number.isdecimal() else 1
-            gaps[key]["depends_on"] += [depends] if depends else []
+            gaps[key]["depends_on"] += depends
             places[key].append(_line(gap.place, scan))
     return CodeState(dict(ways), dict(gaps), places)
 

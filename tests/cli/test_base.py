@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 import subprocess
 from typing import TYPE_CHECKING, Any
@@ -120,6 +121,54 @@ def test_what_means_the_same_passes(old: str, new: str, cli: Cli, robot: Path) -
     assert not found["ways_out"]["changed"]
     depends = [(row["before"]["depends_on"], row["after"]["depends_on"]) for row in found["gaps"]["changed"]]
     assert depends == ([tuple([f"argument {name} of __init__"] for name in (old, new))] if old == "wanted" else [])
+
+
+def test_another_unknown_name_of_the_same_node_is_changed(cli: Cli, robot: Path) -> None:
+    """As much is not known as before: what topic this node writes, with messages of this type (rule S16)."""
+    with_open_name(robot)
+    edited(robot / LISTENER, "wanted)", "wanted, other)")
+    commit(robot)
+    edited(robot / LISTENER, "String, wanted", "String, other")
+    code, found = compared(cli, robot)
+    assert (code, found["worse"], found["gaps"]["new"], found["gaps"]["gone"]) == (0, False, [], [])
+    (row,) = found["gaps"]["changed"]
+    assert row["about"] == "/guide/listener: the name of a topic (publish std_msgs/msg/String)"
+    assert [row[side]["depends_on"] for side in ("before", "after")] == [
+        [f"argument {name} of __init__"] for name in ("wanted", "other")
+    ]
+    assert cli("diff", ".", "--base", "HEAD", "--fail-on", "any", cwd=robot).returncode == 1
+
+
+@pytest.mark.parametrize(
+    ("now", "about"),
+    [
+        ("create_publisher(AudioStamped, wanted, 10)", "a topic (publish audio_common_msgs/msg/AudioStamped)"),
+        ("create_subscription(String, wanted, print, 10)", "a topic (subscribe std_msgs/msg/String)"),
+    ],
+    ids=["of another type", "in the other direction"],
+)
+def test_an_unknown_name_of_something_else_is_new(now: str, about: str, cli: Cli, robot: Path) -> None:
+    """A node that wrote text to an unknown topic and writes sound to one now lets out more, whatever the name."""
+    with_open_name(robot)
+    commit(robot)
+    edited(robot / LISTENER, "create_publisher(String, wanted, 10)", now)
+    code, found = compared(cli, robot)
+    assert code == 1
+    assert [row["about"] for row in found["gaps"]["new"]] == [f"/guide/listener: the name of {about}"]
+    assert len(found["gaps"]["gone"]) == 1
+
+
+def test_a_class_that_makes_channels_by_itself_in_place_of_another_is_new(cli: Cli, robot: Path) -> None:
+    """Each has channels of its own, which are not known."""
+    edited(robot / LISTENER, "import whisper\n", "import whisper\nfrom driving import Basic, Careful\n")
+    edited(robot / LISTENER, MADE, f"{MADE}        self.drive = Basic(node=self)\n")
+    commit(robot)
+    edited(robot / LISTENER, "Basic(", "Careful(")
+    code, found = compared(cli, robot)
+    assert code == 1
+    assert [[row["about"].split()[1] for row in found["gaps"][what]] for what in ("new", "gone")] == [
+        ["Careful"], ["Basic"]
+    ]  # fmt: skip
 
 
 def test_a_way_out_that_is_gone_passes_and_is_named(cli: Cli, robot: Path) -> None:
@@ -263,7 +312,7 @@ def git(robot: Path, *words: str, text: str | bytes = b"") -> str:
     [
         (("--base", "nowhere"), "nowhere: "),
         (("new", "--base", "HEAD"), "HEAD:new: "),
-        (("..", "--base", "HEAD"), "..: "),
+        (("..", "--base", "HEAD"), "..: is in no checkout: "),
     ],
 )
 def test_what_the_base_has_not_is_named(words: tuple[str, ...], problem: str, cli: Cli, robot: Path) -> None:
@@ -272,6 +321,53 @@ def test_what_the_base_has_not_is_named(words: tuple[str, ...], problem: str, cl
     assert done.returncode == 2
     assert done.stderr.startswith(problem)
     assert done.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize("from_folder", [".", "here", "here/below", "robot/guide_perception"])
+def test_the_repository_is_that_in_which_the_state_lies(from_folder: str, cli: Cli, robot: Path) -> None:
+    """Wherever somebody works, in another repository or in none; lines lead to the files from there."""
+    committed(planted(robot.parent / "here" / "below" / "a.txt", "other").parents[1])
+    edited(robot / LISTENER, "import whisper\n", "import requests\nimport whisper\n")
+    commit(robot)  # of two commits the other repository has none
+    with_calls = robot / LISTENER
+    edited(with_calls, PUBLISHED, PUBLISHED + CLOUD)
+    folder = robot.parent / from_folder
+    name = os.path.relpath(robot, folder)
+    for revision in ("HEAD", "HEAD~1"):
+        done = cli("diff", name, "--base", revision, "--format", "json", cwd=folder)
+        assert (done.returncode, done.stderr) == (1, "")
+        (row,) = json.loads(done.stdout)["ways_out"]["new"]
+        file, _, line = row["at"][0].rpartition(":")
+        assert ((folder / file).resolve(), int(line)) == (with_calls, lines_of(with_calls, CLOUD))
+    edited(with_calls, CLOUD, "")
+    assert cli("diff", name, "--base", "HEAD", "--fail-on", "any", cwd=folder).returncode == 0
+    done = cli("diff", name, "--base", "HEAD~2", cwd=folder)
+    assert done.returncode == 2
+    assert done.stderr.startswith(f"HEAD~2: is no commit of the checkout {name}; ")
+
+
+def test_a_repository_in_another_is_the_one_that_counts(cli: Cli, robot: Path) -> None:
+    """And of labels each is read as its repository has it, or as it is where it lies in none or in another one."""
+    outer = committed(planted(robot.parent / "outer" / "a.txt", "outer").parent)
+    inner = committed(shutil.copytree(robot, outer / "inner", ignore=shutil.ignore_patterns(".git")))
+    planted(outer / "l.yaml", "labels: 1\nnodes:\n  /guide/camera: {source: [Video]}\n")
+    own = planted(inner / "l.yaml", "labels: 1\nnodes:\n  /guide/uploader: conduit\n")
+    commit(inner)
+    own.write_text("labels: 1\nnodes:\n  /guide/uploader: {leak: [Video]}\n", "utf-8")
+    words = ("inner", "--base", "HEAD", "-l", "l.yaml", "-l", "inner/l.yaml", "--format", "json")
+    done = cli("diff", *words, cwd=outer)
+    assert (done.returncode, done.stderr) == (1, "")
+    assert [row["leak"] for row in json.loads(done.stdout)["findings"]["new"]] == ["node /guide/uploader"]
+
+
+def test_a_repository_that_the_environment_names_is_not_that_of_the_state(
+    cli: Cli, robot: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A hook of git runs with such variables."""
+    other = committed(planted(robot.parent / "other" / "a.txt", "other").parent)
+    monkeypatch.setenv("GIT_DIR", str(other / ".git"))
+    done = cli("diff", "robot", "--base", "HEAD", "--fail-on", "any", cwd=robot.parent)
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 @pytest.mark.parametrize("words", [(".", ".."), (".", "--old-labels", "l.yaml"), (".", "--as", "usage")])

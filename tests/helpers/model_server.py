@@ -72,9 +72,13 @@ class ModelServer:
         What is answered; or one function that makes a reply of what was sent.
     tls
         Certificate and key.
+    port
+        Any that is free where none is named.
     """
 
-    def __init__(self, *replies: Reply | Callable[[bytes], Reply], tls: tuple[Path, Path] | None = None) -> None:
+    def __init__(
+        self, *replies: Reply | Callable[[bytes], Reply], tls: tuple[Path, Path] | None = None, port: int = 0
+    ) -> None:
         self.sent: list[Sent] = []
         self._replies = list(replies)
         self._scheme = "https" if tls else "http"
@@ -89,7 +93,7 @@ class ModelServer:
             def log_message(self, *args: object) -> None:
                 del args
 
-        self._server = ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+        self._server = ThreadingHTTPServer(("127.0.0.1", port), Handler)
         if tls:
             context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
             context.load_cert_chain(*tls)

@@ -31,9 +31,9 @@ def _settings(**values: object) -> Any:
 
 
 @contextmanager
-def router(protocol: str = "tcp", **values: object) -> Iterator[str]:
-    """A router; yields where it is."""
-    where = free_endpoint().replace("tcp/", f"{protocol}/")
+def router(protocol: str = "tcp", where: str = "", **values: object) -> Iterator[str]:
+    """A router, on a port that is free where none is named; yields where it is."""
+    where = where or free_endpoint().replace("tcp/", f"{protocol}/")
     with zenoh.open(_settings(mode="router", listen__endpoints=[where], **values)):
         yield where
 

@@ -6,11 +6,10 @@ import json
 import os
 import shutil
 import signal
-import socket
 import subprocess
 import sys
 import time
-from contextlib import ExitStack, suppress
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -28,7 +27,6 @@ from rosprivacy.parts import distributed
 from rosprivacy.parts import session as spark
 from rosprivacy.parts.fleet_in_parts import run_in_processes, run_on_spark
 from rosprivacy.parts.parquet import check_new, read
-from rosprivacy.parts.session import HOST
 from rosprivacy.private_neo4j import connection
 from rosprivacy.report.atomic import check_outputs
 from rosprivacy.settings import Settings
@@ -41,6 +39,7 @@ from tests.helpers.graphs import dump
 from tests.helpers.parts import ASKED, FLEET, documents, fleet_file, fleet_of_two, same, same_bytes
 from tests.helpers.paths import ROOT
 from tests.helpers.random_fleets import Case, fleets
+from tests.helpers.spark_cluster import spark_cluster
 from tests.helpers.written_systems import Written, written
 
 if TYPE_CHECKING:
@@ -440,41 +439,11 @@ def test_nothing_of_a_checkout_is_run(checkout: Path, folder: str) -> None:
     assert "ModuleNotFoundError" not in done.stderr
 
 
-OPENED = [f"--add-opens=java.base/{name}=ALL-UNNAMED" for name in ("java.lang", "java.nio", "sun.nio.ch", "java.util")]
-
-
 @pytest.fixture
 def cluster(tmp_path: Path) -> Iterator[tuple[str, list[int]]]:
-    """A master and two workers of Spark, processes of their own: the address, and the workers' numbers."""
-    home, java = spark._spark_home(), spark._java_home(tmp_path)
-    environment = {name: value for name, value in os.environ.items() if not name.startswith(("PYTHON", "PYSPARK"))}
-    environment |= {"SPARK_LOCAL_IP": HOST, "SPARK_HOME": str(home), "JAVA_HOME": str(java)}
-    environment |= {"SPARK_SCALA_VERSION": "2.13", "PATH": os.defpath}  # the first is set by the scripts of Spark
-    with socket.socket() as some:
-        some.bind((HOST, 0))
-        port = int(some.getsockname()[1])
-    address = f"spark://{HOST}:{port}"
-    deploy, common = "org.apache.spark.deploy", ["--host", HOST, "--webui-port", "0"]
-    roles = [
-        [f"{deploy}.master.Master", *common, "--port", str(port)],
-        *([f"{deploy}.worker.Worker", *common, "-c", "1", "-m", "1g", "-d", str(tmp_path / n), address] for n in "ab"),
-    ]
-    with ExitStack() as stack:
-        numbers = []
-        for number, role in enumerate(roles):
-            log = stack.enter_context((tmp_path / f"{number}.log").open("wb"))
-            process = subprocess.Popen(
-                [str(java / "bin" / "java"), *OPENED, "-Xmx300m", "-cp", str(home / "jars" / "*"), *role],
-                cwd=tmp_path, env=environment, stdout=log, stderr=log,
-            )  # fmt: skip
-            stack.callback(process.wait)
-            stack.callback(process.terminate)
-            numbers.append(process.pid)
-            for _ in range(600 if number == 0 else 0):
-                with suppress(OSError), socket.create_connection((HOST, port), 1):
-                    break
-                time.sleep(0.1)
-        yield address, numbers[1:]
+    """The address of a master with two workers, and the workers' numbers as processes."""
+    with spark_cluster(tmp_path) as there:
+        yield there
 
 
 def children(parents: Collection[int]) -> list[int]:

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 DECISIONS, FAIL_ON = "--decisions", "--fail-on"
 GIT = ("git", "-c", "core.hooksPath=/dev/null", "-c", "core.fsmonitor=false", "--no-optional-locks")
+OF_A_REPOSITORY = ("GIT_DIR", "GIT_WORK_TREE", "GIT_COMMON_DIR", "GIT_INDEX_FILE")
 FETCH = "check out with fetch-depth: 0, or name a commit that is there"
 
 
@@ -113,31 +114,39 @@ def _without(words: Sequence[str], option: str) -> Iterator[str]:
             yield word
 
 
-def commit_of(revision: str) -> str:
-    """Return the full name of a commit of the repository of the working folder.
+def commit_of(revision: str, folder: str = os.curdir) -> str:
+    """Return the full name of a commit of the repository in which a folder lies.
 
     Raises
     ------
     InputErrors
         If it has none of that name.
     """
-    done = git("rev-parse", "--verify", "--quiet", "--end-of-options", f"{revision}^{{commit}}")
+    done = git("rev-parse", "--verify", "--quiet", "--end-of-options", f"{revision}^{{commit}}", folder=folder)
     if done.returncode:
-        raise InputErrors([InputError(revision, 0, "is no commit of this checkout", FETCH)])
+        name = os.path.relpath(folder)
+        checkout = "this checkout" if name == os.curdir else f"the checkout {shown(name)}"
+        raise InputErrors([InputError(revision, 0, f"is no commit of {checkout}", FETCH)])
     return done.stdout.decode("ascii").strip()
 
 
-def git(*words: str) -> subprocess.CompletedProcess[bytes]:
-    """Run git in the working folder, and nothing that the repository names."""
+def git(*words: str, folder: str = os.curdir) -> subprocess.CompletedProcess[bytes]:
+    """Run git in a folder, and nothing that the repository names."""
+    environment = git_environment(folder)
     try:
-        return subprocess.run([*GIT, *words], env=git_environment(), capture_output=True, check=False)  # noqa: S603 - git
+        return subprocess.run([*GIT, *words], cwd=folder, env=environment, capture_output=True, check=False)  # noqa: S603 - git
     except OSError:
         raise InputErrors([InputError("git", 0, "cannot be run", "install it, or name no base")]) from None
 
 
-def git_environment() -> dict[str, str]:
-    """Return variables with which git asks nobody, fetches nothing and takes no object for another one."""
-    return {**os.environ, "GIT_TERMINAL_PROMPT": "0", "GIT_NO_LAZY_FETCH": "1", "GIT_NO_REPLACE_OBJECTS": "1"}
+def git_environment(folder: str) -> dict[str, str]:
+    """Return variables with which git asks nobody, fetches nothing and takes no object for another one.
+
+    A repository that the variables name counts for the working folder alone.
+    """
+    named = () if folder == os.curdir else OF_A_REPOSITORY
+    given = {name: value for name, value in os.environ.items() if name not in named}
+    return {**given, "GIT_TERMINAL_PROMPT": "0", "GIT_NO_LAZY_FETCH": "1", "GIT_NO_REPLACE_OBJECTS": "1"}
 
 
 if __name__ == "__main__":

@@ -45,6 +45,51 @@ class As(StrEnum):
 
 
 State = "a policy, a folder of them or of source code, a launch file, a fleet file, a saved analysis or a saved graph."
+Old = Annotated[
+    str | None,
+    typer.Argument(
+        metavar="OLD", show_default=False, help=f"Before: {State} Without both, the baseline of the project file."
+    ),
+]
+New = Annotated[
+    str | None, typer.Argument(metavar="NEW", show_default=False, help="After; the system of the project file.")
+]
+OldLabels = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="FILE", help="Label file for OLD, in place of --labels.", show_default=False, rich_help_panel=READ
+    ),
+]
+Format = Annotated[
+    DiffFormat, typer.Option("--format", "-f", help="For people, for programs, for a comment on a pull request.")
+]
+FailOn = Annotated[
+    FailOnChange,
+    typer.Option(
+        help="Exit with 1 on a finding, doubt or verdict that is new or worse, and on a new way out or gap of "
+        "source code; or on any difference; with 4 where labels are given and no data was followed on a side."
+    ),
+]
+Base = Annotated[
+    str,
+    typer.Option(
+        metavar="REVISION",
+        show_default=False,
+        help="Compare the one state that is named, or the working folder, with itself at this revision of the git "
+        "repository in which it lies; labels are those of each.",
+    ),
+]
+ComparedAs = Annotated[
+    As, typer.Option("--as", help="Two states; or usage: OLD is what is granted, NEW what `observe` saw in use.")
+]
+Patch = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="FILE",
+        show_default=False,
+        help="With --as usage: write what was never seen in use, set to DENY, as a unified diff.",
+    ),
+]
 
 
 @reads_system(
@@ -53,53 +98,15 @@ State = "a policy, a folder of them or of source code, a launch file, a fleet fi
 )
 def diff(
     inputs: Inputs,
-    old: Annotated[
-        str | None,
-        typer.Argument(
-            metavar="OLD", show_default=False, help=f"Before: {State} Without both, the baseline of the project file."
-        ),
-    ] = None,
-    new: Annotated[
-        str | None, typer.Argument(metavar="NEW", show_default=False, help="After; the system of the project file.")
-    ] = None,
-    old_labels: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="FILE", help="Label file for OLD, in place of --labels.", show_default=False, rich_help_panel=READ
-        ),
-    ] = None,
-    format: Annotated[  # noqa: A002 - the option's name
-        DiffFormat, typer.Option("--format", "-f", help="For people, for programs, for a comment on a pull request.")
-    ] = DiffFormat.text,
+    old: Old = None,
+    new: New = None,
+    old_labels: OldLabels = None,
+    format: Format = DiffFormat.text,  # noqa: A002 - the option's name
     output: Output = None,
-    fail_on: Annotated[
-        FailOnChange,
-        typer.Option(
-            help="Exit with 1 on a finding, doubt or verdict that is new or worse, and on a new way out or gap of "
-            "source code; or on any difference; with 4 where labels are given and no data was followed on a side."
-        ),
-    ] = FailOnChange.worse,
-    base: Annotated[
-        str,
-        typer.Option(
-            metavar="REVISION",
-            show_default=False,
-            help="Compare the one state that is named, or the working folder, with itself at this revision of git; "
-            "labels are those of each.",
-        ),
-    ] = "",
-    compared_as: Annotated[
-        As,
-        typer.Option("--as", help="Two states; or usage: OLD is what is granted, NEW what `observe` saw in use."),
-    ] = As.states,
-    patch: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="FILE",
-            show_default=False,
-            help="With --as usage: write what was never seen in use, set to DENY, as a unified diff.",
-        ),
-    ] = None,
+    fail_on: FailOn = FailOnChange.worse,
+    base: Base = "",
+    compared_as: ComparedAs = As.states,
+    patch: Patch = None,
 ) -> None:
     """Compare two states: grants, elements and findings, of source code ways out and gaps; new, gone or changed.
 
@@ -117,17 +124,8 @@ def diff(
         raise typer.BadParameter("--patch is for --as usage")
     from rosprivacy.report.compare.difference import difference, differs, incomparable
 
-    if base:
-        inputs = inputs._replace(no_project=True)
-        now, settings = os.path.relpath(old or os.curdir), _with_whole_names(inputs.settings)
-        given = tuple(map(os.path.relpath, inputs.labels or ()))
-        document = difference(_at(base, now, given, settings), _snapshot((now,), given, settings))
-    else:
-        (before, after), inputs = _states(old, new, inputs)
-        settings, given = inputs.settings, tuple(inputs.labels or ())
-        document = difference(
-            _snapshot(before, tuple(old_labels) if old_labels else given, settings), _snapshot(after, given, settings)
-        )
+    both = _since(base, old or os.curdir, inputs) if base else _two_states(old, new, old_labels, inputs)
+    document = difference(*both)
     emit(_text(document, format), output)
     if fail_on is FailOnChange.never:
         raise typer.Exit(0)
@@ -135,21 +133,32 @@ def diff(
     raise typer.Exit(1 if failed else UNDETERMINED if incomparable(document) else 0)
 
 
-def _at(revision: str, state: str, labels: tuple[str, ...], settings: Settings) -> Snapshot:
-    """A state as a revision has it, with the labels that it has."""
-    from rosprivacy.cli.base_tree import at_revision
+def _since(revision: str, state: str, inputs: Inputs) -> tuple[Snapshot, Snapshot]:
+    """A state as a revision of its repository has it, with the labels that this has, and as it is now."""
+    from rosprivacy.cli.base_tree import at_revision, checkout_of, from_root, plain_name
 
-    if state.startswith(os.pardir):
-        hint = "run this in a folder above it, in its repository"
-        raise InputErrors([InputError(state, 0, "is not in the working folder", hint)])
-    named = [_whole(name) if name.startswith(os.pardir) else name for name in labels]
-    with at_revision(revision):
+    settings = _with_whole_names(inputs._replace(no_project=True).settings)
+    state, labels = plain_name(state), tuple(map(plain_name, inputs.labels or ()))
+    checkout = checkout_of(state)
+    elsewhere = {name for name in labels if not from_root(name).is_relative_to(checkout)}
+    named = [_whole(name) if name in elsewhere else name for name in labels]
+    with at_revision(revision, checkout):
         try:
-            return _snapshot((state,), tuple(name for name in named if Path(name).exists()), settings)
+            before = _snapshot((state,), tuple(name for name in named if Path(name).exists()), settings)
         except InputErrors as problems:
             raise InputErrors(
                 InputError(f"{revision}:{one.file}", one.line, one.problem, one.hint) for one in problems.errors
             ) from None
+    return before, _snapshot((state,), labels, settings)
+
+
+def _two_states(
+    old: str | None, new: str | None, old_labels: list[str] | None, inputs: Inputs
+) -> tuple[Snapshot, Snapshot]:
+    """The two that are named, or those of the project file, each with its labels."""
+    (before, after), inputs = _states(old, new, inputs)
+    settings, labels = inputs.settings, tuple(inputs.labels or ())
+    return _snapshot(before, tuple(old_labels or labels), settings), _snapshot(after, labels, settings)
 
 
 def _with_whole_names(settings: Settings) -> Settings:
