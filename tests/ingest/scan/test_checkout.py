@@ -69,6 +69,13 @@ def test_a_node_that_no_launch_file_starts_is_a_gap_at_its_line(tmp_path: Path) 
     assert [node.name for node in system.nodes] == ["/robot/camera", "/uploader"]
 
 
+def test_a_class_of_the_same_name_in_another_file_is_another_node(tmp_path: Path) -> None:
+    """As in a package of variants of one script: only what the executable's own file says is so."""
+    variant = CAMERA.replace('"image"', '"other_image"')
+    system = chosen(*scanned(str(put_checkout(tmp_path, guide__variant_dot_py=variant))))
+    assert {end.name for end in system.ends if end.node == "/robot/camera"} == {"/robot/image", "/rosout"}
+
+
 def test_a_screen_that_no_launch_file_starts_is_in_the_system(tmp_path: Path) -> None:
     """An operator starts it by hand; left out, the way from the camera to it would be lost."""
     screen = UPLOADER.replace("uploader", "screen").replace("Uploader", "Screen").replace('"video"', '"/robot/image"')
