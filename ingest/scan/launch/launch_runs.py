@@ -15,6 +15,7 @@ import re
 import shlex
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
+from rosprivacy.ingest.scan.final_names import OPEN
 from rosprivacy.ingest.scan.launch import launch_actions as kinds
 from rosprivacy.ingest.scan.launch.launch_actions import Action, Condition
 from rosprivacy.ingest.scan.launch.launch_settings import NodeParameters, RosOptions, Setting, ros_options
@@ -531,9 +532,10 @@ class LaunchRun:
 
     def _split(self, value: object) -> list[Alternatives]:
         texts = self._context.texts(value)
-        if len(texts) == 1 and " " in texts[0].text:
+        written = OPEN.sub(lambda part: part[0].replace(" ", "_"), texts[0].text)  # what is open is no several words
+        if len(texts) == 1 and " " in written:
             try:
-                return [(texts[0]._replace(text=word),) for word in shlex.split(texts[0].text)]
+                return [(texts[0]._replace(text=word),) for word in shlex.split(written)]
             except ValueError:
                 return [texts]
         return [texts]
