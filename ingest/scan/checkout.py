@@ -217,8 +217,8 @@ def chosen(checkout: Checkout, systems: Sequence[ScannedSystem], launch: str = "
     sending = [node for node in never if any(external.outgoing for external in node.externals)]
     added = never if len(never) >= _with_code(best) else sending
     whole = with_more_code(best, added, checkout.facts.gaps) if added else best
-    left = [node for node in never if not any(node is one for one in added)]
-    return whole._replace(gaps=in_order((*whole.gaps, *_other_systems(counting, systems, added, left))))
+    gaps = _other_systems(counting, systems, added, [node for node in never if all(node is not one for one in added)])
+    return whole._replace(gaps=in_order((*whole.gaps, *gaps)))
 
 
 def _weight(system: ScannedSystem) -> tuple[int, int]:
@@ -246,14 +246,14 @@ def _other_systems(
     counting: Sequence[ScannedSystem],
     systems: Sequence[ScannedSystem],
     added: Sequence[CodeNode],
-    left: Sequence[CodeNode],
+    idle: Sequence[CodeNode],
 ) -> Iterator[Gap]:
     others = [system for system in systems if all(system is not one for one in counting)]
     if others:
         names = _listed(system.launch for system in others)
         text = f"{counted(len(others), 'other launch file')} at the top, whose nodes are not in it: {names}"
         yield Gap(CodePlace(others[0].launch, 0), "system", f"{text}; name the one that counts")
-    for nodes, but in ((added, ", taken to run under the names in the code"), (left, "")):
+    for nodes, but in ((added, ", taken to run under the names in the code"), (idle, "")):
         if nodes:
             names = _listed(f"{node.name} ({node.place.file}:{node.place.line})" for node in nodes)
             text = f"{counted(len(nodes), 'node')} that no launch file starts{but}: {names}"
