@@ -513,8 +513,8 @@ class LaunchRun:
                 slots = ((Alternative(plain[0]),), (Alternative(plain[1]),), NO_TEXT, NO_TEXT)
                 self._node(place, slots, (), (), options, conditional=conditional)
         elif words[:3] == ["ros2", "bag", "record"]:
-            slots = tuple((Alternative(text),) for text in ("rosbag2", "recorder", recorder_name(words[3:]), ""))
-            self._node(place, slots, (), (), RosOptions(words=tuple(words[3:])), conditional=conditional)
+            of_recorder = [(Alternative(text),) for text in ("rosbag2", "recorder", recorder_name(words[3:]), "")]
+            self._node(place, of_recorder, (), (), RosOptions(words=tuple(words[3:])), conditional=conditional)
         elif words[:2] == ["ros2", "launch"]:
             plain = [word for word in words[2:] if not word.startswith("-")]
             files = [word for word in plain if ":=" not in word]
