@@ -11,6 +11,7 @@ Source: the signatures of rclcpp, rclcpp_lifecycle, rclcpp_action and image_tran
 
 from __future__ import annotations
 
+import re
 from bisect import bisect_right
 from typing import TYPE_CHECKING
 
@@ -83,6 +84,12 @@ FEWER = "name what is used of them"
 PIECE = 512  # bytes that the library is given at once
 SIGNS = "/*!< \t\r"  # of comments, at the beginning of a line
 NO_COMMENT = "an annotation stands in a macro or in code that cannot be read"
+QT = b"Q_OBJECT"  # in each class of which Qt's own compiler reads the words below; the grammar does not know them
+QT_SECTION = re.compile(rb"\b(?:Q_SIGNALS|signals)(?=[ \t]*:(?!:))")
+QT_WORD = re.compile(
+    rb"\b(?:Q_(?:OBJECT|GADGET|INVOKABLE|SLOTS|EMIT)\b|slots(?=[ \t]*:(?!:))|emit(?=[ \t]+\w)"
+    rb"|Q_(?:PROPERTY|ENUM|ENUMS|FLAG|DISABLE_COPY|CLASSINFO|PLUGIN_METADATA|INTERFACES)[ \t]*\([^()\n]*\))"
+)
 ALONE = "put it on a line of its own above the call or class, or correct the code"
 
 
@@ -170,6 +177,20 @@ def cpp_code(file: str, data: bytes, pieces: Iterable[tuple[Node, Where]], late:
     return _CppReader(file, data).read(in_time(pieces, late))
 
 
+def without_qt(data: bytes) -> bytes:
+    """Return a file with blanks for what Qt adds to C++; all else stands where it stood.
+
+    Source: Qt 6, *The Meta-Object System* and *Signals & Slots*: its keywords are macros that a compiler of C++ drops.
+
+    >>> without_qt(b"class A : public QObject { Q_OBJECT public slots: void f(); signals: void g(); };")
+    b'class A : public QObject {          public      : void f(); public : void g(); };'
+    """
+    if QT not in data:
+        return data
+    data = QT_SECTION.sub(lambda found: b"public".ljust(len(found[0])), data)
+    return QT_WORD.sub(lambda found: b" " * len(found[0]), data)
+
+
 def syntax_tree(data: bytes, late: Callable[[], bool]) -> Tree:
     """Return what the grammar makes of a file.
 
@@ -183,6 +204,7 @@ def syntax_tree(data: bytes, late: Callable[[], bool]) -> Tree:
     import tree_sitter  # noqa: PLC0415 - an extra, imported where it is used
     import tree_sitter_cpp  # noqa: PLC0415
 
+    data = without_qt(data)
     parser = tree_sitter.Parser(tree_sitter.Language(tree_sitter_cpp.language()))
     try:  # piece by piece: the library can be stopped only so
         return parser.parse(lambda at, _: data[at : at + PIECE], progress_callback=lambda _at, _broken: late())

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.suggesting.packages import NOTHING, Interface
 from rosprivacy.ingest.scan.final_names import is_open
+from rosprivacy.ingest.scan.recorded_topics import RECORDER, recording
 from rosprivacy.ingest.scan.scan_facts import PACKAGE, NamePiece, open_name
 
 if TYPE_CHECKING:
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.scan.scan_facts import Name, StartedNode
 
 BRIDGE = "parameter_bridge"  # of ros_gz_bridge; ros_ign_bridge before
+EVERY_TOPIC = "/*"  # as a policy writes it: every name that others write
 BOTH_WAYS = ("publishes", "subscribes")
 
 
@@ -97,6 +99,8 @@ def channel_names(
             yield one, open_name(why) if is_open(value) else (NamePiece(one.name.replace("*", value), PACKAGE),)
     for word in arguments if BRIDGE in node.names else ():
         yield from _bridged(word)
+    if RECORDER in node.names:
+        yield from _recorded(arguments)
 
 
 def _options(arguments: Sequence[str]) -> Iterator[tuple[str, str]]:
@@ -115,6 +119,14 @@ def _values(pattern: str, options: Sequence[tuple[str, str]]) -> Iterator[str]:
     for name, value in options:
         if pattern and fnmatchcase(name, pattern):
             yield from filter(None, (item.strip("'\" ") for item in value.strip("[]").split(",")))
+
+
+def _recorded(arguments: Sequence[str]) -> Iterator[tuple[Interface, Name]]:
+    """The topics that ``ros2 bag record`` is given; where it may be any, their pattern."""
+    topics, every = recording(arguments)
+    for name in (*topics, *([EVERY_TOPIC] if every else [])):
+        why = f"an argument is {name} in the launch file"
+        yield Interface("subscribes", name), open_name(why) if is_open(name) else (NamePiece(name, PACKAGE),)
 
 
 def _bridged(word: str) -> Iterator[tuple[Interface, Name]]:

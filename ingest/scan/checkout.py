@@ -181,8 +181,10 @@ def scanned(*folders: str, launch: str = "") -> tuple[Checkout, tuple[ScannedSys
 def chosen(checkout: Checkout, systems: Sequence[ScannedSystem], launch: str = "") -> ScannedSystem:
     """Return the system of a launch file or a description; else the one that starts most of the code in each folder.
 
-    Then what else the code starts is a gap: a folder was named, and it is not in the answer. Where at least as many
-    nodes are started by no launch file, they are started by other means: they are added, under the names in the code.
+    Then what else the code starts is a gap: a folder was named, and it is not in the answer. What no launch file starts
+    is started by other means, such as by hand at an operator's screen. Those of these nodes that send something out of
+    ROS are added, under the names in the code: they may be ways out. Where they are at least as many as the others, all
+    are.
 
     Parameters
     ----------
@@ -212,10 +214,11 @@ def chosen(checkout: Checkout, systems: Sequence[ScannedSystem], launch: str = "
     best = joined_systems(sorted(counting, key=_weight, reverse=True))
     idle = [{id(node) for node in system.idle} for system in systems]
     never = [node for node in best.idle if all(id(node) in one for one in idle)]
-    whole = with_more_code(best, never, checkout.facts.gaps) if len(never) >= _with_code(best) else best
-    return whole._replace(
-        gaps=in_order((*whole.gaps, *_other_systems(counting, systems, never, added=whole is not best)))
-    )
+    sending = [node for node in never if any(external.outgoing for external in node.externals)]
+    added = never if len(never) >= _with_code(best) else sending
+    whole = with_more_code(best, added, checkout.facts.gaps) if added else best
+    gaps = _other_systems(counting, systems, added, [node for node in never if all(node is not one for one in added)])
+    return whole._replace(gaps=in_order((*whole.gaps, *gaps)))
 
 
 def _weight(system: ScannedSystem) -> tuple[int, int]:
@@ -240,18 +243,21 @@ def _with_code(system: ScannedSystem) -> int:
 
 
 def _other_systems(
-    counting: Sequence[ScannedSystem], systems: Sequence[ScannedSystem], never: Sequence[CodeNode], *, added: bool
+    counting: Sequence[ScannedSystem],
+    systems: Sequence[ScannedSystem],
+    added: Sequence[CodeNode],
+    idle: Sequence[CodeNode],
 ) -> Iterator[Gap]:
     others = [system for system in systems if all(system is not one for one in counting)]
     if others:
         names = _listed(system.launch for system in others)
         text = f"{counted(len(others), 'other launch file')} at the top, whose nodes are not in it: {names}"
         yield Gap(CodePlace(others[0].launch, 0), "system", f"{text}; name the one that counts")
-    if never:
-        names = _listed(f"{node.name} ({node.place.file}:{node.place.line})" for node in never)
-        text = f"{counted(len(never), 'node')} that no launch file starts"
-        text += ", taken to run under the names in the code" if added else ""
-        yield Gap(never[0].place, "system", f"{text}: {names}")
+    for nodes, but in ((added, ", taken to run under the names in the code"), (idle, "")):
+        if nodes:
+            names = _listed(f"{node.name} ({node.place.file}:{node.place.line})" for node in nodes)
+            text = f"{counted(len(nodes), 'node')} that no launch file starts{but}: {names}"
+            yield Gap(nodes[0].place, "system", text)
 
 
 def _listed(names: Iterable[str]) -> str:

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.ingest.scan.scan_facts import CodeNode, Executable, StartedNode
 
+HEADERS = (".h", ".h++", ".hh", ".hpp", ".hxx", ".inl", ".ipp", ".tpp")
 CALL = re.compile(r"(?<!class )(?<!def )(?<!rclcpp::)\b([A-Za-z_]\w*)\s*[(>{]")
 """``Name(…)``, ``make_shared<Name>``, ``Name{…}``; but ``rclcpp::Node`` is none of the classes ``Node`` of the code."""
 
@@ -92,7 +93,14 @@ class CodeIndex:
         if plugin:
             called.add(plugin.rpartition("::")[2])
         created = [node for node in own if node.name.rpartition("::")[2] in called]
-        others = [node for name in sorted(called) if name[:1].isupper() for node in self._nearest(name, files)]
+        classes = {node.name.rpartition("::")[2] for node in own}
+        others = [
+            node
+            for name in sorted(called)
+            if name[:1].isupper()
+            for node in self._nearest(name, files)
+            if name not in classes or node.place.file.endswith(HEADERS)  # else another file has a class of that name
+        ]
         in_files = {id(node) for node in own}
         elsewhere = (node for node in others if id(node) not in in_files)
         return tuple({id(node): node for node in (*(created or own), *elsewhere)}.values())

@@ -14,7 +14,7 @@ from rosprivacy.analysis.model import unresolved, unresolved_rank
 from rosprivacy.analysis.suggesting.packages import USES
 from rosprivacy.ingest.running.observation import ROLES as KINDS
 from rosprivacy.ingest.running.observed_names import is_name
-from rosprivacy.ingest.scan.catalogued import catalogued, channel_names
+from rosprivacy.ingest.scan.catalogued import EVERY_TOPIC, catalogued, channel_names
 from rosprivacy.ingest.scan.final_names import (
     RunningName,
     RunningNode,
@@ -346,7 +346,7 @@ class _Maker:
 
     def _add_end(self, end: ChannelEnd, final: RunningName) -> bool:
         """Add an end; a gap where its name is open, or is none."""
-        if not final.why and is_name(final.text):
+        if not final.why and (is_name(final.text) or final.text == EVERY_TOPIC):
             self.ends.add(end)
             return True
         why = final.why or f"no {end.kind} of ROS can be called {final.text}"

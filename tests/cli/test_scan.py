@@ -43,6 +43,19 @@ def test_what_it_writes_is_answered_as_the_folder_is(cli: Cli, robot: Path) -> N
     assert lines == [("robot/guide/camera.py", 11, "launch"), ("robot/guide/uploader.py", 10, "launch")]
 
 
+def test_a_launch_file_that_records_all_is_a_way_out(cli: Cli, robot: Path) -> None:
+    launch = robot / "robot" / "launch" / "guide.launch.py"
+    record = "from launch.actions import ExecuteProcess\n"
+    text = launch.read_text().replace("    ])\n", "        ExecuteProcess(cmd='ros2 bag record -a'.split()),\n    ])\n")
+    launch.write_text(record + text)
+    done = cli("try", "robot", cwd=robot)
+    assert done.returncode == UNDETERMINED
+    assert "/robot/camera -> /robot/image -> /* -> /rosbag2_recorder" in done.stdout
+    cli("scan", "robot", "-o", "r.policy.xml", cwd=robot)
+    written = cli("try", "r.policy.xml", "--types", "r.types.yaml", cwd=robot)
+    assert "-> /* -> /rosbag2_recorder" in written.stdout
+
+
 def test_what_lies_outside_is_written_as_labels_to_review(cli: Cli, robot: Path) -> None:
     compose = "services:\n  broker:\n    image: eclipse-mosquitto\n    ports: ['1883:1883']\n"
     (robot / "robot" / "docker-compose.yml").write_text(compose)

@@ -2,9 +2,9 @@
 
     python -m tests.scanned.planting FOLDER_OF_SYSTEMS [--seeds N]
 
-A seed draws a system, a function of a class that makes ends of channels, and a statement of it. Before it stand a
-subscription, a publisher and a client of a cloud from then on, in one of the ways in which code is written. *Named*
-is what has a gap at that very line. Systems are copied; nothing is run.
+A seed draws a system, a language of its code, a function of a class that makes ends of channels, and a statement of it.
+Before it stand a subscription, a publisher and a client of a cloud from then on, in one of the ways in which code is
+written. *Named* is what has a gap at that very line. Systems are copied; nothing is run.
 """
 
 from __future__ import annotations
@@ -80,6 +80,11 @@ class Place(NamedTuple):
     file: str
     line: int
     indent: str
+
+    @property
+    def language(self) -> str:
+        """``python`` or ``c++``."""
+        return "python" if self.file.endswith(".py") else "c++"
 
 
 def places(root: Path) -> list[Place]:
@@ -167,13 +172,14 @@ def main() -> None:
     for seed in range(arguments.seeds):
         draw = random.Random(seed)  # noqa: S311 - the same draw each time
         root = draw.choice(list(systems))
-        place, form = draw.choice(systems[root]), draw.choice(list(PYTHON))
+        language = draw.choice(sorted({place.language for place in systems[root]}))
+        place = draw.choice([place for place in systems[root] if place.language == language])
+        form = draw.choice(list(PYTHON))
         with TemporaryDirectory() as folder:
             copy = Path(folder) / root.name
             shutil.copytree(root, copy, symlinks=True, ignore=shutil.ignore_patterns(".git", "*.stl", "*.pt"))
             lines = planted(copy, place, form)
             facts = read_checkout(str(copy)).facts
-        language = "python" if place.file.endswith(".py") else "c++"
         for end, line in lines.items():
             became = outcome(facts, place.file, line, end)
             counts[language, end, became] += 1

@@ -15,6 +15,7 @@ import re
 import shlex
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
+from rosprivacy.ingest.scan.final_names import OPEN
 from rosprivacy.ingest.scan.launch import launch_actions as kinds
 from rosprivacy.ingest.scan.launch.launch_actions import Action, Condition
 from rosprivacy.ingest.scan.launch.launch_settings import NodeParameters, RosOptions, Setting, ros_options
@@ -33,6 +34,7 @@ from rosprivacy.ingest.scan.launch.launch_values import (
     still_open,
     together,
 )
+from rosprivacy.ingest.scan.recorded_topics import recorder_name
 from rosprivacy.ingest.scan.scan_facts import DEFAULT, LITERAL, Gap, StartedNode
 
 if TYPE_CHECKING:
@@ -500,7 +502,7 @@ class LaunchRun:
             parameters.of_file(entry.node, entry.name, value)
 
     def _process(self, action: Action, *, conditional: bool) -> None:
-        """``ros2 run`` and ``ros2 launch`` start what a node or an include would."""
+        """``ros2 run`` and ``ros2 launch`` start what a node or an include would, ``ros2 bag record`` a recorder."""
         place = action.place
         words = [one[0].text for one in self._words(action.values.get("words"))]
         words = words[words.index("ros2") :] if "ros2" in words else [*_after_path(words)]
@@ -510,6 +512,9 @@ class LaunchRun:
                 options = ros_options([(Alternative(word),) for word in plain[2:]])
                 slots = ((Alternative(plain[0]),), (Alternative(plain[1]),), NO_TEXT, NO_TEXT)
                 self._node(place, slots, (), (), options, conditional=conditional)
+        elif words[:3] == ["ros2", "bag", "record"]:
+            of_recorder = [(Alternative(text),) for text in ("rosbag2", "recorder", recorder_name(words[3:]), "")]
+            self._node(place, of_recorder, (), (), RosOptions(words=tuple(words[3:])), conditional=conditional)
         elif words[:2] == ["ros2", "launch"]:
             plain = [word for word in words[2:] if not word.startswith("-")]
             files = [word for word in plain if ":=" not in word]
@@ -527,9 +532,10 @@ class LaunchRun:
 
     def _split(self, value: object) -> list[Alternatives]:
         texts = self._context.texts(value)
-        if len(texts) == 1 and " " in texts[0].text:
+        written = OPEN.sub(lambda part: part[0].replace(" ", "_"), texts[0].text)  # what is open is no several words
+        if len(texts) == 1 and " " in written:
             try:
-                return [(texts[0]._replace(text=word),) for word in shlex.split(texts[0].text)]
+                return [(texts[0]._replace(text=word),) for word in shlex.split(written)]
             except ValueError:
                 return [texts]
         return [texts]

@@ -40,6 +40,7 @@ LOOKS_FOR = "shutil.which"  # and starts nothing
 FAILURES = ("Error", "Exception", "Timeout", "Warning", "Disconnect")  # ends of names of what nothing is sent to
 HARMLESS = frozenset(["clear", "cls", "echo", "sleep", "kill", "pkill", "killall", "mkdir", "chmod", "cd", "ls"])
 ROS, RECORDING = "ros2", "ros2 bag"
+LAUNCHES = "launch.actions.ExecuteProcess"  # the reader of launch files knows what a recording of it takes
 RUNS_TEXT = re.compile(r"(__import__|importlib\.import_module|exec|eval)(?![^.(])")
 RUN_AT_RUN_TIME = "'{name}' runs code that is named as it runs: what it exchanges data with is not known"
 STARTS_ROS = "the code starts '{program}': the ends of channels that it makes are not known"
@@ -132,6 +133,7 @@ class _Things:
         self.gaps: set[Gap] = set()
         self.spoken_hosts: set[str] = set()  # that a rule says more of than that they are on a network
         uses, _ = nearby
+        self.launches = any(use.name == LAUNCHES for use in uses)
         for use in sorted(uses, key=lambda use: not use.name.startswith(ADDRESS)):
             if called := RUNS_TEXT.match(use.name):
                 self.gaps.add(Gap(CodePlace(file, use.line), "outside", RUN_AT_RUN_TIME.format(name=called[1])))
@@ -185,9 +187,10 @@ class _Things:
     def _program(self, use: NameUse) -> None:
         name = use.name.removeprefix(PROGRAM)
         first = name.partition(" ")[0]
-        if first == ROS and not name.startswith(RECORDING):
+        of_bags = name.startswith(RECORDING)
+        if first == ROS and not (of_bags and self.launches):
             self.gaps.add(Gap(CodePlace(self.file, use.line), "started", STARTS_ROS.format(program=name)))
-        elif first not in HARMLESS:
+        if first not in HARMLESS and (first != ROS or of_bags):
             wheres = {rule.where for rule, _ in self._speaking(use)}
             sort = "loudspeaker" if "loudspeaker" in wheres else "process"
             self._add((sort, name), name, sort, use.line, OUT)

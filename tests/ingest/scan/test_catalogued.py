@@ -131,3 +131,25 @@ def test_the_nodes_that_launch_files_start_most_have_their_channels() -> None:
         system = started(of, executable, namespace="")
         assert channel in {name for _, _, name in ends(system)}
         assert system.gaps == ()
+
+
+@pytest.mark.parametrize(
+    ("words", "topics"),
+    [
+        ("-o day /image /scan", {"/image", "/scan"}),  # before topics had an option
+        ("--topics image scan -o day", {"/image", "/scan"}),
+        ("--compression-mode file --compression-format zstd /image", {"/image"}),
+        ("/image --qos-profile-overrides-path qos.yaml", {"/image"}),
+        ("--exclude-topics /scan /odom --all-topics", {"/*"}),  # what is taken out may be in it all the same
+        ("--regex .*image.*", {"/*"}),
+        ("--services /ask", set()),
+    ],
+)
+def test_a_recorder_reads_what_its_words_name(words: str, topics: set[str]) -> None:
+    system = started("rosbag2", "recorder", name="rosbag2_recorder", arguments=tuple(words.split()))
+    assert {name for _, role, name in ends(system) if role == "subscribe"} == topics
+
+
+def test_a_recorded_topic_that_is_open_is_a_gap() -> None:
+    system = started("rosbag2", "recorder", name="rosbag2_recorder", arguments=("{topic}",))
+    assert "name" in [gap.sort for gap in system.gaps]

@@ -13,11 +13,12 @@ from rosprivacy.ingest.scan.code_roots import root_of
 from rosprivacy.ingest.scan.outside.externals import UnitExternal
 from rosprivacy.ingest.scan.outside.node_externals import with_externals
 from rosprivacy.ingest.scan.scan_facts import CodeNode, CodePlace, External, Gap
-from tests.helpers.checkouts import CAMERA, LAUNCH, put_checkout
+from tests.helpers.checkouts import CAMERA, LAUNCH, UPLOADER, put_checkout
 
 if TYPE_CHECKING:
     from pathlib import Path
 
+THREE = LAUNCH.replace("    ])\n", '        Node(package="guide", executable="camera", name="more"),\n    ])\n')
 ONE_NODE = LAUNCH.replace('        Node(package="guide", executable="camera", namespace="robot"),\n', "")
 
 
@@ -66,6 +67,30 @@ def test_a_node_that_no_launch_file_starts_is_a_gap_at_its_line(tmp_path: Path) 
     system = chosen(*scanned(str(put_checkout(tmp_path, guide__lamp_dot_py=more))))
     assert [(gap.sort, gap.place) for gap in system.gaps] == [("system", CodePlace("guide/lamp.py", 7))]
     assert [node.name for node in system.nodes] == ["/robot/camera", "/uploader"]
+
+
+def test_a_class_of_the_same_name_in_another_file_is_another_node(tmp_path: Path) -> None:
+    """As in a package of variants of one script: only what the executable's own file says is so."""
+    variant = CAMERA.replace('"image"', '"other_image"')
+    system = chosen(*scanned(str(put_checkout(tmp_path, guide__variant_dot_py=variant))))
+    assert {end.name for end in system.ends if end.node == "/robot/camera"} == {"/robot/image", "/rosout"}
+
+
+def test_a_screen_that_no_launch_file_starts_is_in_the_system(tmp_path: Path) -> None:
+    """An operator starts it by hand; left out, the way from the camera to it would be lost."""
+    screen = UPLOADER.replace("uploader", "screen").replace("Uploader", "Screen").replace('"video"', '"/robot/image"')
+    screen = screen.replace("import requests", "import cv2").replace("requests.post(", "cv2.imshow(")
+    lamp = CAMERA.replace("Camera", "Lamp").replace('"camera"', '"lamp"')
+    put_checkout(tmp_path, guide__screen_dot_py=screen, guide__lamp_dot_py=lamp, launch__guide_dot_launch_dot_py=THREE)
+    checkout, systems = scanned(str(tmp_path))
+    system = chosen(checkout, systems)
+    assert [node.name for node in system.nodes] == ["/more", "/robot/camera", "/screen", "/uploader"]
+    assert ("/screen", "subscribe", "/robot/image") in {(end.node, end.role, end.name) for end in system.ends}
+    assert [(gap.sort, gap.place.file) for gap in system.gaps] == [
+        ("system", "guide/lamp.py"),
+        ("system", "guide/screen.py"),
+    ]
+    assert "/screen" not in {node.name for node in chosen(checkout, systems, "launch/guide.launch.py").nodes}
 
 
 def test_as_many_nodes_that_no_launch_file_starts_are_added_under_their_names_in_the_code(tmp_path: Path) -> None:

@@ -290,6 +290,27 @@ def test_what_cannot_be_read_is_a_gap_at_its_line(read: Callable[..., CodeFacts]
     assert line in lines
 
 
+def test_a_window_of_qt_is_read_as_any_node(read: Callable[..., CodeFacts]) -> None:
+    code = """class Panel : public QObject, public rclcpp::Node {
+      Q_OBJECT
+      Q_PROPERTY(bool shown READ shown)
+    public:
+      Panel() : QObject(), rclcpp::Node("panel") {
+        heard_ = create_subscription<Image>("faces", 10, [this](Image::SharedPtr image) { emit shown(image->width); });
+      }
+    signals:
+      void shown(int width);
+    private slots:
+      void close() { closed_ = create_publisher<Image>("closed", 10); }
+    };
+    """
+    facts = read(panel__cpp=code)
+    assert [[piece.text for piece in name] for node in facts.nodes for name in node.names] == [["panel"]]
+    assert sorted(end.role for node in facts.nodes for end in node.endpoints) == ["publish", "subscribe"]
+    assert [end.place.line for node in facts.nodes for end in node.endpoints] == [6, 11]
+    assert facts.gaps == ()
+
+
 def test_code_of_ros_1_is_not_read(read: Callable[..., CodeFacts]) -> None:
     code = '#include <ros/ros.h>\nint main() { ros::NodeHandle n; n.advertise<std_msgs::String>("a", 1); }'
     assert read(a__cpp=code) == ((), ())

@@ -108,6 +108,12 @@ def test_a_program_of_ros_is_a_gap_and_a_recording_a_process() -> None:
     assert [(one.external.place.line, one.external.name) for one in made.units] == [(4, "ros2 bag record")]
 
 
+def test_a_recording_that_code_starts_takes_what_nobody_has_read() -> None:
+    made = read("import subprocess\ndef f():\n    subprocess.Popen(['ros2', 'bag', 'record', '-a'])\n")
+    assert [(gap.place.line, gap.sort) for gap in made.gaps] == [(3, "started")]
+    assert [one.external.name for one in made.units] == ["ros2 bag record"]
+
+
 @pytest.mark.parametrize("call", ["__import__('boto3').client('s3')", "importlib.import_module(name)", "exec(text)"])
 def test_a_library_that_is_named_as_the_code_runs_is_a_gap(call: str) -> None:
     made = read(f"import importlib\ndef f(name, text):\n    {call}\n")

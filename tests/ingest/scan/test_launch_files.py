@@ -146,6 +146,27 @@ def test_namespaces_are_whole(tmp_path: Path, actions: str, space: str) -> None:
     assert [(one.package, one.executable, full_name(one)) for one in read.started] == [("p", "e", space)]
 
 
+@pytest.mark.parametrize(
+    "command",
+    [
+        "['ros2', 'bag', 'record', '-o', 'day', '/image']",
+        "['ros2 bag record -o day /image']",
+        "['bash', '-c', 'exec ros2 bag record -o day /image']",
+    ],
+)
+def test_a_recording_is_a_recorder_with_its_words(tmp_path: Path, command: str) -> None:
+    (one,) = system(tmp_path, listed(f"ExecuteProcess(cmd={command})")).started
+    assert (one.package, full_name(one), one.arguments) == ("rosbag2", "/rosbag2_recorder", ("-o", "day", "/image"))
+
+
+def test_a_word_that_is_open_is_one_word(tmp_path: Path) -> None:
+    command = "['ros2', 'bag', 'record', '-o', '/bags/' + datetime.now().strftime('%Y'), '/image']"
+    body = f"return LaunchDescription([ExecuteProcess(cmd={command})])"
+    (one,) = system(tmp_path, "from datetime import datetime\n" + python(body)).started
+    assert [word for word in one.arguments if not word.startswith("/bags/")] == ["-o", "/image"]
+    assert len(one.arguments) == len(["-o", "day", "/image"])
+
+
 def test_remappings_for_all_nodes_come_before_those_of_one(tmp_path: Path) -> None:
     read = system(tmp_path, listed(f"SetRemap('a', 'b'), {NODE[:-1]}, remappings=[('c', 'd')])"))
     assert read.started[0].remaps == (("a", "b"), ("c", "d"))
