@@ -42,6 +42,7 @@ def trial_lines(
     nodes: int,
     supposed: Sequence[LabelProposal],
     left_out: Sequence[LabelProposal],
+    unsure: Sequence[LabelProposal],
     ways: Sequence[WayOut],
     ends: Sequence[WayOut],
     unreached: Sequence[Element],
@@ -55,7 +56,7 @@ def trial_lines(
     ----------
     nodes
         How many there are.
-    supposed, left_out, ways, ends, unreached, unknown
+    supposed, left_out, unsure, ways, ends, unreached, unknown
         As of ``Trial``.
     doubts
         Of the answer as it is stated.
@@ -87,6 +88,8 @@ def trial_lines(
     if unreached:
         what = "Let data out, if suggestions are right, and nothing was seen to get there"
         yield f"{what}: {_names(unreached)}", "yellow"
+    if unsure:
+        yield f"Not counted beside what is surer: what may bring in {_of_kinds(unsure, categories)}", "yellow"
     yield from _not_seen(unknown, left_out, gaps)
 
 
@@ -167,6 +170,14 @@ def _not_seen(unknown: Sequence[Element], left_out: Sequence[LabelProposal], gap
         yield f"Not seen: {at}{doubt.message}", "yellow"
     if more := ordered[GAPS_SHOWN:]:
         yield f"Not seen: {counted(len(more), 'more gap')}", "yellow"
+
+
+def _of_kinds(proposals: Iterable[LabelProposal], categories: Mapping[str, Category]) -> str:
+    """Kinds of data in a row, each with the nodes of which it is proposed."""
+    nodes: dict[str, dict[Element, None]] = {}
+    for one in proposals:
+        nodes.setdefault(one.label.to or one.label.kind, {})[one.label.element] = None
+    return "; ".join(f"{categories[kind].text('title', 'en')} ({_names(at, SHOWN)})" for kind, at in nodes.items())
 
 
 def _names(elements: Iterable[Element], at_most: int = ALL_OF_A_ROBOT) -> str:

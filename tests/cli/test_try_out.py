@@ -56,6 +56,13 @@ def test_two_of_the_three_worst_true_ways_come_first(cli: Cli, graph: Any, file:
         assert way_out in done.stdout, way_out
 
 
+def test_what_does_not_count_beside_a_surer_source_is_named(cli: Cli, graph: Any) -> None:
+    robot = yaml.safe_load((ROOT / "tests" / "cases" / "try" / "telepresence.yaml").read_text())
+    (line,) = re.findall(r"^Not counted beside what is surer: .*", cli("try", graph(robot)).stdout, re.MULTILINE)
+    assert "position of a robot with a person (/base_driver)" in line
+    assert "video of persons" not in line  # the camera's, which counts
+
+
 @pytest.mark.parametrize("file", OTHERS, ids=lambda file: file.stem)
 def test_of_robots_by_others_no_worst_way_out_is_passed_over(cli: Cli, graph: Any, file: Path) -> None:
     """Two of the three at least are numbered; all are named."""

@@ -83,7 +83,7 @@ def _lines(trial: Trial) -> Iterator[Line]:
     stated = trial.stated
     nodes = sum(element.is_node for element in stated.analysis.graph.elements)
     yield from trial_lines(
-        nodes, trial.supposed, trial.left_out, trial.ways, trial.ends, trial.unreached, trial.unknown,
+        nodes, trial.supposed, trial.left_out, trial.unsure, trial.ways, trial.ends, trial.unreached, trial.unknown,
         stated.doubts, stated.vocabulary.categories,
     )  # fmt: skip
     yield "", ""

@@ -14,7 +14,7 @@ from rosprivacy.analysis.kernel.type_limits import under_limits
 from rosprivacy.analysis.suggesting.channels import traffic
 from rosprivacy.analysis.suggesting.data_ends import data_ends, only_reads, unlikely_kinds
 from rosprivacy.analysis.suggesting.evidence import DERIVATION, LEAK, PACKAGE, SOURCE, written
-from rosprivacy.analysis.suggesting.trial import opening, ways_out
+from rosprivacy.analysis.suggesting.trial import MAKING, opening, ways_out
 from rosprivacy.labelling.asking import with_more
 from rosprivacy.labelling.knowledge import NO_FILES, what_is_known
 from rosprivacy.labelling.suggesting import suggested_by
@@ -44,6 +44,8 @@ class Trial(NamedTuple):
         The proposals that count: none of them closes a way.
     left_out
         Proposals of the same sort that go against what is stated.
+    unsure
+        Proposals of what may bring data in or make it; beside a surer source none of them counts.
     ways
         Places where data gets out, what weighs most first.
     ends
@@ -58,6 +60,7 @@ class Trial(NamedTuple):
     stated: Result
     supposed: tuple[LabelProposal, ...]
     left_out: tuple[LabelProposal, ...]
+    unsure: tuple[LabelProposal, ...]
     ways: tuple[WayOut, ...]
     ends: tuple[WayOut, ...]
     unreached: tuple[Element, ...]
@@ -95,8 +98,9 @@ def tried(stated: Result, settings: Settings, files: UserFiles = NO_FILES) -> Tr
     at_ends = {one.label.element for one in ending}
     exits = {one.label.element for one in fitting if one.label.role == LEAK}
     left_out = tuple(one for one in candidates if one not in fitting)
+    unsure = tuple(one for one in proposals if one.label.role in MAKING and one not in candidates)
     return Trial(
-        stated, fitting, left_out,
+        stated, fitting, left_out, unsure,
         tuple(way for way in ways if way.exit not in at_ends),
         tuple(way for way in ways if way.exit in at_ends),
         tuple(sorted(exits - {way.exit for way in ways}, key=lambda exit_: exit_.full_name)),
