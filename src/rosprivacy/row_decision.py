@@ -22,18 +22,13 @@ if TYPE_CHECKING:
 MOST_NAMED = 5
 
 
-def robots_of_row(row: Row) -> tuple[str, ...]:
-    """Return the robots that a decision about a row can name; none on one robot."""
-    return tuple(row["fleet"]["robots"]) if "fleet" in row else ()
-
-
 def row_target(document: Document, row: Row, robots: Collection[str] = ()) -> dict[str, Any]:
     """Return what an entry about a row names.
 
     Parameters
     ----------
     robots
-        Some of ``robots_of_row``; none for all of them.
+        Of a fleet: some of those of the row; none for all of them.
 
     Raises
     ------
