@@ -21,7 +21,7 @@ class Case(NamedTuple):
     plain_also
         As of ``Finding``.
     row
-        Of the register of one robot: the row that it ends in; empty on a fleet, where robots are named instead.
+        Of the register: the row that it ends in; on a fleet as decisions name it, on whichever robot.
     robots
         On a fleet, the robots that data begins on and gets to; an end that is on no robot is empty.
     """

@@ -10,15 +10,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.case import Case
 from rosprivacy.analysis.errors import DecisionError
 from rosprivacy.analysis.expressions import regex
 from rosprivacy.analysis.legal import acceptance_gaps
 from rosprivacy.analysis.model import Diagnostic, Place, Severity
+from rosprivacy.analysis.model.register_row import row_id
 from rosprivacy.analysis.python_311 import StrEnum
-from rosprivacy.analysis.remembered import change_text, changes
+from rosprivacy.analysis.remembered import change_text, first_changes
 from rosprivacy.analysis.written_names import bare_name, is_glob
 
 if TYPE_CHECKING:
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.legal import Verdicts
     from rosprivacy.analysis.model import Acceptance, Doubt
+    from rosprivacy.analysis.model.logged_step import LoggedStep
     from rosprivacy.analysis.remembered import About, ChangedAspect
 
 FARTHEST = 1_000_000
@@ -49,31 +51,6 @@ class State(StrEnum):
     VALID = "valid"
     EXPIRED = "expired"
     ORPHANED = "orphaned"  # no finding is as it says
-
-
-class LoggedStep(NamedTuple):
-    """One entry of a log about the target of a decision.
-
-    Attributes
-    ----------
-    hash
-        Of the entry.
-    when
-        When it was written, in UTC.
-    account
-        Who wrote it, as the system and git know them; the owner is who answers for it, as they stated.
-    decision
-        A ``Choice``, ``confirm`` or ``withdraw``.
-    """
-
-    hash: str
-    when: str
-    account: str
-    decision: str
-    owner: str = ""
-    reason: str = ""
-    condition: str = ""
-    expires: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,6 +85,8 @@ class Decision:
         What was there when it was made; None where nobody wrote it down. It is about no robot that was not there.
     condition
         What has to be so before an acceptance counts, or had to be.
+    answers
+        (``LegalQuestion`` of the row, what a person answers), by code.
     history
         Of a log: what was decided about the same target, this decision last, or its confirmation.
     """
@@ -133,12 +112,14 @@ class Decision:
     ticket: str = ""
     made_about: About | None = None
     condition: str = ""
+    answers: tuple[tuple[str, str], ...] = ()
     history: tuple[LoggedStep, ...] = ()
 
     def about(self, case: Case, hierarchy: Hierarchy) -> bool:
         """Whether it is about a case.
 
-        One that names a robot says nothing of what comes from another robot, unless it names that too.
+        One that names a robot says nothing of what comes from another robot, unless it names that too, or a row: that
+        is all that ends at a place.
         """
         alone = not case.robots[1] and self._is_on(case.source.robot)
         names_robots, names_sources = self.robot or self.robots, self.from_robot or self.from_robots
@@ -146,9 +127,14 @@ class Decision:
             self._names(case, hierarchy)
             and (alone or self._is_on(case.leak.robot))
             and self._is_from(case.source.robot)
-            and not (names_robots and case.across and not names_sources)
-            and (self.made_about is None or self.made_about.knew(case.robots, case.id, hidden=case.pseudonymised))
+            and not (names_robots and case.across and not names_sources and not self.row)
+            and self._knew(case)
         )
+
+    def _knew(self, case: Case) -> bool:
+        """Whether a case was there when it was made."""
+        ids = (case.id, case.pattern)
+        return self.made_about is None or self.made_about.knew(case.robots, ids, hidden=case.pseudonymised)
 
     def _is_on(self, robot: str) -> bool:
         return _covers(self.robot, robot) and (not self.robots or robot in self.robots)
@@ -158,7 +144,11 @@ class Decision:
 
     def was_about(self, case: Case, hierarchy: Hierarchy) -> bool:
         """Whether it was about a case when one of two robots was enough, and is no longer."""
-        either = bool(self.robot) and any(_covers(self.robot, end.robot) for end in (case.source, case.leak))
+        either = (
+            bool(self.robot)
+            and not self.row
+            and any(_covers(self.robot, end.robot) for end in (case.source, case.leak))
+        )
         return self._names(case, hierarchy) and either and not self.from_robot and not self.about(case, hierarchy)
 
     def _names(self, case: Case, hierarchy: Hierarchy) -> bool:
@@ -300,7 +290,8 @@ class Decisions:
         """Return which entries that name robots mean this one: robots are alike only if all do so alike."""
         names = (name for entry in self.entries for name in (entry.robot, entry.from_robot) if name)
         lists = [robots for entry in self.entries for robots in (entry.robots, entry.from_robots)]
-        lists += [tuple(entry.made_about.robots) for entry in self.entries if entry.made_about]
+        remembered = [entry.made_about for entry in self.entries if entry.made_about]
+        lists += [tuple(robots) for about in remembered for robots in (about.robots, about.from_robots)]
         return (*(_covers(name, robot) for name in names), *(robot in robots for robots in lists if robots))
 
     def accepts(self, case: Case) -> bool:
@@ -395,16 +386,26 @@ def decided(
         State.ORPHANED if everything and not some else decisions.state(entry)
         for entry, some in zip(decisions.entries, about, strict=True)
     )
-    changed = {entry: _changed(entry, some, now or {}) for entry, some in zip(decisions.entries, about, strict=True)}
+    by_id = {finding.id: finding for finding, _ in cases}
+    changed = {
+        entry: _changed(entry, [by_id[one] for one in some], now or {})
+        for entry, some in zip(decisions.entries, about, strict=True)
+    }
     result = Decided(decisions, on, about, states, (), {entry: found for entry, found in changed.items() if found})
-    said = tuple(_diagnostics(result, {finding.id: finding for finding, _ in cases}, law, _former(result, cases)))
+    said = tuple(_diagnostics(result, by_id, law, _former(result, cases)))
     return replace(result, diagnostics=said)
 
 
-def _changed(entry: Decision, findings: Iterable[str], now: Mapping[str, About]) -> tuple[ChangedAspect, ...]:
+def _changed(entry: Decision, findings: Iterable[Finding], now: Mapping[str, About]) -> tuple[ChangedAspect, ...]:
     """What is not as it was; of an entry that lists robots, on one of these."""
-    there = findings if entry.robots else (entry.id or entry.row,)
-    return next((found for one in there if (found := changes(entry.made_about, now.get(one)))), ())
+    before = entry.made_about
+    if entry.robots and before:
+        before = replace(before, robots=frozenset(), from_robots=frozenset())
+    named = (entry.id or entry.row,)
+    if entry.row:
+        places = dict.fromkeys(row_id(finding.category, [finding.leak]) for finding in findings)
+        return (*first_changes(before, named, now), *first_changes(before, places.keys() - {*named}, now))
+    return first_changes(before, (finding.id for finding in findings) if entry.robots else named, now)
 
 
 def _former(joined: Decided, cases: Iterable[tuple[Finding, Case]]) -> list[int]:

@@ -28,6 +28,20 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.model import Category, Element, Legal
 
+
+class LegalQuestion(StrEnum):
+    """What is asked of a row of the register before it is accepted: a code, under which the answer is logged."""
+
+    ASSESSMENT = "assessment"  # of a transfer under Article 46 or 47: where is it?
+    OCCASIONAL = "occasional"  # Article 49
+    PROCESSOR = "processor"  # Article 28: where is the contract?
+    JOINT = "joint"  # Article 26
+    UNENCRYPTED = "unencrypted"  # Article 32
+    CRIMINAL = "criminal"  # Article 10
+    SPECIAL = "special"  # Article 9(2)
+    SECRECY = "secrecy"  # Article 9(3), where 9(2)(h) is stated
+
+
 PROHIBITED = "AI Act Art. 5"  # on prohibited practices; a paragraph of it follows in brackets
 _STRENGTH = {verdict: number for number, verdict in enumerate(ARTICLE_9_VERDICTS)}
 

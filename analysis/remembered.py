@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Collection, Iterable, Iterator, Mapping
 
 STATED = ("operator", "recipient", "contract", "country", "transfer", "encrypted")  # of a place
 MOST_NAMED = 5  # robots in a message
@@ -31,6 +31,9 @@ class About:
         How many paths share no flow.
     robots
         Of a pattern on a fleet: its robots; where data gets from one robot to another, all of the fleet.
+    from_robots
+        Of a row where some data come from another robot: the robots where data begin; ``robots`` are those where it
+        ends.
     findings, pseudonymised
         Of a row of the register: ids of its findings, those of data in this form only apart.
     stated
@@ -44,27 +47,43 @@ class About:
     findings: frozenset[str] = frozenset()
     pseudonymised: frozenset[str] = frozenset()
     stated: tuple[str, ...] = ()
+    from_robots: frozenset[str] = frozenset()
 
     @classmethod
-    def of_row(cls, findings: Iterable[tuple[str, bool]], stated: tuple[str, ...]) -> About:
-        """Return what a decision about a row is made about: its findings, each with whether it is pseudonymised."""
+    def of_row(
+        cls, findings: Iterable[tuple[str, bool]], stated: tuple[str, ...], robots: Iterable[str] = (),
+        from_robots: Iterable[str] = (),
+    ) -> About:  # fmt: skip
+        """Return what a decision about a row is made about: its findings, each with whether it is pseudonymised.
+
+        Parameters
+        ----------
+        findings
+            Ids; of a fleet those of patterns.
+        """
         forms = dict(findings)
         plain, hidden = (frozenset(one for one, form in forms.items() if form is some) for some in (False, True))
-        return cls(findings=plain, pseudonymised=hidden, stated=stated)
+        return cls(
+            robots=frozenset(robots), findings=plain, pseudonymised=hidden, stated=stated,
+            from_robots=frozenset(from_robots),
+        )  # fmt: skip
 
-    def knew(self, ends: Iterable[str], finding: str = "", *, hidden: bool = False) -> bool:
+    def knew(self, ends: tuple[str, str], ids: Collection[str] = (), *, hidden: bool = False) -> bool:
         """Whether the robots of two ends, and a finding, were there; where none are remembered, all were.
 
         Parameters
         ----------
         ends
-            Names of robots; an end on none is empty.
+            Names of robots where data begin and end; an end on none is empty.
+        ids
+            Of the finding; on a fleet that of its pattern, too.
         hidden
             Whether data get there in pseudonymised form only; what was known as it is was known in this form, too.
         """
         known = self.findings | self.pseudonymised if hidden else self.findings
-        there = finding in known or not (self.findings or self.pseudonymised)
-        return there and (not self.robots or {robot for robot in ends if robot} <= self.robots)
+        there = not known.isdisjoint(ids) or not (self.findings or self.pseudonymised)
+        begins = self.from_robots or self.robots
+        return there and (not self.robots or ({ends[0]} - {""} <= begins and {ends[1]} - {""} <= self.robots))
 
 
 def stated_of(place: Mapping[str, object]) -> tuple[str, ...]:
@@ -97,6 +116,16 @@ def changes(before: About | None, now: About | None) -> tuple[ChangedAspect, ...
     return tuple(_changes(before, now)) if before and now else ()
 
 
+def first_changes(before: About | None, names: Iterable[str], now: Mapping[str, About]) -> tuple[ChangedAspect, ...]:
+    """Return what has changed of the first of some, by name, that is not as it was.
+
+    >>> now = {"a": About("declared"), "b": About("enforced")}
+    >>> [change.now for change in first_changes(About("declared"), ["b", "a"], now)]
+    ['enforced']
+    """
+    return next((found for name in sorted(names) if (found := changes(before, now.get(name)))), ())
+
+
 def _changes(before: About, now: About) -> Iterator[ChangedAspect]:
     pairs = {
         "view": (before.view, now.view),
@@ -109,8 +138,9 @@ def _changes(before: About, now: About) -> Iterator[ChangedAspect]:
         for aspect, (then, today) in pairs.items()
         if then and today and then != today
     )
-    if before.robots and now.robots and before.robots != now.robots:
-        yield ChangedAspect("robots", str(len(before.robots)), _counted(now.robots, now.robots - before.robots))
+    then, today = (about.robots | about.from_robots for about in (before, now))
+    if then and today and then != today:
+        yield ChangedAspect("robots", str(len(then)), _counted(today, today - then))
 
 
 def _counted(robots: frozenset[str], joined: frozenset[str]) -> str:
@@ -140,6 +170,7 @@ def as_written(about: About) -> Mapping[str, object]:
         "path": list(about.path),
         "disjoint_paths": about.disjoint_paths,
         "robots": sorted(about.robots),
+        "from_robots": sorted(about.from_robots),
         "findings": sorted(about.findings),
         "pseudonymised": sorted(about.pseudonymised),
         "stated": list(about.stated),

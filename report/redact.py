@@ -31,8 +31,8 @@ SAFE_KEYS = {
 MAPS = ("because", "legal_bases", "purposes", "retention", "taken_away_by", "taken_by_kind")  # keys are no names
 FILES = ("file", "joining_file")  # also among the values of a reason
 NAME_KEYS = {
-    "robot": "robot", "robots": "robot", "model": "model", "file": "file", "joining_file": "file",
-    "enclave": "enclave",
+    "robot": "robot", "robots": "robot", "from_robots": "robot", "model": "model", "file": "file",
+    "joining_file": "file", "enclave": "enclave",
     "enclaves": "enclave", "split": "enclave",
     "operator": "operator", "controller": "controller", "controllers": "controller", "dpo": "officer",
     "officers": "officer", "profile": "node", "nodes": "node",

@@ -244,7 +244,7 @@ class _Rows:
             backups=stated.backups,
             encrypted=stated.encrypted,
             look_at=self._stated.law(category, contexts, countries, subjects),
-            findings=tuple(finding.id for finding in findings),
+            findings=tuple(dict.fromkeys(finding.id for finding in findings)),
             state=_state(findings),
             to_complete=tuple(cell for cell in Cell if cell in open_cells),
         )

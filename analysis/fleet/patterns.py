@@ -45,6 +45,7 @@ class Count(NamedTuple):
 
 
 ZERO = Count(0, 0, 0, 0)
+RobotsByForm = tuple[tuple[Form, tuple[str, ...]], ...]
 
 
 class Pair(NamedTuple):
@@ -59,14 +60,21 @@ class Pair(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class CountedPattern:
-    """A pattern without a path: the pair that is shown of it, its id, what is counted, and the robots by form."""
+    """A pattern without a path: the pair that is shown of it, its id, what is counted, and the robots by form.
+
+    Attributes
+    ----------
+    forms, end_forms
+        As of ``Pattern``.
+    """
 
     pair: Pair
     id: str
     count: Count
     robots: tuple[str, ...]
     across: bool
-    forms: tuple[tuple[Form, tuple[str, ...]], ...] = ()
+    forms: RobotsByForm = ()
+    end_forms: RobotsByForm = ()
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -143,7 +151,7 @@ class Tallies:
 
     def groups(self) -> tuple[CountedPattern, ...]:
         """Return the patterns, without a path."""
-        forms = self._forms()
+        forms, end_forms = self._forms(ends=False), self._forms(ends=True)
         return tuple(
             CountedPattern(
                 tally.shown,
@@ -151,24 +159,29 @@ class Tallies:
                 tally.count,
                 tuple(sorted(tally.robots)),
                 self._likeness.apart(tally.shown.source, tally.shown.leak),
-                tuple((form, tuple(sorted(robots))) for form, robots in sorted(forms[key].items())),
+                _in_rows(forms[key]),
+                _in_rows(end_forms[key]),
             )
             for key, tally in self._tallies.items()
         )
 
-    def _forms(self) -> dict[str, dict[Form, set[str]]]:
-        """Pattern -> the robots where its findings begin, each under the form that stands most."""
+    def _forms(self, *, ends: bool) -> dict[str, dict[Form, set[str]]]:
+        """Pattern -> the robots as of ``Share.ends``, each under the form that stands most."""
         least: dict[str, dict[str, Form]] = defaultdict(dict)
         for name, shares in self.shares.items():
             for share in shares:
                 form = Form(share.dismissed, share.accepted, share.pseudonymised)
-                for robot in () if share.ends else self._likeness.placed(name):
+                for robot in self._likeness.placed(name) if share.ends is ends else ():
                     least[share.pattern][robot] = min(form, least[share.pattern].get(robot, form))
         forms: dict[str, dict[Form, set[str]]] = defaultdict(lambda: defaultdict(set))
         for pattern, robots in least.items():
             for robot, form in robots.items():
                 forms[pattern][form].add(robot)
         return forms
+
+
+def _in_rows(forms: Mapping[Form, Collection[str]]) -> RobotsByForm:
+    return tuple((form, tuple(sorted(robots))) for form, robots in sorted(forms.items()))
 
 
 @dataclass(frozen=True, slots=True)
@@ -192,6 +205,8 @@ class Pattern:
         How many of the findings are.
     forms
         The robots by how their finding stands: each under the form that stands most, these forms first.
+    end_forms
+        Where data gets from one robot to another: the same of the robots that it gets to.
     """
 
     id: str
@@ -202,7 +217,8 @@ class Pattern:
     dismissed: int
     pseudonymised: int
     accepted: int = 0
-    forms: tuple[tuple[Form, tuple[str, ...]], ...] = ()
+    forms: RobotsByForm = ()
+    end_forms: RobotsByForm = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -306,6 +322,7 @@ def patterns_of(groups: Iterable[CountedPattern], findings: Iterable[Finding]) -
             group.count.pseudonymised,
             group.count.accepted,
             group.forms,
+            group.end_forms,
         )
         for group in sorted(groups, key=lambda group: order[group.pair][0])
     )

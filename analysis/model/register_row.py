@@ -71,6 +71,24 @@ class RowState(StrEnum):
     DISMISSED = "dismissed"
 
 
+class RowRobots(NamedTuple):
+    """Of a fleet: how decisions name a row, and the robots of it that decisions are about.
+
+    Attributes
+    ----------
+    pattern
+        Of ``row_id``, made from the kind and the place without its robot.
+    robots
+        Those where findings end; where the place is on no robot, those where data begin.
+    from_robots
+        Where some data come from another robot: those where data begin; else none.
+    """
+
+    pattern: str
+    robots: tuple[str, ...]
+    from_robots: tuple[str, ...] = ()
+
+
 def row_id(category: str, ends: Iterable[Element]) -> str:
     """Return the id of the row of a kind of data at its places, or of its sources where there is no place.
 
@@ -124,6 +142,8 @@ class RegisterRow:
         Ids of the findings that end there.
     to_complete
         The fields of which something is not known.
+    fleet
+        None where it is no fleet, no finding ends there, or the graph does not hold the whole fleet.
     """
 
     id: str
@@ -157,6 +177,7 @@ class RegisterRow:
     findings: tuple[str, ...]
     state: RowState
     to_complete: tuple[Cell, ...]
+    fleet: RowRobots | None = None
 
     def without_all_subjects(self) -> RegisterRow:
         """Return the row where data of more sources than these get to the places, or leave nowhere."""

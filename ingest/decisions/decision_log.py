@@ -13,8 +13,9 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.bounds import BOUNDS
-from rosprivacy.analysis.decisions import Choice, Decisions, LoggedStep
+from rosprivacy.analysis.decisions import Choice, Decisions
 from rosprivacy.analysis.errors import DecisionError, InputError, InputErrors, shown
+from rosprivacy.analysis.model.logged_step import LoggedStep
 from rosprivacy.ingest.decisions.decision_chain import (
     ENDING,
     SECTIONS,
@@ -27,6 +28,7 @@ from rosprivacy.ingest.decisions.decision_chain import (
     sealed,
 )
 from rosprivacy.ingest.decisions.decisions_file import (
+    ANSWERS,
     LISTS,
     OF_DOUBTS,
     TARGET,
@@ -245,7 +247,9 @@ def logged_step(entry: ChainEntry) -> LoggedStep:
     account = entry.facts["account"]
     person = " ".join(shown(str(account[key])) for key in ("user", "git") if key in account)
     texts = {key: str(entry.decision.get(key, "")) for key in ("decision", "owner", "reason", "condition", "expires")}
-    return LoggedStep(entry.hash, str(entry.facts["when"]), person, **texts)
+    said = entry.decision.get(ANSWERS)
+    answers = tuple(sorted((str(code), str(text)) for code, text in said.items())) if isinstance(said, dict) else ()
+    return LoggedStep(entry.hash, str(entry.facts["when"]), person, **texts, answers=answers)
 
 
 def _plain(value: Value, key: str = "") -> Any:

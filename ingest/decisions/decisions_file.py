@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.decisions import Choice, Decision, Decisions
 from rosprivacy.analysis.errors import DecisionError, InputError, shown
+from rosprivacy.analysis.legal import LegalQuestion
 from rosprivacy.analysis.model import Acceptance, Place
 from rosprivacy.analysis.remembered import About
 from rosprivacy.analysis.written_names import did_you_mean, nearest
@@ -36,17 +37,30 @@ IDS = (("id", "a finding"), ("row", "a row of the register"))
 LISTS = ("robots", "from_robots")  # of robots, by their full names
 TARGET = (*NAMES, *LISTS, "pseudonymised")
 TEXTS = ("reason", "owner", "ticket")
-CONDITION = "condition"
+CONDITION, ANSWERS = "condition", "answers"
 OF_DOUBTS = ("id", "doubt", "element", "robot", "file")
 DOUBT_KEYS = (*OF_DOUBTS, "decision", *TEXTS, "date", "expires", "note", "history")
-KEYS = (*TARGET, "decision", *TEXTS, CONDITION, "legal_basis", "date", "expires", "note", "history", "made_about")
-REMEMBERED = ("view", "disjoint_paths", "path", "stated", "robots", "findings", "pseudonymised")
+KEYS = (
+    *TARGET,
+    "decision",
+    *TEXTS,
+    CONDITION,
+    ANSWERS,
+    "legal_basis",
+    "date",
+    "expires",
+    "note",
+    "history",
+    "made_about",
+)
+REMEMBERED = ("view", "disjoint_paths", "path", "stated", "robots", "from_robots", "findings", "pseudonymised")
 IN_ORDER = ("path", "stated")
 REMEMBERED_LISTS = REMEMBERED[2:]
 REQUIRED: Mapping[str, tuple[str, ...]] = {  # what a person signs
     Choice.ACCEPT: ("reason", "owner"),
     Choice.CONDITIONAL: ("reason", "owner", CONDITION),
 }
+CODES = tuple(map(str, LegalQuestion))
 LONGEST = 10_000  # characters of a text
 _ID = re.compile(r"[0-9a-f]{16}")
 _DATE = re.compile(r"\d{4}-\d\d-\d\d", re.ASCII)
@@ -167,7 +181,16 @@ class DecisionsReader(FileReader):
                 self.problem(earlier.line, f"what was decided before is a map, not a {earlier.kind}", "remove it")
         basis = tuple(read_bases(self, said["legal_basis"])) if "legal_basis" in said else ()
         about = self._made_about(said) if "made_about" in said else None
+        if ANSWERS in said:
+            texts[ANSWERS] = tuple(self._answers(said[ANSWERS]))
         return Decision(choice, Place(self.file, item.line), legal_basis=basis, made_about=about, **texts)
+
+    def _answers(self, value: Value) -> Iterator[tuple[str, str]]:
+        """What a person answers to the questions of a row, by code."""
+        if value.kind != "map":
+            self.problem(value.line, f"answers are a map, not {_a(value)}", f"write {CODES[0]}: …, or remove the key")
+            return
+        yield from sorted((code, self._text(text, code)) for code, _, text in self.entries_of(value, CODES))
 
     def _made_about(self, entries: dict[str, Value]) -> About | None:
         """What was there when it was decided; ``rosprivacy decide --report`` writes it."""

@@ -258,9 +258,10 @@ def _plan(decision: Decision, findings: list[str], words: Told) -> Html:
         "expires": told.date(decision.expires) if decision.expires else "",
         "ticket": decision.ticket,
     }
+    answers = [Html(f"{words(f'confirm.{code}')} {prose(text)}") for code, text in decision.answers]
     paths = words.line("cnil.plan.paths", words.names_shown(findings))
     rows = [words.line(f"decision.{key}", prose(text)) for key, text in texts.items() if text]
-    return words.pair(words(f"decision.{decision.choice}"), Html("; ".join([paths, *rows])))
+    return words.pair(words(f"decision.{decision.choice}"), Html("; ".join([paths, *rows, *answers])))
 
 
 def _cleanings(facts: AnswerFacts, method: Method) -> list[Html]:

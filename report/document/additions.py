@@ -17,11 +17,12 @@ from rosprivacy.report.robots import form_rows
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from rosprivacy.analysis.decisions import Decided, Decision, LoggedStep, State
+    from rosprivacy.analysis.decisions import Decided, Decision, State
     from rosprivacy.analysis.findings.beyond import Added, DenyLine, Right
     from rosprivacy.analysis.fleet.counts import Counts
     from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.analysis.fleet.patterns import DeviantRobots, FleetView, Pattern, Share
+    from rosprivacy.analysis.model.logged_step import LoggedStep
     from rosprivacy.report.document.contents import EnforcedFacts
     from rosprivacy.report.schemas.analysis import (
         AddedEntry,
@@ -80,13 +81,15 @@ def _decision(entry: Decision, state: State, decided: Decided) -> DecisionEntry:
     }
     if entry.condition:
         decision["condition"] = entry.condition
+    if entry.answers:
+        decision["answers"] = dict(entry.answers)
     if entry.history:
         decision["history"] = list(map(_logged, entry.history))
     return {**decision, "changed": changed} if changed else decision
 
 
 def _logged(step: LoggedStep) -> LoggedEntry:
-    return {
+    logged: LoggedEntry = {
         "hash": step.hash,
         "when": step.when,
         "account": step.account,
@@ -95,6 +98,7 @@ def _logged(step: LoggedStep) -> LoggedEntry:
         "reason": step.reason,
         "expires": step.expires or None,
     }
+    return {**logged, "answers": dict(step.answers)} if step.answers else logged
 
 
 def _target(entry: Decision) -> Target:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 def register_entry(row: RegisterRow) -> RegisterEntry:
     """Return a row of ``register``."""
-    return {
+    entry: RegisterEntry = {
         "id": row.id,
         "category": row.category,
         "places": [element_dict(element) for element in row.places],
@@ -57,3 +57,7 @@ def register_entry(row: RegisterRow) -> RegisterEntry:
         "state": str(row.state),
         "to_complete": [str(cell) for cell in row.to_complete],
     }
+    if row.fleet:
+        pattern, robots, from_robots = row.fleet
+        entry["fleet"] = {"pattern": pattern, "robots": list(robots), "from_robots": list(from_robots)}
+    return entry

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.legal import Gap
+    from rosprivacy.report.catalogs.words import Words
     from rosprivacy.report.page.index import Index
 
 FIELDS = ("reason", "condition", "owner", "legal_basis", "date", "expires", "ticket", "state")
@@ -62,6 +63,7 @@ def orphans(index: Index) -> tuple[DecisionText, ...]:
 def _decision(decision: Mapping[str, Any], findings: Iterable[Mapping[str, Any]], index: Index) -> DecisionText:
     words, what = index.words, decision["choice"]
     rows = [(words(f"decision.{key}"), _value(decision[key], key, index)) for key in FIELDS if decision.get(key)]
+    rows += _answers(decision, words)
     rows += [(words("decision.history"), _step(step, index)) for step in decision.get("history", ())]
     flags = (*_changed(decision, index), *(_flags(decision, findings, index) if what == ACCEPT else ()))
     return DecisionText(words.of_value(f"decision.{what}", what), tuple(rows), flags)
@@ -75,10 +77,16 @@ def _changed(decision: Mapping[str, Any], index: Index) -> Iterator[str]:
         )
 
 
+def _answers(decision: Mapping[str, Any], words: Words) -> list[tuple[str, str]]:
+    """The legal questions that a person answered, with the answers."""
+    answers = decision.get("answers", {}).items()
+    return [(words.of_value(f"confirm.{code}", printable(code)), printable(text)) for code, text in answers]
+
+
 def _step(step: Mapping[str, Any], index: Index) -> str:
-    """One entry of a log: what, by whom, when, and its hash, by which it is found there."""
+    """One entry of a log: what, by whom, when, its hash, by which it is found there, and what was answered."""
     words, dash = index.words, "–"
-    return words(
+    entry = words(
         "decision.step",
         when=printable(step["when"]),
         decision=words.of_value(f"decision.{step['decision']}", printable(step["decision"])),
@@ -88,6 +96,7 @@ def _step(step: Mapping[str, Any], index: Index) -> str:
         reason=printable(step["reason"]) or dash,
         hash=step["hash"][:16],
     )
+    return "; ".join([entry, *(f"{question} {answer}" for question, answer in _answers(step, words))])
 
 
 def _value(value: Any, key: str, index: Index) -> str:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rosprivacy.analysis.legal import on_prohibited_practices, transfer_of
+from rosprivacy.analysis.legal import LegalQuestion, on_prohibited_practices, transfer_of
 from rosprivacy.analysis.model import ARTICLE_10, GDPR_DENIED, GDPR_OPEN, SPECIAL
 from rosprivacy.analysis.model.register_row import Cell, RowState
 from rosprivacy.analysis.non_ros import ADEQUACY, ADEQUATE, DEROGATION, INSIDE, OCCASIONAL
@@ -18,7 +18,7 @@ from rosprivacy.report.naming import text
 from rosprivacy.report.page.index import kind_anchor
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.report.page.finding_entries import PathEntry
     from rosprivacy.report.page.index import Index
@@ -28,7 +28,12 @@ FEW = 4  # of what is said before the first decision
 LINKS = 3  # entries that a place leads to
 RESTS = "know.rests"
 NO_SAFEGUARD = ("", "none", ADEQUACY, DEROGATION, OCCASIONAL)  # none of Articles 46 and 47
-ON_A_CONTRACT = {"processor": "confirm.processor", "joint-controller": "confirm.joint"}  # Articles 28 and 26
+ON_A_CONTRACT = {"processor": LegalQuestion.PROCESSOR, "joint-controller": LegalQuestion.JOINT}  # Articles 28 and 26
+OF_GROUNDS = (
+    LegalQuestion.SPECIAL,
+    LegalQuestion.SECRECY,
+    LegalQuestion.CRIMINAL,
+)  # a ground answers them, and that it is missing is told
 
 SCOPE = "scope"  # of a question about the whole system
 
@@ -106,7 +111,7 @@ def row_questions(index: Index, entries: Iterable[PathEntry]) -> RowQuestions:
     entries = list(entries)
     rows = _by_weight(index)
     by_id = {finding: entry for entry in entries for finding in (entry.id, *entry.alike)}
-    to_confirm = ((key, "", row) for row in rows for key in questions_of(row))
+    to_confirm = ((question_key(asked), "", row) for row in rows for asked in questions_of(row))
     foremost = ((key, remark, row) for row in rows for key, remark in _foremost(row, index))
     resting = (
         (RESTS, index.words.row(map(index.words.duration, row["retention"])), row) for row in filter(_rests, rows)
@@ -133,22 +138,33 @@ def _by_weight(index: Index) -> list[Row]:
     return [dict(row) for row in in_order(weighed, index.document)]
 
 
-def questions_of(row: Mapping[str, Any]) -> Iterator[str]:
-    """Yield the keys of the questions that a row of the register asks."""
+def question_key(code: str) -> str:
+    """Return the key of the words of a question."""
+    return f"confirm.{code}"
+
+
+def questions_of(row: Mapping[str, Any]) -> Iterator[LegalQuestion]:
+    """Yield the questions that a row of the register asks."""
     if row["area"] not in (INSIDE, ADEQUATE):
         stated = {row["transfer"], *map(transfer_of, row["safeguards"])}
         if stated.difference(NO_SAFEGUARD):
-            yield "confirm.assessment"
+            yield LegalQuestion.ASSESSMENT
         elif DEROGATION in stated and OCCASIONAL not in stated:
-            yield "confirm.occasional"
+            yield LegalQuestion.OCCASIONAL
     if Cell.CONTRACT in row["to_complete"]:
         yield ON_A_CONTRACT[row["recipient"]]
     if row["encrypted"] is False and row["article9"] in (*SPECIAL, *REVEALS):
-        yield "confirm.unencrypted"
+        yield LegalQuestion.UNENCRYPTED
     if Cell.CRIMINAL_BASES in row["to_complete"]:
-        yield "confirm.criminal"
+        yield LegalQuestion.CRIMINAL
     if Cell.SPECIAL_BASES in row["to_complete"]:
-        yield "confirm.secrecy" if row["special_bases"] else "confirm.special"
+        yield LegalQuestion.SECRECY if row["special_bases"] else LegalQuestion.SPECIAL
+
+
+def unanswered(row: Mapping[str, Any] | None, answers: Collection[str]) -> tuple[LegalQuestion, ...]:
+    """Return the questions of a row that no code of an answer names, but for what a missing ground tells."""
+    asked = questions_of(row) if row else ()
+    return tuple(one for one in asked if one not in OF_GROUNDS and one not in answers)
 
 
 def _foremost(row: Row, index: Index) -> Iterator[tuple[str, str]]:

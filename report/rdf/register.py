@@ -81,6 +81,7 @@ def _row(iri: URIRef, row: RegisterRow, individuals: Individuals) -> Iterator[Tr
         (RP.lookAt, things.pointed(row.look_at)),
         (RP.found, [names.of("finding", finding) for finding in row.findings]),
         (RP.state, [text(row.state)]),
+        (RP.onRobot, [text(shown(robot)) for robot in row.fleet.robots] if row.fleet else []),
         (RP.toComplete, map(text, row.to_complete)),
     )
     yield RP.PossibleActivity, RDF.type, DPV.ActivityStatus

@@ -122,6 +122,13 @@ LegalBasis = Annotated[
 ]
 
 
+Answers = Annotated[
+    dict[str, str],
+    "To the legal questions of the row: assessment (of the transfer), occasional (Article 49), processor (28), joint "
+    "(26), unencrypted (32), criminal (10), special (9(2)).",
+]
+
+
 class LoggedEntry(TypedDict):
     """One entry of a log of decisions."""
 
@@ -136,6 +143,7 @@ class LoggedEntry(TypedDict):
     owner: Annotated[str, "Who answers for it, as they stated."]
     reason: str
     expires: Day | None
+    answers: NotRequired[Answers]
 
 
 class DecisionEntry(TypedDict):
@@ -158,6 +166,7 @@ class DecisionEntry(TypedDict):
     file: str
     line: Positive
     condition: Annotated[NotRequired[str], "What has to be so before it counts, or had to be."]
+    answers: NotRequired[Answers]
     history: Annotated[
         NotRequired[list[LoggedEntry]],
         Keywords(minItems=1),
@@ -287,7 +296,7 @@ class Target(TypedDict, total=False):
     """What a decision says that it is about."""
 
     id: str
-    row: Annotated[str, "Of the register: the findings that end there."]
+    row: Annotated[str, "Of the register, of a fleet its pattern: the findings that end there."]
     category: str
     source: str
     leak: str

@@ -3,7 +3,7 @@
 from typing import Annotated
 
 from rosprivacy.analysis.model.register_row import Cell, RowState
-from rosprivacy.analysis.python_311 import TypedDict
+from rosprivacy.analysis.python_311 import NotRequired, TypedDict
 from rosprivacy.report.schemas.notation import Article9, Context, Id, Keywords, Method, closed, one_of
 from rosprivacy.report.schemas.records import ElementEntry
 
@@ -21,6 +21,17 @@ class MeasureEntry(TypedDict):
     method: Method
     stated: Annotated[bool, "Whether a label states the method; otherwise it is taken as pseudonymise."]
     everywhere: Annotated[bool, "Whether every way of the row passes it; else some ways lead past it."]
+
+
+@closed
+class RowRobotsEntry(TypedDict):
+    """How decisions name a row of a fleet, and its robots."""
+
+    pattern: Annotated[Id, "Made from the kind and the place without its robot: what the row of a decision names."]
+    robots: Annotated[
+        list[str], "Those where findings of the row end; where the place is on no robot, those where data begin."
+    ]
+    from_robots: Annotated[list[str], "Where some data come from another robot, those where data begin."]
 
 
 class RegisterEntry(TypedDict):
@@ -66,6 +77,9 @@ class RegisterEntry(TypedDict):
     findings: Annotated[list[str], "Ids of the findings of the kind that end at the places."]
     state: Annotated[
         str, one_of(*RowState), "Open while a finding stands; accepted or dismissed if none does; or there is none."
+    ]
+    fleet: Annotated[
+        NotRequired[RowRobotsEntry], "Of a fleet that was read as a whole: of a row in which findings end."
     ]
     to_complete: Annotated[
         list[Annotated[str, one_of(*Cell)]], "Fields of which something is not known, and a person has to complete it."

@@ -426,6 +426,8 @@ def _decision(finding: Mapping[str, Any], words: Words) -> Iterator[Line]:
     yield f"   {choice}{owner}{until}{basis}  ({at})", style
     if decision["reason"]:
         yield f"      {shown(decision['reason'])}", style
+    for code, answer in decision.get("answers", {}).items():
+        yield f"      {shown(words.of_value(f'confirm.{code}', code))} {shown(answer)}", style
     if decision.get("condition"):
         yield f"      {words('terminal.condition', condition=shown(decision['condition']))}", style
     for change in decision.get("changed", ()):

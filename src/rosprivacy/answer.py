@@ -5,7 +5,7 @@ In: what was found, and what it rests on. Out: ``Answer``, of which ``documents.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -20,13 +20,13 @@ from rosprivacy.report.document.analysis import verdict_facts
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping
 
-    from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.analysis.answer import Analysis, Finding
     from rosprivacy.analysis.case import Case
     from rosprivacy.analysis.decisions import Decided, Decision
     from rosprivacy.analysis.findings.beyond import Added
     from rosprivacy.analysis.findings.processed import Processed
     from rosprivacy.analysis.fleet.counts import Counts
-    from rosprivacy.analysis.fleet.patterns import FleetView
+    from rosprivacy.analysis.fleet.patterns import FleetView, Pattern
     from rosprivacy.analysis.model import Bound, Diagnostic, Doubt, Element
     from rosprivacy.analysis.model.register_row import RegisterRow
     from rosprivacy.analysis.whatif.ledger import TakenAway
@@ -194,23 +194,34 @@ class Answer:
         from rosprivacy.analysis.findings.register import Statements, register  # noqa: PLC0415 - light start
 
         likeness = self.fleet.likeness if self.fleet else NO_ROBOTS
+        ends = self._row_ends
+        shown = replace(self.shown, findings=tuple(finding for finding, _ in ends)) if ends else self.shown
         decided = (
             {}
             if self.decided is None
             else {
                 finding.id: decision.legal_basis
-                for finding in self.shown.findings
+                for finding in shown.findings
                 if (decision := self.decided.valid(finding))
             }
         )
         stated = Statements(
             self.bound, self.processed, self.contexts, self.vocabulary.hierarchy, self._law, decided, likeness.second
         )
-        rows = register(self.shown, stated)
+        rows = register(shown, stated)
         if self.counts is None:
-            return rows
+            return _on_robots(rows, self.fleet, ends) if self.fleet else rows
         alone = (row.places and all(likeness.is_robot(place.robot) for place in row.places) for row in rows)
         return tuple(row if some else row.without_all_subjects() for row, some in zip(rows, alone, strict=True))
+
+    @cached_property
+    def _row_ends(self) -> tuple[tuple[Finding, Pattern], ...]:
+        """What the rows of a fleet are made of, where the graph holds all of it."""
+        if self.fleet is None or self.counts is not None:
+            return ()
+        from rosprivacy.analysis.fleet.robots_of_rows import row_ends  # noqa: PLC0415 - for fleets only
+
+        return row_ends(self.fleet, self.analysis.findings if self.decided else ())
 
     def _law(
         self, category: str, contexts: Collection[str], countries: Collection[str], persons: Collection[str]
@@ -225,6 +236,14 @@ class Answer:
         from rosprivacy.analysis.fleet.counts import counted  # noqa: PLC0415 - light start
 
         return self.counts or counted(self.analysis.graph, self.analysis.spread, view.likeness)
+
+
+def _on_robots(
+    rows: Iterable[RegisterRow], view: FleetView, ends: Iterable[tuple[Finding, Pattern]]
+) -> tuple[RegisterRow, ...]:
+    from rosprivacy.analysis.fleet.robots_of_rows import on_robots  # noqa: PLC0415 - for fleets only
+
+    return on_robots(rows, view, ends)
 
 
 def _why(decision: Decision) -> str:

@@ -88,7 +88,10 @@ def doubts_decided(
 
 
 def about_today(analysis: Analysis, view: FleetView | None) -> dict[str, About]:
-    """Return what a decision would be made about today, by id: of each finding and row, of a fleet of each pattern."""
+    """Return what a decision would be made about today, by id: of each finding and row, of a fleet of each pattern.
+
+    Of a fleet what is stated of a place stands under the id of the row of its robot.
+    """
     from rosprivacy.analysis.model.register_row import row_id  # noqa: PLC0415 - light start
     from rosprivacy.analysis.remembered import About, stated_of  # noqa: PLC0415
 
@@ -97,13 +100,20 @@ def about_today(analysis: Analysis, view: FleetView | None) -> dict[str, About]:
         return About(analysis.graph.view, path, finding.number_of_paths or 0, frozenset(robots))
 
     found = {finding.id: about(finding) for finding in analysis.findings}
+    found |= {
+        row_id(finding.category, [finding.leak]): About(stated=stated_of(_stated(analysis, finding.leak)))
+        for finding in analysis.findings
+    }
     if view is None:
-        return found | {
-            row_id(finding.category, [finding.leak]): About(stated=stated_of(_stated(analysis, finding.leak)))
-            for finding in analysis.findings
-        }
+        return found
+    from rosprivacy.analysis.fleet.robots_of_rows import row_robots  # noqa: PLC0415 - for fleets only
+
     everywhere = {robot for robots in view.likeness.members.values() for robot in robots}
-    return found | {p.id: about(p.finding, everywhere if p.across else p.robots) for p in view.patterns}
+    found |= {p.id: about(p.finding, everywhere if p.across else p.robots) for p in view.patterns}
+    for name, row in row_robots(view).items():
+        robots, from_robots = frozenset(row.robots), frozenset(row.from_robots)
+        found[name] = replace(found.get(name, About()), robots=robots, from_robots=from_robots)
+    return found
 
 
 def _stated(analysis: Analysis, place: Element) -> Mapping[str, object]:
@@ -130,9 +140,11 @@ def accepts(decisions: Decisions | None, likeness: Likeness = NO_ROBOTS) -> Call
 
 def in_fleet(case: Case, likeness: Likeness) -> Case:
     """Return a case with its pattern and robots; where it stands for more than itself it has no id of its own."""
+    from rosprivacy.analysis.fleet.robots_of_rows import row_pattern  # noqa: PLC0415 - where somebody decided
+
     ends = case.source, case.leak
-    case = case._replace(row="") if likeness.robots else case.in_row()
+    row = row_pattern(case.category, case.leak, likeness)
     pattern = pattern_of(case.kind, case.category, *ends, likeness, plain_also=case.plain_also)
     source, leak = (end.robot if likeness.is_robot(end.robot) else "" for end in ends)
     own = case.id if likeness.alone(*ends) else ""
-    return case._replace(id=own, pattern=pattern, robots=(source, leak))
+    return case._replace(id=own, pattern=pattern, row=row, robots=(source, leak))

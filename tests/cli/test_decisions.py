@@ -129,7 +129,8 @@ def test_an_old_file_is_taken_over_with_its_history(cli: Cli, tmp_path: Path, mo
     monkeypatch.chdir(tmp_path)
     (tmp_path / "decisions.yaml").write_text(
         f"decisions: 1\nfindings:\n- id: {ID}  # Video\n  decision: accept\n  reason: why\n  owner: who\n"
-        "  expires: 2999-01-01\n  legal_basis: [Art. 6(1)(f)]\n  history:\n  - {decision: mitigate, owner: me}\n"
+        "  expires: 2999-01-01\n  legal_basis: [Art. 6(1)(f)]\n  answers: {processor: DMS 12}\n"
+        "  history:\n  - {decision: mitigate, owner: me}\n"
         "  made_about: {view: declared, path: [/a, /b], disjoint_paths: 2}\n"
         "- {category: Video, leak: '/cloud*', pseudonymised: true, decision: avoid}\n"
         "doubts:\n- {doubt: no-reader, decision: accept, reason: r, owner: o, expires: 2999-01-01}\n",
@@ -143,6 +144,7 @@ def test_an_old_file_is_taken_over_with_its_history(cli: Cli, tmp_path: Path, mo
         rows = [{k: v for k, v in row.items() if k not in ("file", "line", "history")} for row in document["decisions"]]
         both.append((done.returncode, document["verdict"], rows))
     assert both[0] == both[1]
+    assert both[0][2][0]["answers"] == {"processor": "DMS 12"}
     assert [entry["decision"]["decision"] for entry in entries(tmp_path / "decisions.jsonl")] == [  # type: ignore[index]
         "mitigate", "accept", "avoid", "accept",
     ]  # fmt: skip

@@ -9,7 +9,6 @@ import pytest
 
 from tests.helpers.command import refused
 from tests.helpers.fleet_files import policy
-from tests.helpers.paths import ROOT
 from tests.helpers.rows import written
 
 if TYPE_CHECKING:
@@ -120,14 +119,6 @@ def test_a_row_that_is_not_there_is_refused(cli: Cli, folder: Path, row: str) ->
     (line,) = refused(cli("decide", "accept", "--row", row, "--report", "r.json", *SIGNED, cwd=folder))
     assert "row" in line
     assert not (folder / "decisions.jsonl").exists()
-
-
-def test_on_a_fleet_robots_are_named_and_no_rows(cli: Cli, tmp_path: Path) -> None:
-    cli("analyze", "--fleet", ROOT / "examples/fleet/fleet.yaml", "-f", "json", "-o", "r.json", cwd=tmp_path)
-    rows = json.loads((tmp_path / "r.json").read_text())["register"]
-    done = cli("decide", "accept", "--row", rows[0]["id"], "--report", "r.json", *SIGNED, cwd=tmp_path)
-    (line,) = refused(done)
-    assert "fleet" in line
 
 
 def test_a_row_of_another_robot_is_orphaned(cli: Cli, folder: Path) -> None:

@@ -30,8 +30,12 @@ def rows_told(graph: Graph) -> dict[str, dict[str, Any]]:
 
 
 def comparable(row: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a row of the JSON document whose lists are sorted; what stands in it twice, once."""
-    return {key: _sorted(value) if isinstance(value, list) else value for key, value in row.items()}
+    """Return a row of the JSON document whose lists are sorted; what stands in it twice, once.
+
+    Of a fleet with its robots, without what only decisions need.
+    """
+    plain = {**row, "robots": row.get("fleet", {}).get("robots", [])}
+    return {key: _sorted(value) if isinstance(value, list) else value for key, value in plain.items() if key != "fleet"}
 
 
 def _sorted(values: list[Any]) -> list[Any]:
@@ -100,6 +104,7 @@ def _row(graph: Graph, iri: Node) -> dict[str, Any]:
     more, backups = _durations(graph, iri, of_backups=True), _value(graph, iri, RP.backups)
     return {
         "id": _value(graph, iri, RP.id),
+        "robots": _texts(graph, iri, RP.onRobot),
         "category": _kind(graph, iri, RP.category),
         "places": _elements(graph, iri, RP.place),
         "pseudonymised": _value(graph, iri, RP.pseudonymised),

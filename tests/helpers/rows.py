@@ -41,7 +41,7 @@ LABELS: dict[str, Any] = {
     },
     "flows": [{"from": "/teleop", "to": "cabin"}, {"from": "/recorder", "to": "archive"}],
 }  # fmt: skip
-ANSWERS = {"answer-confirm.occasional": "once a year", "answer-confirm.processor": "DMS 12"}
+ANSWERS = {"answer-occasional": "once a year", "answer-processor": "DMS 12"}
 
 
 def written(folder: Path) -> tuple[Path, Path]:

@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 import typer
 
 from rosprivacy.analysis.errors import DecisionError, InputErrors, shown
+from rosprivacy.analysis.legal import LegalQuestion
 from rosprivacy.analysis.python_311 import StrEnum
+from rosprivacy.analysis.written_names import is_glob
 from rosprivacy.cli.inputs import takes_groups
 from rosprivacy.cli.options import Ontologies, complete_category
 from rosprivacy.cli.output import emit
@@ -84,6 +86,14 @@ class DecisionFacts(NamedTuple):
         str | None, typer.Option(metavar="YYYY-MM-DD", help="The last day on which it is valid.", show_default=False)
     ] = None
     ticket: Annotated[str | None, typer.Option(help="Where the work is tracked.", show_default=False)] = None
+    answer: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="CODE=TEXT",
+            help=f"To a legal question of the row: {', '.join(LegalQuestion)}; may be repeated.",
+            show_default=False,
+        ),
+    ] = None
     condition: Annotated[
         str | None,
         typer.Option(help="What has to be so before accept-on-condition counts.", show_default=False),
@@ -121,10 +131,10 @@ class FindingPattern(NamedTuple):
         typer.Option(metavar="NAME", help="Of a pattern: name or glob.", show_default=False, rich_help_panel=PATTERN),
     ] = None
     robot: Annotated[
-        str | None,
+        list[str] | None,
         typer.Option(
             metavar="NAME",
-            help="Of a pattern: robot of the leak, name or glob.",
+            help="Of a pattern or a row: robot of the leak, name or glob; names may be repeated.",
             show_default=False,
             rich_help_panel=PATTERN,
         ),
@@ -179,17 +189,18 @@ def decide(
     ontology: Ontologies = None,
 ) -> None:
     """Decide about findings, a pattern of them, or doubts, in a file that analyze and mitigate take into account."""
-    from rosprivacy.decision_record import provenance, subject, with_recorded
+    from rosprivacy.decision_record import parse_recorded, provenance, subject, with_recorded
     from rosprivacy.ingest.decisions.decision_log import is_log
     from rosprivacy.ingest.decisions.decision_writer import DOUBTS, FINDINGS, text_in
     from rosprivacy.ontology.vocabulary import load
     from rosprivacy.report.atomic import editing
     from rosprivacy.report.compare.earlier import read_earlier
+    from rosprivacy.row_decision import check_foremost, made_about_row, row_target
 
     ids, decisions, report = about.ids, about.decisions or _default_log(), about.report
     choice = WRITTEN.get(choice, choice)
-    pattern = _as_pattern(findings_meant)
-    in_doubt = _as_pattern(doubts_meant)
+    pattern = _finding_pattern(findings_meant)
+    in_doubt = {key: value for key, value in doubts_meant._asdict().items() if value}
     if in_doubt:
         pattern = _doubt_pattern(choice, in_doubt, pattern)
     _check_target(ids, pattern)
@@ -198,7 +209,8 @@ def decide(
     findings = _findings(document) if document else None
     doubts = _doubts(document) if document else {}
     row = _row(document, pattern["row"], str(report)) if document and "row" in pattern else None
-    pattern |= {"row": row["id"]} if row else {}
+    robots = pattern.pop("robots", ()) if row else ()
+    pattern |= row_target(document, row, robots) if document and row else {}
     targets = _targets(ids, None if findings is None else findings | doubts, str(report)) if ids else [pattern]
     entry, vocabulary = _entry(choice, facts), load(ontologies=tuple(ontology or ()))
     names = "; ".join(", ".join(f"{key} {shown(str(value))}" for key, value in target.items()) for target in targets)
@@ -208,15 +220,18 @@ def decide(
         for target in targets:
             finding = (findings or {}).get(target.get("id", ""))
             meant = [finding] if finding else _in_row(row, findings or {})
+            rows = [row] if row else _rows_of(document or {}, meant)
             what = f"the acceptance of {target.get('id') or target.get('row', 'a pattern')}"
-            remarks += [f"{what} {gap}" for gap in _gaps(choice, facts, meant)]
-            made_about = _made_about_row(row, meant) if row else _made_about(finding)
+            remarks += [f"{what} {gap}" for gap in (*_gaps(choice, facts, meant), *_unanswered(choice, entry, rows))]
+            made_about = made_about_row(document, row, robots) if document and row else _made_about(finding)
             whole = {**target, **entry, **({} if choice in IN_A_LOG else made_about)}
             section = DOUBTS if in_doubt or target.get("id") in doubts else FINDINGS
             remark = _remark(finding) or _doubt_remark(doubts.get(target.get("id", "")))
             facts_then = subject(document, finding=finding, row=row) if document and meant else None
             there = provenance(decisions.parent, facts_then)
             text = with_recorded(str(decisions), text, whole, remark, vocabulary, section, there)
+            if row and choice not in IN_A_LOG:
+                check_foremost(parse_recorded(str(decisions), text, vocabulary, ""), whole)
         if (ids or "row" in pattern) and not report:
             remarks.append("the ids were not checked; --report FILE checks them against an analysis")
         if not is_log(str(decisions)):
@@ -243,9 +258,44 @@ def _gaps(choice: Decide, facts: DecisionFacts, findings: Sequence[Mapping[str, 
     yield from map(str, gaps_of(decision, findings))
 
 
-def _as_pattern(options: FindingPattern | DoubtPattern) -> dict[str, str]:
-    """Those of some options that a user gave."""
-    return {key: value for key, value in options._asdict().items() if value}
+def _unanswered(choice: Decide, entry: Mapping[str, Any], rows: Iterable[Mapping[str, Any]]) -> Iterator[str]:
+    """The legal questions of rows that an acceptance leaves open."""
+    from rosprivacy.report.catalogs.words import Words
+    from rosprivacy.report.page.to_confirm import question_key, unanswered
+
+    if choice in (Decide.accept, Decide.accept_on_condition):
+        for code in dict.fromkeys(code for row in rows for code in unanswered(row, entry.get("answers", ()))):
+            yield f"leaves a question open: {Words('en')(question_key(code))} Answer with --answer {code}=TEXT"
+
+
+def _rows_of(document: Mapping[str, Any], findings: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+    """The rows of the register of a report in which some findings end."""
+    ids = {finding["id"] for finding in findings}
+    return [row for row in document.get("register", ()) if ids.intersection(row["findings"])]
+
+
+def _finding_pattern(options: FindingPattern) -> dict[str, Any]:
+    """What a user names; several robots, and those of a row, are a list of names."""
+    pattern = {key: value for key, value in options._asdict().items() if value}
+    names = pattern.pop("robot", [])
+    globs = [name for name in names if is_glob(name)]
+    if len(names) > 1 and globs:
+        raise typer.BadParameter(f"{globs[0]} is a glob: name robots, or one glob", param_hint="--robot")
+    if len(names) > 1 or (names and "row" in pattern and not globs):
+        return {**pattern, "robots": sorted(set(names))}
+    return {**pattern, **({"robot": names[0]} if names else {})}
+
+
+def _answers(written: Iterable[str]) -> dict[str, str]:
+    """What a user answers, by the code of the question."""
+    answers: dict[str, str] = {}
+    for one in written:
+        code, _, text = one.partition("=")
+        if code not in set(LegalQuestion) or not text.strip():
+            codes = ", ".join(LegalQuestion)
+            raise typer.BadParameter(f"{one!r}: write CODE=TEXT with one of {codes}", param_hint="--answer")
+        answers[code] = text.strip()
+    return dict(sorted(answers.items()))
 
 
 def _entry(choice: Decide, facts: DecisionFacts) -> dict[str, Any]:
@@ -255,6 +305,7 @@ def _entry(choice: Decide, facts: DecisionFacts) -> dict[str, Any]:
     entry = {
         "decision": choice.value,
         "reason": facts.reason,
+        "answers": _answers(facts.answer or ()) or None,
         "condition": facts.condition,
         "owner": facts.owner,
         "legal_basis": list(facts.legal_basis) if facts.legal_basis else None,
@@ -265,7 +316,7 @@ def _entry(choice: Decide, facts: DecisionFacts) -> dict[str, Any]:
     return {key: value for key, value in entry.items() if value is not None}
 
 
-def _doubt_pattern(choice: Decide, in_doubt: Mapping[str, str], pattern: Mapping[str, str]) -> dict[str, str]:
+def _doubt_pattern(choice: Decide, in_doubt: Mapping[str, str], pattern: Mapping[str, Any]) -> dict[str, Any]:
     """What an acceptance by the name of a doubt is about."""
     if "doubt" not in in_doubt:
         raise typer.BadParameter("--element and --file go with --doubt")
@@ -274,7 +325,7 @@ def _doubt_pattern(choice: Decide, in_doubt: Mapping[str, str], pattern: Mapping
     return {**in_doubt, **pattern}
 
 
-def _check_target(ids: list[str] | None, pattern: Mapping[str, str]) -> None:
+def _check_target(ids: list[str] | None, pattern: Mapping[str, Any]) -> None:
     if ids and pattern:
         raise typer.BadParameter("name findings by their ids, or a pattern of them, not both")
     if not ids and not pattern:
@@ -339,11 +390,10 @@ def _all_of(pattern: dict[str, Any], robots: list[str]) -> dict[str, Any]:
 
 def _row(document: Mapping[str, Any], written: str, report: str) -> Mapping[str, Any]:
     """The row of the register that is meant by an id or its beginning; there has to be something to decide."""
-    if "fleet" in document:
-        hint = "decide about its findings, by their ids"
-        raise InputErrors([DecisionError(report, 0, "rows are decided about on one robot, and this is a fleet", hint)])
     rows = {row["id"]: row for row in document.get("register", ()) if row["findings"]}
-    fitting = [one for one in rows if one.startswith(written)] if len(written) >= SHORTEST else []
+    names = {one: {one, row.get("fleet", {}).get("pattern", one)} for one, row in rows.items()}
+    fitting = [one for one in rows if any(name.startswith(written) for name in names[one])]
+    fitting = fitting if len(written) >= SHORTEST else []
     if len(fitting) != 1:
         which = f"begins {len(fitting)} ids of rows" if fitting else "is no row in which a finding ends"
         hint = f"copy one: {', '.join(list(rows)[:5])}" if rows else "the report has no finding"
@@ -353,15 +403,7 @@ def _row(document: Mapping[str, Any], written: str, report: str) -> Mapping[str,
 
 def _in_row(row: Mapping[str, Any] | None, findings: Mapping[str, dict[str, Any]]) -> list[dict[str, Any]]:
     """The findings of a report that end in a row."""
-    return [findings[one] for one in row["findings"] if one in findings] if row else []
-
-
-def _made_about_row(row: Mapping[str, Any], findings: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
-    """The findings that end in a row now: a finding that comes later is not decided."""
-    from rosprivacy.analysis.remembered import About, as_written, stated_of
-
-    about = About.of_row(((one["id"], one["pseudonymised"]) for one in findings), stated_of(row))
-    return {"made_about": as_written(about)}
+    return [finding for finding in findings.values() if finding["id"] in row["findings"]] if row else []
 
 
 def _made_about(finding: Mapping[str, Any] | None) -> dict[str, Any]:

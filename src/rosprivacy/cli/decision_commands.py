@@ -137,5 +137,5 @@ def _histories(entries: Sequence[ChainEntry]) -> Iterator[str]:
         yield shown(target) + ("" if state.entry else ": nothing is decided now")
         for step in map(logged_step, state.steps):
             facts = ((key, getattr(step, key)) for key in ("owner", "condition", "expires", "reason"))
-            words = "".join(f"; {key}: {shown(value)}" for key, value in facts if value)
+            words = "".join(f"; {key}: {shown(value)}" for key, value in (*facts, *step.answers) if value)
             yield f"  {step.hash[:16]}  {step.when}  {shown(step.decision)}{words}; written by {step.account}"

@@ -13,6 +13,7 @@ from collections import defaultdict
 from dataclasses import replace
 from datetime import date
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple, TypedDict
 
 from rosprivacy.analysis.case import Case
@@ -20,7 +21,8 @@ from rosprivacy.analysis.decisions import Choice, State
 from rosprivacy.analysis.errors import DecisionError, InputErrors, shown
 from rosprivacy.analysis.files_read import one_run
 from rosprivacy.analysis.fleet.likeness import NO_ROBOTS, pattern_id
-from rosprivacy.analysis.remembered import About, as_written, stated_of
+from rosprivacy.analysis.fleet.robots_of_rows import row_pattern
+from rosprivacy.analysis.remembered import as_written
 from rosprivacy.clock import judged_on, today
 from rosprivacy.decided import about_today, in_fleet
 from rosprivacy.decision_record import parse_recorded, provenance, subject, with_recorded
@@ -28,6 +30,7 @@ from rosprivacy.ingest.decisions.decision_log import is_log
 from rosprivacy.ingest.decisions.decision_writer import text_in
 from rosprivacy.ingest.decisions.decisions_file import LISTS, REQUIRED, is_date
 from rosprivacy.report.atomic import editing, write_texts
+from rosprivacy.row_decision import made_about_row, row_target
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
@@ -56,6 +59,8 @@ class Ruling(NamedTuple):
         The last day on which it is valid, ``YYYY-MM-DD``.
     legal_basis
         Articles, such as ``6(1)(f)``.
+    answers
+        ``LegalQuestion`` of the row -> what a person answers.
     """
 
     choice: str
@@ -65,6 +70,7 @@ class Ruling(NamedTuple):
     ticket: str = ""
     legal_basis: tuple[str, ...] = ()
     condition: str = ""
+    answers: Mapping[str, str] = MappingProxyType({})
 
 
 class How(TypedDict, total=False):
@@ -76,6 +82,7 @@ class How(TypedDict, total=False):
     ticket: str
     legal_basis: tuple[str, ...]
     condition: str
+    answers: Mapping[str, str]
 
 
 class Scope(NamedTuple):
@@ -155,31 +162,51 @@ def record(
     _write(file, result, entry, remark, lambda: _subject(result, scope.finding), check)
 
 
-def record_row(file: str | None, result: Result, row: str, ruling: Ruling, judge: Callable[[Decisions], None]) -> None:
-    """Write a decision about a row of the register of one robot: about the findings that end there now.
+def record_row(
+    file: str | None, result: Result, row: str, ruling: Ruling, robots: Collection[str],
+    judge: Callable[[Decisions], None],
+) -> None:  # fmt: skip
+    """Write a decision about a row of the register: about the findings that end there now.
 
     Parameters
     ----------
+    robots
+        Of a fleet: some of the robots of the row; none for all of them.
     judge
         As of ``record``.
     """
     file = _checked(file, ruling)
-    if result.fleet:
-        raise _refused(file, "rows are decided about on one robot", "decide about the finding, on its robots")
     document = result.document()
-    entry_of_row = next((each for each in document["register"] if each["id"] == row), None)
-    ids = entry_of_row["findings"] if entry_of_row else ()
-    findings = [each for each in result.analysis.findings if each.id in ids]
-    if not findings:
+    of_row = next((each for each in document["register"] if each["id"] == row and each["findings"]), None)
+    if of_row is None:
         raise _refused(file, f"{shown(row)!r} is no row in which a finding ends", "take the id of one that there is")
-    about = About.of_row(((each.id, each.pseudonymised) for each in findings), stated_of(entry_of_row or {}))
-    entry = {"row": row, **_entry(ruling), "made_about": as_written(about)}
+    entry = {
+        **row_target(document, of_row, robots), **_entry(ruling), **made_about_row(document, of_row, robots)
+    }  # fmt: skip
 
     def check(decisions: Decisions) -> None:
-        _check_meaning(decisions, map(Case.of, findings), entry)
+        _check_meaning(decisions, _cases_in_row(result, of_row, entry, decisions.told_apart), entry)
         judge(decisions)
 
-    _write(file, result, entry, "", lambda: subject(document, row=entry_of_row), check)
+    _write(file, result, entry, "", lambda: subject(document, row=of_row), check)
+
+
+def _cases_in_row(
+    result: Result, row: Mapping[str, Any], entry: Mapping[str, Any], kind_of: Callable[[str], object]
+) -> Iterator[Case]:
+    """What an entry about a row is about: the findings that end there, of a fleet on the robots that it names."""
+    if result.fleet is None:
+        yield from (Case.of(finding) for finding in result.analysis.findings if finding.id in row["findings"])
+        return
+    likeness = result.fleet.likeness
+    for finding in result.analysis.findings:
+        if likeness.count(finding) and row_pattern(finding.category, finding.leak, likeness) == entry["row"]:
+            whole = _without_blanks(finding, likeness)
+            ends = whole.to_robots or whole.robots
+            here = tuple(robot for robot in ends if robot in entry.get("robots", row["fleet"]["robots"]))
+            scope = whole._replace(to_robots=here) if whole.to_robots else whole._replace(robots=here)
+            if here or not (ends or "robots" in entry):
+                yield from _cases(scope, likeness, kind_of)
 
 
 def _write(
@@ -235,6 +262,7 @@ def _entry(ruling: Ruling) -> dict[str, Any]:
     entry = {
         "decision": ruling.choice,
         "reason": ruling.reason,
+        "answers": dict(ruling.answers),
         "condition": ruling.condition,
         "owner": ruling.owner,
         "legal_basis": list(ruling.legal_basis),

@@ -519,7 +519,7 @@ class Session:
         to_robots
             Of such data: the robots that it gets to; by default all that are alike to that of the finding.
         **how
-            ``reason``, ``owner``, ``expires``, ``ticket``, ``legal_basis``; an acceptance needs the first two.
+            As of ``Ruling``: ``reason``, ``owner``, ``expires``, …; an acceptance needs the first two.
 
         Raises
         ------
@@ -533,23 +533,25 @@ class Session:
             ruling = Ruling(choice, **how)
             record(self.decisions_file, self.result, finding, ruling, (robots, to_robots), self._judge)
 
-    def decide_row(self, row: str, choice: str, **how: Unpack[How]) -> None:
-        """Write a decision about a row of the register of one robot: about the findings that end there now.
+    def decide_row(self, row: str, choice: str, *, robots: Collection[str] | None = None, **how: Unpack[How]) -> None:
+        """Write a decision about a row of the register: about the findings that end there now.
 
         Parameters
         ----------
         row
             Its id.
+        robots
+            Of a fleet: some of the robots of the row; by default all of them.
         choice, **how
             As of ``decide``.
 
         Raises
         ------
         InputErrors
-            As of ``decide``; and if the session is of a fleet.
+            As of ``decide``; and if the row is not on these robots.
         """
         with self.history.lock, self.history.undone_if_it_fails():
-            record_row(self.decisions_file, self.result, row, Ruling(choice, **how), self._judge)
+            record_row(self.decisions_file, self.result, row, Ruling(choice, **how), robots or (), self._judge)
 
     def scopes(self, finding: Finding) -> tuple[Scope, ...]:
         """Return what can be decided about at once, of a fleet: the robots of a finding, and others that have it."""

@@ -121,6 +121,23 @@ def test_a_path_that_is_not_the_one_on_the_page_is_told(
     assert [path in told for told in radios(explorer.client(), finding)] == [False, False, True, True]
 
 
+def test_a_row_is_decided_on_the_robots_that_are_chosen(begun: Explorer, hospital: Path, file: Path) -> None:
+    client, finding = begun.client(), on_every_robot(begun)
+    row = next(row for row in begun.session.result.document()["register"] if finding.id in row["findings"])
+    guides = radios(client, finding)["of model guide: 12 robots"]
+    answer = decide(client, finding, **SIGNED, whose=guides, about="row")
+    assert answer.status_code == 303
+    assert "of model guide: 12 robots" in client.get(answer.headers["location"]).text
+    text = file.read_text("utf-8")
+    assert f"row: {row['fleet']['pattern']}" in text
+    assert "guide_12" in text
+    left = open_on(file, hospital, finding)
+    assert len(left) == 28
+    assert not [robot for robot in left if robot.startswith("guide")]
+    whole = rosprivacy.analyze_fleet(hospital, decisions=file)
+    assert whole.to("json1") == begun.session.result.to("json1")
+
+
 def test_what_is_chosen_is_decided_and_the_others_stay_open(begun: Explorer, hospital: Path, file: Path) -> None:
     client = begun.client()
     finding = on_every_robot(begun)

@@ -181,6 +181,44 @@ def test_what_cannot_be_confirmed_or_withdrawn_is_refused() -> None:
     assert not read(log(ACCEPT, {"id": ID, "decision": "withdraw", **SIGNED})).entries
 
 
+ANSWERED = {**ACCEPT, "row": ID, "answers": {"processor": "DMS 12", "joint": "none"}}
+OF_BEFORE = (  # an answer stood in the reason
+    '{"account":{"user":"alice@desk"},"before":[],"decision":{"decision":"accept","owner":"A. Lee","reason":"agreed '
+    'Where is the contract (Article 28)? DMS 12","row":"d8fe0ef97d4b673d"},"hash":'
+    '"2735270892387e809193edf8381bd250e1c6dfdc87f039a772fd2f66728e335b","log":1,"section":"findings",'
+    '"when":"2026-11-28T12:00:00Z"}\n'
+)
+
+
+def test_answers_are_held_by_the_hash_and_read_back() -> None:
+    text = log(ANSWERED, {**ANSWERED, "answers": {"processor": "DMS 13"}})
+    (entry,) = read(text).entries
+    assert entry.answers == (("processor", "DMS 13"),)
+    assert entry.history[0].answers == (("joint", "none"), ("processor", "DMS 12"))
+    assert named(text.replace("DMS 12", "DMS 11").encode()) == {1}
+    assert not read(log(ANSWERED, ACCEPT)).entries[-1].answers  # not inherited
+
+
+def test_branches_that_answer_otherwise_decided_otherwise() -> None:
+    base = log({"id": OTHER, "decision": "avoid"})
+    ours, theirs = log(ANSWERED, begun=base), log({**ANSWERED, "answers": {"processor": "DMS 13"}}, begun=base)
+    text, undecided = join(ours, theirs)
+    assert len(undecided) == 1
+    assert [entry.id for entry in read(text).entries] == [OTHER]
+    same, undecided = join(ours, log(ANSWERED, {"id": OTHER, "decision": "delegate"}, begun=base))
+    assert (undecided, {entry.answers for entry in read(same).entries if entry.row}) == (
+        [], {(("joint", "none"), ("processor", "DMS 12"))},
+    )  # fmt: skip
+
+
+def test_a_log_of_before_is_read_as_it_was_sealed() -> None:
+    assert not named(OF_BEFORE.encode())
+    (entry,) = read(OF_BEFORE).entries
+    assert "DMS 12" in entry.reason
+    assert not entry.answers
+    assert not named(log({**ANSWERED, "row": entry.row}, begun=OF_BEFORE).encode(), head(OF_BEFORE))
+
+
 def test_nothing_is_added_to_a_log_that_was_changed() -> None:
     with pytest.raises(InputErrors, match="was changed"):
         log({"id": OTHER, "decision": "avoid"}, begun=log(ACCEPT).replace("A. Lee", "B. Lee"))
@@ -245,7 +283,19 @@ JSON = st.recursive(
     lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(), inner, max_size=3),
     max_leaves=6,
 )
-KEYS = ("id", "decision", "robots", "from_robots", "pseudonymised", "doubt", "legal_basis", "made_about", "expires")
+KEYS = (
+    "id",
+    "row",
+    "answers",
+    "decision",
+    "robots",
+    "from_robots",
+    "pseudonymised",
+    "doubt",
+    "legal_basis",
+    "made_about",
+    "expires",
+)
 ANY = st.dictionaries(st.sampled_from(KEYS), JSON | st.sampled_from([ID, "accept", "confirm", ["a"]]), max_size=6)
 
 

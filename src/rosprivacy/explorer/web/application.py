@@ -27,7 +27,7 @@ from rosprivacy.explorer.web.element_pane import answer_of, tickable
 from rosprivacy.explorer.web.finding_pane import finding_pane, scope_in, scope_in_words
 from rosprivacy.explorer.web.guard import Guard
 from rosprivacy.explorer.web.page import Message, draw_picture, page_of, render_page
-from rosprivacy.explorer.web.panes import ROBOT, ROBOT_OR_MODEL, Pane, title_of, titles_of
+from rosprivacy.explorer.web.panes import ROBOT, ROBOT_OR_MODEL, Pane, robots_in_words, title_of, titles_of
 from rosprivacy.explorer.web.screen_pane import KEY_OF, screen_pane, told_of_key
 from rosprivacy.explorer.web.standing import Standing
 from rosprivacy.explorer.web.trial_forms import TOGETHER, KeptTrials, kept_trials, offers_at, trial_pane, tried_in
@@ -396,16 +396,15 @@ class Site:
         if self.session.decisions_file and (lacks := asked_again(form, posted, document, words)):
             again = Message(PROBLEM, words("explorer.decide.again"), lacks.notes)
             return Outcome(409, again, filled=lacks.fields)
+        scope = scope_in(form, self.session, self.standing.findings[posted.finding])
+        robots, to_robots = scope.robots or None, scope.to_robots or None
+        whose = scope_in_words(self.session, scope, words)  # before it is decided, as it was chosen
         if posted.row and posted.whole:
-            whose = words.count(len(posted.about), "explorer.row.all")
-            self.session.decide_row(posted.row["id"], posted.choice, **posted.words(words))
+            here = robots_in_words(self.session, to_robots or robots, words) if robots else ""
+            whose = words.row(filter(None, (words.count(len(posted.about), "explorer.row.all"), here)))
+            self.session.decide_row(posted.row["id"], posted.choice, robots=to_robots or robots, **posted.how)
         else:
-            scope = scope_in(form, self.session, self.standing.findings[posted.finding])
-            whose = scope_in_words(self.session, scope, words)  # before it is decided, as it was chosen
-            robots, to_robots = scope.robots or None, scope.to_robots or None
-            self.session.decide(
-                scope.finding.id, posted.choice, robots=robots, to_robots=to_robots, **posted.words(words)
-            )
+            self.session.decide(scope.finding.id, posted.choice, robots=robots, to_robots=to_robots, **posted.how)
         self._by = posted.how["owner"] or self._by
         what = words.row(filter(None, (words(f"decision.{posted.choice}"), whose)))
         text = words("explorer.decided.to", file=shown(str(self.session.decisions_file)), what=what)

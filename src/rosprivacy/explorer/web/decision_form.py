@@ -1,7 +1,7 @@
 """The form of a decision: what a person posted, and what an acceptance lacks before it is written.
 
 In: a posted form, a document. Out: about which finding or row it decides, what, in which words; or the fields with what
-is missing, to be asked again. An answer to a question of the row goes into the reason, with the question.
+is missing, to be asked again.
 """
 
 from __future__ import annotations
@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from rosprivacy.analysis.legal import UNFOUNDED
 from rosprivacy.explorer.deciding import How
 from rosprivacy.explorer.web import forms
-from rosprivacy.explorer.web.row_pane import ANSWER, FINDING, ROW, articles, row_of, unanswered
+from rosprivacy.explorer.web.row_pane import ANSWER, FINDING, ROW, articles, row_of
 from rosprivacy.ingest.decisions.decisions_file import REQUIRED
 from rosprivacy.report.finding_facts import gaps_of
 from rosprivacy.report.page.finding_entries import gap_in_words
 from rosprivacy.report.page.index import Index
-from rosprivacy.report.page.to_confirm import questions_of
+from rosprivacy.report.page.to_confirm import question_key, questions_of, unanswered
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from rosprivacy.explorer.web.forms import EditForm
     from rosprivacy.report.catalogs.words import Words
 
-FIELDS = (*How.__annotations__, "lacks", "whose", "about", "ground")
+FIELDS = (*(how for how in How.__annotations__ if how != "answers"), "lacks", "whose", "about", "ground")
 NO_FIELDS: Mapping[str, str] = MappingProxyType(dict.fromkeys(FIELDS, ""))
 
 
@@ -42,8 +42,6 @@ class PostedDecision(NamedTuple):
         The row of the register in which it ends; None if there is none.
     whole
         Whether it is decided about the row.
-    answers
-        Key of a question of the row -> what a person wrote.
     """
 
     finding: str
@@ -51,17 +49,11 @@ class PostedDecision(NamedTuple):
     how: How
     row: Mapping[str, Any] | None
     whole: bool
-    answers: Mapping[str, str]
 
     @property
     def about(self) -> Sequence[str]:
         """Ids of the findings that it is about."""
         return self.row["findings"] if self.row and self.whole else [self.finding]
-
-    def words(self, words: Words) -> How:
-        """Return the words of the decision, the answers in its reason."""
-        answers = (f"{words(key)} {text}" for key, text in self.answers.items())
-        return {**self.how, "reason": " ".join(filter(None, [self.how["reason"], *answers]))}
 
 
 class AskedAgain(NamedTuple):
@@ -76,8 +68,10 @@ def posted_decision(form: EditForm, document: Mapping[str, Any], findings: Colle
     finding, choice, how = forms.decision_in(form, findings, articles())
     row = row_of(document, finding)
     whole = form.choice("about", ("", FINDING, *([ROW] if row else []))) == ROW
-    answers = {key: text for key in (questions_of(row) if row else ()) if (text := form.words(ANSWER + key))}
-    return PostedDecision(finding, choice, how, row, whole, answers)
+    how["answers"] = {
+        str(code): text for code in (questions_of(row) if row else ()) if (text := form.words(ANSWER + code))
+    }
+    return PostedDecision(finding, choice, how, row, whole)
 
 
 def asked_again(form: EditForm, posted: PostedDecision, document: Mapping[str, Any], words: Words) -> AskedAgain | None:
@@ -87,11 +81,13 @@ def asked_again(form: EditForm, posted: PostedDecision, document: Mapping[str, A
         return None
     findings = [finding for finding in document["findings"] if finding["id"] in posted.about]
     gaps = [gap for gap in gaps_of(posted.how, findings) if gap.lack in UNFOUNDED]
-    questions = unanswered(posted.row, posted.answers)
+    questions = unanswered(posted.row, posted.how["answers"])
     names = " ".join([*(gap.lack.name for gap in gaps), *questions])
     if names == form.value("lacks"):
         return None
     index = Index({**document, "findings": findings}, words)
     fields = {key: ",".join(form.several(key)) for key in FIELDS}
-    fields |= {ANSWER + key: text for key, text in posted.answers.items()} | {"lacks": names}
-    return AskedAgain((*(gap_in_words(gap, index) for gap in gaps), *map(words, questions)), fields)
+    fields |= {ANSWER + code: text for code, text in posted.how["answers"].items()} | {"lacks": names}
+    return AskedAgain(
+        (*(gap_in_words(gap, index) for gap in gaps), *(words(question_key(code)) for code in questions)), fields
+    )

@@ -16,7 +16,7 @@ from rosprivacy.explorer.web.panes import Pane
 from rosprivacy.report import row_texts
 from rosprivacy.report.finding_facts import REVEALS
 from rosprivacy.report.page.index import Index
-from rosprivacy.report.page.to_confirm import questions_of
+from rosprivacy.report.page.to_confirm import question_key, questions_of
 from rosprivacy.report.row_texts import completed
 
 if TYPE_CHECKING:
@@ -28,17 +28,14 @@ if TYPE_CHECKING:
 
 FINDING, ROW = "finding", "row"  # what a person can decide about
 GROUND_GROUPS = ("6(1)", "9(2)")
-ANSWER = "answer-"  # before the name of a question, as a field
-OF_GROUNDS = (
-    "confirm.special",
-    "confirm.secrecy",
-    "confirm.criminal",
-)  # a ground answers them; that it is missing is told
+ANSWER = "answer-"  # before the code of a question, as a field
 
 
 def row_of(document: Mapping[str, Any], finding: str) -> Row | None:
     """Return the row in which a finding ends; None if the register does not list it, as of robots not shown."""
-    return next((row for row in document.get("register", ()) if finding in row["findings"]), None)
+    rows = [row for row in document.get("register", ()) if finding in row["findings"]]
+    leak = next((one["leak"] for one in document["findings"] if one["id"] == finding), None)
+    return next((row for row in rows if leak in row["places"]), rows[0] if rows else None)
 
 
 def row_pane(document: Mapping[str, Any], finding: Mapping[str, Any], words: Words) -> Pane | None:
@@ -54,7 +51,7 @@ def row_pane(document: Mapping[str, Any], finding: Mapping[str, Any], words: Wor
         title=words("explorer.row", data=data, place=place),
         facts=tuple(_facts(row, words)),
         asks=tuple(words(f"ask.{kind}") for kind in kinds),
-        questions=tuple(Pane(name=ANSWER + key, text=words(key)) for key in questions_of(row)),
+        questions=tuple(Pane(name=ANSWER + code, text=words(question_key(code))) for code in questions_of(row)),
         grounds=tuple(_grounds(row, words)),
         about=tuple(_about(document, row, finding, words)),
     )
@@ -110,11 +107,11 @@ def articles() -> tuple[str, ...]:
 
 
 def _about(document: Mapping[str, Any], row: Row, finding: Mapping[str, Any], words: Words) -> Iterator[Pane]:
-    """The row and the one path, to choose from; nothing on a fleet, where robots are chosen."""
-    if "fleet" in document:
+    """The row and the one path, to choose from; of a fleet on the robots that are chosen."""
+    if "fleet" in document and "fleet" not in row:
         return
-    decisions = document.get("decisions", ())
-    by_row = any(one["target"].get("row") == row["id"] for one in decisions)
+    decisions, name = document.get("decisions", ()), row.get("fleet", {}).get("pattern", row["id"])
+    by_row = any(one["target"].get("row") == name for one in decisions)
     if len(row["findings"]) == 1 and not by_row:
         return
     alone = any(finding["id"] in one["findings"] and "row" not in one["target"] for one in decisions)
@@ -123,9 +120,3 @@ def _about(document: Mapping[str, Any], row: Row, finding: Mapping[str, Any], wo
         (FINDING, words("explorer.row.one")),
     ):
         yield Pane(value=value, told=told, chosen=(value == FINDING) == (alone and not by_row))
-
-
-def unanswered(row: Row | None, answers: Mapping[str, str]) -> tuple[str, ...]:
-    """Return the keys of the questions of a row that nobody answers, but for what a missing ground tells."""
-    asked = questions_of(row) if row else ()
-    return tuple(key for key in asked if key not in OF_GROUNDS and not answers.get(key))
