@@ -29,11 +29,8 @@ LINKS = 3  # entries that a place leads to
 RESTS = "know.rests"
 NO_SAFEGUARD = ("", "none", ADEQUACY, DEROGATION, OCCASIONAL)  # none of Articles 46 and 47
 ON_A_CONTRACT = {"processor": LegalQuestion.PROCESSOR, "joint-controller": LegalQuestion.JOINT}  # Articles 28 and 26
-OF_GROUNDS = (
-    LegalQuestion.SPECIAL,
-    LegalQuestion.SECRECY,
-    LegalQuestion.CRIMINAL,
-)  # a ground answers them, and that it is missing is told
+# A ground answers these, and that it is missing is told.
+OF_GROUNDS = (LegalQuestion.SPECIAL, LegalQuestion.SECRECY, LegalQuestion.CRIMINAL)
 
 SCOPE = "scope"  # of a question about the whole system
 
@@ -203,10 +200,10 @@ def _questions(
 
 
 def _place(
-    question: str, name: str, remark: str, rows: Sequence[Row], entries: Mapping[str, PathEntry], index: Index
+    key: str, name: str, remark: str, rows: Sequence[Row], entries: Mapping[str, PathEntry], index: Index
 ) -> QuestionPlace:
     ids = tuple(row["id"] for row in rows)
-    if question in ON_A_CONTRACT.values():
+    if key in map(question_key, ON_A_CONTRACT.values()):  # it is the same for all kinds of data
         return QuestionPlace(name, (), remark, (), ids)
     kinds = {
         kind_anchor(row["category"]): index.data(row["category"], pseudonymised=row["pseudonymised"]) for row in rows
