@@ -30,6 +30,8 @@ from rosprivacy.ingest.fleet.joins import joins_nothing
 from rosprivacy.parts import workers
 from rosprivacy.parts.border import Core
 from rosprivacy.parts.classes import Classes, first_of
+from rosprivacy.parts.crossings import crossings_of
+from rosprivacy.parts.fleet_reliance import fleet_reliances
 from rosprivacy.parts.part_patterns import Crossed
 from rosprivacy.parts.units import GATE, HUB, border, core_piece, crossing_lines, split, unit_of, with_limits
 
@@ -44,6 +46,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Element, NonRosFacts
+    from rosprivacy.analysis.whatif.reliance import Reliance
     from rosprivacy.ingest.fleet.alike_robots import Alike
     from rosprivacy.ingest.fleet.fleet_file import Fleet
     from rosprivacy.ingest.fleet.fleet_graph import Some
@@ -74,6 +77,8 @@ class Task:
         As of ``Options``.
     written
         Whether the rows of every robot are written, too, which are made of few.
+    hangs_on
+        Whether it is asked what the answer hangs on.
     """
 
     fleet: Fleet
@@ -84,6 +89,7 @@ class Task:
     categories: Collection[str] | None = None
     today: str = ""
     written: bool = False
+    hangs_on: bool = False
 
     @property
     def whole(self) -> bool:
@@ -122,6 +128,8 @@ class Found:
         What shipped files alone close, where that is a doubt: one robot for each kind.
     broken
         Robots at which this breaks the verdict.
+    hangs_on
+        Of a large fleet what the answer hangs on; None where that is not asked, and where all robots are shown.
     """
 
     emitted: tuple[str, ...]
@@ -142,6 +150,7 @@ class Found:
     open: int
     closed: tuple[ClosedByShipped, ...]
     broken: frozenset[str]
+    hangs_on: tuple[Reliance, ...] | None = None
 
     @property
     def shared(self) -> dict[Element, NonRosFacts]:
@@ -219,7 +228,14 @@ class _Run:
         classes.carry(kernels)
         asked = workers.PartQuestion(leaving, classes.leaving, classes.numbers, classes.counts, mask, task.hierarchy)
         answers = ready.map(partial(workers.answered, forms=ways, question=asked)).collect()
-        return self._put_together(answers, classes, report, at, piece, ours, wanted, mask, leaving, ready)
+        found = self._put_together(answers, classes, report, at, piece, ours, wanted, mask, leaving, ready)
+        if task.whole or not (task.hangs_on or self._likeness.robots <= 1):
+            return found
+        rows = fleet_reliances(
+            built, alone, at, task.view, task.today, piece, gates, task.hierarchy, categories, mask,
+            crossings_of(leaving, len(categories)),
+        )  # fmt: skip
+        return replace(found, hangs_on=rows)
 
     def _check(self, report: Report, core: Some, built: Parts[workers.Built]) -> None:
         """Raise what is wrong with the input."""

@@ -1,0 +1,90 @@
+"""What the answer hangs on, of fleets in parts: as in one graph, and as by brute force (rules S7, S8, S10, S11)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+from typing import TYPE_CHECKING
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rosprivacy.analysis.errors import InputErrors
+from rosprivacy.analysis.findings.findings import Options
+from rosprivacy.analysis.whatif.reliance import Reliance, reliances
+from rosprivacy.parts import distributed
+from rosprivacy.parts.distributed import analyse_in_parts
+from tests.analysis.whatif.test_reliance import by_brute_force, named
+from tests.helpers.parts import question, scattered
+from tests.helpers.random_fleets import Case, fleets
+from tests.helpers.systems import HIERARCHY, PARENTS, statement
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rosprivacy.ingest.fleet.fleet_graph import Placed
+
+
+@pytest.fixture(autouse=True)
+def large() -> Iterator[None]:
+    """As if every fleet were too large to be shown as a whole."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(distributed, "MOST_WHOLE", 0)
+        yield
+
+
+@st.composite
+def joined_fleets(draw: st.DrawFn) -> Case:
+    """Also with what is said of shared elements, which takes something away."""
+    case = draw(fleets())
+    category = st.sampled_from(tuple(PARENTS))
+    label = st.builds(statement, st.sampled_from(["mundane", "only", "never", "conduit"]), category)
+    shared = {
+        name: (kind, stated, [*said, *draw(st.lists(label, max_size=1))])
+        for name, (kind, stated, said) in case.shared.items()
+    }
+    return replace(case, shared=shared)
+
+
+def of_memory(case: Case) -> tuple[Placed, tuple[Reliance, ...]] | None:
+    try:
+        analysis, placed = case.analyse()
+    except InputErrors:
+        return None
+    return placed, reliances(analysis, placed.bound, HIERARCHY)
+
+
+def in_parts(case: Case, size: int) -> tuple[Reliance, ...]:
+    asked = question(case)
+    found = analyse_in_parts(replace(asked, hangs_on=True), partial(scattered, size=size))
+    assert found.hangs_on is not None
+    return found.hangs_on
+
+
+@given(joined_fleets(), st.sampled_from([1, 2, 100]))
+def test_the_rows_are_those_of_one_graph(case: Case, size: int) -> None:
+    memory = of_memory(case)
+    if memory:
+        assert in_parts(case, size) == memory[1]
+
+
+@given(joined_fleets())
+def test_the_rows_are_those_of_brute_force(case: Case) -> None:
+    memory = of_memory(case)
+    if memory is None:
+        return
+    placed = memory[0]
+    rows = {named(row): row for row in in_parts(case, 1)}
+    for lost, expected in by_brute_force(placed.graph, placed.bound, HIERARCHY, Options()).items():
+        row = rows.get(lost)
+        if expected is None:
+            assert row is None or row.refused, lost
+            continue
+        found = {
+            (f.kind, f.category, f.source, f.leak): (not f.dismissed, not f.pseudonymised)
+            for f in (row.findings if row else ())
+        }
+        asked = {(e.shown_as, c) for e, names in (row.questions if row else ()) for c in names}
+        assert (found, asked) == expected, lost
+        assert row is None or not (row.refused or row.perhaps)
