@@ -138,12 +138,12 @@ def _runs(spread: Spread) -> list[Run]:
     return runs_of(spread, (i for i in sorted(number) if number[i] > 1), spread.made_categories)
 
 
-def runs_of(spread: Spread, categories: Iterable[int], made: Collection[int]) -> list[Run]:
+def runs_of(spread: Spread, categories: Iterable[int], made_categories: Collection[int]) -> list[Run]:
     """Return the runs for some categories: once for all that nothing makes, once for each that something makes.
 
     Parameters
     ----------
-    categories, made
+    categories, made_categories
         Numbers of categories; those that others are made into anywhere.
 
     Examples
@@ -155,8 +155,11 @@ def runs_of(spread: Spread, categories: Iterable[int], made: Collection[int]) ->
     (('Video',), ('Video',))
     """
     pair, several = spread.bits.pair, tuple(categories)
-    unmade = sum(pair(i) for i in several if i not in made)
-    return [*([(unmade, unmade)] if unmade else []), *((pair(i), spread.all_bits) for i in several if i in made)]
+    unmade = sum(pair(i) for i in several if i not in made_categories)
+    return [
+        *([(unmade, unmade)] if unmade else []),
+        *((pair(i), spread.all_bits) for i in several if i in made_categories),
+    ]
 
 
 def _laned(doing: Doing, runs: Iterable[Run]) -> Iterator[Run]:

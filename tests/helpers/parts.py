@@ -216,6 +216,18 @@ def _behind_of_fewer(row: dict[str, Any], other: dict[str, Any]) -> bool:
     return all(row["perhaps"] if row[end] is None else other[end] or other["perhaps"] for end in differ)
 
 
+COUNTED = ("elements", "closed", "reviewed", "flows", "flows_closed")
+
+
+def globs_of_fewer(got: list[dict[str, Any]], expected: list[dict[str, Any]]) -> None:
+    """What globs decide at the robots that are shown."""
+    whole = {(row["file"], row["line"]): row for row in expected}
+    for row in got:
+        known = whole[row["file"], row["line"]]
+        assert set(row["says"]) <= set(known["says"])
+        assert all(row[key] <= known[key] for key in COUNTED), (row, known)
+
+
 def purposes_of_fewer(got: list[dict[str, Any]], expected: list[dict[str, Any]]) -> None:
     """At what robots share, what those that are shown state; never more than what all of them do."""
     whole = {(*row["element"].values(), row["category"]): row for row in expected}
@@ -304,6 +316,7 @@ def _of_fewer(file: str, run: Callable[[str], Result], engine: str) -> None:
             )
             assert row in expected[key] or key == "open", (key, row, known)
         expected.pop(key, None)
+    globs_of_fewer(*(answer["assumptions"].pop("globs", []) for answer in (got, expected)))
     for key in ASSUMED_PER_ROBOT:
         rows, known = (answer["assumptions"].pop(key, ()) for answer in (got, expected))
         assert all(row in known for row in rows), key

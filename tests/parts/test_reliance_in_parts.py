@@ -13,15 +13,19 @@ from hypothesis import strategies as st
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.findings.findings import Options
 from rosprivacy.analysis.whatif.reliance import Reliance, reliances
-from rosprivacy.parts import distributed
+from rosprivacy.parts import distributed, fleet_reliance
 from rosprivacy.parts.distributed import analyse_in_parts
-from tests.analysis.whatif.test_reliance import by_brute_force, named
-from tests.helpers.parts import question, scattered
+from rosprivacy.settings import Settings
+from rosprivacy.systems.fleet_system import answer_fleet
+from tests.analysis.whatif.test_reliance import One, by_brute_force
+from tests.helpers.fleet_files import policy, write
+from tests.helpers.parts import in_list, question, scattered
 from tests.helpers.random_fleets import Case, fleets
 from tests.helpers.systems import HIERARCHY, PARENTS, statement
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+    from pathlib import Path
 
     from rosprivacy.ingest.fleet.fleet_graph import Placed
 
@@ -59,7 +63,8 @@ def in_parts(case: Case, size: int) -> tuple[Reliance, ...]:
     asked = question(case)
     found = analyse_in_parts(replace(asked, hangs_on=True), partial(scattered, size=size))
     assert found.hangs_on is not None
-    return found.hangs_on
+    assert not found.hangs_on.cut
+    return found.hangs_on.rows
 
 
 @given(joined_fleets(), st.sampled_from([1, 2, 100]))
@@ -67,6 +72,11 @@ def test_the_rows_are_those_of_one_graph(case: Case, size: int) -> None:
     memory = of_memory(case)
     if memory:
         assert in_parts(case, size) == memory[1]
+
+
+def named(row: Reliance) -> One:
+    """The statement, and the names of what it is about, which are the same on all robots."""
+    return (row.statement, row.elements[0].name, *sorted({element.name for element in row.to}))
 
 
 @given(joined_fleets())
@@ -88,3 +98,40 @@ def test_the_rows_are_those_of_brute_force(case: Case) -> None:
         asked = {(e.shown_as, c) for e, names in (row.questions if row else ()) for c in names}
         assert (found, asked) == expected, lost
         assert row is None or not (row.refused or row.perhaps)
+
+
+JOINED = """fleet: 1
+robots:
+  r1: {policies: p.xml, labels: [l.yaml, r1.yaml]}
+  r2: {policies: p.xml, labels: l.yaml}
+  r3: {policies: p.xml, labels: [l.yaml, r3.yaml]}
+elements: {cloud: {kind: side-channel, conduit: [PersonalData]}}
+flows: [{from: "*:/uplink", to: cloud}, {from: cloud, to: "*:/out"}]
+"""
+
+
+def test_of_many_findings_the_first_are_listed_and_a_doubt_names_the_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """No row is lost, and no other one is cut; what would stand comes before what would be dismissed."""
+    monkeypatch.chdir(tmp_path)
+    write("p.xml", policy("camera>/image", "uplink></image", "out<x"))
+    labels = "labels: 1\nnodes:\n  /camera: {source: [Video]}\n  /uplink: {sanitizer: {Video: drop}}\n"
+    write("l.yaml", f"{labels}  /out: {{leak: [Video]}}\n")
+    write("r1.yaml", "labels: 1\nchannels: {/image: {never: [Voice]}}\n")
+    write("r3.yaml", "labels: 1\nnodes: {/uplink: {leak: [Video]}}\n")
+    write("f.yaml", JOINED)
+    monkeypatch.setattr(fleet_reliance, "MOST_FINDINGS", 4)
+    whole = answer_fleet("f.yaml", Settings(hangs_on=True)).document()
+    answer = in_list("f.yaml").document()
+    assert len(whole["hangs_on"]) == len(answer["hangs_on"]) > 0
+    cut = set()
+    for row, known in zip(answer["hangs_on"], whole["hangs_on"], strict=True):
+        if row != known:
+            cut.add((row["file"], row["line"]))
+            assert {**row, "findings": []} == {**known, "findings": []}
+            assert len(row["findings"]) == 4 < len(known["findings"])
+            assert all(finding in known["findings"] for finding in row["findings"])
+            assert not any(finding["dismissed"] for finding in row["findings"])
+    assert cut == {("l.yaml", 4)}
+    assert {(d["file"], d["line"]) for d in answer["doubts"] if d["doubt"] == "hangs-on-cut"} == cut

@@ -47,7 +47,7 @@ class Crossroads:
     counts: tuple[Mapping[int, Counter[Crossings]], ...]
     core: Passes
     _units: tuple[dict[int, Crossings], ...] = field(init=False)
-    _known: dict[tuple[int, Crossings, bool], Beyond] = field(default_factory=dict, init=False)
+    _ways: dict[tuple[int, Crossings, bool], Beyond] = field(default_factory=dict, init=False)
 
     def __post_init__(self) -> None:
         """Put together where each crossing gets to through any unit."""
@@ -87,7 +87,7 @@ class Crossroads:
 
     def _of_run(self, run: int, exits: Crossings, *, of_core: bool) -> Beyond:
         key = run, exits, of_core
-        if key not in self._known:
+        if key not in self._ways:
             arriving, leaving = (0, exits) if of_core else (exits, image(self.core[run], exits))
             new = leaving
             while new:
@@ -95,8 +95,8 @@ class Crossroads:
                 arriving |= coming
                 new = image(self.core[run], coming) & ~leaving
                 leaving |= new
-            self._known[key] = Beyond(arriving, leaving)
-        return self._known[key]
+            self._ways[key] = Beyond(arriving, leaving)
+        return self._ways[key]
 
 
 def _count(counts: Sequence[dict[int, Counter[Crossings]]], passes: Passes, number: int) -> None:
@@ -120,10 +120,10 @@ def image(passes: Mapping[int, Crossings], crossings: Crossings) -> Crossings:
     return found
 
 
-def crossings_of(rows: NDArray[np.uint64], categories: int) -> Crossings:
-    """Return the bits of arrays, which have a row for each element of the border."""
+def crossings_of(rows: NDArray[np.uint64], width: int) -> Crossings:
+    """Return the bits of an array, which has a row for each element of the border; ``width`` bits in each."""
     found = 0
     for number, words in enumerate(rows.tolist()):
         for place, word in enumerate(words):
-            found |= word << number * 2 * categories + place * WORD
+            found |= word << number * width + place * WORD
     return found

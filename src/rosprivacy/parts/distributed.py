@@ -33,7 +33,17 @@ from rosprivacy.parts.classes import Classes, first_of
 from rosprivacy.parts.crossings import crossings_of
 from rosprivacy.parts.fleet_reliance import fleet_reliances
 from rosprivacy.parts.part_patterns import Crossed
-from rosprivacy.parts.units import GATE, HUB, border, core_piece, crossing_lines, split, unit_of, with_limits
+from rosprivacy.parts.units import (
+    GATE,
+    HUB,
+    border,
+    core_piece,
+    crossing_lines,
+    joined_to,
+    split,
+    unit_of,
+    with_limits,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Sequence
@@ -46,10 +56,10 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Element, NonRosFacts
-    from rosprivacy.analysis.whatif.reliance import Reliance
     from rosprivacy.ingest.fleet.alike_robots import Alike
     from rosprivacy.ingest.fleet.fleet_file import Fleet
     from rosprivacy.ingest.fleet.fleet_graph import Some
+    from rosprivacy.parts.fleet_reliance import FleetRows
     from rosprivacy.parts.units import Border, Lines, Piece
     from rosprivacy.parts.workers import Parts, Read, Report
 
@@ -108,8 +118,8 @@ class Found:
     groups
         Patterns, without ways.
     units
-        Names of the units that are shown: all; of a large fleet those in which ways of these lie, and of one for each
-        kind of open element.
+        Names of the units that are shown: all; of a large fleet those in which ways of these lie, one for each kind of
+        open element, and of those joined to these.
     examples
         Names of units: with these, data of every source gets to one leak of each name that it gets to.
     leaking
@@ -150,7 +160,7 @@ class Found:
     open: int
     closed: tuple[ClosedByShipped, ...]
     broken: frozenset[str]
-    hangs_on: tuple[Reliance, ...] | None = None
+    hangs_on: FleetRows | None = None
 
     @property
     def shared(self) -> dict[Element, NonRosFacts]:
@@ -231,9 +241,10 @@ class _Run:
         found = self._put_together(answers, classes, report, at, piece, ours, wanted, mask, leaving, ready)
         if task.whole or not (task.hangs_on or self._likeness.robots <= 1):
             return found
+        width = ours.all_bits.bit_length()
         rows = fleet_reliances(
             built, alone, at, task.view, task.today, piece, gates, task.hierarchy, categories, mask,
-            crossings_of(leaving, len(categories)),
+            crossings_of(leaving, width), width,
         )  # fmt: skip
         return replace(found, hangs_on=rows)
 
@@ -316,6 +327,7 @@ class _Run:
         robots |= {*opened.robots, *(row.channel.robot for row in shown)}
         unit = unit_of(split(self._task.groups)[1])
         needed = self._units | classes.bringers(groups, sources) | {unit[robot] for robot in robots if robot in unit}
+        needed |= joined_to(needed, report.met, at, unit)
         lacking = reasons.lacking
         verdict = Verdict.of(
             leak=any(group.count.all > group.count.dismissed for group in groups),

@@ -13,7 +13,8 @@ from __future__ import annotations
 from collections import defaultdict
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any
+from itertools import islice
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.findings.closures import line_key
 from rosprivacy.analysis.model import CANNOT, DISCLOSURE, Element
@@ -23,11 +24,11 @@ from rosprivacy.parts.part_patterns import CORE
 from rosprivacy.parts.unit_reliance import (
     NOT_THERE,
     Arriving,
-    Asked,
     Entries,
+    RelianceQuestion,
     core_reliance,
+    hub_sources,
     made_by,
-    named,
     units_reliance,
 )
 
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.hierarchy import Hierarchy
+    from rosprivacy.analysis.model import Statement
     from rosprivacy.analysis.whatif.spots import Identity
     from rosprivacy.ingest.fleet.fleet_file import Fleet
     from rosprivacy.parts.crossings import Beyond, Crossings, Exits
@@ -48,6 +50,14 @@ if TYPE_CHECKING:
     Members = list[tuple[str, Element]]  # with their units
 
 NO_ENTRY = Entries()
+MOST_FINDINGS = 10_000  # that are listed of one statement: data of many robots that gets to many are pairs of these
+
+
+class FleetRows(NamedTuple):
+    """Rows; and the statements on which more findings hang than are listed."""
+
+    rows: tuple[Reliance, ...]
+    cut: tuple[Statement, ...]
 
 
 @dataclass(eq=False, repr=False)
@@ -68,6 +78,8 @@ class FleetReliance:
         Of each unit, and of the core, as they are.
     without
         Statement -> unit -> what it is without it.
+    cut
+        Statements on which more findings hang than are listed.
     """
 
     categories: tuple[str, ...]
@@ -76,6 +88,7 @@ class FleetReliance:
     always: Crossings
     summaries: dict[str, Summary] = field(default_factory=dict)
     without: dict[Identity, dict[str, Without]] = field(default_factory=lambda: defaultdict(dict))
+    cut: list[Statement] = field(default_factory=list)
 
     def take(self, answer: UnitReliance) -> None:
         """Take what a unit says; before anything is asked for."""
@@ -117,12 +130,12 @@ class FleetReliance:
                 found[unit == CORE, crossings].append((unit, element, i))
         return found
 
-    def rows(self) -> tuple[Reliance, ...]:
+    def rows(self) -> FleetRows:
         """Return the rows on which anything hangs, in the order of files and lines."""
         order = sorted(self.without, key=lambda same: (line_key(same[0]), same[1]))
         reached = (same for same in order if any(row.reached for row in self.without[same].values()))
         rows = (self._row(same, self.without[same]) for same in reached)
-        return tuple(row for row in rows if row.hangs)
+        return FleetRows(tuple(row for row in rows if row.hangs), tuple(self.cut))
 
     def _row(self, identity: Identity, units: Mapping[str, Without]) -> Reliance:
         """What hangs on a statement that some units have."""
@@ -145,7 +158,10 @@ class FleetReliance:
             return row
         now = self._without(changed)
         questions = () if identity[0].role == CANNOT else self._questions(changed, now)
-        return row._replace(findings=self._findings(changed, now), questions=questions)
+        openings = self._findings(changed, now)
+        if len(openings) > MOST_FINDINGS:
+            self.cut.append(identity[0])
+        return row._replace(findings=openings[:MOST_FINDINGS], questions=questions)
 
     def _without(self, changed: Changed) -> Crossroads:
         """The border where some units are something else."""
@@ -153,9 +169,9 @@ class FleetReliance:
         return self.crossroads.changed(units, changed.get(CORE, self.summaries[CORE]).passes)
 
     def _findings(self, changed: Changed, now: Crossroads) -> tuple[Opening, ...]:
-        """The findings that are new or worse."""
+        """The findings that are new or worse; of many some that stand, and one more than are listed."""
         openings = []
-        for (kind, i, source, leak), before, after in self._worse(changed, now):
+        for (kind, i, source, leak), before, after in islice(self._worse(changed, now), MOST_FINDINGS + 1):
             opening = Opening(
                 kind, self.categories[i], source, leak,
                 dismissed=not after.stands, pseudonymised=not after.plain, new=not before.present,
@@ -164,19 +180,25 @@ class FleetReliance:
         return tuple(opening for _, opening in sorted(openings, key=lambda pair: pair[0]))
 
     def _worse(self, changed: Changed, now: Crossroads) -> Iterator[tuple[FindingKey, Arriving, Arriving]]:
-        """What gets to leaks today, and without a statement, where that is worse."""
+        """What gets to leaks today, and without a statement, where that is worse: within units first, then by class.
+
+        Classes of which findings stand come before those of which all are dismissed.
+        """
         both = [(unit, self.summaries[unit], some) for unit, some in changed.items()]
-        sources = [*_others(self.sources, changed), *_others(_sources(both))]
-        leaks = [*_others(self.leaks, changed), *_others(_leaks(both))]
+        sources = [*_classes(self.sources, changed), *_classes(_sources(both))]
+        leaks = [*_classes(self.leaks, changed), *_classes(_leaks(both))]
         touched = [leak for leak in leaks if leak[0][3] != leak[0][4]]
+        for unit, before, after in both:
+            yield from self._within(unit, before, after, now)
+        worse = []
         for (in_core, exits, exits_now), begin in sources:
             ways = self.crossroads.beyond(exits, of_core=in_core), now.beyond(exits_now, of_core=in_core)
             for leak_class, end in leaks if ways[0] != ways[1] else touched:
                 over = self._over(leak_class, *ways)
                 if over[1].worse(over[0]):
-                    yield from self._pairs(leak_class, over, begin(), end(), changed)
-        for unit, before, after in both:
-            yield from self._within(unit, before, after, now)
+                    worse.append((leak_class, over, begin, end))
+        for leak_class, over, begin, end in sorted(worse, key=lambda pair: (not pair[1][1].stands, pair[0][1])):
+            yield from self._pairs(leak_class, over, begin(), end(), changed)
 
     def _over(self, leaks: LeakClass, before: Sequence[Beyond], after: Sequence[Beyond]) -> tuple[Arriving, Arriving]:
         """What gets to leaks over the border, today and without a statement."""
@@ -274,7 +296,7 @@ def _leaks(units: Iterable[tuple[str, Summary, Summary]]) -> dict[LeakClass, Mem
     return found
 
 
-def _others(classes: Mapping[Any, Members], units: Collection[str] = ()) -> list[tuple[Any, Callable[[], Members]]]:
+def _classes(classes: Mapping[Any, Members], units: Collection[str] = ()) -> list[tuple[Any, Callable[[], Members]]]:
     """Classes; and what gives their members that are not in some units, where they are asked for."""
 
     def outside(members: Members) -> Members:
@@ -290,8 +312,8 @@ def _distinct(elements: Iterable[Element]) -> tuple[Element, ...]:
 
 def fleet_reliances(
     parts: Parts[Built], fleet: Fleet, at: Border, view: str, today: str, core: Piece, gates: Sequence[int],
-    hierarchy: Hierarchy, categories: Sequence[str], mask: int, leaving: Crossings,
-) -> tuple[Reliance, ...]:  # fmt: skip
+    hierarchy: Hierarchy, categories: Sequence[str], mask: int, leaving: Crossings, width: int,
+) -> FleetRows:  # fmt: skip
     """Return what hangs on each statement of a fleet on which anything does.
 
     Parameters
@@ -308,22 +330,24 @@ def fleet_reliances(
         Bits of those that the answer is about.
     leaving
         What leaves the border today.
+    width
+        How many bits the spread has.
     """
     hubs: dict[Element, list[Element]] = defaultdict(list)
     made = {*made_by(core.bound.elements.values())}
-    for part in parts.map(partial(named, fleet=fleet)).collect():
-        made |= part.made
-        for lines, elements in part.hubs.items():
+    for sources in parts.map(partial(hub_sources, fleet=fleet)).collect():
+        made |= sources.made_categories
+        for lines, elements in sources.hubs.items():
             hubs[at.hubs[lines]] += elements
     names = {hub: {element.name for element in elements} for hub, elements in hubs.items()}
-    asked = Asked(
+    question = RelianceQuestion(
         tuple(categories), hierarchy, mask, frozenset(i for i, name in enumerate(categories) if name in made), leaving,
-        {hub: min(some) for hub, some in names.items() if len(some) == 1},
+        {hub: min(some) for hub, some in names.items() if len(some) == 1}, width,
     )  # fmt: skip
-    whole = FleetReliance(asked.categories, hubs, asked.run_of, asked.always(len(at.elements)))
-    ask = partial(units_reliance, fleet=fleet, at=at, view=view, today=today, asked=asked)
+    whole = FleetReliance(question.categories, hubs, question.run_of, question.always(len(at.elements)))
+    ask = partial(units_reliance, fleet=fleet, at=at, view=view, today=today, question=question)
     for answers in parts.map(ask).collect():
         for answer in answers:
             whole.take(answer)
-    whole.take(core_reliance(core, gates, replace(asked, arriving=whole.arriving(leaving)), CORE))
+    whole.take(core_reliance(core, gates, replace(question, arriving=whole.arriving(leaving)), CORE))
     return whole.rows()

@@ -138,7 +138,7 @@ class UnitReliance:
 
 
 @dataclass(frozen=True, slots=True)
-class Asked:
+class RelianceQuestion:
     """What all units have to know.
 
     Attributes
@@ -147,72 +147,79 @@ class Asked:
         That have bits.
     mask
         Bits of those that the answer is about.
-    made
+    made_categories
         Numbers of the categories that others are made into, by any derivation of the fleet.
     arriving
         What comes in today, from the side that a unit sees: what leaves the border.
     hub_names
         Hub -> the name of the elements whose data it takes on, where all have one.
+    width
+        How many bits the spread has.
     """
 
     categories: tuple[str, ...]
     hierarchy: Hierarchy
     mask: int
-    made: frozenset[int]
+    made_categories: frozenset[int]
     arriving: Crossings
     hub_names: Mapping[Element, str]
+    width: int
 
     @property
     def run_of(self) -> dict[int, int]:
         """Number of a category -> the run in which nothing passes its leaks; the first run is past whatever leaks."""
-        every = range(len(self.categories))
-        unmade = [i for i in every if i not in self.made]
+        unmade = [i for i, _ in enumerate(self.categories) if i not in self.made_categories]
         after = 2 if unmade else 1
-        return {**dict.fromkeys(unmade, 1), **{i: after + number for number, i in enumerate(sorted(self.made))}}
+        return {
+            **dict.fromkeys(unmade, 1),
+            **{i: after + number for number, i in enumerate(sorted(self.made_categories))},
+        }
 
     def always(self, border: int) -> Crossings:
         """Return the crossing that stands for a unit's own sources, of so many elements of the border."""
-        return 1 << border * 2 * len(self.categories)
+        return 1 << border * self.width
 
 
-def units_reliance(part: Built, fleet: Fleet, at: Border, view: str, today: str, asked: Asked) -> list[UnitReliance]:
+def units_reliance(
+    part: Built, fleet: Fleet, at: Border, view: str, today: str, question: RelianceQuestion
+) -> list[UnitReliance]:
     """Return what hangs on the statements of each unit of a part."""
     answers = []
     for name, placed in zip(part.names, part.units, strict=True):
         piece = units_piece(fleet, (placed,), at, view)
         piece = replace(piece, bound=replace(piece.bound, outside=on_day(piece.bound.outside, today)))
-        spread = meaning(piece.graph, piece.bound, asked.hierarchy, asked.categories)
-        answers.append(_Unit(piece, spread, asked, piece.border).answer(name))
+        spread = meaning(piece.graph, piece.bound, question.hierarchy, question.categories)
+        answers.append(_Unit(piece, spread, question, piece.border).answer(name))
     return answers
 
 
 @dataclass(frozen=True, slots=True)
-class Named:
+class HubSources:
     """What a part has to say before: the elements that hubs stand for, and the categories that derivations make."""
 
     hubs: Mapping[Lines, tuple[Element, ...]]
-    made: frozenset[str]
+    made_categories: frozenset[str]
 
 
-def named(part: Built, fleet: Fleet) -> Named:
+def hub_sources(part: Built, fleet: Fleet) -> HubSources:
     """Return which elements the lines from robot to robot name as sources, and what is made of other data."""
     hubs: dict[Lines, list[Element]] = defaultdict(list)
     for placed in part.units:
         for element, lines in naming_lines(placed, crossing_lines(fleet), 0).items():
             hubs[lines].append(element)
     made = (names for placed in part.units for names in made_by(placed.part.elements.values()))
-    return Named({lines: tuple(elements) for lines, elements in hubs.items()}, frozenset(made))
+    return HubSources({lines: tuple(elements) for lines, elements in hubs.items()}, frozenset(made))
 
 
-def made_by(said: Iterable[Iterable[Statement]]) -> Iterator[str]:
+def made_by(labels: Iterable[Iterable[Statement]]) -> Iterator[str]:
     """The categories that derivations make."""
-    return (statement.to for statements in said for statement in statements if statement.role == "derivation")
+    return (statement.to for statements in labels for statement in statements if statement.role == "derivation")
 
 
-def core_reliance(piece: Piece, gates: Sequence[int], asked: Asked, name: str) -> UnitReliance:
+def core_reliance(piece: Piece, gates: Sequence[int], question: RelianceQuestion, name: str) -> UnitReliance:
     """Return the same of the core; what comes in there is what arrives at the border."""
-    spread = meaning(piece.graph, piece.bound, asked.hierarchy, asked.categories)
-    return _Unit(piece, spread, asked, tuple(gates)).answer(name)
+    spread = meaning(piece.graph, piece.bound, question.hierarchy, question.categories)
+    return _Unit(piece, spread, question, tuple(gates)).answer(name)
 
 
 @dataclass(eq=False, repr=False)
@@ -221,16 +228,12 @@ class _Unit:
 
     piece: Piece
     spread: Spread
-    asked: Asked
+    question: RelianceQuestion
     gates: tuple[int, ...]
 
     @cached_property
-    def width(self) -> int:
-        return self.spread.all_bits.bit_length()
-
-    @cached_property
     def own_sources(self) -> Crossings:
-        return self.asked.always(len(self.gates))
+        return self.question.always(len(self.gates))
 
     @cached_property
     def unknown(self) -> Collection[int]:
@@ -244,7 +247,7 @@ class _Unit:
 
     @cached_property
     def runs(self) -> list[Run]:
-        return runs_of(self.spread, range(len(self.spread.categories)), self.asked.made)
+        return runs_of(self.spread, (i for i, _ in enumerate(self.spread.categories)), self.question.made_categories)
 
     @cached_property
     def foreign(self) -> frozenset[int]:
@@ -263,11 +266,13 @@ class _Unit:
         today = self._reach(self.spread, bound)
         self._fill(today)
         questions = self._questions(today)
-        coming = self.asked.arriving | self.own_sources
+        coming = self.question.arriving | self.own_sources
         is_open = {(element.shown_as, i) for (element, i), some in questions.items() if some & coming}
         summary = self._summary(today, questions, is_open)
         named = [
-            replace(element, name=self.asked.hub_names.get(element, element.name)) if element.robot == HUB else element
+            replace(element, name=self.question.hub_names.get(element, element.name))
+            if element.robot == HUB
+            else element
             for element in graph.elements
         ]
         without = (self._without(identity, at, summary, is_open) for identity, at in spots(graph, bound, named).items())
@@ -298,7 +303,7 @@ class _Unit:
         """Follow the data without a statement; None where that changes nothing."""
         bound, less = self.piece.bound, at.without(self.piece.bound, statement)
         bound = replace(bound, elements={**bound.elements, **less.elements}, flows={**bound.flows, **less.flows})
-        spread = meaning(self.piece.graph, bound, self.asked.hierarchy, self.asked.categories, before=self.spread)
+        spread = meaning(self.piece.graph, bound, self.question.hierarchy, self.question.categories, before=self.spread)
         if _does(spread) == _does(self.spread):
             return None
         reach = self._reach(spread, bound)
@@ -307,22 +312,24 @@ class _Unit:
 
     def _reach(self, spread: Spread, bound: Bound) -> Reach:
         """Follow the data of the unit's sources, and each bit that can come in, in a lane of its own."""
-        crossings = range(len(self.gates) * self.width)
+        crossings = range(len(self.gates) * self.question.width)
         doing = Doing.of(spread, [*self.sources, *(~crossing for crossing in crossings)])
         begun = dict(doing.emits)
         for crossing in crossings:
-            gate, bit = divmod(crossing, self.width)
+            gate, bit = divmod(crossing, self.question.width)
             vertex = self.gates[gate]
             begun[vertex] = begun.get(vertex, 0) | doing.lanes.lane_of(~crossing, 1 << bit)
         closed = {} if self.is_core else dict.fromkeys(self.gates, 0)  # nothing passes the border
         doing = doing._replace(emits=begun, keeps={**doing.keeps, **closed}, labelled={**spread.keeps, **closed})
-        places = PlacesOfFindings(spread, tuple(concerns(spread, bound, self.asked.hierarchy)), self.asked.mask, None)
+        places = PlacesOfFindings(
+            spread, tuple(concerns(spread, bound, self.question.hierarchy)), self.question.mask, None
+        )
         return Reach.along(places, doing, self.runs)
 
     def _fill(self, reach: Reach) -> None:
         """Put in what is at the elements today."""
         flood, lanes = reach.flood, reach.flood.doing.lanes
-        coming = [*self.sources, *(~crossing for crossing in bits_of(self.asked.arriving))]
+        coming = [*self.sources, *(~crossing for crossing in bits_of(self.question.arriving))]
         mask = sum(lanes.lane_of(key, self.spread.all_bits) for key in coming)
         arrives, leaves = (
             {v: bits for v, laned in some.items() if (bits := lanes.merged(laned & mask))}
@@ -362,7 +369,7 @@ class _Unit:
         leaves = flood.leaving if self.is_core else flood.arrived
         for number, vertex in enumerate(self.piece.border):
             for key, bits in flood.doing.lanes.apart(leaves(vertex)):
-                found[key] |= bits << number * self.width
+                found[key] |= bits << number * self.question.width
         return dict(found)
 
     def _questions(self, reach: Reach) -> dict[tuple[Element, int], Crossings]:
@@ -371,7 +378,7 @@ class _Unit:
         found: dict[tuple[Element, int], Crossings] = defaultdict(int)
         for vertex, element, laned in self._present(reach):
             covered = 0 if vertex in self.unknown else spread.covered.get(vertex, 0)
-            uncovered = self.asked.mask & ~spread.absent_bits.get(vertex, 0) & ~covered
+            uncovered = self.question.mask & ~spread.absent_bits.get(vertex, 0) & ~covered
             for key, bits in lanes.apart(laned & lanes.every(uncovered)):
                 crossing = self.own_sources if key >= 0 else 1 << ~key
                 for i in bits_of(spread.bits.merged(bits)):
