@@ -121,7 +121,7 @@ def test_of_many_findings_the_first_are_listed_and_a_doubt_names_the_line(
     write("r1.yaml", "labels: 1\nchannels: {/image: {never: [Voice]}}\n")
     write("r3.yaml", "labels: 1\nnodes: {/uplink: {leak: [Video]}}\n")
     write("f.yaml", JOINED)
-    monkeypatch.setattr(fleet_reliance, "MOST_FINDINGS", 4)
+    monkeypatch.setattr(fleet_reliance, "MOST_OF_ROW", 4)
     whole = answer_fleet("f.yaml", Settings(hangs_on=True)).document()
     answer = in_list("f.yaml").document()
     assert len(whole["hangs_on"]) == len(answer["hangs_on"]) > 0

@@ -27,7 +27,6 @@ from rosprivacy.ingest.labels.countries import countries
 from rosprivacy.ingest.labels.label_file import read_labels
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.parts.distributed import MOST_WHOLE, Task, analyse_in_parts
-from rosprivacy.parts.fleet_reliance import MOST_FINDINGS
 from rosprivacy.parts.kept_parts import kept_parts
 from rosprivacy.parts.parquet import check_new, write
 from rosprivacy.parts.processes import processes
@@ -224,17 +223,18 @@ def _left_out(whole: Found, engine: str, question: Question) -> Iterator[Diagnos
     """What the answer about a large fleet does not say, or does not take into account."""
     place = Place(f"--engine {engine}", 0)
     yield from whole.report.by_type
-    for statement in whole.hangs_on.cut if whole.hangs_on else ():
-        cut = f"more than {MOST_FINDINGS:,} findings hang on this line, and so many are listed: first what would stand"
-        yield Diagnostic(statement.place, Severity.WARNING, cut, HANGS_ON_CUT)
+    if whole.hangs_on:
+        limit = whole.hangs_on.limit
+        cut = f"more findings or questions hang on this line than are listed, {limit:,}: first what would stand"
+        yield from (Diagnostic(line.place, Severity.WARNING, cut, HANGS_ON_CUT) for line in whole.hangs_on.cut)
     if whole.report.typed and question.type_limits:
         unlimited = "message types limit nothing in parts: in memory there can be fewer findings"
         yield Diagnostic(place, Severity.NOTICE, unlimited)
     bounds = (
         f"analysed in parts, {whole.open:,} open elements in the whole fleet: ways and distances are the shortest "
         "among the robots that are shown, and what is told element by element is told of these: enclaves, open "
-        "elements, unknown ends, what is denied, sanitized, derived, taken away, decided by globs, stated of purposes "
-        "and bases, or not stated"
+        "elements, unknown ends, what is denied, sanitized, derived, taken away, decided by globs, behind standard "
+        "channels, stated of purposes and bases, or not stated"
     )
     yield Diagnostic(place, Severity.WARNING, bounds, IN_PARTS)
 

@@ -50,14 +50,16 @@ if TYPE_CHECKING:
     Members = list[tuple[str, Element]]  # with their units
 
 NO_ENTRY = Entries()
-MOST_FINDINGS = 10_000  # that are listed of one statement: data of many robots that gets to many are pairs of these
+# What is listed: of each of n robots a statement that opens something on all others makes n * n findings.
+MOST_LISTED, MOST_OF_ROW, LEAST_OF_ROW = 1_000_000, 10_000, 100  # findings, and questions: in all, and of a statement
 
 
 class FleetRows(NamedTuple):
-    """Rows; and the statements on which more findings hang than are listed."""
+    """Rows; and the statements on which more findings or questions hang than the ``limit``."""
 
     rows: tuple[Reliance, ...]
     cut: tuple[Statement, ...]
+    limit: int
 
 
 @dataclass(eq=False, repr=False)
@@ -79,7 +81,9 @@ class FleetReliance:
     without
         Statement -> unit -> what it is without it.
     cut
-        Statements on which more findings hang than are listed.
+        Statements on which more findings or questions hang than are listed.
+    limit
+        How many of either are listed of one statement.
     """
 
     categories: tuple[str, ...]
@@ -89,6 +93,7 @@ class FleetReliance:
     summaries: dict[str, Summary] = field(default_factory=dict)
     without: dict[Identity, dict[str, Without]] = field(default_factory=lambda: defaultdict(dict))
     cut: list[Statement] = field(default_factory=list)
+    limit: int = MOST_OF_ROW
 
     def take(self, answer: UnitReliance) -> None:
         """Take what a unit says; before anything is asked for."""
@@ -133,9 +138,10 @@ class FleetReliance:
     def rows(self) -> FleetRows:
         """Return the rows on which anything hangs, in the order of files and lines."""
         order = sorted(self.without, key=lambda same: (line_key(same[0]), same[1]))
-        reached = (same for same in order if any(row.reached for row in self.without[same].values()))
+        reached = [same for same in order if any(row.reached for row in self.without[same].values())]
+        self.limit = min(MOST_OF_ROW, max(LEAST_OF_ROW, MOST_LISTED // max(1, len(reached))))
         rows = (self._row(same, self.without[same]) for same in reached)
-        return FleetRows(tuple(row for row in rows if row.hangs), tuple(self.cut))
+        return FleetRows(tuple(row for row in rows if row.hangs), tuple(self.cut), self.limit)
 
     def _row(self, identity: Identity, units: Mapping[str, Without]) -> Reliance:
         """What hangs on a statement that some units have."""
@@ -159,9 +165,9 @@ class FleetReliance:
         now = self._without(changed)
         questions = () if identity[0].role == CANNOT else self._questions(changed, now)
         openings = self._findings(changed, now)
-        if len(openings) > MOST_FINDINGS:
+        if max(len(openings), len(questions)) > self.limit:
             self.cut.append(identity[0])
-        return row._replace(findings=openings[:MOST_FINDINGS], questions=questions)
+        return row._replace(findings=openings[: self.limit], questions=questions[: self.limit])
 
     def _without(self, changed: Changed) -> Crossroads:
         """The border where some units are something else."""
@@ -171,7 +177,7 @@ class FleetReliance:
     def _findings(self, changed: Changed, now: Crossroads) -> tuple[Opening, ...]:
         """The findings that are new or worse; of many some that stand, and one more than are listed."""
         openings = []
-        for (kind, i, source, leak), before, after in islice(self._worse(changed, now), MOST_FINDINGS + 1):
+        for (kind, i, source, leak), before, after in islice(self._worse(changed, now), self.limit + 1):
             opening = Opening(
                 kind, self.categories[i], source, leak,
                 dismissed=not after.stands, pseudonymised=not after.plain, new=not before.present,
@@ -247,22 +253,22 @@ class FleetReliance:
                     yield key, was, is_now
 
     def _questions(self, changed: Changed, now: Crossroads) -> tuple[tuple[Element, tuple[str, ...]], ...]:
-        """The elements that would be open, with the categories for which they are not."""
-        coming = self._coming(changed, now)
-        new = [
-            (element, i)
-            for (in_core, crossings), members in self.questions.items()
-            if crossings & coming[in_core]
-            for unit, element, i in members
-            if unit not in changed
-        ]
+        """The elements that would be open, with the categories for which they are not; of many one more than listed."""
+        asked: dict[tuple[str, ...], list[tuple[Element, int]]] = defaultdict(list)
+        for element, i in self._new_questions(changed, self._coming(changed, now)):
+            if element.shown_as in asked or len(asked) <= self.limit:
+                asked[element.shown_as].append((element, i))
+        first = sorted((sorted(some, key=_in_order) for some in asked.values()), key=lambda some: _in_order(some[0]))
+        return tuple((some[0][0], tuple(sorted({self.categories[i] for _, i in some}))) for some in first)
+
+    def _new_questions(self, changed: Changed, coming: tuple[Crossings, Crossings]) -> Iterator[tuple[Element, int]]:
+        """What would be open, of the units first that have the statement."""
         for unit, summary in changed.items():
             some = coming[unit == CORE] | self.always
-            new += [key for key, crossings in summary.questions.items() if crossings & some]
-        asked: dict[tuple[str, ...], tuple[Element, set[str]]] = {}
-        for element, i in sorted(new, key=lambda key: key[0].sort_key()):
-            asked.setdefault(element.shown_as, (element, set()))[1].add(self.categories[i])
-        return tuple((element, tuple(sorted(names))) for element, names in asked.values())
+            yield from (key for key, crossings in summary.questions.items() if crossings & some)
+        for (in_core, crossings), members in self.questions.items():
+            if crossings & coming[in_core]:
+                yield from ((element, i) for unit, element, i in members if unit not in changed)
 
     def _coming(self, changed: Changed, now: Crossroads) -> tuple[Crossings, Crossings]:
         """All that comes into units, and into the core, without a statement."""
@@ -303,6 +309,10 @@ def _classes(classes: Mapping[Any, Members], units: Collection[str] = ()) -> lis
         return [(unit, element) for unit, element in members if unit not in units]
 
     return [(key, partial(outside, members)) for key, members in classes.items()]
+
+
+def _in_order(question: tuple[Element, int]) -> tuple[object, ...]:
+    return question[0].sort_key()
 
 
 def _distinct(elements: Iterable[Element]) -> tuple[Element, ...]:
