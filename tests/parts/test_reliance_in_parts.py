@@ -7,13 +7,15 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.findings.findings import Options
+from rosprivacy.analysis.python_311 import chdir
 from rosprivacy.analysis.whatif.reliance import Reliance, reliances
 from rosprivacy.parts import distributed, fleet_reliance
+from rosprivacy.parts.crossings import Beyond, Crossroads
 from rosprivacy.parts.distributed import analyse_in_parts
 from rosprivacy.settings import Settings
 from rosprivacy.systems.fleet_system import answer_fleet
@@ -135,3 +137,63 @@ def test_of_many_findings_the_first_are_listed_and_a_doubt_names_the_line(
             assert not any(finding["dismissed"] for finding in row["findings"])
     assert cut == {("l.yaml", 4)}
     assert {(d["file"], d["line"]) for d in answer["doubts"] if d["doubt"] == "hangs-on-cut"} == cut
+
+
+def test_a_border_forgets_what_a_unit_did_and_no_other_does() -> None:
+    """Data that gets out at 0 comes in at 0, and from there two units bring it to 1."""
+    bringing, core = ({0: 0b10},), ({0: 0b1, 1: 0b10},)
+    border = Crossroads.of([bringing, bringing], core)
+    nothing: dict[int, int] = {}
+    now_and_then = [(bringing, (nothing,))]
+    assert border.beyond((0b1,), of_core=False) == (Beyond(0b11, 0b11),)
+    assert border.changed(now_and_then, core).beyond((0b1,), of_core=False) == (Beyond(0b11, 0b11),)
+    assert border.changed(now_and_then * 2, core).beyond((0b1,), of_core=False) == (Beyond(0b1, 0b1),)
+    assert border.changed([], (nothing,)).beyond((0b1,), of_core=False) == (Beyond(0b1, 0),)
+
+
+CHAIN = """fleet: 1
+robots:
+  r1: {policies: p.xml, labels: [l.yaml, r1.yaml]}
+  r2: {policies: p.xml, labels: [l.yaml, r2.yaml]}
+  r3: {policies: p.xml, labels: [l.yaml, r3.yaml]}
+elements: {hub: {kind: side-channel, conduit: [PersonalData]}, tap: {kind: side-channel, conduit: [PersonalData]}}
+flows:
+  - {from: "r1:/out", to: hub}
+  - {from: hub, to: "r2:/in"}
+  - {from: "r2:/out", to: tap}
+  - {from: tap, to: "r3:/in"}
+  - {from: "r3:/out", to: hub}
+"""
+AT_IN = ("{source: [Video, Voice]}", "{source: [Voice]}", "conduit", "{sanitizer: {Video: drop}}", "{leak: [Video]}")
+AT_OUT = ("conduit", "{leak: [Voice]}", "{sanitizer: {Voice: pseudonymise}}", "{sanitizer: {Video: drop}}")
+AT_CHANNEL = ("sensitive", "mundane", "{never: [Voice]}", "{only: [Video]}")
+OF_ALL = (
+    "labels: 1\n",
+    "labels: 1\nchannels: {/t*: mundane}\n",
+    "labels: 1\nnodes: {/o*: {sanitizer: {Voice: drop}}}\n",
+)
+LABELS = st.tuples(st.sampled_from(AT_IN), st.sampled_from(AT_OUT), st.sampled_from(AT_CHANNEL))
+
+
+FAR = [(AT_IN[0], AT_OUT[3], "sensitive"), (AT_IN[2], AT_OUT[0], "sensitive"), (AT_IN[4], AT_OUT[1], "sensitive")]
+
+
+@given(st.lists(LABELS, min_size=3, max_size=3), st.sampled_from(OF_ALL))
+@example(FAR, OF_ALL[0])
+@example(FAR, OF_ALL[1])
+def test_what_goes_through_several_robots(
+    tmp_path_factory: pytest.TempPathFactory, labels: list[tuple[str, str, str]], of_all: str
+) -> None:
+    """From one by what they share to the next, and around; what a name lets pass, a glob would close."""
+    with chdir(tmp_path_factory.mktemp("chain")):
+        write("p.xml", policy("in>/t<x", "out></t"))
+        write("l.yaml", f"labels: 1\n{of_all}")
+        for number, (at_in, at_out, at_channel) in enumerate(labels, 1):
+            nodes = f"nodes: {{/in: {at_in}, /out: {at_out}}}"
+            write(f"r{number}.yaml", f"labels: 1\n{nodes}\nchannels: {{/t: {at_channel}}}\n")
+        write("f.yaml", CHAIN)
+        try:
+            whole = answer_fleet("f.yaml", Settings(hangs_on=True))
+        except InputErrors:
+            return
+        assert in_list("f.yaml").hangs_on == whole.hangs_on
