@@ -40,6 +40,7 @@ JOINS_NOTHING = "joins-nothing"  # a domain or infrastructure: data that gets th
 LEAK_JOINS_NOTHING = "leak-joins-nothing"  # one in which data is let out or kept, if it got there
 TYPES_OF_NOTHING = "types-of-nothing"  # seen running, and named by no policy
 IN_PARTS = "analysed-in-parts"  # of robots that are not shown no doubts are told
+HANGS_ON_CUT = "hangs-on-cut"  # of what hangs on a statement of a large fleet only some is listed
 NO_ROBOT = "no-robot"  # folders beside those that a group of robots matches, in which its policy is not (rule S11)
 OWN_DOMAINS = "own-domains"  # robots of which nobody says in which domain they are (rule S1)
 RECORDING = "recording"  # a bag that is a storage: its size, its time, its topics
@@ -57,7 +58,7 @@ GAPS = (  # doubts that break the verdict (rule S11)
 RIDES = (  # doubts that ride on it
     NOTHING_ENFORCED, FALLBACK_TAKEN, EMPTY_GROUP, PATHS_NOT_COUNTED, EMPTY_INCLUDE, WITHOUT_WARNINGS, JOINS_NOTHING,
     NO_ROBOT, REFUSED_NAME, ODD_NAMESPACE, MISTAKEN_TILDE, CAREFUL_DENY, TYPES_OF_NOTHING, IN_PARTS,
-    BY_TYPE_OPEN, BY_TYPE_LAPSED, BY_TYPE_UNPINNED, CODE_CHANGED, CODE_NOT_READ,
+    HANGS_ON_CUT, BY_TYPE_OPEN, BY_TYPE_LAPSED, BY_TYPE_UNPINNED, CODE_CHANGED, CODE_NOT_READ,
 )  # fmt: skip
 ASSUMED = (
     OBSERVED,

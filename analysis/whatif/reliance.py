@@ -14,42 +14,33 @@ in, and what is taken of an element by its kind is nobody's word.
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
+from collections import defaultdict
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from itertools import chain
 from typing import TYPE_CHECKING, NamedTuple
 
-from rosprivacy.analysis.case import Case
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.findings.closures import line_key
 from rosprivacy.analysis.findings.concerns import concerns
-from rosprivacy.analysis.findings.findings import finding_id
 from rosprivacy.analysis.findings.open_questions import open_bits
 from rosprivacy.analysis.kernel import spreading
-from rosprivacy.analysis.kernel.bits import bits_of
-from rosprivacy.analysis.kernel.lanes import Doing, Flood
-from rosprivacy.analysis.model import CANNOT, DISCLOSURE, NOWHERE, Bound, Statement
+from rosprivacy.analysis.model import CANNOT, Bound, Statement
 from rosprivacy.analysis.non_ros import unanswered
+from rosprivacy.analysis.whatif.reach import PlacesOfFindings, Reach
+from rosprivacy.analysis.whatif.spots import Spots, spots
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterable, Mapping
 
     from rosprivacy.analysis.answer import Analysis
-    from rosprivacy.analysis.findings.concerns import Concern
+    from rosprivacy.analysis.case import Case
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Element
+    from rosprivacy.analysis.whatif.reach import Key, State
 
-    Key = tuple[str, int, int, int]  # kind, number of the category, source, leak
-    State = tuple[bool, bool]  # of a finding that is not accepted: whether it stands, whether plain data is in it
     Pair = tuple[Mapping[Key, State], Mapping[Key, State]]  # findings at an element before and after
-    Identity = tuple[
-        Statement, tuple[str, ...]
-    ]  # a statement; of a name also the names, and the robots if typed by hand
-    Spots = tuple[list[int], list[int]]  # vertices and flows about which a statement is
 
-BRINGS_IN = frozenset({"source", "leak", "derivation"})
 TOGETHER = 64  # sources that are followed at once
 ROUNDS = 64  # statements for which the whole system is analysed again; of more it is said that it was not worked out
 
@@ -135,53 +126,16 @@ def reliances(
     spread, elements = analysis.spread, analysis.graph.elements
     on_that_day = {v: analysis.outside[e] for v, e in enumerate(elements) if e in analysis.outside}
     bound = replace(bound, outside=on_that_day)
-    spots = _spots(spread, bound)
+    said = spots(spread.graph, bound, elements)
+    at = {same: some for same, some in said.items() if some.has_data(spread, bound)}
     asked = sum(map(spread.forms_of, analysis.emitted))
-    if not spots or not asked:
+    if not at or not asked:
         return ()
     places = PlacesOfFindings(spread, tuple(concerns(spread, bound, hierarchy)), asked, accepts)
     today = _Today(bound, hierarchy, places, frozenset(unanswered(elements, bound.outside)))
-    order = sorted(spots, key=lambda same: (line_key(same[0]), same[1]))
-    rows = (today.without(same[0], *spots[same]) for same in order)
+    order = sorted(at, key=lambda same: (line_key(same[0]), same[1]))
+    rows = (today.without(same[0], at[same]) for same in order)
     return tuple(row for row in rows if row.hangs)
-
-
-def _spots(spread: Spread, bound: Bound) -> dict[Identity, Spots]:
-    """Where each statement is said that takes something away, if data is there."""
-    elements, flows = spread.graph.elements, spread.graph.flows
-    spots: dict[Identity, Spots] = defaultdict(lambda: ([], []))
-    reached: set[Identity] = set()
-    for vertex, said in bound.elements.items():
-        sources = any(statement.role == "source" for statement in said)
-        data = sources or vertex in spread.arrives or vertex in spread.leaves
-        for same in (_identity(statement, elements[vertex]) for statement in said if _takes(statement)):
-            spots[same][0].append(vertex)
-            reached.update([same] if data else ())
-    for index, said in bound.flows.items():
-        source, target = flows[index].source, flows[index].target
-        data = bool(spread.sent.get(source, 0) | spread.flow_emits.get(index, 0))
-        for same in (
-            _identity(statement, elements[source], elements[target]) for statement in said if _takes(statement)
-        ):
-            spots[same][1].append(index)
-            reached.update([same] if data else ())
-    return {same: spots[same] for same in spots if same in reached}
-
-
-def _takes(statement: Statement) -> bool:
-    return statement.role not in BRINGS_IN and statement.place != NOWHERE
-
-
-def _identity(statement: Statement, *ends: Element) -> Identity:
-    """What is one statement: a glob with all that it is about, a name on all robots; by hand, of one robot."""
-    if statement.glob:
-        return statement.line, ()
-    robots = () if statement.place.line else tuple(end.robot for end in ends)
-    return statement, (*(end.name for end in ends), *robots)
-
-
-def _without(statements: tuple[Statement, ...], statement: Statement) -> tuple[Statement, ...]:
-    return tuple(s for s in statements if s.categories != statement.categories or s.line != statement)
 
 
 @dataclass(eq=False, repr=False)
@@ -221,20 +175,17 @@ class _Today:
             numbers[spread.graph.elements[vertex].shown_as] |= spread.bits.merged(bits & self.places.question_bits)
         return numbers
 
-    def without(self, statement: Statement, vertices: Sequence[int], indices: Sequence[int]) -> Reliance:
+    def without(self, statement: Statement, at: Spots) -> Reliance:
         """Return what there would be without a statement about some elements and flows."""
         spread, graph = self.places.spread, self.places.spread.graph
-        with_data = [v for v in vertices if v in spread.arrives or v in spread.leaves] or vertices
-        flows = [graph.flows[index] for index in indices]
+        with_data = at.with_data(spread) or at.vertices
+        flows = [graph.flows[index] for index in at.flows]
         row = Reliance(
             statement,
             _distinct(graph.elements[v] for v in (*with_data, *(flow.source for flow in flows))),
             _distinct(graph.elements[flow.target] for flow in flows),
         )
-        less = Bound(
-            {vertex: _without(self.bound.elements[vertex], statement) for vertex in vertices},
-            {index: _without(self.bound.flows[index], statement) for index in indices},
-        )
+        less = at.without(self.bound, statement)
         try:
             now = self._letting_more_pass(statement, less)
             if now is None and not self.rounds_left:
@@ -340,136 +291,8 @@ def _distinct(elements: Iterable[Element]) -> tuple[Element, ...]:
     return tuple({element.shown_as: element for element in elements}.values())
 
 
-class PlacesOfFindings(NamedTuple):
-    """Where each kind of finding can be, and what people accepted there; ``question_bits``: what is asked about."""
-
-    spread: Spread
-    concerns: tuple[Concern, ...]
-    question_bits: int
-    accepts: Callable[[Case], bool] | None
-
-    def vertices(self) -> set[int]:
-        """Return all of them."""
-        return {
-            vertex for concern in self.concerns for vertex, bits in concern.bits.items() if bits & self.question_bits
-        }
-
-    def accepted(self, kind: str, source: int, leak: int, bit: int) -> bool:
-        """Return whether a person has accepted that a source's data gets there in this form."""
-        if self.accepts is None:
-            return False
-        spread, elements = self.spread, self.spread.graph.elements
-        name, from_, to = spread.categories[spread.bits.category(bit)], elements[source], elements[leak]
-        form = spread.bits.is_pseudonymised(bit)
-        return self.accepts(Case(finding_id(name, from_, to, kind), kind, name, from_, to, form))
-
-
-class Reach(NamedTuple):
-    """What some sources' data gets to, told apart by source: which findings there are, and no paths.
-
-    Attributes
-    ----------
-    flood
-        Wherever it gets.
-    past
-        (Categories in both forms; where these get past no other leak of them), for what more than one leak lets out.
-    """
-
-    places: PlacesOfFindings
-    flood: Flood
-    past: tuple[tuple[int, Flood], ...]
-
-    @classmethod
-    def of(cls, places: PlacesOfFindings, sources: Sequence[int]) -> Reach:
-        """Follow the data of some sources."""
-        doing = Doing.of(places.spread, sources)
-        past = [(own, Flood.of(doing.stopped(stop, allowed))) for own, stop, allowed in _stops(places, doing)]
-        return cls(places, Flood.of(doing), tuple(past))
-
-    def further(self, now: Spread, vertices: Collection[int], flows: Collection[tuple[int, int, int]]) -> Reach:
-        """Return it where some elements and flows let more pass, as another spread says, and nothing lets less."""
-
-        def extended(flood: Flood) -> Flood:
-            return flood.further(flood.doing.changed(now), vertices, flows)
-
-        return self._replace(flood=extended(self.flood), past=tuple((own, extended(flood)) for own, flood in self.past))
-
-    @property
-    def touched(self) -> set[int]:
-        """Where something is new, of one that was taken further."""
-        floods = (self.flood, *(flood for _, flood in self.past))
-        return {*chain.from_iterable((*flood.arrives, *flood.leaves) for flood in floods)}
-
-    def new(self) -> dict[int, int]:
-        """Return what there is at elements to which more gets, or from which it leaves, of one taken further."""
-        elements, merged = self.places.spread.graph.elements, self.flood.doing.lanes.merged
-        there = {v: merged(bits) for v, bits in self.flood.leaves.items()}
-        for vertex, bits in self.flood.arrives.items():
-            if not elements[vertex].is_channel:
-                there[vertex] = there.get(vertex, 0) | merged(bits)
-        return there
-
-    def states(self, vertex: int) -> dict[Key, State]:
-        """Return the findings that end at an element."""
-        states: dict[Key, State] = {}
-        spread, lanes = self.places.spread, self.flood.doing.lanes
-        begun = lanes.lane_of(vertex, spread.begins(vertex))
-        for concern in self.places.concerns:
-            bits = concern.bits.get(vertex, 0) & self.places.question_bits & ~spread.absent_bits.get(vertex, 0)
-            if not bits:
-                continue
-            is_channel = spread.graph.elements[vertex].is_channel  # it takes up only what it carries
-            present = self.flood.leaving(vertex) if is_channel else self.flood.present(vertex, begun)
-            there = present & lanes.every(bits)
-            past = self._past(vertex, begun, there) if concern.kind == DISCLOSURE else there
-            for source, arriving in lanes.apart(there):
-                standing = past >> lanes.width * lanes.number[source]
-                for i in bits_of(spread.bits.merged(arriving)):
-                    plain, hidden = spread.bits.forms(i)
-                    stands = standing >> plain & 1 or standing >> hidden & 1
-                    first = standing if stands else arriving
-                    shown = plain if first >> plain & 1 else hidden
-                    if not self.places.accepted(concern.kind, source, vertex, shown):
-                        states[concern.kind, i, source, vertex] = bool(stands), bool(arriving >> plain & 1)
-        return states
-
-    def _past(self, vertex: int, begun: int, arriving: int) -> int:
-        """What of the data at a leak got there past no other leak of its category."""
-        every = self.flood.doing.lanes.every
-        result = arriving
-        for own, flood in self.past:
-            result &= ~every(own) | flood.present(vertex, begun)
-        return result
-
-
 def _reaches(places: PlacesOfFindings, bound: Bound) -> tuple[Reach, ...]:
     """What the sources' data gets to, some of them at a time; also of those that another label takes away today."""
     sources = [v for v, said in sorted(bound.elements.items()) if any(s.role == "source" for s in said)]
     parts = (sources[begin : begin + TOGETHER] for begin in range(0, len(sources), TOGETHER))
     return tuple(Reach.of(places, part) for part in parts)
-
-
-def _stops(places: PlacesOfFindings, doing: Doing) -> Iterator[tuple[int, dict[int, int], int]]:
-    """(Categories in both forms, where they stop, what is followed): as for findings, once for what nothing makes."""
-    spread, every = places.spread, doing.lanes.every
-    leaks = {v: spread.bits.merged(bits) for v, bits in spread.leaks.items() if bits}
-    number = Counter(i for bits in leaks.values() for i in bits_of(bits))
-    several = [i for i in sorted(number) if number[i] > 1]
-    unmade = sum(spread.bits.pair(i) for i in several if i not in spread.made_categories)
-    runs = [(unmade, unmade)] if unmade else []
-    runs += [(spread.bits.pair(i), spread.all_bits) for i in several if i in spread.made_categories]
-    for own, allowed in runs:
-        stop = {v: every(spread.leaks[v] & own) & ~_accepted(places, doing, v, spread.leaks[v] & own) for v in leaks}
-        yield own, stop, every(allowed)
-
-
-def _accepted(places: PlacesOfFindings, doing: Doing, leak: int, bits: int) -> int:
-    """What is accepted at a leak, in the lanes of the sources: it hides nothing behind it (rule S10)."""
-    if places.accepts is None:
-        return 0
-    return sum(
-        doing.lanes.lane_of(source, 1 << bit)
-        for source in doing.lanes.number
-        for bit in bits_of(bits)
-        if places.accepted(DISCLOSURE, source, leak, bit)
-    )

@@ -83,6 +83,8 @@ class Answer:
         Proposes changes that remove the open findings; None where the policies are not at hand.
     beyond
         The elements of the graph from which data gets to robots that it does not hold.
+    of_whole_fleet
+        What the answer hangs on, where the graph does not hold the whole fleet; else None, and worked out where asked.
     """
 
     analysis: Analysis
@@ -101,6 +103,7 @@ class Answer:
     hangs_on_named: bool = field(default=False, repr=False, compare=False)
     closes: Callable[[Any], Mapping[str, Any] | str] | None = field(default=None, repr=False, compare=False)
     beyond: frozenset[Element] = field(default=frozenset(), repr=False, compare=False)
+    of_whole_fleet: tuple[Reliance, ...] | None = field(default=None, repr=False, compare=False)
 
     @property
     def shown(self) -> Analysis:
@@ -137,7 +140,9 @@ class Answer:
         """What the answer hangs on, statement by statement; of robots that are alike of one. None where not asked."""
         if not self.hangs_on_asked:
             return None
-        rows = reliances(self.analysis, self.bound, self.vocabulary.hierarchy, self.accepts)
+        rows = self.of_whole_fleet
+        if rows is None:
+            rows = reliances(self.analysis, self.bound, self.vocabulary.hierarchy, self.accepts)
         return tuple(row for row in map(self._of_shown_robots, rows) if row.hangs)
 
     def _of_shown_robots(self, row: Reliance) -> Reliance:

@@ -14,10 +14,12 @@ from hypothesis import given
 
 from rosprivacy.analysis.answer import Verdict
 from rosprivacy.analysis.errors import InputErrors
+from rosprivacy.analysis.python_311 import chdir
 from rosprivacy.parts import distributed
 from rosprivacy.settings import Settings
 from rosprivacy.systems.fleet_system import answer_fleet
 from tests.helpers.fleet_files import policy, write
+from tests.helpers.joined_fleets import JoinedFleet, joined_fleets
 from tests.helpers.parts import FLEET, documents, fleet_file, fleet_of_two, in_list, same, scattered
 from tests.helpers.paths import ROOT
 from tests.helpers.random_fleets import Case, fleets
@@ -65,20 +67,60 @@ def test_the_document_of_random_fleets(tmp_path_factory: pytest.TempPathFactory,
             documents(file, in_list)
 
 
+@given(joined_fleets())
+def test_the_document_of_random_fleets_of_all_sorts(
+    tmp_path_factory: pytest.TempPathFactory, fleet: JoinedFleet
+) -> None:
+    """Alone, alike, in one domain, as infrastructure; joined by what they share, and from robot to robot."""
+    with chdir(tmp_path_factory.mktemp("fleet")):
+        file = fleet.write(Path())
+        try:
+            answer_fleet(file, Settings())
+        except InputErrors:
+            return
+        documents(file, in_list)
+        documents(file, partial(in_list, size=3))
+
+
+def test_no_flow_is_missed_that_begins_or_ends_on_robots_that_are_not_shown(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of what all share, and of robots that are shown, nobody reads that no flow leads there, or that nobody reads."""
+    monkeypatch.chdir(tmp_path)
+    write("eye.xml", policy("camera>/image", "uplink></image", "out<x"))
+    write("plain.xml", policy("node>/state"))
+    write("eye.yaml", "labels: 1\nnodes: {/camera: {source: [Video]}, /uplink: conduit, /out: {leak: [Video]}}\n")
+    write("plain.yaml", "labels: 1\nelements: {disk: {kind: storage, country: DE, retention: P3D}}\n")
+    write(
+        "f.yaml",
+        "fleet: 1\nrobots:\n  eye: {policies: eye.xml, labels: eye.yaml}\n"
+        "  plain: {policies: plain.xml, labels: plain.yaml}\n"
+        "  zoo: {policies: plain.xml, labels: plain.yaml, domain: zoo}\n"
+        "elements: {bucket: {kind: storage, country: DE, retention: P3D}}\n"
+        'flows: [{from: "zoo:/node", to: bucket}, {from: "zoo:/node", to: "*:disk"}, '
+        '{from: "eye:/uplink", to: "eye:/out"}]\n',
+    )
+    documents("f.yaml", in_list)
+    monkeypatch.setattr(distributed, "MOST_WHOLE", 0)
+    assert [row for row in in_list("f.yaml").document()["unknown_ends"] if row["unknown"] == "flow"] == []
+
+
 def test_what_lies_behind_on_a_robot_that_is_not_shown_is_not_worked_out(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Voice that the desk drops would get by the hub to the other robot: no row says that nothing lies there."""
+    """Voice that the desk drops would get by the hub to other robots, of which one is shown, where all is reviewed."""
     monkeypatch.chdir(tmp_path)
     write("one.xml", policy("mic>/sound<", "desk></sound"))
     write("two.xml", policy("inbox>/mail<", "printer></mail"))
     write("one.yaml", "labels: 1\nnodes: {/mic: {source: [Voice]}, /desk: {sanitizer: {Voice: drop}}}\n")
-    write("two.yaml", "labels: 1\n")
+    write("two.yaml", "labels: 1\nnodes: {/inbox: conduit, /printer: conduit}\nchannels: {/mail: sensitive}\n")
+    write("zwei.yaml", "labels: 1\n")
     write(
         "f.yaml",
-        "fleet: 1\nrobots: {one: {policies: one.xml, labels: one.yaml}, two: {policies: two.xml, labels: two.yaml}}\n"
+        "fleet: 1\nrobots:\n  one: {policies: one.xml, labels: one.yaml}\n"
+        "  two: {policies: two.xml, labels: two.yaml}\n  zwei: {policies: two.xml, labels: zwei.yaml}\n"
         "elements: {hub: {kind: side-channel, conduit: [PersonalData]}}\n"
-        'flows: [{from: "one:/desk", to: hub}, {from: hub, to: "two:/inbox"}]\n',
+        'flows: [{from: "one:/desk", to: hub}, {from: hub, to: "*:/inbox"}]\n',
     )
     documents("f.yaml", in_list)
 

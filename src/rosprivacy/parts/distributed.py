@@ -30,8 +30,20 @@ from rosprivacy.ingest.fleet.joins import joins_nothing
 from rosprivacy.parts import workers
 from rosprivacy.parts.border import Core
 from rosprivacy.parts.classes import Classes, first_of
+from rosprivacy.parts.crossings import crossings_of
+from rosprivacy.parts.fleet_reliance import fleet_reliances
 from rosprivacy.parts.part_patterns import Crossed
-from rosprivacy.parts.units import GATE, HUB, border, core_piece, crossing_lines, split, unit_of, with_limits
+from rosprivacy.parts.units import (
+    GATE,
+    HUB,
+    border,
+    core_piece,
+    crossing_lines,
+    joined_to,
+    split,
+    unit_of,
+    with_limits,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Sequence
@@ -47,6 +59,7 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.fleet.alike_robots import Alike
     from rosprivacy.ingest.fleet.fleet_file import Fleet
     from rosprivacy.ingest.fleet.fleet_graph import Some
+    from rosprivacy.parts.fleet_reliance import FleetRows
     from rosprivacy.parts.units import Border, Lines, Piece
     from rosprivacy.parts.workers import Parts, Read, Report
 
@@ -74,6 +87,8 @@ class Task:
         As of ``Options``.
     written
         Whether the rows of every robot are written, too, which are made of few.
+    hangs_on
+        Whether it is asked what the answer hangs on.
     """
 
     fleet: Fleet
@@ -84,6 +99,7 @@ class Task:
     categories: Collection[str] | None = None
     today: str = ""
     written: bool = False
+    hangs_on: bool = False
 
     @property
     def whole(self) -> bool:
@@ -102,8 +118,8 @@ class Found:
     groups
         Patterns, without ways.
     units
-        Names of the units that are shown: all; of a large fleet those in which ways of these lie, and of one for each
-        kind of open element.
+        Names of the units that are shown: all; of a large fleet those in which ways of these lie, one for each kind of
+        open element, and of those joined to these.
     examples
         Names of units: with these, data of every source gets to one leak of each name that it gets to.
     leaking
@@ -122,6 +138,8 @@ class Found:
         What shipped files alone close, where that is a doubt: one robot for each kind.
     broken
         Robots at which this breaks the verdict.
+    hangs_on
+        Of a large fleet what the answer hangs on; None where that is not asked, and where all robots are shown.
     """
 
     emitted: tuple[str, ...]
@@ -142,6 +160,7 @@ class Found:
     open: int
     closed: tuple[ClosedByShipped, ...]
     broken: frozenset[str]
+    hangs_on: FleetRows | None = None
 
     @property
     def shared(self) -> dict[Element, NonRosFacts]:
@@ -219,7 +238,15 @@ class _Run:
         classes.carry(kernels)
         asked = workers.PartQuestion(leaving, classes.leaving, classes.numbers, classes.counts, mask, task.hierarchy)
         answers = ready.map(partial(workers.answered, forms=ways, question=asked)).collect()
-        return self._put_together(answers, classes, report, at, piece, ours, wanted, mask, leaving, ready)
+        found = self._put_together(answers, classes, report, at, piece, ours, wanted, mask, leaving, ready)
+        if task.whole or not (task.hangs_on or self._likeness.robots <= 1):
+            return found
+        width = ours.all_bits.bit_length()
+        rows = fleet_reliances(
+            built, alone, at, task.view, task.today, piece, gates, task.hierarchy, categories, mask,
+            crossings_of(leaving, width), width,
+        )  # fmt: skip
+        return replace(found, hangs_on=rows)
 
     def _check(self, report: Report, core: Some, built: Parts[workers.Built]) -> None:
         """Raise what is wrong with the input."""
@@ -300,6 +327,7 @@ class _Run:
         robots |= {*opened.robots, *(row.channel.robot for row in shown)}
         unit = unit_of(split(self._task.groups)[1])
         needed = self._units | classes.bringers(groups, sources) | {unit[robot] for robot in robots if robot in unit}
+        needed |= joined_to(needed, report.met, at, unit)
         lacking = reasons.lacking
         verdict = Verdict.of(
             leak=any(group.count.all > group.count.dismissed for group in groups),

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.errors import FleetError, InputError, InputErrors, reason
 from rosprivacy.analysis.files_read import note
 from rosprivacy.analysis.findings.findings import Options
-from rosprivacy.analysis.model import IN_PARTS, Diagnostic, Place, Severity
+from rosprivacy.analysis.model import HANGS_ON_CUT, IN_PARTS, Diagnostic, Place, Severity
 from rosprivacy.analysis.python_311 import chdir
 from rosprivacy.answering import answer, concluded
 from rosprivacy.assumptions import named_files, types_read
@@ -114,7 +114,7 @@ def task_of(file: str, settings: Settings, engine: str) -> tuple[Task, Question]
     question = in_contexts(question, contexts_of(fleet, question))
     task = Task(
         fleet, alike(fleet), settings.view, partial(file_reader, plain, str(Path.cwd()), fleet.root),
-        question.vocabulary.hierarchy, question.categories_asked, question.today,
+        question.vocabulary.hierarchy, question.categories_asked, question.today, hangs_on=settings.hangs_on,
     )  # fmt: skip
     if settings.decisions and not task.whole:
         what = f"--engine {engine} takes no decisions about more than {MOST_WHOLE:,} robots that differ"
@@ -200,7 +200,10 @@ def result(task: Task, whole: Found, question: Question, engine: str) -> Result:
     sample = shown(task, whole, placed, question.settings.paths, question.settings.max_paths)
     counts = None if task.whole else whole.counts  # counts say that there are robots beside those of the graph
     told = concluded(system, question, sample.analysis, sample.view, Options(), counts)
-    return told if task.whole else replace(told, beyond=placed.feeding)
+    if task.whole:
+        return told
+    rows = whole.hangs_on.rows if whole.hangs_on else None
+    return replace(told, beyond=placed.feeding, of_whole_fleet=rows, hangs_on_asked=rows is not None)
 
 
 def _rests_on(task: Task, whole: Found, settings: Settings, engine: str) -> dict[str, Any]:
@@ -220,14 +223,18 @@ def _left_out(whole: Found, engine: str, question: Question) -> Iterator[Diagnos
     """What the answer about a large fleet does not say, or does not take into account."""
     place = Place(f"--engine {engine}", 0)
     yield from whole.report.by_type
+    if whole.hangs_on:
+        limit = whole.hangs_on.limit
+        cut = f"more findings or questions hang on this line than are listed, {limit:,}: first what would stand"
+        yield from (Diagnostic(line.place, Severity.WARNING, cut, HANGS_ON_CUT) for line in whole.hangs_on.cut)
     if whole.report.typed and question.type_limits:
         unlimited = "message types limit nothing in parts: in memory there can be fewer findings"
         yield Diagnostic(place, Severity.NOTICE, unlimited)
     bounds = (
         f"analysed in parts, {whole.open:,} open elements in the whole fleet: ways and distances are the shortest "
         "among the robots that are shown, and what is told element by element is told of these: enclaves, open "
-        "elements, unknown ends, what is denied, sanitized, derived, taken away, stated of purposes and bases, or not "
-        "stated, and what the answer hangs on"
+        "elements, unknown ends, what is denied, sanitized, derived, taken away, decided by globs, behind standard "
+        "channels, stated of purposes and bases, or not stated"
     )
     yield Diagnostic(place, Severity.WARNING, bounds, IN_PARTS)
 

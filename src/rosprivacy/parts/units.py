@@ -24,10 +24,12 @@ from rosprivacy.ingest.labels.add_non_ros import FLOW
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Set as AbstractSet
 
     from rosprivacy.analysis.model import Bound, FlowGraph, Place, Profile
     from rosprivacy.ingest.fleet.alike_robots import Alike
     from rosprivacy.ingest.fleet.fleet_file import Fleet
+    from rosprivacy.ingest.fleet.joins import Met
     from rosprivacy.ingest.fleet.mergeable_graph import Key
     from rosprivacy.ingest.labels.entries import Limit
 
@@ -104,6 +106,32 @@ def unit_of(units: Iterable[Unit]) -> dict[str, str]:
             found |= {robot.id: unit.name for robot in group.placed}
             if group.robots[0].domain:
                 found[pseudo_robot(group.robots[0].domain)] = unit.name
+    return found
+
+
+def joined_to(units: AbstractSet[str], met: Iterable[Met], at: Border, unit: Mapping[str, str]) -> set[str]:
+    """Return units from which flows of the fleet file lead to what is shared and to some units; and the other way.
+
+    Of each line, or element that is shared, one: where few robots are shown, nobody is to read of one of them, or of
+    what all share, that no flow leads there.
+
+    Parameters
+    ----------
+    unit
+        Robot -> name of its unit.
+    """
+    sides: dict[int, tuple[list[str], list[str]]] = defaultdict(lambda: ([], []))
+    for line, side, robot in sorted(met):
+        if robot in unit:
+            sides[line][side].append(unit[robot])
+    found: set[str] = set()
+    elements: set[tuple[Element, int]] = set()
+    for line, ends in sorted(sides.items()):
+        for side, other in ((0, 1), (1, 0)):
+            shared = {(element, side) for element in at.ends[line][other]} - elements
+            if ends[side] and (shared or not units.isdisjoint(ends[other])) and units.isdisjoint(ends[side]):
+                found.add(ends[side][0])
+            elements |= shared if ends[side] else set()
     return found
 
 

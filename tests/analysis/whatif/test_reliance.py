@@ -14,7 +14,8 @@ from rosprivacy.analysis.example import ARCHIVE, CAMERA, DISK, FACES, FILTER, FI
 from rosprivacy.analysis.findings.findings import Options, analyse
 from rosprivacy.analysis.model import GLOB, NOWHERE, Place, Statement
 from rosprivacy.analysis.whatif import reliance
-from rosprivacy.analysis.whatif.reliance import BRINGS_IN, Opening, Reliance, reliances
+from rosprivacy.analysis.whatif.reliance import Opening, Reliance, reliances
+from rosprivacy.analysis.whatif.spots import BRINGS_IN
 from tests.helpers.lined_systems import stated
 from tests.helpers.more_systems import ranked, wildcards
 from tests.helpers.systems import systems
