@@ -12,6 +12,7 @@ import pytest
 import yaml
 
 from rosprivacy.private_neo4j import jars
+from rosprivacy.report.pictures.graphviz import LIBRARIES
 from tests.helpers.paths import ROOT
 
 COMPOSE = ROOT / "docker" / "compose.yml"
@@ -65,6 +66,7 @@ def test_the_tools_image_is_pinned_slim_and_not_roots() -> None:
     end = lines[lines.index(f"FROM {bases[1]}") :]
     (user,) = [line.split()[1] for line in end if line.startswith("USER ")]
     assert user not in {"root", "0"}
+    assert any(LIBRARIES in line for line in end)  # slim has none of them, and Graphviz's wheel needs them
     assert end[-1] == 'ENTRYPOINT ["rosprivacy"]'
 
 

@@ -19,6 +19,7 @@ from rosprivacy.ingest.code.python_code import read_python
 from rosprivacy.ingest.code.source_code import SECONDS, Code, OutOfTime
 from rosprivacy.ingest.policies.policy_files import contents
 from rosprivacy.ingest.reading.bounded_file import beginning, read_regular
+from rosprivacy.ingest.reading.path_kinds import exists, is_dir, is_file
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -99,7 +100,7 @@ def read_sources(sources: Iterable[str], read: Callable[[str, bytes], Code] = re
 def _files(source: str, problems: list[InputError], left_out: dict[str, str]) -> set[str]:
     found = contents(source)
     if found is None:
-        if Path(source).is_file() and not _language(source):
+        if is_file(source) and not _language(source):
             problems.append(LabelError(source, 0, "no Python and no C++ by its name", "name source code, or a folder"))
             return set()
         return {source}  # one that is not there is told when it is read
@@ -167,11 +168,11 @@ def _not_built(file: str, folder: str) -> bool:
 
 def _below(source: str, file: str) -> tuple[Path, tuple[str, ...]]:
     """The folder that was named, and the parts of the path from there."""
-    folder = source if Path(source).is_dir() else ""
+    folder = source if is_dir(source) else ""
     parts = Path(os.path.relpath(file, folder)).parts if folder else Path(file).parts[len(Path(source).parts) - 1 :]
     return Path(folder) if folder else Path(file).parents[len(parts) - 1], parts
 
 
 @cache
 def _ignored(folder: str) -> bool:
-    return any(Path(folder, name).exists() for name in IGNORED)
+    return any(exists(Path(folder, name)) for name in IGNORED)

@@ -19,6 +19,7 @@ from rosprivacy.analysis.model import Acceptance, Place
 from rosprivacy.ingest.decisions.decisions_file import LISTS, OF_DOUBTS, TARGET, parse_decisions
 from rosprivacy.ingest.reading.bounded_file import read_regular
 from rosprivacy.ingest.reading.kept_yaml import FAILURES, changed, keeps_comments
+from rosprivacy.ingest.reading.path_kinds import exists
 from rosprivacy.ingest.reading.yaml_values import MAX_BYTES
 
 if TYPE_CHECKING:
@@ -85,7 +86,7 @@ def text_in(file: Path) -> str | None:
     DecisionError
         If it cannot be read.
     """
-    if not file.exists() and not file.is_symlink():
+    if not exists(file) and not file.is_symlink():
         return None
     fail = partial(DecisionError, str(file))
     try:

@@ -36,6 +36,7 @@ from rosprivacy.ingest.deployed.permissions import enclave_of, expired, policy_o
 from rosprivacy.ingest.deployed.security_xml import section_of, warning
 from rosprivacy.ingest.deployed.signatures import given_by, pinned, read_authority, read_certificate, read_signed
 from rosprivacy.ingest.policies.policy_files import Contents, beside_keystore, contents
+from rosprivacy.ingest.reading.path_kinds import is_file
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -262,7 +263,7 @@ class _Enclave:
         """A signed file of the folder; None, with the problem noted, if it is refused."""
         file = str(self.folder / name)
         keystore, enclaves = self.keystore, Path(self.keystore.folder) / "enclaves"
-        if name == GOVERNANCE_FILE and (common := enclaves / name).is_file() and Path(file).is_file():
+        if name == GOVERNANCE_FILE and is_file(common := enclaves / name) and is_file(file):
             file = str(common) if common.samefile(file) else file  # sros2 links it into each enclave
         try:
             authority = keystore.authority(PERMISSIONS_CA)
@@ -270,7 +271,7 @@ class _Enclave:
             self.sources[authority.file] = authority.sha256
         except PolicyError as error:
             unsigned = keystore.how.allow_unsigned and not isinstance(error, _NotPinnedError)
-            if not unsigned or not Path(file).is_file():
+            if not unsigned or not is_file(file):
                 keystore.problems.append(error)
                 return None
             signed = read_signed(file, None)

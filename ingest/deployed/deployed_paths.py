@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.ingest.reading.bounded_file import beginning
 from rosprivacy.ingest.reading.file_kinds import HEAD, is_signed
+from rosprivacy.ingest.reading.path_kinds import is_dir
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -37,6 +38,6 @@ def _is_deployed(argument: str) -> bool:
 def is_keystore(folder: str) -> bool:
     """Return whether a folder is an SROS 2 keystore."""
     try:
-        return all((Path(folder) / name).is_dir() for name in PARTS)
+        return all(is_dir(Path(folder, name)) for name in PARTS)
     except (OSError, ValueError):
         return False

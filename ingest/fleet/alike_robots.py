@@ -24,6 +24,7 @@ from rosprivacy.ingest.policies.namespaces import depends
 from rosprivacy.ingest.policies.policy_files import read_policies
 from rosprivacy.ingest.policies.xinclude import stands_alone
 from rosprivacy.ingest.reading.bounded_file import contents
+from rosprivacy.ingest.reading.path_kinds import is_file
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable
@@ -180,6 +181,6 @@ def _bytes(file: str) -> bytes | None:
     """What is in a file; None where there is none to be read, which its reader will tell."""
     path = Path(file)
     try:
-        return contents(path) if path.is_file() else None
+        return contents(path) if is_file(path) else None
     except OSError:
         return None

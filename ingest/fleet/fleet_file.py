@@ -37,6 +37,7 @@ from rosprivacy.ingest.labels.label_reader import LabelReader
 from rosprivacy.ingest.labels.stated_facts import OF_SYSTEM, SURROUNDINGS, joined, two_of_one, united
 from rosprivacy.ingest.reading import yaml_values
 from rosprivacy.ingest.reading.bounded_file import WIDEN, leaves, what_leaves
+from rosprivacy.ingest.reading.path_kinds import exists, is_file
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -254,7 +255,7 @@ class _Fleet:
             part.problem(item.line, what_leaves(file, self._root), WIDEN)
         elif os.path.realpath(file) in within:
             part.problem(item.line, f"{shown(item.text)} includes itself, on a ring", "remove one of the includes")
-        elif not Path(file).is_file():
+        elif not is_file(file):
             part.problem(item.line, f"{shown(item.text)}: file not found", "correct the path")
         else:
             self.read(file, within)
@@ -396,7 +397,7 @@ class _Fleet:
         """Tell of folders that look like those of robots and lack the policy: ``b`` with ``policy.XML`` is no robot."""
         within, slash, policy = after.partition("/")
         folders = sorted(glob(f"{before}{STAR}{within}/")) if slash else []  # noqa: PTH207 - absolute patterns too
-        lacking = [folder for folder in folders if not Path(folder, policy).exists()]
+        lacking = [folder for folder in folders if not exists(Path(folder, policy))]
         if lacking:
             which = f"{counted(len(lacking), 'folder')} that {shown(f'{before}{STAR}{within}')} matches"
             what = f"no {shown(policy)} in {which}, so no robot: {listed([one.removesuffix('/') for one in lacking])}"
@@ -414,7 +415,7 @@ class _Fleet:
                         continue
                     if leaves(file, self._root):
                         self._problem(self._place_of(key, file, robot), what_leaves(file, self._root), WIDEN)
-                    elif not (Path(file).exists() or (key == "policies" and has_magic(file))):
+                    elif not (exists(file) or (key == "policies" and has_magic(file))):
                         self._problem(self._place_of(key, file, robot), f"{shown(file)}: file not found", "correct it")
 
     def _place_of(self, key: str, file: str, robot: Robot) -> Place:

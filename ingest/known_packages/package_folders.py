@@ -20,6 +20,7 @@ from rosprivacy.analysis.errors import InputError, InputErrors, PackageError, sh
 from rosprivacy.analysis.model import Diagnostic, Severity
 from rosprivacy.analysis.suggesting.evidence import LEAK, SOURCE
 from rosprivacy.ingest.known_packages.package_file import read_package, read_shipped
+from rosprivacy.ingest.reading.path_kinds import is_dir
 from rosprivacy.ontology.vocabulary import FOLDER, remembered
 
 if TYPE_CHECKING:
@@ -112,7 +113,7 @@ def _files(arguments: Iterable[str], problems: list[InputError]) -> Iterable[tup
     for argument in arguments:
         if argument == AMENT:
             found |= _installed(os.environ, problems)
-        elif Path(argument).is_dir():
+        elif is_dir(argument):
             files = sorted(str(file) for file in Path(argument).iterdir() if file.suffix in ENDINGS)
             if not files:
                 what = f"a folder without files that end in {', '.join(ENDINGS)}"

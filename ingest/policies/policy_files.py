@@ -22,6 +22,7 @@ from rosprivacy.analysis.model import ACCESS_GAP, NOT_READ, UNREAD_FILE, Diagnos
 from rosprivacy.ingest.policies.policy_xml import NotAPolicyError, read_policy
 from rosprivacy.ingest.reading.bounded_file import WIDEN, leaves, what_leaves
 from rosprivacy.ingest.reading.file_kinds import ACCESS_LIST, PERMISSIONS, POLICY, FileKind, kind_of_file
+from rosprivacy.ingest.reading.path_kinds import exists, is_dir, is_file
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Container, Iterable, Iterator, Mapping, Sequence
@@ -121,7 +122,7 @@ def _within(file: str, read: Collection[str]) -> bool:
 
 
 def _names_shown(files: Iterable[str], argument: str) -> str:
-    names = sorted(shown(os.path.relpath(name, argument) if Path(argument).is_dir() else name) for name in files)
+    names = sorted(shown(os.path.relpath(name, argument) if is_dir(argument) else name) for name in files)
     return ", ".join([*names[:SHOWN_AT_MOST], *(["…"] if len(names) > SHOWN_AT_MOST else [])])
 
 
@@ -145,9 +146,9 @@ def contents(argument: str) -> Contents | None:
         raise ValueError("no name")
     path = Path(argument)
     found = _FolderWalk(len(path.parts) - has_magic(argument))
-    if path.is_dir():
+    if is_dir(path):
         found.folder(argument)
-    elif has_magic(argument) and not path.exists():
+    elif has_magic(argument) and not exists(path):
         for match in sorted(glob(argument, recursive=True)):  # noqa: PTH207 - absolute patterns too
             found.match(match)
     else:
@@ -167,9 +168,9 @@ class _FolderWalk:
 
     def match(self, name: str) -> None:
         """What a glob matches: a file whatever it is called, or a folder."""
-        if Path(name).is_file():
+        if is_file(name):
             self.contents.files.add(name)
-        elif Path(name).is_dir():
+        elif is_dir(name):
             (self._links.append if Path(name).is_symlink() else self.folder)(name)
         else:
             self._entry(name)
@@ -190,7 +191,7 @@ class _FolderWalk:
                 continue
             for entry in entries:
                 path = str(Path(folder, entry))
-                if not Path(path).is_dir():
+                if not is_dir(path):
                     self._entry(path)
                 elif Path(path).is_symlink():
                     self._links.append(path)
@@ -204,10 +205,10 @@ class _FolderWalk:
 
     def _entry(self, name: str) -> None:
         path = Path(name)
-        if path.is_symlink() and not path.exists():
+        if path.is_symlink() and not exists(path):
             what = f"a link to nothing: {shown(str(path.readlink()))}"
             self.contents.problems.append(PolicyError(name, 0, what, "correct the link, or remove it"))
-        elif path.is_file() and path.suffix.lower() == ".xml":
+        elif is_file(path) and path.suffix.lower() == ".xml":
             self.contents.files.add(name)
         else:
             self.contents.passed_over.add(name)
@@ -397,7 +398,7 @@ def _expand(arguments: Iterable[str]) -> _Expanded:
                 for file in sorted(held.files)
             }
         elif not held.problems:
-            glob = has_magic(argument) and not Path(argument).is_dir()
+            glob = has_magic(argument) and not is_dir(argument)
             what = "no file matches" if glob else "a folder with no .xml file"
             hint = "correct the pattern" if glob else "name a policy"
             expanded.problems.append(PolicyError(argument, 0, what, hint))

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import reason, shown
 from rosprivacy.analysis.files_read import noted
 from rosprivacy.analysis.written_names import MUCH, did_you_mean, nearest
+from rosprivacy.ingest.reading.path_kinds import exists, is_file
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -86,7 +87,7 @@ def beginning(name: str, size: int, *, passed_over: bool = False) -> bytes:
         If it cannot be read.
     """
     path = Path(name)
-    if not path.is_file():
+    if not is_file(path):
         return b""
     with path.open("rb") as file:
         return (file if passed_over else noted(file, name)).read(size)
@@ -119,9 +120,9 @@ def read_regular(file: str, max_bytes: int, fail: Callable[[int, str, str], Inpu
     try:
         if not file:
             raise fail(0, "no file named", "name a file")
-        if not path.exists():
+        if not exists(path):
             raise fail(0, "file not found", nearest_file(path))
-        if not path.is_file():
+        if not is_file(path):
             raise fail(0, "not a regular file", "name a regular file")
         if path.stat().st_size > max_bytes:
             raise fail(0, f"more than {max_bytes} bytes", "split the file")

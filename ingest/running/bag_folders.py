@@ -21,6 +21,7 @@ from rosprivacy.analysis.model.recording import Bag, BagTopic
 from rosprivacy.ingest.reading import yaml_values
 from rosprivacy.ingest.reading.bounded_file import leaves, nearest_file
 from rosprivacy.ingest.reading.file_kinds import RECORDED, kind_of_file
+from rosprivacy.ingest.reading.path_kinds import exists, is_dir, is_file
 from rosprivacy.ingest.running.recorded_file import Recorded, moment, united
 from rosprivacy.ingest.running.sqlite_file import read_sqlite
 
@@ -119,9 +120,9 @@ def read_bag(path: str) -> Bag:
     """Read what a bag says of itself; ``InputError`` if there is none, or it cannot be read at all."""
     try:
         there = Path(path)
-        if not path or not there.exists():
+        if not path or not exists(there):
             raise BagError(path, 0, "bag not found", nearest_file(there))
-        if there.is_dir():
+        if is_dir(there):
             return _folder(path)
     except (OSError, ValueError) as error:
         raise BagError(path, 0, f"cannot be read: {reason(error)}", "check the path and its permissions") from None
@@ -168,7 +169,7 @@ def _ending(name: str) -> str:
 def _bag(
     path: str, recorded: Recorded, files: Iterable[str], gaps: Sequence[str] = (), notes: Sequence[str] = ()
 ) -> Bag:
-    there = sorted(file for file in files if Path(file).is_file())
+    there = sorted(file for file in files if is_file(file))
     size = sum(Path(file).stat().st_size for file in there)
     all_gaps = (*recorded.gaps, *gaps)
     facts = (
@@ -186,7 +187,7 @@ def _bag(
 def _folder(folder: str, metadata: str = "") -> Bag:
     """The folder of one recording."""
     file = metadata or str(Path(folder, NAME))
-    if not Path(file).exists():
+    if not exists(file):
         hint = "rosbag2 writes it at the end of a recording; name the files in the folder, or a folder of bags"
         raise BagError(folder, 0, f"no {NAME}", hint)
     said = read_metadata(file)
@@ -198,7 +199,7 @@ def _folder(folder: str, metadata: str = "") -> Bag:
         path = str(Path(folder, name))
         if leaves(path, root):
             gaps.append(f"{NAME} names {shown(name)!r}, which lies outside the folder and is not read")
-        elif not Path(path).is_file():
+        elif not is_file(path):
             gaps.append(f"{NAME} names {shown(name)!r}, which is not there")
         else:
             named[os.path.realpath(path)] = path
@@ -267,7 +268,7 @@ def read_bags(
         With every problem of what is named.
     """
     problems: list[InputError] = []
-    named = {path: path for path in paths if not Path(path).is_dir() or Path(path, NAME).is_file()}
+    named = {path: path for path in paths if not is_dir(path) or is_file(Path(path, NAME))}
     found: dict[str, str] = dict.fromkeys(named, "")
     for folder in paths:
         if folder not in named:
@@ -310,8 +311,8 @@ def _inside(top: str, problems: list[InputError]) -> Iterator[tuple[str, str]]:
             yield folder, ""
         for entry in entries:
             path = str(Path(folder, entry))
-            if Path(path).is_dir():
+            if is_dir(path):
                 (links if Path(path).is_symlink() else waiting).append(path)
             elif not whole and is_recording(entry):
-                dangling = Path(path).is_symlink() and not Path(path).exists()
+                dangling = Path(path).is_symlink() and not exists(path)
                 yield path, "a link to nothing; correct the link, or remove it" if dangling else ""

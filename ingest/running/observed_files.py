@@ -38,6 +38,7 @@ from rosprivacy.ingest.policies.observed_metadata import (
 )
 from rosprivacy.ingest.policies.policy_xml import ROLES, read_policy
 from rosprivacy.ingest.policies.xinclude import Documents
+from rosprivacy.ingest.reading.path_kinds import is_file
 from rosprivacy.ingest.running.observation import Folded, Observation, ObservedEndpoint, ObservedNode, Span, added_up
 from rosprivacy.ingest.running.observed_names import whole_actions, with_folded_names, with_good_names
 from rosprivacy.ingest.types.types_file import read_types
@@ -253,7 +254,7 @@ def _read(file: str, types_file: str) -> Observation:
         problems = [ObservationError(file, 0, "no observation is in it", INSTEAD)]
     if problems:
         raise InputErrors(problems)
-    there = Path(types_file).is_file()
+    there = is_file(types_file)
     remarks = () if there else (WITHOUT_TYPES.format(file=shown(types_file)),)
     try:
         whole = added_up(_of_enclave(element) for element in made)

@@ -18,6 +18,7 @@ from rosprivacy.analysis.errors import BagError, reason
 from rosprivacy.analysis.files_read import noted
 from rosprivacy.analysis.model.recording import BagTopic
 from rosprivacy.ingest.reading.bounded_file import nearest_file
+from rosprivacy.ingest.reading.path_kinds import exists, is_file
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -88,9 +89,9 @@ def bounded_stream(file: str, limit: int = MOST_READ) -> Iterator[BoundedStream]
     """Open a regular file, and note that it is read; ``BagError`` if it is none, or the system refuses it."""
     path = Path(file)
     try:
-        if not path.exists():
+        if not exists(path):
             raise BagError(file, 0, "file not found", nearest_file(path))
-        if not path.is_file():
+        if not is_file(path):
             raise BagError(file, 0, "not a regular file", "name a regular file")
         with path.open("rb") as opened:
             yield BoundedStream(noted(opened, file), limit)

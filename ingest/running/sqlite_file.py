@@ -16,6 +16,7 @@ from urllib.parse import quote
 
 from rosprivacy.analysis.errors import BagError, shown
 from rosprivacy.analysis.model.recording import BagTopic
+from rosprivacy.ingest.reading.path_kinds import is_file
 from rosprivacy.ingest.running.recorded_file import Recorded, bounded_stream, moment, united
 
 if TYPE_CHECKING:
@@ -66,7 +67,7 @@ def _gaps(file: str) -> Iterable[str]:
         yield "the file is cut; topics may be missing"
     for ending in ("-wal", "-journal"):
         beside = Path(f"{file}{ending}")
-        if beside.is_file() and beside.stat().st_size:
+        if is_file(beside) and beside.stat().st_size:
             what = f"{shown(beside.name)!r} beside it is not read: the recording broke off, or goes on"
             yield f"{what}; topics may be missing"
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from rosprivacy.analysis.errors import reason, shown
 from rosprivacy.ingest.code.source_files import IGNORED, OF_OTHERS
 from rosprivacy.ingest.reading.bounded_file import leaves
+from rosprivacy.ingest.reading.path_kinds import exists, is_file
 from rosprivacy.ingest.scan.scan_facts import CodePlace, Gap
 
 if TYPE_CHECKING:
@@ -67,9 +68,9 @@ def checkout_files(root: str | Path) -> CheckoutFiles:
                             f"a link that leads out: {shown(str(Path(entry.path).readlink()))}",
                         )
                     )
-                elif Path(entry.path).is_file():
+                elif is_file(entry.path):
                     files.append(path)  # a folder is read where it stands
-                elif not Path(entry.path).exists():
+                elif not exists(entry.path):
                     gaps.append(Gap(CodePlace(path, 0), "file", "a link that leads nowhere"))
             elif entry.is_file():
                 files.append(path)

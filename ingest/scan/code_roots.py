@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.ingest.deployed.deployed_paths import is_keystore
 from rosprivacy.ingest.reading.file_kinds import ACCESS_LIST, DESCRIPTIONS, LAUNCH, PERMISSIONS, POLICY, kind_of_file
+from rosprivacy.ingest.reading.path_kinds import is_dir, is_file
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -44,14 +45,14 @@ def root_of(name: str, *, granted: bool = False) -> tuple[str, str] | None:
     """
     path = Path(name)
     try:
-        if path.is_dir():
+        if is_dir(path):
             return (name, "") if not is_keystore(name) and _is_code(name, granted=granted) else None
-        if not path.is_file() or not (name.endswith(DESCRIPTIONS) or kind_of_file(name) == LAUNCH):
+        if not is_file(path) or not (name.endswith(DESCRIPTIONS) or kind_of_file(name) == LAUNCH):
             return None
     except (OSError, ValueError):
         return None
-    package = next((above for above in path.absolute().parents if (above / MANIFEST).is_file()), path.absolute().parent)
-    if any((other / MANIFEST).is_file() for other in package.parent.iterdir() if other != package and other.is_dir()):
+    package = next((above for above in path.absolute().parents if is_file(above / MANIFEST)), path.absolute().parent)
+    if any(is_file(other / MANIFEST) for other in package.parent.iterdir() if other != package and is_dir(other)):
         package = package.parent
     inner = path.absolute().relative_to(package).as_posix()
     return os.path.relpath(package), inner

@@ -7,11 +7,12 @@ In: the report as Markdown (``markdown.py``), so that no sentence stands in one 
 from __future__ import annotations
 
 from io import BytesIO
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
 import docx
 from docx.enum.section import WD_ORIENT
+from docx.opc.pkgwriter import PackageWriter
 from docx.oxml import OxmlElement
 from docx.oxml.ns import qn
 from docx.shared import Mm, Pt
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from docx.document import Document
+    from docx.opc.packuri import PackURI
     from docx.table import _Row
     from docx.text.paragraph import Paragraph
     from docx.text.run import Run
@@ -121,13 +123,32 @@ def _runs(node: SyntaxTreeNode, *, strong: bool) -> Iterator[tuple[str, bool, bo
 
 
 def same_bytes(document: Document) -> bytes:
-    """Return the package; its parts carry the first date that ZIP knows, where python-docx writes that of now."""
-    saved, packed = BytesIO(), BytesIO()
-    document.save(saved)
-    with ZipFile(saved) as parts, ZipFile(packed, "w", ZIP_DEFLATED) as package:
-        for part in parts.infolist():
-            package.writestr(ZipInfo(part.filename), parts.read(part), ZIP_DEFLATED)
+    """Return the package of a Word document: the same document, the same bytes."""
+    package, packed = document.part.package, BytesIO()
+    assert package is not None
+    for part in package.parts:
+        part.before_marshal()
+    with ZipFile(packed, "w") as archive:
+        target = _FirstDate(archive)
+        steps: Any = PackageWriter  # its own `write` opens an archive of its own
+        steps._write_content_types_stream(target, package.parts)  # noqa: SLF001
+        steps._write_pkg_rels(target, package.rels)  # noqa: SLF001
+        steps._write_parts(target, package.parts)  # noqa: SLF001
     return packed.getvalue()
+
+
+class _FirstDate(NamedTuple):
+    """Where python-docx writes the parts of a document to: all carry 1980-01-01, the first date that ZIP knows.
+
+    Left to themselves they carry the time of now; from Python 3.14 on that of ``SOURCE_DATE_EPOCH``, and where that is
+    before 1980, such as 0, nothing can be written.
+    """
+
+    archive: ZipFile
+
+    def write(self, name: PackURI, data: bytes | str) -> None:
+        """Add a part."""
+        self.archive.writestr(ZipInfo(name.membername), data, ZIP_DEFLATED)
 
 
 A4 = (Mm(210), Mm(297))

@@ -43,6 +43,7 @@ if TYPE_CHECKING:
 
 WORKER = str(Path(__file__).with_name("graphviz_worker.py"))
 MISSING = "Graphviz is not installed, so there is no"
+LIBRARIES = "libexpat1 libglib2.0-0 libxext6 libxrender1"  # Debian's packages of what the wheels leave to the system
 
 
 def available() -> bool:
@@ -155,7 +156,9 @@ class Graphviz(Closing):
                 raise TooLongError
             raise DrawingError("graph: Graphviz ended while it drew; take --format dot and draw that by other means")
         if answer["error"]:
-            raise DrawingError(f"graph: Graphviz cannot draw this: {shown(answer['error'])}; take --format dot")
+            what = f"graph: Graphviz cannot draw this: {shown(answer['error'])}"
+            libraries = "" if answer["loaded"] else f"install the system's libraries (Debian: {LIBRARIES}), or "
+            raise DrawingError(f"{what}; {libraries}take --format dot")
         return data
 
     def _running(self) -> subprocess.Popen[bytes]:

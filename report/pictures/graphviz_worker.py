@@ -27,14 +27,16 @@ def main() -> None:
         job = json.loads(head)
         if hasattr(signal, "alarm"):  # should our parent be gone: no layout outlives its limit for long
             signal.alarm(math.ceil(job["seconds"]) + 5)
-        error, data = "", b""
+        error, data, loaded = "", b"", True
         try:
             data = _draw(job, dot.decode())
+        except ImportError as problem:  # most likely a library of the system that a wheel leaves out
+            error, loaded = str(problem), False
         except Exception as problem:  # noqa: BLE001 - whatever it is, the parent says it
             error = str(problem) or type(problem).__name__
         if hasattr(signal, "alarm"):
             signal.alarm(0)
-        answers.write(json.dumps({"error": error, "size": len(data)}).encode() + b"\n" + data)
+        answers.write(json.dumps({"error": error, "size": len(data), "loaded": loaded}).encode() + b"\n" + data)
         answers.flush()
 
 

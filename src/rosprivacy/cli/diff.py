@@ -15,6 +15,7 @@ from rosprivacy.cli.exit_code import UNDETERMINED
 from rosprivacy.cli.inputs import Inputs, reads_system, refuse
 from rosprivacy.cli.options import READ, Output
 from rosprivacy.cli.output import emit
+from rosprivacy.ingest.reading.path_kinds import exists, is_file
 
 if TYPE_CHECKING:
     from rosprivacy.report.compare.snapshot import CodeState, Snapshot
@@ -144,7 +145,7 @@ def _since(revision: str, state: str, inputs: Inputs) -> tuple[Snapshot, Snapsho
     named = [_whole(name) if name in elsewhere else name for name in labels]
     with at_revision(revision, checkout):
         try:
-            before = _snapshot((state,), tuple(name for name in named if Path(name).exists()), settings)
+            before = _snapshot((state,), tuple(name for name in named if exists(name)), settings)
         except InputErrors as problems:
             raise InputErrors(
                 InputError(f"{revision}:{one.file}", one.line, one.problem, one.hint) for one in problems.errors
@@ -178,7 +179,7 @@ def _with_whole_names(settings: Settings) -> Settings:
 
 def _whole(name: str) -> str:
     """The name of a file from the root; of what is no file, such as a fingerprint, as it is."""
-    return str(Path(name).absolute()) if Path(name).exists() else name
+    return str(Path(name).absolute()) if exists(name) else name
 
 
 def _states(old: str | None, new: str | None, inputs: Inputs) -> tuple[tuple[tuple[str, ...], ...], Inputs]:
@@ -267,7 +268,7 @@ def _kind(state: str) -> str:
     """What a file is, by how it begins; folders, globs and launch files are read as policies."""
     try:
         path = Path(state)
-        head = path.read_bytes()[:4096] if path.is_file() else b""
+        head = path.read_bytes()[:4096] if is_file(path) else b""
     except (OSError, ValueError):
         return "policies"
     if b'"rosprivacy.analysis/' in head:

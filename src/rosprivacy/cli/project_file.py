@@ -22,6 +22,7 @@ from rosprivacy.analysis.written_names import did_you_mean, nearest
 from rosprivacy.cli.exit_code import FailOn
 from rosprivacy.cli.options import Language
 from rosprivacy.ingest.reading.bounded_file import beginning, leaves, read_utf8, what_leaves
+from rosprivacy.ingest.reading.path_kinds import exists, is_file
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -123,13 +124,13 @@ def nearest_project(start: Path) -> Path | None:
         if (folder == home and folder != start) or folder.stat().st_dev != device or not os.access(folder, os.X_OK):
             return None
         own, of_python = folder / OWN_FILE, folder / PYTHON_FILE
-        files = [file for file in (own, of_python) if file.is_file() and (file == own or _has_table(file))]
+        files = [file for file in (own, of_python) if is_file(file) and (file == own or _has_table(file))]
         if len(files) > 1:
             what = f"states what {OWN_FILE} beside it states, too"
             raise InputErrors([InputError(_near(of_python), 0, what, "keep one of them")])
         if files:
             return files[0]
-        if (folder / ".git").exists():
+        if exists(folder / ".git"):
             return None
     return None
 

@@ -22,6 +22,7 @@ from rosprivacy.ingest.labels.label_reader import SIX_LISTS
 from rosprivacy.ingest.labels.label_writer import NEW, with_entries, without_places
 from rosprivacy.ingest.reading import yaml_values
 from rosprivacy.ingest.reading.bounded_file import read_regular, read_utf8
+from rosprivacy.ingest.reading.path_kinds import exists, is_file
 from rosprivacy.report.atomic import editing, write_texts
 
 if TYPE_CHECKING:
@@ -209,7 +210,7 @@ class EditedFile:
         """Write it under another name, where there is none; labels that had no file have this one then."""
         new = self.own.new_text(edits)
         with one_run(), editing(Path(file)):
-            if Path(file).exists():
+            if exists(file):
                 raise InputError(file, 0, "is there already", "a label file is work: name another, or remove it")
             data = new.text.encode()
             write_texts([(Path(file), data)], edited=Path(file))
@@ -244,7 +245,7 @@ class EditedFile:
 
 def _on_disk(file: str) -> bytes | None:
     """What a label file holds now; None if there is none."""
-    return read_regular(file, yaml_values.MAX_BYTES, partial(LabelError, file)) if Path(file).exists() else None
+    return read_regular(file, yaml_values.MAX_BYTES, partial(LabelError, file)) if exists(file) else None
 
 
 def digest_of(data: bytes | None) -> str:
@@ -271,7 +272,7 @@ def chosen(labels: Sequence[str | Labels]) -> int | None:
         if isinstance(file, Labels):
             if not file.shipped:
                 return at
-        elif not file.startswith(OURS) and not (Path(file).is_file() and _has_six_lists(file)):
+        elif not file.startswith(OURS) and not (is_file(file) and _has_six_lists(file)):
             return at
     return None
 
@@ -297,7 +298,7 @@ def read_file(
     if isinstance(file, Labels):
         lines = max((entry.place.line for entry in file.entries), default=0)
         return FileText("", None, "", file, {}, how._replace(file=file.file, lines=lines))
-    if file is None or not Path(file).exists():
+    if file is None or not exists(file):
         labels = parse_labels(NEW, vocabulary, name=how.file, bounds=settings.bounds)
         return FileText(name, NEW, "", labels, {}, how._replace(lines=1))
     try:

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import InputError, LabelError, shown
@@ -23,6 +22,7 @@ from rosprivacy.ingest.labels.label_writer import NEW, NewLine, with_lines
 from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.ingest.policies.names import covered
 from rosprivacy.ingest.reading.bounded_file import read_regular
+from rosprivacy.ingest.reading.path_kinds import exists
 from rosprivacy.ingest.reading.yaml_values import MAX_BYTES
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.report.review_groups import next_round, sources_of
@@ -135,7 +135,7 @@ def own_file(labels: tuple[str, ...]) -> str:
 def _own(labels: tuple[str, ...], vocabulary: Vocabulary, settings: Settings) -> tuple[Labels, str]:
     """The label file that is written, with its text; one that is not there is begun."""
     file = own_file(labels)
-    if not Path(file).exists():
+    if not exists(file):
         return parse_labels(NEW, vocabulary, name=file), NEW
     data = read_regular(file, MAX_BYTES, partial(LabelError, file))
     root = settings.include_root

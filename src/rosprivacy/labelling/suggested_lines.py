@@ -11,7 +11,6 @@ from __future__ import annotations
 import os
 from collections import defaultdict
 from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from rosprivacy.analysis.errors import InputError, LabelError, shown
@@ -26,6 +25,7 @@ from rosprivacy.ingest.labels.label_file import parse_labels
 from rosprivacy.ingest.labels.label_writer import NEW, facts_of
 from rosprivacy.ingest.reading import yaml_values
 from rosprivacy.ingest.reading.bounded_file import read_utf8
+from rosprivacy.ingest.reading.path_kinds import exists
 from rosprivacy.ingest.suggestion_rules.accepting import LIMITING, NewLabel, accept, overlap
 from rosprivacy.ingest.suggestion_rules.comments import comment_of, taken_apart, with_comments
 from rosprivacy.labelling.label_lines import LabelLines, own_file
@@ -163,7 +163,7 @@ def text_of(file: str) -> str:
     LabelError
         If it cannot be read.
     """
-    return _read(file) if Path(file).exists() else NEW
+    return _read(file) if exists(file) else NEW
 
 
 def _read(file: str) -> str:

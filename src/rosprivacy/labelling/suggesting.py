@@ -9,7 +9,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import chain
-from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import LabelError
@@ -24,6 +23,7 @@ from rosprivacy.analysis.text import counted
 from rosprivacy.ingest.known_packages.package_folders import replacements
 from rosprivacy.ingest.labels.label_file import OURS
 from rosprivacy.ingest.reading.bounded_file import read_utf8
+from rosprivacy.ingest.reading.path_kinds import is_file
 from rosprivacy.ingest.reading.yaml_values import MAX_BYTES
 from rosprivacy.ingest.suggestion_rules.comments import refusal_key, refusals_in
 from rosprivacy.labelling.knowledge import NO_FILES, Basis, CodeSaid, code_said, evidence, what_is_known
@@ -345,6 +345,6 @@ def refused_in(result: Result) -> Refused:
 
 
 def _in_files(files: Iterable[str]) -> frozenset[str]:
-    own = [file for file in files if not file.startswith(OURS) and Path(file).is_file()]
+    own = [file for file in files if not file.startswith(OURS) and is_file(file)]
     texts = (read_utf8(file, MAX_BYTES, partial(LabelError, file))[0] for file in own)
     return frozenset().union(*map(refusals_in, texts))

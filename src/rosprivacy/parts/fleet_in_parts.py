@@ -25,6 +25,7 @@ from rosprivacy.ingest.fleet.fleet_file import read_fleet
 from rosprivacy.ingest.fleet.joins import OF_FLEET
 from rosprivacy.ingest.labels.countries import countries
 from rosprivacy.ingest.labels.label_file import read_labels
+from rosprivacy.ingest.reading.path_kinds import is_file
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.parts.distributed import MOST_WHOLE, Task, analyse_in_parts
 from rosprivacy.parts.kept_parts import kept_parts
@@ -142,7 +143,7 @@ def contexts_of(fleet: Fleet, question: Question) -> frozenset[str]:
 def _note_what_workers_read(whole: Found) -> None:
     """Workers are processes of their own, whose notes nobody sees here: what they have read is no output either."""
     for name in (*(file for file, _ in whole.report.sources), *(file for file, *_ in whole.report.labels)):
-        if Path(name).is_file():
+        if is_file(name):
             note(name, Path(name).stat())
 
 

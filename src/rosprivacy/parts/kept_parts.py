@@ -23,6 +23,7 @@ from rosprivacy.analysis.errors import InputError, InputErrors, reason
 from rosprivacy.analysis.files_read import names_read, one_run
 from rosprivacy.analysis.model import FALLBACK_TAKEN
 from rosprivacy.ingest.fleet.alike_robots import digest
+from rosprivacy.ingest.reading.path_kinds import exists, is_dir
 from rosprivacy.report.atomic import write_texts
 from rosprivacy.version import __version__
 
@@ -65,7 +66,7 @@ class KeptParts:
         """
         robots = [(robot.id, robot.files) for unit in units for group in unit.groups for robot in group.robots]
         file = Path(self.folder, hashlib.sha256(repr((self.key, robots)).encode()).hexdigest()[:32])
-        if file.exists():
+        if exists(file):
             seen, kept = _read(file)
             if all(_state(name) == state for name, state in seen.items()):
                 there: Built = kept
@@ -132,7 +133,7 @@ def _check_own(folder: Path) -> None:
 def _folders(units: Sequence[Unit]) -> Iterator[str]:
     """The folders that are read for some units, with all below."""
     for name in {name for unit in units for group in unit.groups for name in group.robots[0].policies}:
-        if Path(name).is_dir():
+        if is_dir(name):
             yield from (folder for folder, _, _ in os.walk(name, followlinks=True))
 
 
@@ -147,7 +148,7 @@ def _changed_since(name: str, begun: int) -> bool:
 def _state(name: str) -> str | int:
     """The hash of a file, empty for what is not there; when a folder got or lost one."""
     path = Path(name)
-    return path.stat().st_mtime_ns if path.is_dir() else digest(name)
+    return path.stat().st_mtime_ns if is_dir(path) else digest(name)
 
 
 class _Unpickler(pickle.Unpickler):

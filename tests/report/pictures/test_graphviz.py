@@ -6,8 +6,10 @@ import os
 import signal
 import struct
 from dataclasses import replace
+from importlib.machinery import EXTENSION_SUFFIXES
 from itertools import islice, pairwise
 from math import inf
+from typing import TYPE_CHECKING
 
 import pytest
 from lxml import etree
@@ -20,6 +22,9 @@ from rosprivacy.report.pictures.graphviz import WAYS, Graphviz, Job, TooLongErro
 from rosprivacy.report.pictures.picture import ROS, Box, Picture, PictureLine, sorted_boxes, sorted_lines
 from tests.helpers.graphs import factory
 from tests.helpers.pictures import hostile
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 AT_ONCE = 1e-9
 SMALL = Job("digraph { a -> b }")
@@ -87,6 +92,16 @@ def test_without_graphviz_it_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch,
     with pytest.raises(
         DrawingError, match=r"^graph: Graphviz is not installed.*; take --format dot.*pygraphviz.*libgraphviz-dev\)$"
     ):
+        drawn(picture, "svg")
+
+
+def test_where_a_library_of_the_system_is_missing_it_says_which(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, picture: Picture
+) -> None:
+    """Graphviz is installed, and the loader refuses it: here since its own library is an empty file."""
+    (tmp_path / f"pygraphviz{EXTENSION_SUFFIXES[0]}").touch()
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    with pytest.raises(DrawingError, match=r"^graph: .*file too short; .*libglib.*, or take --format dot$"):
         drawn(picture, "svg")
 
 
