@@ -107,6 +107,7 @@ def told(result: Result) -> dict[str, Any]:
     plain: dict[str, Any] = _plain(document, patterns)
     for row in plain.get("register", ()):
         row.pop("id")  # the same
+        row.pop("fleet", None)  # on which robots
     for decision in plain.get("decisions", ()):  # sorted by ids, which hold the robot's name
         decision["findings"] = sorted(decision["findings"])
     return plain
